@@ -18,7 +18,7 @@ use std::hint::black_box;
 mod scene;
 
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
-type CsgPart = <CsgWorker as Worker>::Part;
+type CsgPart = <CsgWorker as leafless::solid::Parts>::Part;
 
 fn universe(depth: u8) -> Frame {
     Frame::new([-1.0; 3], 2.0, depth).expect("a good frame")

@@ -12,6 +12,7 @@
 pub mod dexel_vectors;
 
 use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
+use leafless::solid::{FreeParts, OneByOne, Question, WholeQuestion};
 use leafless::{
     Cell, Classifier, Control, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
     build, file,
@@ -97,11 +98,24 @@ impl Classifier for Model {
     fn exterior(&self) -> Tag {
         self.exterior
     }
+
+    // What the file shall claim is set once the tree is made.
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-impl Worker for Model {
+impl FreeParts for Model {
     type Part = ();
+}
 
+impl OneByOne for Model {}
+
+impl Worker for Model {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -112,6 +126,10 @@ impl Worker for Model {
 
     fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(cell.child(k))))
+    }
+
+    fn answer(&mut self, _: Cell, _: &(), _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 }
 

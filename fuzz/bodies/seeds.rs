@@ -5,6 +5,7 @@ use super::{CONTROL, Random, joined};
 use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
 use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::DexelOptions;
+use leafless::solid::{FreeParts, OneByOne, Question, WholeQuestion};
 use leafless::{
     Cell, Classifier, Control, Csg, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
     build, dexelize, file,
@@ -39,11 +40,23 @@ impl Classifier for NoiseOnFrame {
     fn worker(&self) -> Result<NoiseOnFrame, Error> {
         Ok(*self)
     }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-impl Worker for NoiseOnFrame {
+impl FreeParts for NoiseOnFrame {
     type Part = ();
+}
 
+impl OneByOne for NoiseOnFrame {}
+
+impl Worker for NoiseOnFrame {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -63,6 +76,10 @@ impl Worker for NoiseOnFrame {
                 die => [Verdict::Empty, Verdict::Full, Verdict::Undecided][die % 3],
             }
         }))
+    }
+
+    fn answer(&mut self, _: Cell, _: &(), _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 }
 

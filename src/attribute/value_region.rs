@@ -2,11 +2,13 @@
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Bounds, Cell, CellMoments, Frame, Interval};
+use crate::lattice::{Bounds, Cell, Frame};
+use crate::memory;
 use crate::octree::channel::{Bits, Spot};
 use crate::octree::{ChannelRef, Octree, Proof, Tag, ValueType};
 use crate::op::{Rule, build};
-use crate::solid::{Classifier, Enclosure, Solid, Verdict, Worker};
+use crate::solid::{Batch, Classifier, Parts, Question, Solid, Verdict, WholeQuestion, Worker};
+use alloc::vec::Vec;
 
 /// The part of a solid in which the values of a channel lie in a band: a material of a part, all that is
 /// hotter than a limit. It is a solid itself, and lies in the channel's cube.
@@ -117,6 +119,11 @@ impl<'a, C: Classifier> Classifier for RegionOnFrame<'a, C> {
     fn proof(&self) -> Proof {
         self.solid.proof()
     }
+
+    /// What is known of the solid says nothing of its values.
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 /// What is remembered about a cell of a region.
@@ -151,9 +158,131 @@ impl<C> RegionOnFrame<'_, C> {
     }
 }
 
-impl<W: Worker> Worker for RegionOnFrame<'_, W> {
+impl<W: Worker> Parts for RegionOnFrame<'_, W> {
     type Part = RegionPart<W::Part>;
 
+    fn mark(&self) -> usize {
+        self.solid.mark()
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.solid.release(mark);
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        self.solid.scratch_bytes()
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &Self::Part) -> Result<Self::Part, Error> {
+        Ok(match part {
+            RegionPart::Solid(part) => RegionPart::Solid(self.solid.hand_over(&from.solid, part)?),
+            RegionPart::Both(part, spot) => RegionPart::Both(self.solid.hand_over(&from.solid, part)?, *spot),
+            RegionPart::Values(spot, open) => RegionPart::Values(*spot, *open),
+        })
+    }
+}
+
+impl<W: Worker> Batch for RegionOnFrame<'_, W> {
+    fn likes_many(&self) -> bool {
+        self.solid.likes_many()
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, Self::Part)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<Self::Part>; 8]>,
+    ) -> Result<(), Error> {
+        verdicts.try_reserve(cells.len())?;
+        let mut asked = memory::with_capacity(cells.len())?;
+        asked.extend(cells.iter().filter_map(|(cell, part)| Some((*cell, part.of_solid()?.clone()))));
+        let mut found = Vec::new();
+        let done = self.solid.split_many(&asked, control, &mut found);
+        let mut found = found.into_iter();
+        for (_, part) in cells {
+            let solids = match part.of_solid().map(|_| found.next()) {
+                // The solid ended early.
+                Some(None) => break,
+                Some(Some(verdicts)) => Some(verdicts),
+                None => None,
+            };
+            verdicts.push(self.children(part, solids));
+        }
+        done
+    }
+
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, Self::Part)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        inside.try_reserve(cells.len())?;
+        let mut asked = memory::with_capacity(cells.len())?;
+        asked.extend(cells.iter().filter_map(|(cell, part)| match part {
+            RegionPart::Solid(part) => Some((*cell, part.clone())),
+            RegionPart::Values(..) | RegionPart::Both(..) => None,
+        }));
+        let mut found = Vec::new();
+        let done = self.solid.sample_many(&asked, control, &mut found);
+        let mut found = found.into_iter();
+        for (_, part) in cells {
+            match part {
+                RegionPart::Solid(_) => match found.next() {
+                    Some(answer) => inside.push(answer),
+                    None => break,
+                },
+                _ => inside.push(None),
+            }
+        }
+        done
+    }
+
+    /// A point of the solid may have any value.
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        self.solid.inside(points, answers)?;
+        answers.iter_mut().for_each(|answer| *answer = answer.filter(|&inside| !inside));
+        Ok(())
+    }
+
+    /// Where a channel describes a cell is known on the way to it.
+    fn recall(&mut self, _: Cell) -> Option<Self::Part> {
+        None
+    }
+}
+
+impl<P> RegionPart<P> {
+    /// The solid's part.
+    fn of_solid(&self) -> Option<&P> {
+        match self {
+            RegionPart::Solid(part) | RegionPart::Both(part, _) => Some(part),
+            RegionPart::Values(..) => None,
+        }
+    }
+}
+
+impl<W: Worker> RegionOnFrame<'_, W> {
+    /// The children of a cell, given those of the solid if it is open there.
+    fn children(
+        &self,
+        part: &RegionPart<W::Part>,
+        solids: Option<[Verdict<W::Part>; 8]>,
+    ) -> [Verdict<RegionPart<W::Part>>; 8] {
+        let (solids, spot) = match (part, solids) {
+            (RegionPart::Solid(_), Some(solids)) => return solids.map(|solid| solid.map(RegionPart::Solid)),
+            (RegionPart::Both(_, spot), Some(solids)) => (solids, spot),
+            (RegionPart::Values(spot, false), _) => ([const { Verdict::Full }; 8], spot),
+            (RegionPart::Values(spot, true) | RegionPart::Both(_, spot), _) => {
+                ([const { Verdict::Undecided }; 8], spot)
+            }
+            (RegionPart::Solid(_), None) => return [const { Verdict::Undecided }; 8],
+        };
+        let mut spots = self.channel.children(&spot.0).into_iter();
+        solids.map(|solid| self.verdict(solid, spots.next().unwrap_or(Spot::Settled(None))))
+    }
+}
+
+impl<W: Worker> Worker for RegionOnFrame<'_, W> {
     fn frame(&self) -> &Frame {
         self.solid.frame()
     }
@@ -164,74 +293,15 @@ impl<W: Worker> Worker for RegionOnFrame<'_, W> {
     }
 
     fn split(&mut self, cell: Cell, part: &Self::Part) -> Result<[Verdict<Self::Part>; 8], Error> {
-        let of_solid = |worker: &mut W, part| worker.split(cell, part);
-        let (solids, spots) = match part {
-            RegionPart::Solid(part) => {
-                let verdicts = of_solid(&mut self.solid, part)?;
-                return Ok(verdicts.map(|verdict| match verdict {
-                    Verdict::Empty => Verdict::Empty,
-                    Verdict::Full => Verdict::Full,
-                    Verdict::Undecided => Verdict::Undecided,
-                    Verdict::Partial(part) => Verdict::Partial(RegionPart::Solid(part)),
-                }));
-            }
-            RegionPart::Values(spot, true) => ([const { Verdict::Undecided }; 8], spot),
-            RegionPart::Values(spot, false) => ([const { Verdict::Full }; 8], spot),
-            RegionPart::Both(part, spot) => (of_solid(&mut self.solid, part)?, spot),
-        };
-        let mut spots = self.channel.children(&spots.0).into_iter();
-        Ok(solids.map(|solid| self.verdict(solid, spots.next().unwrap_or(Spot::Settled(None)))))
+        let solids = part.of_solid().map(|part| self.solid.split(cell, part)).transpose()?;
+        Ok(self.children(part, solids))
     }
 
-    fn mark(&self) -> usize {
-        self.solid.mark()
-    }
-
-    fn scratch_bytes(&self) -> usize {
-        self.solid.scratch_bytes()
-    }
-
-    fn release(&mut self, mark: usize) {
-        self.solid.release(mark);
-    }
-
-    fn hand_over(&mut self, from: &Self, part: &Self::Part) -> Result<Self::Part, Error> {
-        Ok(match part {
-            RegionPart::Solid(part) => RegionPart::Solid(self.solid.hand_over(&from.solid, part)?),
-            RegionPart::Both(part, spot) => RegionPart::Both(self.solid.hand_over(&from.solid, part)?, *spot),
-            RegionPart::Values(spot, open) => RegionPart::Values(*spot, *open),
-        })
-    }
-
-    fn likes_many(&self) -> bool {
-        self.solid.likes_many()
-    }
-
-    fn sample(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<bool>, Error> {
+    /// Where all values lie in the band, the region is the solid.
+    fn answer(&mut self, cell: Cell, part: &Self::Part, question: Question<'_>) -> Result<(), Error> {
         match part {
-            RegionPart::Solid(part) => self.solid.sample(cell, part),
-            _ => Ok(None),
-        }
-    }
-
-    fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error> {
-        match part {
-            RegionPart::Solid(part) => self.solid.enclosure(cell, part),
-            _ => Ok(None),
-        }
-    }
-
-    fn moments(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<CellMoments>, Error> {
-        match part {
-            RegionPart::Solid(part) => self.solid.moments(cell, part),
-            _ => Ok(None),
-        }
-    }
-
-    fn area(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Interval>, Error> {
-        match part {
-            RegionPart::Solid(part) => self.solid.area(cell, part),
-            _ => Ok(None),
+            RegionPart::Solid(part) => self.solid.answer(cell, part, question),
+            RegionPart::Values(..) | RegionPart::Both(..) => Ok(()),
         }
     }
 }

@@ -18,6 +18,11 @@ impl Slab {
     /// No slab.
     pub(crate) const NONE: Slab = Slab { normal: [0.0; 3], inner: f64::NEG_INFINITY, outer: f64::INFINITY };
 
+    /// An offset in units of the greatest one that a point of the cell has.
+    fn share(&self, offset: f64) -> f64 {
+        offset / self.normal.iter().map(|c| c.abs()).sum::<f64>()
+    }
+
     /// The slab of the complement.
     #[must_use]
     pub fn complement(&self) -> Slab {
@@ -59,6 +64,49 @@ impl Enclosure {
         let is_known = inner > f64::NEG_INFINITY || outer < f64::INFINITY;
         let slabs = [slab, Slab::NONE, Slab::NONE];
         (is_slab && is_known).then_some(Enclosure { slabs, join: SlabJoin::All, cone })
+    }
+
+    /// What is known of an intersection by what is known of its operands. An operand of which nothing is known leaves the inner
+    /// side open; so do more slabs than three, of which those are kept that cut off most.
+    pub(crate) fn of_intersection(operands: impl Iterator<Item = Option<Enclosure>>) -> Option<Enclosure> {
+        let mut slabs = [Slab::NONE; 3];
+        let (mut count, mut is_whole) = (0, true);
+        for operand in operands {
+            let Some(known) = operand else {
+                is_whole = false;
+                continue;
+            };
+            let is_slab = |slab: &Slab| slab.normal != [0.0; 3];
+            let mut own = known.slabs;
+            if known.join == SlabJoin::Any && own.iter().filter(|slab| is_slab(slab)).count() > 1 {
+                // Each slab of a union tells of points that lie inside. That one counts which holds most of them.
+                let best = own
+                    .into_iter()
+                    .filter(is_slab)
+                    .max_by(|a, b| a.share(a.inner).total_cmp(&b.share(b.inner)));
+                own = [Slab { outer: f64::INFINITY, ..best.unwrap_or(Slab::NONE) }, Slab::NONE, Slab::NONE];
+            }
+            for slab in own.into_iter().filter(is_slab) {
+                if count < 3 {
+                    slabs[count] = slab;
+                    count += 1;
+                    continue;
+                }
+                is_whole = false;
+                let widest = slabs.iter_mut().max_by(|a, b| a.share(a.outer).total_cmp(&b.share(b.outer)));
+                if let Some(widest) =
+                    widest.filter(|widest| slab.share(slab.outer) < widest.share(widest.outer))
+                {
+                    *widest = slab;
+                }
+            }
+        }
+        if !is_whole {
+            slabs.iter_mut().for_each(|slab| slab.inner = f64::NEG_INFINITY);
+        }
+        let is_known =
+            slabs[..count].iter().any(|slab| slab.inner > f64::NEG_INFINITY || slab.outer < f64::INFINITY);
+        is_known.then_some(Enclosure { slabs, join: SlabJoin::All, cone: f64::INFINITY })
     }
 
     /// The enclosure of the complement; its complement is this one, bit for bit.

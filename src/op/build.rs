@@ -11,7 +11,7 @@ use crate::octree::view::{OctreeRef, element_levels, starts_half_way};
 use crate::octree::writer::Writer;
 use crate::octree::{Block, Octree, Planes, Tag};
 use crate::parallel::{self, each_with};
-use crate::solid::{Classifier, Solid, Subtree, Verdict, Worker};
+use crate::solid::{Ask, Batch, Classifier, Parts, Solid, Subtree, Verdict, Worker};
 use crate::walk;
 use crate::walk::Gathered;
 use alloc::vec::Vec;
@@ -97,7 +97,7 @@ struct Builder<'a, C> {
 }
 
 /// The parts of a classifier's cells.
-type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
+type Part<C> = <<C as Classifier>::Worker as Parts>::Part;
 
 /// What one thread needs: a worker, a stack of parts, a block.
 struct Hand<C: Classifier> {

@@ -7,8 +7,8 @@ use crate::dexel::{Occupied, TriDexelRef};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::octree::block::BLOCK_LEVELS;
-use crate::octree::{Block, Octree, Proof, Tag};
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::octree::{Octree, Proof, Tag};
+use crate::solid::{Classifier, FreeParts, OneByOne, Question, Verdict, WholeQuestion, Worker};
 
 /// The octree of a tri-dexel model by the centres of its cells: a finest cell is FULL if its centre lies inside, and EMPTY
 /// if it does not.
@@ -80,11 +80,19 @@ impl Classifier for Centres<'_> {
     fn proof(&self) -> Proof {
         Proof::new(false, false)
     }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-impl Worker for Centres<'_> {
+impl FreeParts for Centres<'_> {
     type Part = ();
+}
 
+impl OneByOne for Centres<'_> {}
+
+impl Worker for Centres<'_> {
     fn frame(&self) -> &Frame {
         self.model.frame()
     }
@@ -97,19 +105,18 @@ impl Worker for Centres<'_> {
         Ok(core::array::from_fn(|octant| self.verdict(cell.child(octant as u8))))
     }
 
-    fn recall(&mut self, _: Cell) -> Option<()> {
-        Some(())
-    }
-
-    fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
-        let Some(words) = block.centres_mut() else { return Ok(false) };
-        if !self.model.fill_centres(cell.at.map(|a| 64 * a), 2, words) {
-            words.fill(0);
+    fn answer(&mut self, cell: Cell, _: &(), question: Question<'_>) -> Result<(), Error> {
+        match question {
+            Question::Centre(inside) => *inside = Some(self.model.contains_cell(cell.at)),
+            Question::Block(block, filled) => {
+                let Some(words) = block.centres_mut() else { return Ok(()) };
+                if !self.model.fill_centres(cell.at.map(|a| 64 * a), 2, words) {
+                    words.fill(0);
+                }
+                *filled = true;
+            }
+            _ => {}
         }
-        Ok(true)
-    }
-
-    fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
-        Ok(Some(self.model.contains_cell(cell.at)))
+        Ok(())
     }
 }

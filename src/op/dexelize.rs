@@ -16,7 +16,7 @@ use crate::lattice::axes;
 use crate::lattice::{Bounds, Cell, Frame, MAX_DEPTH};
 use crate::memory;
 use crate::parallel::each_with;
-use crate::solid::{Classifier, PartOf, Solid, Verdict, Worker, WorkerOf};
+use crate::solid::{Ask, Classifier, PartOf, Parts, Solid, Verdict, Worker, WorkerOf};
 use crate::walk::Edge;
 use crate::walk::Trail;
 use crate::walk::hull;

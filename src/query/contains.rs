@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::parallel::each;
-use crate::solid::{Classifier, Solid, Worker};
+use crate::solid::{Batch, Classifier, Solid};
 use crate::walk::Trail;
 use alloc::vec::Vec;
 

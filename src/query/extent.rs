@@ -6,7 +6,7 @@ use crate::cut::reach;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::Proof;
-use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::solid::{Ask, Classifier, Parts, Solid, Verdict, Worker};
 use crate::walk::Part;
 use crate::walk::Proven;
 use crate::walk::Queue;

@@ -1,12 +1,13 @@
 //! A solid that is split only until its surface is known to a tolerance.
 
-use super::forward::forward_worker;
-use super::{Classifier, Enclosure, Fingerprint, Fingerprinter, Motion, Solid, Verdict, Worker};
+use super::forward::{forward_answers, forward_batch, forward_classifier, forward_parts};
+use super::{
+    Ask, Batch, Classifier, Enclosure, Fingerprint, Fingerprinter, Motion, Parts, Solid, Verdict, Worker,
+};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Cell, Cube, Frame, valid};
-use crate::octree::{Proof, Tag};
 use alloc::vec::Vec;
 
 /// A solid whose cells are not split where its surface is known to lie within a layer thinner than a tolerance: an
@@ -82,21 +83,11 @@ pub struct AdaptiveClassifier<C> {
 impl<C: Classifier> Classifier for AdaptiveClassifier<C> {
     type Worker = AdaptiveWorker<C::Worker>;
 
-    fn frame(&self) -> &Frame {
-        self.inner.frame()
-    }
-
     fn worker(&self) -> Result<Self::Worker, Error> {
         Ok(AdaptiveWorker { inner: self.inner.worker()?, tolerance: self.tolerance })
     }
 
-    fn exterior(&self) -> Tag {
-        self.inner.exterior()
-    }
-
-    fn proof(&self) -> Proof {
-        self.inner.proof()
-    }
+    forward_classifier!(self => self.inner);
 }
 
 /// A worker on such a solid.
@@ -140,14 +131,15 @@ fn thickness(enclosure: &Enclosure) -> f64 {
     most.unwrap_or(f64::INFINITY)
 }
 
-impl<W: Worker> Worker for AdaptiveWorker<W> {
-    type Part = W::Part;
-
-    fn split(&mut self, cell: Cell, part: &W::Part) -> Result<[Verdict<W::Part>; 8], Error> {
-        let verdicts = self.inner.split(cell, part)?;
-        self.enough(cell, verdicts)
+impl<W: Worker> Parts for AdaptiveWorker<W> {
+    fn hand_over(&mut self, from: &Self, part: &W::Part) -> Result<W::Part, Error> {
+        self.inner.hand_over(&from.inner, part)
     }
 
+    forward_parts!(W::Part, self => self.inner);
+}
+
+impl<W: Worker> Batch for AdaptiveWorker<W> {
     fn likes_many(&self) -> bool {
         self.inner.likes_many()
     }
@@ -159,17 +151,21 @@ impl<W: Worker> Worker for AdaptiveWorker<W> {
         verdicts: &mut Vec<[Verdict<W::Part>; 8]>,
     ) -> Result<(), Error> {
         let before = verdicts.len();
-        self.inner.split_many(cells, control, verdicts)?;
+        let done = self.inner.split_many(cells, control, verdicts);
         for ((cell, _), eight) in cells.iter().zip(&mut verdicts[before..]) {
             *eight = self.enough(*cell, eight.clone())?;
         }
-        Ok(())
+        done
     }
 
-    fn hand_over(&mut self, from: &Self, part: &W::Part) -> Result<W::Part, Error> {
-        self.inner.hand_over(&from.inner, part)
+    forward_batch!(answers W::Part, self => self.inner);
+}
+
+impl<W: Worker> Worker for AdaptiveWorker<W> {
+    fn split(&mut self, cell: Cell, part: &W::Part) -> Result<[Verdict<W::Part>; 8], Error> {
+        let verdicts = self.inner.split(cell, part)?;
+        self.enough(cell, verdicts)
     }
 
-    forward_worker!(memory W::Part, self => self.inner);
-    forward_worker!(answers W::Part, self => self.inner);
+    forward_answers!(W::Part, self => self.inner);
 }

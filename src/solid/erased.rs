@@ -5,14 +5,15 @@
 //! Each of the three traits has an object-safe face here, whose methods have no defaults: none can be
 //! forgotten.
 
-use super::forward::{forward_solid, forward_worker};
-use super::{Classifier, Crossing, Enclosure, Fingerprint, Motion, Segment, Solid, Subtree, Verdict, Worker};
+use super::forward::{forward_answers, forward_batch, forward_classifier, forward_parts, forward_solid};
+use super::{
+    Batch, Classifier, Fingerprint, Motion, Parts, Question, Solid, Subtree, Verdict, WholeQuestion, Worker,
+};
 use crate::control::Control;
-use crate::dexel::Beam;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
+use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
-use crate::octree::{Block, Planes, Proof, Tag};
+use crate::octree::{Planes, Proof, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -177,20 +178,18 @@ trait ErasedClassifier: Send + Sync {
     fn worker(&self) -> Result<AnyWorker, Error>;
     fn exterior(&self) -> Tag;
     fn proof(&self) -> Proof;
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error>;
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error>;
-    fn is_off_lattice(&self) -> bool;
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error>;
 }
 
 impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier for C {
-    fn frame(&self) -> &Frame {
-        Classifier::frame(self)
-    }
-
     fn worker(&self) -> Result<AnyWorker, Error> {
         let typed = Typed { worker: Classifier::worker(self)?, parts: Vec::new(), passing: Vec::new() };
         // Some workers are large from the beginning.
         Ok(AnyWorker(memory::boxed(typed)?))
+    }
+
+    fn frame(&self) -> &Frame {
+        Classifier::frame(self)
     }
 
     fn exterior(&self) -> Tag {
@@ -201,49 +200,19 @@ impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier fo
         Classifier::proof(self)
     }
 
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
-        Classifier::moments(self, control)
-    }
-
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
-        Classifier::area(self, control)
-    }
-
-    fn is_off_lattice(&self) -> bool {
-        Classifier::is_off_lattice(self)
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
+        Classifier::answer_whole(self, question, control)
     }
 }
 
 impl Classifier for AnyClassifier {
     type Worker = AnyWorker;
 
-    fn frame(&self) -> &Frame {
-        self.0.frame()
-    }
-
     fn worker(&self) -> Result<AnyWorker, Error> {
         self.0.worker()
     }
 
-    fn exterior(&self) -> Tag {
-        self.0.exterior()
-    }
-
-    fn proof(&self) -> Proof {
-        self.0.proof()
-    }
-
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
-        self.0.moments(control)
-    }
-
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
-        self.0.area(control)
-    }
-
-    fn is_off_lattice(&self) -> bool {
-        self.0.is_off_lattice()
-    }
+    forward_classifier!(self => self.0);
 }
 
 /// A worker, and the parts that were handed out, each with the height that the worker's memory then had.
@@ -308,21 +277,10 @@ trait ErasedWorker: Send + Sync {
         control: &Control<'_>,
         inside: &mut Vec<Option<bool>>,
     ) -> Result<(), Error>;
-    fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error>;
-    fn chords(&mut self, cell: Cell, part: &ErasedPart, beam: &mut Beam) -> Result<bool, Error>;
     fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>>;
-    fn sample(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<bool>, Error>;
     fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error>;
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error>;
-    fn enclosure(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Enclosure>, Error>;
-    fn moments(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<CellMoments>, Error>;
-    fn area(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Interval>, Error>;
-    fn crossing(
-        &mut self,
-        cell: Cell,
-        part: &ErasedPart,
-        segment: &Segment,
-    ) -> Result<Option<Crossing>, Error>;
+    fn answer(&mut self, cell: Cell, part: &ErasedPart, question: Question<'_>) -> Result<(), Error>;
 }
 
 // (An array of one, because a box of that can be made by way of a vector, whose memory can be refused.)
@@ -410,23 +368,8 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
         Ok(())
     }
 
-    fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error> {
-        let part = self[0].part(part);
-        self[0].worker.fill(cell, &part, block)
-    }
-
-    fn chords(&mut self, cell: Cell, part: &ErasedPart, beam: &mut Beam) -> Result<bool, Error> {
-        let part = self[0].part(part);
-        self[0].worker.chords(cell, &part, beam)
-    }
-
     fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>> {
         self[0].worker.subtree(&self[0].parts[part.0].0)
-    }
-
-    fn sample(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<bool>, Error> {
-        let part = self[0].part(part);
-        self[0].worker.sample(cell, &part)
     }
 
     fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error> {
@@ -451,40 +394,41 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
         self[0].worker.inside(points, answers)
     }
 
-    fn enclosure(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Enclosure>, Error> {
+    fn answer(&mut self, cell: Cell, part: &ErasedPart, question: Question<'_>) -> Result<(), Error> {
         let part = self[0].part(part);
-        self[0].worker.enclosure(cell, &part)
-    }
-
-    fn moments(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<CellMoments>, Error> {
-        let part = self[0].part(part);
-        self[0].worker.moments(cell, &part)
-    }
-
-    fn area(&mut self, cell: Cell, part: &ErasedPart) -> Result<Option<Interval>, Error> {
-        let part = self[0].part(part);
-        self[0].worker.area(cell, &part)
-    }
-
-    fn crossing(
-        &mut self,
-        cell: Cell,
-        part: &ErasedPart,
-        segment: &Segment,
-    ) -> Result<Option<Crossing>, Error> {
-        let part = self[0].part(part);
-        self[0].worker.crossing(cell, &part, segment)
+        self[0].worker.answer(cell, &part, question)
     }
 }
 
-impl Worker for AnyWorker {
-    type Part = ErasedPart;
-
+impl Parts for AnyWorker {
     fn hand_over(&mut self, from: &AnyWorker, part: &ErasedPart) -> Result<ErasedPart, Error> {
         self.0.hand_over(from, part)
     }
 
-    forward_worker!(memory ErasedPart, self => self.0);
-    forward_worker!(splits ErasedPart, self => self.0);
-    forward_worker!(answers ErasedPart, self => self.0);
+    forward_parts!(ErasedPart, self => self.0);
+}
+
+impl Batch for AnyWorker {
+    forward_batch!(ErasedPart, self => self.0);
+}
+
+impl Worker for AnyWorker {
+    fn split(&mut self, cell: Cell, part: &ErasedPart) -> Result<[Verdict<ErasedPart>; 8], Error> {
+        self.0.split(cell, part)
+    }
+
+    fn split64(
+        &mut self,
+        cell: Cell,
+        part: &ErasedPart,
+        parts: &mut Vec<(u8, ErasedPart)>,
+    ) -> Result<Planes, Error> {
+        self.0.split64(cell, part, parts)
+    }
+
+    fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>> {
+        self.0.subtree(part)
+    }
+
+    forward_answers!(ErasedPart, self => self.0);
 }

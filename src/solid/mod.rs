@@ -4,10 +4,40 @@
 //! Whatever has a shape is a [`Solid`]: primitives, triangle meshes, stored octrees, a host program's
 //! callback. Whatever wants a shape puts it on a frame, takes a [`Worker`] and asks that. Each producer is
 //! one file, and none knows the others.
+//!
+//! # A new solid
+//!
+//! [`Solid`] has an example. What a worker writes beside [`root`](Worker::root) and [`split`](Worker::split) makes answers
+//! better, one step at a time:
+//!
+//! | a worker that | gains |
+//! |---|---|
+//! | splits cells, and is [`FreeParts`] and [`OneByOne`] | octrees by [`Rule::Certified`](crate::Rule::Certified), `Inner` and `Outer`, points, boxes, rays, Booleans, pictures: all to the size of a cell. After N splits a volume is known to N^-½. |
+//! | answers [`Question::Centre`] | [`Rule::Sampled`](crate::Rule::Sampled), tri-dexel models, marching cubes of sampled cells |
+//! | answers [`Question::Enclosure`] | second order: volume, centroid and inertia to N^-1 (plane faces: N^-2), a bounding box in some hundred splits, rays and vertices to a curvature times a cell's square, octrees that end where the surface is known to a tolerance ([`Adaptive`]) |
+//! | answers [`Question::Moments`], [`Question::Area`] | third order: volume and moments to N^-1.5, areas |
+//! | answers [`Question::Crossing`] | vertices of surfaces on the surface, with normals, without a search |
+//! | answers [`Question::Block`], [`Question::Chords`] | nothing but speed: sampled octrees, tri-dexel models |
+//! | writes [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for functions that take long; points without a descent ([`Batch::inside`]); cells without the way to them ([`Batch::recall`]) |
+//! | writes [`Parts`] in place of [`FreeParts`] | parts that are lists in scratch memory, so that children look only at what cut their parent |
+//!
+//! Laws for all of them stand with each trait. A test of a new solid compares it with a slow oracle cell by cell, and has its
+//! row in `tests/octrees/proof_table.rs`.
+//!
+//! # A new wrapper
+//!
+//! A solid that is made of another one writes every method: no trait that a wrapper needs has defaults for what can be lost.
+//! Questions that a wrapper does not change are handed on as they are, those of the future included. What is not handed on, a
+//! wrapper has to say.
 
-// The contract is below; with it go what tells solids apart, what copies stored cells, and what hands questions on.
+// The contract: what a solid answers (here), where parts live, many questions at once, and what else can be known.
+mod batch;
+mod parts;
+mod question;
+mod verdict;
+// With it go what tells solids apart, what copies stored cells, and what hands questions on.
 mod fingerprint;
-mod forward;
+pub(crate) mod forward;
 mod motion;
 mod subtree;
 
@@ -30,6 +60,7 @@ mod transform;
 
 pub use crate::cut::{Crossing, Enclosure, Segment, Slab, SlabJoin};
 pub use adaptive::Adaptive;
+pub use batch::{Batch, OneByOne, sample_one_by_one, split_one_by_one};
 pub use callback::{Callback, GradientRange, TangentBalls};
 pub use csg::{Csg, Touch};
 #[cfg(feature = "scene")]
@@ -39,68 +70,23 @@ pub use fingerprint::{Fingerprint, Fingerprinter};
 pub use half_space::HalfSpace;
 pub use mesh::MeshSolid;
 pub use motion::Motion;
+pub use parts::{FreeParts, Parts};
 #[cfg(feature = "std")]
 pub use prepared::Prepared;
+pub use question::{Ask, AskWhole, Chords, Question, WholeQuestion};
 pub use split_counter::SplitCounter;
 pub use subtree::Subtree;
 pub use transform::Transform;
 pub(crate) use transform::TransformClassifier;
+pub use verdict::Verdict;
 pub use volume::{Band, SampleArray, Samples, Volume, VoxelGrid};
 
 use crate::control::Control;
-use crate::dexel::Beam;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
+use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
-use crate::octree::{Block, Planes, Proof, Tag};
+use crate::octree::{Planes, Proof, Tag};
 use alloc::vec::Vec;
-
-/// What a solid says of one cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict<P> {
-    /// The cell's interior and the solid's are proven disjoint.
-    Empty,
-    /// The cell is proven to lie in the solid.
-    Full,
-    /// Not decided, and splitting does not help.
-    Undecided,
-    /// Not decided; the part is what the solid remembers about the cell, so that it can split it.
-    Partial(P),
-}
-
-impl<P> Verdict<P> {
-    /// The verdict as a tag.
-    #[inline(always)]
-    pub fn tag(&self) -> Tag {
-        match self {
-            Verdict::Empty => Tag::Empty,
-            Verdict::Full => Tag::Full,
-            Verdict::Undecided | Verdict::Partial(_) => Tag::Partial,
-        }
-    }
-
-    /// The same verdict with another part.
-    #[inline(always)]
-    pub fn try_map<Q>(self, part: impl FnOnce(P) -> Result<Q, Error>) -> Result<Verdict<Q>, Error> {
-        Ok(match self {
-            Verdict::Empty => Verdict::Empty,
-            Verdict::Full => Verdict::Full,
-            Verdict::Undecided => Verdict::Undecided,
-            Verdict::Partial(own) => Verdict::Partial(part(own)?),
-        })
-    }
-
-    /// The verdict of the complement.
-    #[inline(always)]
-    #[must_use]
-    pub fn complement(self) -> Verdict<P> {
-        match self {
-            Verdict::Empty => Verdict::Full,
-            Verdict::Full => Verdict::Empty,
-            open => open,
-        }
-    }
-}
 
 /// A shape in model space.
 ///
@@ -110,8 +96,8 @@ impl<P> Verdict<P> {
 ///
 /// ```
 /// use leafless::{
-///     Bounds, Cell, Classifier, Control, Error, Frame, Rule, Solid, Tag, Verdict, Worker, build,
-///     lattice::Cube,
+///     Bounds, Cell, Classifier, Control, Error, Frame, Proof, Rule, Solid, Verdict, Worker, build,
+///     lattice::Cube, solid::{FreeParts, OneByOne, Question, WholeQuestion},
 /// };
 ///
 /// /// All points p with |x| + |y| + |z| ≤ r.
@@ -148,6 +134,14 @@ impl<P> Verdict<P> {
 ///     fn worker(&self) -> Result<OnFrame, Error> {
 ///         Ok(*self)
 ///     }
+///
+///     fn proof(&self) -> Proof {
+///         Proof::CERTIFIED
+///     }
+///
+///     fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+///         Ok(())
+///     }
 /// }
 ///
 /// impl OnFrame {
@@ -167,10 +161,14 @@ impl<P> Verdict<P> {
 ///     }
 /// }
 ///
-/// impl Worker for OnFrame {
-///     // What a cell is decided by is the cell itself.
+/// // A cell is decided by the cell itself: nothing is remembered about it.
+/// impl FreeParts for OnFrame {
 ///     type Part = ();
+/// }
 ///
+/// impl OneByOne for OnFrame {}
+///
+/// impl Worker for OnFrame {
 ///     fn frame(&self) -> &Frame {
 ///         &self.frame
 ///     }
@@ -181,6 +179,18 @@ impl<P> Verdict<P> {
 ///
 ///     fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
 ///         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|octant| self.verdict(cell.child(octant))))
+///     }
+///
+///     // Centres are all that it knows beside its cells. (Slabs would come next: `Question::Enclosure`.)
+///     fn answer(&mut self, cell: Cell, _: &(), question: Question<'_>) -> Result<(), Error> {
+///         if let Question::Centre(inside) = question {
+///             let (min, max) = Cube { frame: &self.frame, cell }.bounds();
+///             let [x, y, z] = [0, 1, 2].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]);
+///             let far = x.abs() + y.abs() + z.abs() - self.shape.0;
+///             // A centre on the boundary counts as a point a little further along x.
+///             *inside = Some(far < 0.0 || far == 0.0 && x < 0.0);
+///         }
+///         Ok(())
 ///     }
 /// }
 ///
@@ -258,44 +268,22 @@ pub trait Classifier: Clone + Send + Sync {
         Tag::Partial
     }
 
-    /// What the verdicts prove, if not all that they say: those of a stored octree prove what its cells do.
-    fn proof(&self) -> Proof {
-        Proof::CERTIFIED
-    }
+    /// What the verdicts prove. [`Proof::CERTIFIED`]: all that they say. The verdicts of a stored octree prove what its cells
+    /// do; those of a solid that is known at points only prove nothing.
+    fn proof(&self) -> Proof;
 
-    /// The volume and the moments of the whole shape, inside and outside of the universe, if they are known
-    /// without splitting cells. `None`, the default, if they are not. They are proven as verdicts are.
+    /// Answers a question about the whole shape, if the shape knows more than its cells tell. A shape that does not is done
+    /// with `Ok(())`.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
-        let _ = control;
-        Ok(None)
-    }
-
-    /// The area of the whole boundary (square model units), inside and outside of the universe, if it is known without
-    /// splitting cells. `None`, the default, if it is not.
-    ///
-    /// # Errors
-    /// As [`moments`](Self::moments).
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
-        let _ = control;
-        Ok(None)
-    }
-
-    /// Whether no piece of the boundary lies in a plane of the lattice, so that all its area lies in open PARTIAL cells.
-    /// `false`, the default, if that is not known.
-    fn is_off_lattice(&self) -> bool {
-        false
-    }
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error>;
 }
 
 /// A classifier with scratch memory: what answers.
 ///
-/// A PARTIAL cell has a *part*, which is what the worker remembers about it. It may refer to the worker's
-/// scratch memory, a stack: parts that were made after a [mark](Worker::mark) are gone once the mark is
-/// [released](Worker::release). A part means something to the worker that made it, and to no other. (To
-/// another worker it may mean anything, and asking may panic.)
+/// A worker remembers something about PARTIAL cells, their *parts* ([`Parts`], or [`FreeParts`]), and may answer many questions
+/// at once ([`Batch`], or [`OneByOne`]).
 ///
 /// # Laws
 /// 1. A FULL or EMPTY verdict is proven, unless [`Classifier::proof`] says otherwise. Contact is not overlap:
@@ -308,10 +296,7 @@ pub trait Classifier: Clone + Send + Sync {
 ///
 /// All of it concerns the shape inside of the universe. The errors of all questions are those of memory that
 /// runs out, and of a host program's function that stops the work.
-pub trait Worker: Send + Sync {
-    /// What is remembered about one PARTIAL cell.
-    type Part: Clone + Send + Sync;
-
+pub trait Worker: Batch {
     /// The frame.
     fn frame(&self) -> &Frame;
 
@@ -327,40 +312,14 @@ pub trait Worker: Send + Sync {
     /// As all questions.
     fn split(&mut self, cell: Cell, part: &Self::Part) -> Result<[Verdict<Self::Part>; 8], Error>;
 
-    // ---- scratch memory -------------------------------------------------------------------------------------
-
-    /// The present height of the scratch memory.
-    fn mark(&self) -> usize {
-        0
-    }
-
-    /// Bytes that the scratch memory takes for parts. Whoever keeps many parts at once keeps an eye on it.
-    fn scratch_bytes(&self) -> usize {
-        0
-    }
-
-    /// Back to an earlier height.
-    fn release(&mut self, mark: usize) {
-        let _ = mark;
-    }
-
-    /// Takes over a part of another worker of the same classifier, with what it refers to.
+    /// Answers what else is known of a PARTIAL cell: sets the place in the question, or leaves it. A worker that knows
+    /// nothing beyond verdicts is done with `Ok(())`.
     ///
     /// # Errors
-    /// If memory runs out.
-    fn hand_over(&mut self, from: &Self, part: &Self::Part) -> Result<Self::Part, Error> {
-        let _ = from;
-        Ok(part.clone())
-    }
+    /// As all questions.
+    fn answer(&mut self, cell: Cell, part: &Self::Part, question: Question<'_>) -> Result<(), Error>;
 
-    /// The part of a PARTIAL cell without the way to it, if it depends on the cell alone; then nobody needs
-    /// to replay splits.
-    fn recall(&mut self, cell: Cell) -> Option<Self::Part> {
-        let _ = cell;
-        None
-    }
-
-    // ---- faster forms of `split` ----------------------------------------------------------------------------
+    // ---- the same answers in less time: the defaults are right --------------------------------------------------------------
 
     /// Splits two levels at once, the grain of storage: the tags of the 64 grandchildren in Morton order.
     /// The parts of those that can be split are appended to `parts` with their index, in ascending order.
@@ -374,74 +333,6 @@ pub trait Worker: Send + Sync {
         parts: &mut Vec<(u8, Self::Part)>,
     ) -> Result<Planes, Error> {
         split_twice(self, cell, part, parts)
-    }
-
-    /// Whether answers are dear, or come more cheaply many at a time, as those of a host program do. Whoever
-    /// can then gathers cells for [`split_many`](Self::split_many), and uses threads for few of them.
-    fn likes_many(&self) -> bool {
-        false
-    }
-
-    /// Splits many PARTIAL cells: appends what [`split`](Self::split) says of each, in their order. A cancel
-    /// by `control` ends it early. What was appended before an error is right.
-    ///
-    /// # Errors
-    /// As all questions, and [`Error::Cancelled`].
-    fn split_many(
-        &mut self,
-        cells: &[(Cell, Self::Part)],
-        control: &Control<'_>,
-        verdicts: &mut Vec<[Verdict<Self::Part>; 8]>,
-    ) -> Result<(), Error> {
-        verdicts.try_reserve(cells.len())?;
-        for (cell, part) in cells {
-            control.check()?;
-            verdicts.push(self.split(*cell, part)?);
-        }
-        Ok(())
-    }
-
-    /// Classifies a PARTIAL cell of 64³ finest cells at once, where that is faster than descent: fills what
-    /// `block` asks for with just what descending by [`split`](Self::split) would find, and returns `true`.
-    /// The default returns `false`: descend.
-    ///
-    /// # Errors
-    /// As all questions.
-    fn fill(&mut self, cell: Cell, part: &Self::Part, block: &mut Block) -> Result<bool, Error> {
-        let _ = (cell, part, block);
-        Ok(false)
-    }
-
-    /// Finds where rays through the centres of finest cells enter and leave the solid in a PARTIAL cell, if that is known
-    /// for all rays that `beam` asks for: adds their intervals in the cell, and returns `true`. An interval holds just those
-    /// centres that [`sample`](Self::sample) would find inside. The default adds nothing, and returns `false`: whoever asks
-    /// descends.
-    ///
-    /// # Errors
-    /// As all questions.
-    fn chords(&mut self, cell: Cell, part: &Self::Part, beam: &mut Beam) -> Result<bool, Error> {
-        let _ = (cell, part, beam);
-        Ok(false)
-    }
-
-    /// The stored cells that a PARTIAL cell consists of, if they are stored in the form of octrees on this
-    /// frame: whoever writes an octree copies them.
-    fn subtree(&self, part: &Self::Part) -> Option<Subtree<'_>> {
-        let _ = part;
-        None
-    }
-
-    // ---- points ---------------------------------------------------------------------------------------------
-
-    /// Whether the centre of a PARTIAL cell of the frame's depth lies in the solid, or `None` if the solid
-    /// cannot tell. A centre on the boundary is decided as if all centres were shifted by (ε, ε², ε³), to
-    /// first order: on a curved surface too, the first axis that leads across it decides.
-    ///
-    /// # Errors
-    /// As all questions.
-    fn sample(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<bool>, Error> {
-        let _ = (cell, part);
-        Ok(None)
     }
 
     /// Samples many at once, the grain of storage: of those 64 grandchildren of a cell whose parts are given,
@@ -462,79 +353,11 @@ pub trait Worker: Send + Sync {
         Ok(Some(inside))
     }
 
-    /// Samples many cells of the frame's depth: appends what [`sample`](Self::sample) says of each, in their
-    /// order. A cancel by `control` ends it early.
-    ///
-    /// # Errors
-    /// As all questions, and [`Error::Cancelled`].
-    fn sample_many(
-        &mut self,
-        cells: &[(Cell, Self::Part)],
-        control: &Control<'_>,
-        inside: &mut Vec<Option<bool>>,
-    ) -> Result<(), Error> {
-        inside.try_reserve(cells.len())?;
-        for (cell, part) in cells {
-            control.check()?;
-            inside.push(self.sample(*cell, part)?);
-        }
-        Ok(())
-    }
-
-    /// Whether points of the universe (model units) lie in the solid: sets `answers[i]` for `points[i]` where
-    /// that is known without a descent; on the boundary either answer is right. The default knows nothing,
-    /// and whoever asks descends.
-    ///
-    /// # Errors
-    /// As all questions.
-    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
-        let _ = (points, answers);
-        Ok(())
-    }
-
-    // ---- what else may be known of a PARTIAL cell -----------------------------------------------------------
-
-    /// Slabs between which the boundary lies in a PARTIAL cell, by the law that [`Enclosure`] states.
-    ///
-    /// # Errors
-    /// As all questions.
-    fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error> {
-        let _ = (cell, part);
-        Ok(None)
-    }
-
-    /// Volume and moments of the solid in a PARTIAL cell, if they are known better than by an enclosure.
-    ///
-    /// # Errors
-    /// As all questions.
-    fn moments(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<CellMoments>, Error> {
-        let _ = (cell, part);
-        Ok(None)
-    }
-
-    /// Bounds of the area that the boundary has in a PARTIAL cell, in squares of the cell's half edge, if any are known
-    /// beside those by an enclosure with a cone.
-    ///
-    /// # Errors
-    /// As all questions.
-    fn area(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Interval>, Error> {
-        let _ = (cell, part);
-        Ok(None)
-    }
-
-    /// Where a segment with both ends in the closed cell first crosses the boundary, by the law that
-    /// [`Crossing`] states; `None` if it does not, or the solid cannot tell.
-    ///
-    /// # Errors
-    /// As all questions.
-    fn crossing(
-        &mut self,
-        cell: Cell,
-        part: &Self::Part,
-        segment: &Segment,
-    ) -> Result<Option<Crossing>, Error> {
-        let _ = (cell, part, segment);
-        Ok(None)
+    /// The stored cells that a PARTIAL cell consists of, if they are stored in the form of octrees on this
+    /// frame: whoever writes an octree copies them.
+    fn subtree(&self, part: &Self::Part) -> Option<Subtree<'_>> {
+        let _ = part;
+        None
     }
 }
 
@@ -547,7 +370,7 @@ impl<S: Solid> Solid for &S {
 }
 
 /// The parts of a solid.
-pub(crate) type PartOf<S> = <WorkerOf<S> as Worker>::Part;
+pub(crate) type PartOf<S> = <WorkerOf<S> as Parts>::Part;
 
 /// The octants in their order.
 pub(crate) const OCTANTS: [u8; 8] = [0, 1, 2, 3, 4, 5, 6, 7];

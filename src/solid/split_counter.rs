@@ -1,12 +1,12 @@
 //! A solid that counts what it is asked.
 
-use super::forward::{forward_solid, forward_worker};
-use super::{Classifier, Solid, Verdict, Worker};
+use super::forward::{forward_batch, forward_classifier, forward_parts, forward_solid};
+use super::{Batch, Classifier, Parts, Question, Solid, Verdict, Worker};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, VolumeMoments};
-use crate::octree::{Proof, Tag};
+use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// A solid that counts how often it is put on a frame, and its splits, level by level. It answers as the
@@ -75,33 +75,11 @@ pub struct CountingClassifier<C> {
 impl<C: Classifier> Classifier for CountingClassifier<C> {
     type Worker = CountingWorker<C::Worker>;
 
-    fn frame(&self) -> &Frame {
-        self.inner.frame()
-    }
-
     fn worker(&self) -> Result<Self::Worker, Error> {
         Ok(CountingWorker { inner: self.inner.worker()?, counts: self.counts.clone() })
     }
 
-    fn exterior(&self) -> Tag {
-        self.inner.exterior()
-    }
-
-    fn proof(&self) -> Proof {
-        self.inner.proof()
-    }
-
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
-        self.inner.moments(control)
-    }
-
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
-        self.inner.area(control)
-    }
-
-    fn is_off_lattice(&self) -> bool {
-        self.inner.is_off_lattice()
-    }
+    forward_classifier!(self => self.inner);
 }
 
 /// A worker whose splits are counted.
@@ -110,20 +88,63 @@ pub struct CountingWorker<W> {
     counts: Arc<Counts>,
 }
 
-impl<W: Worker> Worker for CountingWorker<W> {
-    type Part = W::Part;
-
-    fn split(&mut self, cell: Cell, part: &W::Part) -> Result<[Verdict<W::Part>; 8], Error> {
+impl<W: Worker> CountingWorker<W> {
+    fn count(&self, cell: Cell) {
         if let Some(count) = self.counts.splits.get(cell.level as usize) {
             count.fetch_add(1, Relaxed);
         }
-        self.inner.split(cell, part)
     }
+}
 
+impl<W: Worker> Parts for CountingWorker<W> {
     fn hand_over(&mut self, from: &Self, part: &W::Part) -> Result<W::Part, Error> {
         self.inner.hand_over(&from.inner, part)
     }
 
-    forward_worker!(memory W::Part, self => self.inner);
-    forward_worker!(answers W::Part, self => self.inner);
+    forward_parts!(W::Part, self => self.inner);
+}
+
+impl<W: Worker> Batch for CountingWorker<W> {
+    fn likes_many(&self) -> bool {
+        self.inner.likes_many()
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, W::Part)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<W::Part>; 8]>,
+    ) -> Result<(), Error> {
+        cells.iter().for_each(|(cell, _)| self.count(*cell));
+        self.inner.split_many(cells, control, verdicts)
+    }
+
+    forward_batch!(answers W::Part, self => self.inner);
+}
+
+impl<W: Worker> Worker for CountingWorker<W> {
+    fn frame(&self) -> &Frame {
+        self.inner.frame()
+    }
+
+    fn root(&mut self) -> Result<Verdict<W::Part>, Error> {
+        self.inner.root()
+    }
+
+    fn split(&mut self, cell: Cell, part: &W::Part) -> Result<[Verdict<W::Part>; 8], Error> {
+        self.count(cell);
+        self.inner.split(cell, part)
+    }
+
+    /// Blocks and rays are descended, so that their splits are counted.
+    fn answer(&mut self, cell: Cell, part: &W::Part, question: Question<'_>) -> Result<(), Error> {
+        match question {
+            Question::Block(..) | Question::Chords(_) => Ok(()),
+            question => self.inner.answer(cell, part, question),
+        }
+    }
+
+    fn sample64(&mut self, cell: Cell, parts: &[(u8, W::Part)]) -> Result<Option<u64>, Error> {
+        self.inner.sample64(cell, parts)
+    }
 }

@@ -1,7 +1,10 @@
 //! A stored octree as a solid.
 
 use super::forward::forward_solid;
-use super::{Classifier, Fingerprint, Fingerprinter, OCTANTS, Solid, Subtree, Verdict, Worker, split_twice};
+use super::{
+    Classifier, Fingerprint, Fingerprinter, FreeParts, OCTANTS, OneByOne, Question, Solid, Subtree, Verdict,
+    WholeQuestion, Worker, split_twice,
+};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Frame};
@@ -149,12 +152,22 @@ impl<T: Tree> Classifier for StoredOnFrame<T> {
     fn proof(&self) -> Proof {
         self.tree.tree().proof()
     }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 #[allow(private_bounds)]
-impl<T: Tree> Worker for StoredOnFrame<T> {
+impl<T: Tree> FreeParts for StoredOnFrame<T> {
     type Part = StoredPart;
+}
 
+#[allow(private_bounds)]
+impl<T: Tree> OneByOne for StoredOnFrame<T> {}
+
+#[allow(private_bounds)]
+impl<T: Tree> Worker for StoredOnFrame<T> {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -165,6 +178,10 @@ impl<T: Tree> Worker for StoredOnFrame<T> {
 
     fn split(&mut self, _: Cell, part: &StoredPart) -> Result<[Verdict<StoredPart>; 8], Error> {
         Ok(self.tree.tree().child_verdicts(part))
+    }
+
+    fn answer(&mut self, _: Cell, _: &StoredPart, _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 
     fn split64(

@@ -4,10 +4,10 @@ use super::dexel::{DexelSurfaceReport, marching_cubes_dexels};
 use crate::control::Control;
 use crate::dexel::TriDexelRef;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Frame, Interval, VolumeMoments};
+use crate::lattice::{Affine, Bounds, Frame};
 use crate::mesh::{FillRule, TriangleMesh};
 use crate::octree::{Proof, Tag};
-use crate::solid::{Classifier, Fingerprint, MeshSolid, Motion, Solid};
+use crate::solid::{Classifier, Fingerprint, MeshSolid, Motion, Solid, WholeQuestion};
 use alloc::sync::Arc;
 
 /// A tri-dexel model as a solid: the region inside of the surface that [`marching_cubes_dexels`] finds. Cheap to
@@ -131,15 +131,7 @@ impl Classifier for DexelClassifier {
         self.proof.moved(self.surface.proof().displacement())
     }
 
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
-        self.surface.moments(control)
-    }
-
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
-        self.surface.area(control)
-    }
-
-    fn is_off_lattice(&self) -> bool {
-        self.surface.is_off_lattice()
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
+        self.surface.answer_whole(question, control)
     }
 }

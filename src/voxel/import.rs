@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Frame};
 use crate::octree::{Octree, Proof, Tag};
 use crate::op::{Rule, build};
-use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::solid::{Classifier, FreeParts, OneByOne, Question, Solid, Verdict, WholeQuestion, Worker};
 
 /// Records as a solid on their own universe: inside voxels are FULL, outside voxels and what no record speaks of
 /// are EMPTY, boundary voxels are what one asks for.
@@ -126,12 +126,20 @@ impl<'a> Classifier for VoxelsOnFrame<'a> {
     fn proof(&self) -> Proof {
         self.solid.proof
     }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-impl Worker for VoxelsOnFrame<'_> {
+impl FreeParts for VoxelsOnFrame<'_> {
     /// The records in the cell, from the first to behind the last.
     type Part = (usize, usize);
+}
 
+impl OneByOne for VoxelsOnFrame<'_> {}
+
+impl Worker for VoxelsOnFrame<'_> {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -144,5 +152,9 @@ impl Worker for VoxelsOnFrame<'_> {
         let end = part.1.min(self.solid.records.len());
         let part = Part { cell, range: part.0.min(end)..end };
         Ok(self.solid.records.split(&part).map(|part| self.solid.verdict(&part)))
+    }
+
+    fn answer(&mut self, _: Cell, _: &(usize, usize), _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 }

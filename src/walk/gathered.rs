@@ -5,12 +5,12 @@
 //! that.
 
 use super::split::{Part, each, map_parts, split_each};
-use crate::control::Job;
+use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
-use crate::octree::Tag;
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::octree::{Proof, Tag};
+use crate::solid::{Batch, Classifier, FreeParts, OneByOne, Parts, Question, Verdict, WholeQuestion, Worker};
 use alloc::vec::Vec;
 
 /// Levels below a cell that are asked at most before anything is written. (Of a surface some four times as
@@ -91,13 +91,26 @@ impl Classifier for &Gathered {
     fn exterior(&self) -> Tag {
         Tag::Partial
     }
+
+    /// The verdicts are those of the solid that was asked, whatever it proves: nobody asks here.
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 /// Parts are the places of splits, and of the centres of finest cells. The cell that all is below has the
 /// first.
-impl Worker for &Gathered {
+impl FreeParts for &Gathered {
     type Part = u32;
+}
 
+impl OneByOne for &Gathered {}
+
+impl Worker for &Gathered {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -115,7 +128,10 @@ impl Worker for &Gathered {
         })
     }
 
-    fn sample(&mut self, _: Cell, part: &u32) -> Result<Option<bool>, Error> {
-        Ok(self.centres.get(*part as usize).copied().flatten())
+    fn answer(&mut self, _: Cell, part: &u32, question: Question<'_>) -> Result<(), Error> {
+        if let Question::Centre(inside) = question {
+            *inside = self.centres.get(*part as usize).copied().flatten();
+        }
+        Ok(())
     }
 }

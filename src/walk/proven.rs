@@ -2,9 +2,12 @@
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, CellMoments, Frame, Interval, VolumeMoments};
+use crate::lattice::{Cell, Frame};
 use crate::octree::{Planes, Proof, Tag};
-use crate::solid::{Classifier, Enclosure, Subtree, Verdict, Worker, split_twice};
+use crate::solid::forward::forward_parts;
+use crate::solid::{
+    Ask, Batch, Classifier, Parts, Question, Subtree, Verdict, WholeQuestion, Worker, split_twice,
+};
 use alloc::vec::Vec;
 
 /// A solid on a frame, of whose verdicts those are believed that are proven: a FULL or an EMPTY cell of which
@@ -35,16 +38,8 @@ impl<C: Classifier> Classifier for Proven<C> {
         self.0.proof()
     }
 
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
-        if self.0.proof().is_certified() { self.0.moments(control) } else { Ok(None) }
-    }
-
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
-        if self.0.proof().is_certified() { self.0.area(control) } else { Ok(None) }
-    }
-
-    fn is_off_lattice(&self) -> bool {
-        self.0.proof().is_certified() && self.0.is_off_lattice()
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
+        if self.0.proof().is_certified() { self.0.answer_whole(question, control) } else { Ok(()) }
     }
 }
 
@@ -63,9 +58,66 @@ fn proven<P>(proof: Proof, verdict: Verdict<P>) -> Verdict<P> {
     }
 }
 
-impl<W: Worker> Worker for ProvenWorker<W> {
-    type Part = W::Part;
+impl<W: Worker> Parts for ProvenWorker<W> {
+    fn hand_over(&mut self, from: &Self, part: &W::Part) -> Result<W::Part, Error> {
+        self.inner.hand_over(&from.inner, part)
+    }
 
+    forward_parts!(W::Part, self => self.inner);
+}
+
+impl<W: Worker> Batch for ProvenWorker<W> {
+    fn likes_many(&self) -> bool {
+        self.inner.likes_many()
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, W::Part)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<W::Part>; 8]>,
+    ) -> Result<(), Error> {
+        let before = verdicts.len();
+        let done = self.inner.split_many(cells, control, verdicts);
+        if !self.proof.is_certified() {
+            for verdict in verdicts[before..].as_flattened_mut() {
+                *verdict = proven(self.proof, verdict.clone());
+            }
+        }
+        done
+    }
+
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, W::Part)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        let before = inside.len();
+        let done = self.inner.sample_many(cells, control, inside);
+        inside[before..].iter_mut().for_each(|inside| *inside = self.proven_point(*inside));
+        done
+    }
+
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        self.inner.inside(points, answers)?;
+        answers.iter_mut().for_each(|answer| *answer = self.proven_point(*answer));
+        Ok(())
+    }
+
+    fn recall(&mut self, cell: Cell) -> Option<W::Part> {
+        self.inner.recall(cell)
+    }
+}
+
+impl<W: Worker> ProvenWorker<W> {
+    /// What is proven of a point.
+    fn proven_point(&self, inside: Option<bool>) -> Option<bool> {
+        inside.filter(|&inside| if inside { self.proof.full } else { self.proof.empty })
+    }
+}
+
+impl<W: Worker> Worker for ProvenWorker<W> {
     fn frame(&self) -> &Frame {
         self.inner.frame()
     }
@@ -83,24 +135,35 @@ impl<W: Worker> Worker for ProvenWorker<W> {
         Ok(self.inner.split(cell, part)?.map(|verdict| proven(self.proof, verdict)))
     }
 
-    fn mark(&self) -> usize {
-        self.inner.mark()
-    }
-
-    fn scratch_bytes(&self) -> usize {
-        self.inner.scratch_bytes()
-    }
-
-    fn release(&mut self, mark: usize) {
-        self.inner.release(mark);
-    }
-
-    fn hand_over(&mut self, from: &Self, part: &W::Part) -> Result<W::Part, Error> {
-        self.inner.hand_over(&from.inner, part)
-    }
-
-    fn recall(&mut self, cell: Cell) -> Option<W::Part> {
-        self.inner.recall(cell)
+    /// What is known of a cell whose solid proves one side only is known of that side.
+    #[inline]
+    fn answer(&mut self, cell: Cell, part: &W::Part, question: Question<'_>) -> Result<(), Error> {
+        if self.proof.is_certified() {
+            return self.inner.answer(cell, part, question);
+        }
+        match question {
+            Question::Centre(inside) => {
+                *inside = self.inner.sample(cell, part)?;
+                *inside = self.proven_point(*inside);
+            }
+            Question::Enclosure(known) => {
+                *known = self.inner.enclosure(cell, part)?;
+                for slab in known.iter_mut().flat_map(|enclosure| &mut enclosure.slabs) {
+                    if !self.proof.full {
+                        slab.inner = f64::NEG_INFINITY;
+                    }
+                    if !self.proof.empty {
+                        slab.outer = f64::INFINITY;
+                    }
+                }
+            }
+            Question::Moments(_)
+            | Question::Area(_)
+            | Question::Crossing(..)
+            | Question::Block(..)
+            | Question::Chords(_) => {}
+        }
+        Ok(())
     }
 
     fn split64(
@@ -117,46 +180,5 @@ impl<W: Worker> Worker for ProvenWorker<W> {
 
     fn subtree(&self, part: &W::Part) -> Option<Subtree<'_>> {
         if self.proof.is_certified() { self.inner.subtree(part) } else { None }
-    }
-
-    fn enclosure(&mut self, cell: Cell, part: &W::Part) -> Result<Option<Enclosure>, Error> {
-        let mut found = self.inner.enclosure(cell, part)?;
-        for slab in found.iter_mut().flat_map(|enclosure| &mut enclosure.slabs) {
-            if !self.proof.full {
-                slab.inner = f64::NEG_INFINITY;
-            }
-            if !self.proof.empty {
-                slab.outer = f64::INFINITY;
-            }
-        }
-        Ok(found)
-    }
-
-    fn moments(&mut self, cell: Cell, part: &W::Part) -> Result<Option<CellMoments>, Error> {
-        if self.proof.is_certified() { self.inner.moments(cell, part) } else { Ok(None) }
-    }
-
-    fn area(&mut self, cell: Cell, part: &W::Part) -> Result<Option<Interval>, Error> {
-        if self.proof.is_certified() { self.inner.area(cell, part) } else { Ok(None) }
-    }
-
-    fn likes_many(&self) -> bool {
-        self.inner.likes_many()
-    }
-
-    fn split_many(
-        &mut self,
-        cells: &[(Cell, W::Part)],
-        control: &Control<'_>,
-        verdicts: &mut Vec<[Verdict<W::Part>; 8]>,
-    ) -> Result<(), Error> {
-        let before = verdicts.len();
-        self.inner.split_many(cells, control, verdicts)?;
-        if !self.proof.is_certified() {
-            for verdict in verdicts[before..].as_flattened_mut() {
-                *verdict = proven(self.proof, verdict.clone());
-            }
-        }
-        Ok(())
     }
 }

@@ -5,11 +5,11 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
 use crate::parallel;
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::solid::{Batch, Classifier, Parts, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// The parts of a classifier's workers.
-pub(crate) type Part<C> = <<C as Classifier>::Worker as Worker>::Part;
+pub(crate) type Part<C> = <<C as Classifier>::Worker as Parts>::Part;
 
 /// The eight children of a cell, by whichever form of splitting the solid likes; where that takes long,
 /// `control` can cancel it half-way.

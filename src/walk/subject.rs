@@ -5,7 +5,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::octree::Tag;
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::solid::{Batch, Classifier, Parts, Verdict};
 use alloc::vec::Vec;
 
 /// A solid in a search: its worker, and a count of its splits.

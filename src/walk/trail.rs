@@ -4,7 +4,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Cell, CellMoments};
 use crate::memory;
-use crate::solid::{Crossing, Enclosure, Segment, Verdict, Worker};
+use crate::solid::{Ask, Crossing, Enclosure, Segment, Verdict, Worker};
 use crate::walk::split_one;
 use alloc::vec::Vec;
 

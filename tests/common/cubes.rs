@@ -6,7 +6,8 @@
 use super::exact::Definition;
 use leafless::lattice::Cube;
 use leafless::octree::Block;
-use leafless::{Bounds, Cell, Classifier, Csg, Error, Frame, Tag, Verdict, Worker};
+use leafless::solid::{Batch, FreeParts, Question, WholeQuestion, sample_one_by_one, split_one_by_one};
+use leafless::{Bounds, Cell, Classifier, Control, Csg, Error, Frame, Proof, Tag, Verdict, Worker};
 
 /// A shape whose verdict of a cell needs nothing but the cell. Types that have it become solids by
 /// [`solid_of_cubes`].
@@ -60,11 +61,53 @@ impl<T: Cubes> Classifier for OnFrame<T> {
     fn exterior(&self) -> Tag {
         self.shape.exterior(&self.frame)
     }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
+impl<T: Cubes> FreeParts for OnFrame<T> {
+    type Part = ();
+}
+
+impl<T: Cubes> Batch for OnFrame<T> {
+    fn likes_many(&self) -> bool {
+        false
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, ())],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<()>; 8]>,
+    ) -> Result<(), Error> {
+        split_one_by_one(self, cells, control, verdicts)
+    }
+
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, ())],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        sample_one_by_one(self, cells, control, inside)
+    }
+
+    fn inside(&mut self, _: &[[f64; 3]], _: &mut [Option<bool>]) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn recall(&mut self, _: Cell) -> Option<()> {
+        T::RECALLS.then_some(())
+    }
 }
 
 impl<T: Cubes> Worker for OnFrame<T> {
-    type Part = ();
-
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -81,16 +124,14 @@ impl<T: Cubes> Worker for OnFrame<T> {
         Ok(verdicts)
     }
 
-    fn recall(&mut self, _: Cell) -> Option<()> {
-        T::RECALLS.then_some(())
-    }
-
-    fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
-        self.shape.sample(&Cube { frame: &self.frame, cell })
-    }
-
-    fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
-        self.shape.fill(&Cube { frame: &self.frame, cell }, block)
+    fn answer(&mut self, cell: Cell, _: &(), question: Question<'_>) -> Result<(), Error> {
+        let cube = Cube { frame: &self.frame, cell };
+        match question {
+            Question::Centre(inside) => *inside = self.shape.sample(&cube)?,
+            Question::Block(block, filled) => *filled = self.shape.fill(&cube, block)?,
+            _ => {}
+        }
+        Ok(())
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::common::{Random, Way, alone, lattice_frame};
 use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
 use leafless::query::{StopReason, surface_area};
+use leafless::solid::{Ask, Parts};
 use leafless::{Cell, Classifier, FillRule, Frame, MeshSolid, Solid, TriangleMesh, Verdict, Worker};
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive};
@@ -322,7 +323,7 @@ fn area(
     sums
 }
 
-type Part = <<<MeshSolid as Solid>::Classifier as Classifier>::Worker as Worker>::Part;
+type Part = <<<MeshSolid as Solid>::Classifier as Classifier>::Worker as Parts>::Part;
 
 /// Two tetrahedra with right angles at corners, of edges 0.6 and 0.3, in the universe of edge 1.
 #[test]

@@ -1,13 +1,14 @@
 //! A way to switch block-wise scanning off.
 
-use leafless::{Cell, Classifier, Control, Error, Frame, MeshSolid, Solid, Tag, Verdict, Worker};
+use leafless::solid::{OneByOne, Parts, Question, WholeQuestion};
+use leafless::{Cell, Classifier, Control, Error, Frame, MeshSolid, Proof, Solid, Tag, Verdict, Worker};
 
 /// A mesh that is only ever split, never scanned in blocks.
 pub struct Descended<'a>(pub &'a MeshSolid);
 
 type Inner = <MeshSolid as Solid>::Classifier;
 type InnerWorker = <Inner as Classifier>::Worker;
-type Part = <InnerWorker as Worker>::Part;
+type Part = <InnerWorker as Parts>::Part;
 
 /// On a frame.
 #[derive(Clone)]
@@ -33,10 +34,33 @@ impl Classifier for DescendedOnFrame {
     fn exterior(&self) -> Tag {
         self.0.exterior()
     }
+    fn proof(&self) -> Proof {
+        self.0.proof()
+    }
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-impl Worker for DescendedWorker {
+impl Parts for DescendedWorker {
     type Part = Part;
+    fn mark(&self) -> usize {
+        self.0.mark()
+    }
+    fn release(&mut self, mark: usize) {
+        self.0.release(mark);
+    }
+    fn scratch_bytes(&self) -> usize {
+        self.0.scratch_bytes()
+    }
+    fn hand_over(&mut self, from: &Self, part: &Part) -> Result<Part, Error> {
+        self.0.hand_over(&from.0, part)
+    }
+}
+
+impl OneByOne for DescendedWorker {}
+
+impl Worker for DescendedWorker {
     fn frame(&self) -> &Frame {
         self.0.frame()
     }
@@ -46,16 +70,10 @@ impl Worker for DescendedWorker {
     fn split(&mut self, cell: Cell, part: &Part) -> Result<[Verdict<Part>; 8], Error> {
         self.0.split(cell, part)
     }
-    fn sample(&mut self, cell: Cell, part: &Part) -> Result<Option<bool>, Error> {
-        self.0.sample(cell, part)
-    }
-    fn mark(&self) -> usize {
-        self.0.mark()
-    }
-    fn release(&mut self, mark: usize) {
-        self.0.release(mark);
-    }
-    fn hand_over(&mut self, from: &Self, part: &Part) -> Result<Part, Error> {
-        self.0.hand_over(&from.0, part)
+    fn answer(&mut self, cell: Cell, part: &Part, question: Question<'_>) -> Result<(), Error> {
+        match question {
+            Question::Centre(_) => self.0.answer(cell, part, question),
+            _ => Ok(()),
+        }
     }
 }

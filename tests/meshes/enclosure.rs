@@ -8,8 +8,8 @@ use crate::shapes::*;
 use crate::soup::check::is_inside;
 use crate::soup::forms::{bowl, pipe, refined, sphere};
 use crate::soup::winding::Soupy;
-use leafless::solid::Slab;
-use leafless::{AnySolid, Classifier, Csg, FillRule, Frame, MeshSolid, Solid, TriangleMesh, Worker};
+use leafless::solid::{Ask, Slab};
+use leafless::{AnySolid, Classifier, Csg, FillRule, Frame, MeshSolid, Solid, TriangleMesh};
 
 const RULES: [FillRule; 3] = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive];
 

@@ -1,6 +1,7 @@
 //! Open meshes at the edge of what doubles can tell: boundary edges that pass close by and end far away, sewn
 //! meshes whose vertices moved in directions of their own, workers that are used again.
 
+use leafless::solid::Parts;
 use leafless::{
     Classifier, Control, FillRule, Frame, MeshSolid, Rule, Solid, Tag, TriangleMesh, Worker, build,
 };

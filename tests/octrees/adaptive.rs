@@ -3,7 +3,7 @@
 use crate::common::alone;
 use leafless::octree::Cursor;
 use leafless::op::Zone;
-use leafless::solid::Adaptive;
+use leafless::solid::{Adaptive, Ask};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Rule, Solid, Tag,
     Verdict, Worker, build,

@@ -6,9 +6,10 @@ use crate::common::{Dense, Random, Shape, alone, assert_is, cases, lattice_frame
 use leafless::lattice::Cube;
 use leafless::octree::Block;
 use leafless::op::{resolve, union_of};
+use leafless::solid::{Ask, FreeParts, OneByOne, Parts, Question, WholeQuestion};
 use leafless::{
-    AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Frame, Interval, Octree, Rule, Solid, Tag,
-    Verdict, Worker, build, compact, complement,
+    AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Frame, Interval, Octree, Proof, Rule, Solid,
+    Tag, Verdict, Worker, build, compact, complement,
 };
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -513,6 +514,14 @@ impl Classifier for CrowdOnFrame {
         let balls: Result<_, Error> = self.balls.iter().map(Classifier::worker).collect();
         Ok(Lists { balls: balls?, frame: self.frame, lists: Vec::new() })
     }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 impl Lists {
@@ -523,9 +532,30 @@ impl Lists {
     }
 }
 
-impl Worker for Lists {
+impl Parts for Lists {
     type Part = (u32, u32);
 
+    fn mark(&self) -> usize {
+        self.lists.len()
+    }
+
+    fn release(&mut self, mark: usize) {
+        assert!(mark <= self.lists.len(), "released to a height that was never reached");
+        self.lists.truncate(mark);
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        0
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &(u32, u32)) -> Result<(u32, u32), Error> {
+        Ok(self.keep(&from.lists[part.0 as usize..part.1 as usize]))
+    }
+}
+
+impl OneByOne for Lists {}
+
+impl Worker for Lists {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -558,23 +588,18 @@ impl Worker for Lists {
         }))
     }
 
-    fn mark(&self) -> usize {
-        self.lists.len()
-    }
-
-    fn release(&mut self, mark: usize) {
-        assert!(mark <= self.lists.len(), "released to a height that was never reached");
-        self.lists.truncate(mark);
-    }
-
-    fn hand_over(&mut self, from: &Self, part: &(u32, u32)) -> Result<(u32, u32), Error> {
-        Ok(self.keep(&from.lists[part.0 as usize..part.1 as usize]))
-    }
-
-    fn sample(&mut self, cell: Cell, &(start, end): &(u32, u32)) -> Result<Option<bool>, Error> {
-        let Lists { balls, lists, .. } = self;
-        let inside = |&ball: &u32| matches!(balls[ball as usize].sample(cell, &()), Ok(Some(true)));
-        Ok(Some(lists[start as usize..end as usize].iter().any(inside)))
+    fn answer(
+        &mut self,
+        cell: Cell,
+        &(start, end): &(u32, u32),
+        question: Question<'_>,
+    ) -> Result<(), Error> {
+        if let Question::Centre(inside) = question {
+            let Lists { balls, lists, .. } = self;
+            let holds = |&ball: &u32| matches!(balls[ball as usize].sample(cell, &()), Ok(Some(true)));
+            *inside = Some(lists[start as usize..end as usize].iter().any(holds));
+        }
+        Ok(())
     }
 }
 
@@ -645,29 +670,23 @@ impl Classifier for BulkOnFrame<'_> {
     fn exterior(&self) -> Tag {
         self.ball.exterior()
     }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-impl Worker for BulkOnFrame<'_> {
-    type Part = ();
-
-    fn frame(&self) -> &Frame {
-        Classifier::frame(&self.ball)
-    }
-
-    fn root(&mut self) -> Result<Verdict<()>, Error> {
-        self.ball.root()
-    }
-
-    fn split(&mut self, cell: Cell, part: &()) -> Result<[Verdict<()>; 8], Error> {
-        self.ball.split(cell, part)
-    }
-
-    fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
+impl BulkOnFrame<'_> {
+    fn fill_block(&self, cell: Cell, block: &mut Block) -> bool {
         let (low, high) = Cube { frame: Worker::frame(self), cell }.planes();
         assert_eq!([0, 1, 2].map(|axis| high[axis] - low[axis]), [64; 3]);
         // Some blocks are left to descent.
         if (cell.at[0] + cell.at[1]) % 3 == 2 {
-            return Ok(false);
+            return false;
         }
         self.bulk.filled.fetch_add(1, Ordering::Relaxed);
         let rows = || (0..64).flat_map(|y| (0..64).map(move |x| (x, y, (x + 64 * y) as usize)));
@@ -695,11 +714,37 @@ impl Worker for BulkOnFrame<'_> {
                 }
             }
         }
-        Ok(true)
+        true
+    }
+}
+
+impl FreeParts for BulkOnFrame<'_> {
+    type Part = ();
+}
+
+impl OneByOne for BulkOnFrame<'_> {}
+
+impl Worker for BulkOnFrame<'_> {
+    fn frame(&self) -> &Frame {
+        Classifier::frame(&self.ball)
     }
 
-    fn sample(&mut self, cell: Cell, part: &()) -> Result<Option<bool>, Error> {
-        self.ball.sample(cell, part)
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
+        self.ball.root()
+    }
+
+    fn split(&mut self, cell: Cell, part: &()) -> Result<[Verdict<()>; 8], Error> {
+        self.ball.split(cell, part)
+    }
+
+    fn answer(&mut self, cell: Cell, part: &(), question: Question<'_>) -> Result<(), Error> {
+        match question {
+            Question::Block(block, filled) => {
+                *filled = self.fill_block(cell, block);
+                Ok(())
+            }
+            question => self.ball.answer(cell, part, question),
+        }
     }
 }
 

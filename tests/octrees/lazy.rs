@@ -5,10 +5,11 @@ use crate::common::cubes::{Cubes, Plain};
 use crate::common::{Dense, Random, alone, assert_is, cases, lattice_frame, noise, positions, shapes};
 use leafless::lattice::Cube;
 use leafless::op::{Refinement, Zone};
-use leafless::solid::{Fingerprint, SplitCounter};
+use leafless::solid::{Fingerprint, OneByOne, Parts, Question, SplitCounter, WholeQuestion};
 use leafless::{
     AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership,
-    MeshSolid, Metadata, Octree, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, build, compact, file,
+    MeshSolid, Metadata, Octree, Proof, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, build, compact,
+    file,
 };
 use proptest::prelude::*;
 use std::collections::HashSet;
@@ -80,6 +81,14 @@ impl<'a> Classifier for LateOnFrame<'a> {
     fn exterior(&self) -> Tag {
         Tag::Empty
     }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 impl Cells<'_> {
@@ -96,9 +105,31 @@ impl Cells<'_> {
     }
 }
 
-impl Worker for Cells<'_> {
+impl Parts for Cells<'_> {
     type Part = usize;
 
+    fn mark(&self) -> usize {
+        self.cells.len()
+    }
+
+    fn release(&mut self, mark: usize) {
+        assert!(mark <= self.cells.len());
+        self.cells.truncate(mark);
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        0
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &usize) -> Result<usize, Error> {
+        self.cells.push(from.cells[*part]);
+        Ok(self.cells.len() - 1)
+    }
+}
+
+impl OneByOne for Cells<'_> {}
+
+impl Worker for Cells<'_> {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -113,18 +144,8 @@ impl Worker for Cells<'_> {
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(cell.child(k))))
     }
 
-    fn mark(&self) -> usize {
-        self.cells.len()
-    }
-
-    fn release(&mut self, mark: usize) {
-        assert!(mark <= self.cells.len());
-        self.cells.truncate(mark);
-    }
-
-    fn hand_over(&mut self, from: &Self, part: &usize) -> Result<usize, Error> {
-        self.cells.push(from.cells[*part]);
-        Ok(self.cells.len() - 1)
+    fn answer(&mut self, _: Cell, _: &usize, _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 }
 

@@ -1,9 +1,10 @@
 //! The area of a solid's boundary, against formulas and against the areas of smaller cells.
 
-#[allow(dead_code)]
 use crate::common::{Random, Way, alone};
 use crate::random::Maker;
 use leafless::query::{StopReason, SurfaceArea, surface_area};
+#[allow(dead_code)]
+use leafless::solid::{Ask, AskWhole};
 use leafless::{
     Affine, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, Tolerance, Verdict, Worker,
     build,

@@ -5,10 +5,11 @@ use crate::common::cubes::Plain;
 use crate::common::exact::Exact;
 use crate::common::{Dense, DenseSolid, Random, alone, cases, model, positions, shapes};
 use leafless::query::{Extent, StopReason};
+use leafless::solid::{OneByOne, Parts, Question, WholeQuestion};
 use leafless::{
     AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Interval, MassProperties,
-    MeshSolid, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, bounding_box, build, complement, exchange,
-    measure,
+    MeshSolid, Proof, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, bounding_box, build, complement,
+    exchange, measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -491,11 +492,41 @@ impl Classifier for CountingOnFrame {
     fn worker(&self) -> Result<Stack, Error> {
         Ok(Stack { ball: self.ball.worker()?, calls: self.calls.clone(), values: Vec::new() })
     }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-impl Worker for Stack {
+impl Parts for Stack {
     type Part = usize;
 
+    fn mark(&self) -> usize {
+        self.values.len()
+    }
+
+    fn release(&mut self, mark: usize) {
+        assert!(mark <= self.values.len());
+        self.values.truncate(mark);
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        0
+    }
+
+    fn hand_over(&mut self, from: &Stack, part: &usize) -> Result<usize, Error> {
+        self.values.push(from.values[*part]);
+        Ok(self.values.len() - 1)
+    }
+}
+
+impl OneByOne for Stack {}
+
+impl Worker for Stack {
     fn frame(&self) -> &Frame {
         Worker::frame(&self.ball)
     }
@@ -526,18 +557,8 @@ impl Worker for Stack {
         }))
     }
 
-    fn mark(&self) -> usize {
-        self.values.len()
-    }
-
-    fn release(&mut self, mark: usize) {
-        assert!(mark <= self.values.len());
-        self.values.truncate(mark);
-    }
-
-    fn hand_over(&mut self, from: &Stack, part: &usize) -> Result<usize, Error> {
-        self.values.push(from.values[*part]);
-        Ok(self.values.len() - 1)
+    fn answer(&mut self, _: Cell, _: &usize, _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 }
 

@@ -7,7 +7,7 @@ use crate::common::{Random, Way, alone, lattice_frame};
 use crate::model::{Model, Other, Point};
 use crate::random::Maker;
 use leafless::lattice::MAX_DEPTH;
-use leafless::solid::{Enclosure, GradientRange, Slab, TangentBalls, Transform};
+use leafless::solid::{Ask, Enclosure, GradientRange, Slab, TangentBalls, Transform};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Csg, Error, Frame, Interval, Solid, Verdict, Worker,
 };

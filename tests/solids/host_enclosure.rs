@@ -1,7 +1,7 @@
 //! What a host program's functions say of where the surface lies in a cell: what measures, bounding boxes and
 //! adaptive octrees make of it, and of nonsense.
 
-use leafless::solid::{Adaptive, GradientRange, TangentBalls};
+use leafless::solid::{Adaptive, Ask, GradientRange, TangentBalls};
 use leafless::{
     AnySolid, Bounds, Callback, Classifier, Control, Error, Frame, Interval, Octree, Rule, Solid, Verdict,
     Worker, bounding_box, build, measure,

@@ -1,10 +1,11 @@
 //! What solids say of the moments of a cell, against what they say of cells far smaller.
 
-#[allow(dead_code)]
 use crate::common::{Random, Way, alone, lattice_frame};
 use crate::model::Model;
 use crate::random::Maker;
 use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
+#[allow(dead_code)]
+use leafless::solid::Ask;
 use leafless::{Cell, Classifier, Csg, Frame, Solid, Verdict, Worker};
 
 /// The order of second moments.

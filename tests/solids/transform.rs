@@ -5,7 +5,7 @@ use crate::common;
 use crate::common::exact::Exact;
 use crate::common::{Dense, Random, alone, lattice_frame, positions, shapes};
 use leafless::op::Zone;
-use leafless::solid::Transform;
+use leafless::solid::{Ask, Transform};
 use leafless::{
     Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Rule, Solid, Tag, Verdict,
     Worker, build, measure,

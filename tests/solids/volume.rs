@@ -3,7 +3,7 @@
 use crate::common::exact::Exact;
 use crate::common::volumes::{KINDS, Sampled, extents, grid};
 use crate::common::{Random, alone};
-use leafless::solid::{Band, SampleArray, Samples, VoxelGrid};
+use leafless::solid::{Ask, Band, SampleArray, Samples, VoxelGrid};
 use leafless::{
     AnySolid, Bounds, Cell, Classifier, Control, Csg, Error, Frame, Membership, Rule, Solid, Tag, Verdict,
     Volume, Worker, build, complement, contains,

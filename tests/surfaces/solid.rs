@@ -2,7 +2,7 @@
 
 use crate::common::surfaces::{assert_balanced, components, euler_of_manifold};
 use crate::common::{Random, alone, lattice_frame, model};
-use leafless::solid::Segment;
+use leafless::solid::{Ask, Segment};
 use leafless::surface::{VertexPlacement, marching_cubes_solid};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule,

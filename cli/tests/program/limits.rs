@@ -4,6 +4,7 @@
 use crate::commands::{COMMANDS, attempt, run, vectors};
 use crate::place;
 use crate::place::Place;
+use leafless::solid::{FreeParts, OneByOne, Question, WholeQuestion};
 use leafless::{
     Cell, Classifier, Control, Error, Frame, Octree, Rule, Solid, Tag, Verdict, Worker, build, file,
 };
@@ -46,6 +47,10 @@ impl Classifier for One {
     fn proof(&self) -> leafless::Proof {
         leafless::Proof::CERTIFIED
     }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 impl One {
@@ -64,9 +69,13 @@ impl One {
     }
 }
 
-impl Worker for One {
+impl FreeParts for One {
     type Part = ();
+}
 
+impl OneByOne for One {}
+
+impl Worker for One {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -77,6 +86,10 @@ impl Worker for One {
 
     fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
         Ok([0, 1, 2, 3, 4, 5, 6, 7].map(|octant| self.verdict(cell.child(octant))))
+    }
+
+    fn answer(&mut self, _: Cell, _: &(), _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 }
 

@@ -10,7 +10,7 @@ use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
 use crate::memory;
 use crate::octree::{Octree, Statistics, Tag};
 use crate::parallel;
-use crate::solid::{Classifier, PartOf, Solid, Verdict, Worker, WorkerOf};
+use crate::solid::{Batch, Classifier, PartOf, Parts, Solid, Verdict, WorkerOf};
 use crate::walk;
 use crate::walk::{Reach, Trail, Zone};
 use alloc::string::ToString;

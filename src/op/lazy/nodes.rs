@@ -5,7 +5,9 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::octree::view::LevelCounts;
 use crate::octree::{Node, Proof, Statistics, Tag};
-use crate::solid::{Classifier, OCTANTS, Solid, Verdict, Worker};
+use crate::solid::{
+    Classifier, FreeParts, OCTANTS, OneByOne, Question, Solid, Verdict, WholeQuestion, Worker,
+};
 use alloc::vec::Vec;
 
 /// What is known of the eight children of a cell.
@@ -301,11 +303,19 @@ impl Classifier for &Nodes {
     fn proof(&self) -> Proof {
         self.proof
     }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-impl Worker for &Nodes {
+impl FreeParts for &Nodes {
     type Part = usize;
+}
 
+impl OneByOne for &Nodes {}
+
+impl Worker for &Nodes {
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -316,6 +326,10 @@ impl Worker for &Nodes {
 
     fn split(&mut self, _: Cell, part: &usize) -> Result<[Verdict<usize>; 8], Error> {
         Ok(OCTANTS.map(|octant| self.verdict(Place { split: *part, octant })))
+    }
+
+    fn answer(&mut self, _: Cell, _: &usize, _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 }
 

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::parallel::each;
-use crate::solid::{Classifier, OCTANTS, Solid, Verdict, Worker};
+use crate::solid::{Classifier, OCTANTS, Parts, Solid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::split_one;
 use alloc::vec::Vec;
@@ -143,7 +143,7 @@ fn in_blocks<S: Solid, V: Visitor + Send>(
 }
 
 /// A cell, and what is known of it.
-type Known<W> = (Cell, Verdict<<W as Worker>::Part>);
+type Known<W> = (Cell, Verdict<<W as Parts>::Part>);
 
 /// The way down through the cells in columns.
 struct Descent<'j> {

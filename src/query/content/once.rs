@@ -8,7 +8,7 @@ use crate::memory;
 use crate::octree::links::Windows;
 use crate::octree::view::starts_half_way;
 use crate::octree::{OctreeRef, Planes, Tag};
-use crate::solid::{Verdict, Worker, split_twice};
+use crate::solid::{FreeParts, OneByOne, Question, Verdict, Worker, split_twice};
 use alloc::vec::Vec;
 
 /// An octree as it is, whatever its cells prove. Each cell may be split once, depth first and in Morton order: so the
@@ -57,9 +57,13 @@ impl Counted for Once<'_, '_> {
     }
 }
 
-impl Worker for Once<'_, '_> {
+impl FreeParts for Once<'_, '_> {
     type Part = Place;
+}
 
+impl OneByOne for Once<'_, '_> {}
+
+impl Worker for Once<'_, '_> {
     fn frame(&self) -> &Frame {
         self.tree.frame()
     }
@@ -93,6 +97,10 @@ impl Worker for Once<'_, '_> {
                 [0, 1, 2, 3, 4, 5, 6, 7].map(|k| self.verdict(level, index, planes, first + k))
             }
         })
+    }
+
+    fn answer(&mut self, _: Cell, _: &Place, _: Question<'_>) -> Result<(), Error> {
+        Ok(())
     }
 
     fn split64(&mut self, cell: Cell, place: &Place, parts: &mut Vec<(u8, Place)>) -> Result<Planes, Error> {

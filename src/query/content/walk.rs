@@ -6,7 +6,7 @@ use crate::control::Job;
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::octree::{Planes, Tag};
-use crate::solid::{Verdict, Worker};
+use crate::solid::{Ask, Verdict, Worker};
 use crate::walk::ProvenWorker;
 use crate::walk::split_one;
 use alloc::vec::Vec;

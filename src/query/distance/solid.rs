@@ -11,7 +11,7 @@ use crate::memory;
 use crate::octree::Tag;
 use crate::parallel::each;
 use crate::query::StopReason;
-use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::solid::{Ask, Classifier, Parts, Solid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::Queue;
 use crate::walk::split_one;

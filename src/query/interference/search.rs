@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, Interval};
 use crate::memory;
 use crate::octree::stats::volume_of;
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::solid::{Batch, Classifier, Verdict, Worker};
 use crate::walk::Part;
 use crate::walk::Queue;
 use crate::walk::Subject;

@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::{Cell, Frame, Interval, MAX_DEPTH, valid};
 use crate::octree::{Proof, Tag};
-use crate::solid::{Classifier, Solid, Worker};
+use crate::solid::{Ask, AskWhole, Classifier, Solid, Worker};
 use crate::walk::Proven;
 use core::ops::AddAssign;
 

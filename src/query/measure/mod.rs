@@ -13,7 +13,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Frame, Interval, MAX_DEPTH, VolumeMoments, valid};
 use crate::octree::{Proof, Tag};
-use crate::solid::{Classifier, Solid};
+use crate::solid::{AskWhole, Classifier, Solid};
 use crate::walk::Proven;
 use bounds::Known;
 use volume::Volume;

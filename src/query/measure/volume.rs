@@ -5,7 +5,7 @@ use super::quantity::{self, Quantity};
 use crate::cut;
 use crate::error::Error;
 use crate::lattice::{Cell, CellMoments, CubeMoments};
-use crate::solid::{Enclosure, Worker};
+use crate::solid::{Ask, Enclosure, Worker};
 use core::ops::AddAssign;
 
 /// Moments of what is proven inside, and of what is open.

@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::parallel::{self, each};
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::solid::{Batch, Classifier, Parts, Verdict, Worker};
 use crate::walk;
 use crate::walk::Part;
 use crate::walk::split_one;

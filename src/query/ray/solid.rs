@@ -9,7 +9,7 @@ use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
 use crate::parallel::each;
-use crate::solid::{Classifier, Enclosure, Solid, Verdict, Worker};
+use crate::solid::{Ask, Classifier, Enclosure, Solid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::split_one;
 use alloc::vec::Vec;

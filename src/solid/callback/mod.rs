@@ -6,14 +6,17 @@ mod tangent;
 pub use gradient::GradientRange;
 pub use tangent::TangentBalls;
 
-use super::{Classifier, Enclosure, Fingerprint, OCTANTS, Solid, Verdict, Worker};
+use super::{
+    Batch, Classifier, Enclosure, Fingerprint, FreeParts, OCTANTS, Question, Solid, Verdict, WholeQuestion,
+    Worker,
+};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Cell, Cube, Frame};
 use crate::memory;
-use crate::octree::Tag;
+use crate::octree::{Proof, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -152,7 +155,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     /// the box `(min, max)`, as the classifying function does, and a point next to the box's middle. `None` says
     /// nothing of the box.
     ///
-    /// The function is asked about undecided cells by whoever uses their [enclosures](Worker::enclosure):
+    /// The function is asked about undecided cells by whoever uses their [enclosures](Question::Enclosure):
     /// [`measure`](crate::measure), [`bounding_box`](crate::bounding_box) and [`Adaptive`](crate::solid::Adaptive) need
     /// far fewer splits with it. No verdict depends on it.
     ///
@@ -271,6 +274,15 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
             _ => self.functions.exterior,
         }
     }
+
+    /// The host promises that FULL and EMPTY are proven.
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> CallbackOnFrame<'_, F> {
@@ -311,6 +323,22 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         Ok(())
     }
 
+    /// What the host's f, or its surface next to the middle, tells of a cell.
+    fn slabs(&self, cell: Cell) -> Result<Option<Enclosure>, Error> {
+        let Functions { gradient, tangent, .. } = &*self.functions;
+        let cube = Cube { frame: &self.frame, cell };
+        let (min, max) = cube.bounds();
+        let middle = middle(min, max);
+        if let Some(gradient) = gradient
+            && let Some(range) = gradient(min, max, middle)?
+            && let Some(enclosure) = range.enclosure(&cube, middle)
+        {
+            return Ok(Some(enclosure));
+        }
+        let Some(tangent) = tangent else { return Ok(None) };
+        Ok(tangent(min, max, middle)?.and_then(|balls| balls.enclosure(&cube)))
+    }
+
     /// Decides cells by the distances of their middles; returns those that this leaves open.
     fn by_distance(&self, cells: &[Cell], verdicts: &mut [Verdict<()>]) -> Result<Vec<usize>, Error> {
         let mut open = memory::with_capacity(cells.len())?;
@@ -346,32 +374,13 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
     }
 }
 
-impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Worker
+impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> FreeParts
     for CallbackOnFrame<'_, F>
 {
     type Part = ();
+}
 
-    fn frame(&self) -> &Frame {
-        &self.frame
-    }
-
-    fn root(&mut self) -> Result<Verdict<()>, Error> {
-        let mut verdict = [Verdict::Undecided];
-        self.classify(&[Cell::ROOT], &Control::default(), &mut verdict).map_err(|(_, error)| error)?;
-        Ok(verdict[0])
-    }
-
-    fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
-        let mut verdicts = [Verdict::Undecided; 8];
-        let children = OCTANTS.map(|octant| cell.child(octant));
-        self.classify(&children, &Control::default(), &mut verdicts).map_err(|(_, error)| error)?;
-        Ok(verdicts)
-    }
-
-    fn recall(&mut self, _: Cell) -> Option<()> {
-        Some(())
-    }
-
+impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Batch for CallbackOnFrame<'_, F> {
     fn likes_many(&self) -> bool {
         true
     }
@@ -392,28 +401,6 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
             verdicts.truncate(first + known / 8);
             error
         })
-    }
-
-    fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
-        let mut inside = [None];
-        self.inside(&[centre(&self.frame, cell)], &mut inside)?;
-        Ok(inside[0])
-    }
-
-    fn sample64(&mut self, cell: Cell, parts: &[(u8, ())]) -> Result<Option<u64>, Error> {
-        let Some(contains) = &self.functions.contains else { return Ok(None) };
-        if parts.is_empty() {
-            return Ok(Some(0));
-        }
-        let (mut points, mut inside) = ([[0.0; 3]; 64], [false; 64]);
-        let parts = parts.get(..64).unwrap_or(parts);
-        for ((c, ()), point) in parts.iter().zip(&mut points) {
-            *point = centre(&self.frame, cell.child(c >> 3).child(c & 7));
-        }
-        let count = parts.len();
-        contains(&points[..count], &mut inside[..count])?;
-        let bits = parts.iter().zip(inside).map(|((c, ()), inside)| (inside as u64) << (c & 63));
-        Ok(Some(bits.fold(0, |all, bit| all | bit)))
     }
 
     fn sample_many(
@@ -446,19 +433,58 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
         Ok(())
     }
 
-    fn enclosure(&mut self, cell: Cell, _: &()) -> Result<Option<Enclosure>, Error> {
-        let Functions { gradient, tangent, .. } = &*self.functions;
-        let cube = Cube { frame: &self.frame, cell };
-        let (min, max) = cube.bounds();
-        let middle = middle(min, max);
-        if let Some(gradient) = gradient
-            && let Some(range) = gradient(min, max, middle)?
-            && let Some(enclosure) = range.enclosure(&cube, middle)
-        {
-            return Ok(Some(enclosure));
+    fn recall(&mut self, _: Cell) -> Option<()> {
+        Some(())
+    }
+}
+
+impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Worker
+    for CallbackOnFrame<'_, F>
+{
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<()>, Error> {
+        let mut verdict = [Verdict::Undecided];
+        self.classify(&[Cell::ROOT], &Control::default(), &mut verdict).map_err(|(_, error)| error)?;
+        Ok(verdict[0])
+    }
+
+    fn split(&mut self, cell: Cell, _: &()) -> Result<[Verdict<()>; 8], Error> {
+        let mut verdicts = [Verdict::Undecided; 8];
+        let children = OCTANTS.map(|octant| cell.child(octant));
+        self.classify(&children, &Control::default(), &mut verdicts).map_err(|(_, error)| error)?;
+        Ok(verdicts)
+    }
+
+    fn answer(&mut self, cell: Cell, _: &(), question: Question<'_>) -> Result<(), Error> {
+        match question {
+            Question::Centre(inside) => {
+                let mut answer = [None];
+                self.inside(&[centre(&self.frame, cell)], &mut answer)?;
+                *inside = answer[0];
+            }
+            Question::Enclosure(known) => *known = self.slabs(cell)?,
+            _ => {}
         }
-        let Some(tangent) = tangent else { return Ok(None) };
-        Ok(tangent(min, max, middle)?.and_then(|balls| balls.enclosure(&cube)))
+        Ok(())
+    }
+
+    fn sample64(&mut self, cell: Cell, parts: &[(u8, ())]) -> Result<Option<u64>, Error> {
+        let Some(contains) = &self.functions.contains else { return Ok(None) };
+        if parts.is_empty() {
+            return Ok(Some(0));
+        }
+        let (mut points, mut inside) = ([[0.0; 3]; 64], [false; 64]);
+        let parts = parts.get(..64).unwrap_or(parts);
+        for ((c, ()), point) in parts.iter().zip(&mut points) {
+            *point = centre(&self.frame, cell.child(c >> 3).child(c & 7));
+        }
+        let count = parts.len();
+        contains(&points[..count], &mut inside[..count])?;
+        let bits = parts.iter().zip(inside).map(|((c, ()), inside)| (inside as u64) << (c & 63));
+        Ok(Some(bits.fold(0, |all, bit| all | bit)))
     }
 }
 

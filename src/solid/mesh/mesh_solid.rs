@@ -14,11 +14,12 @@ use crate::control::Control;
 use crate::dexel::Beam;
 use crate::error::{Error, MeshError};
 use crate::lattice::axes;
-use crate::lattice::{Affine, Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
+use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
 use crate::solid::{
-    Classifier, Crossing, Enclosure, Fingerprint, Fingerprinter, Motion, Segment, Solid, Verdict, Worker,
+    Classifier, Fingerprint, Fingerprinter, Motion, OneByOne, Parts, Question, Solid, Verdict, WholeQuestion,
+    Worker,
 };
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -302,27 +303,27 @@ impl Classifier for MeshClassifier {
         Proof::CERTIFIED.moved(self.mesh.placed.mesh.displacement())
     }
 
-    /// If the mesh is closed and no two triangles intersect.
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
-        Ok(match self.solid.moments(control)? {
-            MeshMoments::Known(moments) => Some(moments),
-            MeshMoments::Open | MeshMoments::Intersecting(_) | MeshMoments::Undecided => {
-                // Whoever asks for moments goes on to those of cells.
-                self.solid.sides(control)?;
-                None
+    /// Moments and area are known if the mesh is closed and no two triangles intersect. O(t).
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
+        let solid = &self.solid;
+        match question {
+            WholeQuestion::Moments(known) => match solid.moments(control)? {
+                MeshMoments::Known(moments) => *known = Some(moments),
+                MeshMoments::Open | MeshMoments::Intersecting(_) | MeshMoments::Undecided => {
+                    // Whoever asks for moments goes on to those of cells.
+                    solid.sides(control)?;
+                }
+            },
+            WholeQuestion::Area(known) => {
+                *known = solid.sides(control)?.and_then(|sides| solid.mesh.boundary_area(sides));
             }
-        })
-    }
-
-    /// If the mesh is closed and no two triangles intersect.
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
-        Ok(self.solid.sides(control)?.and_then(|sides| self.solid.mesh.boundary_area(sides)))
-    }
-
-    /// O(t).
-    fn is_off_lattice(&self) -> bool {
-        let Placed { displacement, .. } = self.mesh.placed;
-        displacement == 0.0 && self.mesh.caps.is_empty() && self.mesh.has_no_triangle_in_planes()
+            WholeQuestion::OffLattice(known) => {
+                *known = self.mesh.placed.displacement == 0.0
+                    && self.mesh.caps.is_empty()
+                    && self.mesh.has_no_triangle_in_planes();
+            }
+        }
+        Ok(())
     }
 }
 
@@ -346,9 +347,32 @@ fn view<'a>(
     is_cut.then_some(View { placed, triangles, at, size, winding })
 }
 
-impl Worker for MeshWorker {
+impl Parts for MeshWorker {
     type Part = MeshPart;
 
+    fn mark(&self) -> usize {
+        self.triangles.len()
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        size_of_val(&*self.triangles)
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.triangles.truncate(mark);
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &MeshPart) -> Result<MeshPart, Error> {
+        let first = self.mesh.roots.len() + self.triangles.len();
+        self.triangles.try_reserve(part.count)?;
+        self.triangles.extend_from_slice(list(&from.mesh.roots, &from.triangles, part));
+        Ok(MeshPart { first, ..*part })
+    }
+}
+
+impl OneByOne for MeshWorker {}
+
+impl Worker for MeshWorker {
     fn frame(&self) -> &Frame {
         &self.mesh.placed.frame
     }
@@ -426,31 +450,67 @@ impl Worker for MeshWorker {
         Ok(verdicts)
     }
 
-    fn mark(&self) -> usize {
-        self.triangles.len()
+    fn answer(&mut self, cell: Cell, part: &MeshPart, question: Question<'_>) -> Result<(), Error> {
+        let (at, size) = extent(cell, self.mesh.placed.frame.depth());
+        let fill = self.mesh.fill;
+        match question {
+            Question::Block(block, filled) => *filled = self.fill_block(at, part, block)?,
+            Question::Chords(chords) => *chords.found = self.find_chords(at, part, chords.beam)?,
+            // A finest cell's lowest centre is its only one.
+            Question::Centre(inside) => {
+                *inside = Some(match part.caps {
+                    Some(_) => self.mesh.open_sample(&mut self.surroundings, at, *part),
+                    None => fill.encloses(part.winding),
+                });
+            }
+            Question::Enclosure(known) => {
+                *known = match self.view(cell, part) {
+                    Some(view) => view.slab(fill),
+                    None => {
+                        let MeshWorker { mesh, triangles, surroundings, .. } = self;
+                        mesh.open_slab(surroundings, list(&mesh.roots, triangles, part), at, size, *part)
+                    }
+                };
+            }
+            Question::Moments(known) => {
+                *known = self.of_sides(cell, part, |view, sides| view.moments(sides, fill))?
+            }
+            Question::Area(known) => {
+                *known = self.of_sides(cell, part, |view, sides| view.area(sides, fill))?
+            }
+            Question::Crossing(segment, known) => {
+                *known = self.view(cell, part).and_then(|view| view.first_crossing(segment, fill));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl MeshWorker {
+    /// What of the surface lies in a cell, if it cuts the cell, and its winding number there is an integer or near to one.
+    fn view(&mut self, cell: Cell, part: &MeshPart) -> Option<View<'_>> {
+        view(&self.mesh, &self.triangles, &mut self.surroundings, cell, part)
     }
 
-    fn scratch_bytes(&self) -> usize {
-        size_of_val(&*self.triangles)
+    /// What is told of a cell by which sides of which triangles the solid lies on.
+    fn of_sides<T>(
+        &mut self,
+        cell: Cell,
+        part: &MeshPart,
+        tell: impl FnOnce(&View<'_>, &Sides) -> Result<Option<T>, Error>,
+    ) -> Result<Option<T>, Error> {
+        let MeshWorker { mesh, solid, triangles, surroundings, .. } = self;
+        match (solid.sides(&Control::default())?, view(mesh, triangles, surroundings, cell, part)) {
+            (Some(sides), Some(view)) => tell(&view, sides),
+            _ => Ok(None),
+        }
     }
 
-    fn release(&mut self, mark: usize) {
-        self.triangles.truncate(mark);
-    }
-
-    fn hand_over(&mut self, from: &Self, part: &MeshPart) -> Result<MeshPart, Error> {
-        let first = self.mesh.roots.len() + self.triangles.len();
-        self.triangles.try_reserve(part.count)?;
-        self.triangles.extend_from_slice(list(&from.mesh.roots, &from.triangles, part));
-        Ok(MeshPart { first, ..*part })
-    }
-
-    fn fill(&mut self, cell: Cell, part: &MeshPart, block: &mut Block) -> Result<bool, Error> {
+    fn fill_block(&mut self, at: [i32; 3], part: &MeshPart, block: &mut Block) -> Result<bool, Error> {
         if part.caps.is_some() {
             return Ok(false);
         }
         let MeshWorker { mesh, triangles, scan, .. } = self;
-        let (at, _) = extent(cell, mesh.placed.frame.depth());
         let triangles = list(&mesh.roots, triangles, part);
         let task = Task { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
         let scan = match scan {
@@ -461,63 +521,17 @@ impl Worker for MeshWorker {
         Ok(true)
     }
 
-    fn chords(&mut self, cell: Cell, part: &MeshPart, beam: &mut Beam) -> Result<bool, Error> {
+    fn find_chords(&mut self, at: [i32; 3], part: &MeshPart, beam: &mut Beam) -> Result<bool, Error> {
         if part.caps.is_some() || self.mesh.placed.count() > Chords::MOST {
             return Ok(false);
         }
         let MeshWorker { mesh, triangles, chords, .. } = self;
-        let (at, _) = extent(cell, mesh.placed.frame.depth());
         let triangles = list(&mesh.roots, triangles, part);
         // Caps come last. They are not counted where the surface's own winding number is known.
         let triangles = &triangles[..triangles.partition_point(|&triangle| !mesh.placed.is_cap(triangle))];
         let rays = Rays { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
         chords.find(rays, beam)?;
         Ok(true)
-    }
-
-    fn moments(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<CellMoments>, Error> {
-        let MeshWorker { mesh, solid, triangles, surroundings, .. } = self;
-        match (solid.sides(&Control::default())?, view(mesh, triangles, surroundings, cell, part)) {
-            (Some(sides), Some(view)) => view.moments(sides, mesh.fill),
-            _ => Ok(None),
-        }
-    }
-
-    fn area(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<Interval>, Error> {
-        let MeshWorker { mesh, solid, triangles, surroundings, .. } = self;
-        match (solid.sides(&Control::default())?, view(mesh, triangles, surroundings, cell, part)) {
-            (Some(sides), Some(view)) => view.area(sides, mesh.fill),
-            _ => Ok(None),
-        }
-    }
-
-    fn enclosure(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<Enclosure>, Error> {
-        let MeshWorker { mesh, triangles, surroundings, .. } = self;
-        if let Some(view) = view(mesh, triangles, surroundings, cell, part) {
-            return Ok(view.slab(mesh.fill));
-        }
-        let (at, size) = extent(cell, mesh.placed.frame.depth());
-        Ok(mesh.open_slab(surroundings, list(&mesh.roots, triangles, part), at, size, *part))
-    }
-
-    fn crossing(
-        &mut self,
-        cell: Cell,
-        part: &MeshPart,
-        segment: &Segment,
-    ) -> Result<Option<Crossing>, Error> {
-        let MeshWorker { mesh, triangles, surroundings, .. } = self;
-        let view = view(mesh, triangles, surroundings, cell, part);
-        Ok(view.and_then(|view| view.first_crossing(segment, mesh.fill)))
-    }
-
-    fn sample(&mut self, cell: Cell, part: &MeshPart) -> Result<Option<bool>, Error> {
-        // A finest cell's lowest centre is its only one.
-        let (at, _) = extent(cell, self.mesh.placed.frame.depth());
-        Ok(Some(match part.caps {
-            Some(_) => self.mesh.open_sample(&mut self.surroundings, at, *part),
-            None => self.mesh.fill.encloses(part.winding),
-        }))
     }
 }
 

@@ -3,7 +3,10 @@
 mod image;
 mod slabs;
 
-use super::{Classifier, Enclosure, Fingerprint, Fingerprinter, Solid, Verdict, Worker};
+use super::{
+    Ask, Classifier, Enclosure, Fingerprint, Fingerprinter, OneByOne, Parts, Question, Solid, Verdict,
+    WholeQuestion, Worker,
+};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, MAX_DEPTH};
@@ -278,6 +281,10 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
     fn proof(&self) -> Proof {
         self.proof
     }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
 /// Lower corner and edge of a cell of a frame, in its finest cells.
@@ -409,30 +416,8 @@ fn replace<W: Worker>(
     Ok(())
 }
 
-impl<W: Worker> Worker for TransformWorker<W> {
+impl<W: Worker> Parts for TransformWorker<W> {
     type Part = TransformPart;
-
-    fn frame(&self) -> &Frame {
-        &self.frame
-    }
-
-    fn root(&mut self) -> Result<Verdict<TransformPart>, Error> {
-        let root = self.inner.root()?;
-        memory::push(&mut self.known, (Cell::ROOT, root))?;
-        let universe = self.close()?;
-        let (maps, frame) = (self.maps, self.frame);
-        let images = Images::new(&maps, &Cube { frame: &frame, cell: Cell::ROOT }, 1);
-        self.gather(universe, &images, images.grain)?;
-        let [universe, ..] = self.verdicts(&images, 1, false)?;
-        Ok(universe)
-    }
-
-    fn split(&mut self, cell: Cell, part: &TransformPart) -> Result<[Verdict<TransformPart>; 8], Error> {
-        let (maps, frame) = (self.maps, self.frame);
-        let images = Images::new(&maps, &Cube { frame: &frame, cell }, 2);
-        self.gather(*part, &images, images.grain)?;
-        self.verdicts(&images, 8, cell.level + 1 == frame.depth())
-    }
 
     fn mark(&self) -> usize {
         self.lists.len()
@@ -461,13 +446,51 @@ impl<W: Worker> Worker for TransformWorker<W> {
         }
         self.close()
     }
+}
 
-    fn sample(&mut self, cell: Cell, part: &TransformPart) -> Result<Option<bool>, Error> {
+impl<W: Worker> OneByOne for TransformWorker<W> {}
+
+impl<W: Worker> Worker for TransformWorker<W> {
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn root(&mut self) -> Result<Verdict<TransformPart>, Error> {
+        let root = self.inner.root()?;
+        memory::push(&mut self.known, (Cell::ROOT, root))?;
+        let universe = self.close()?;
+        let (maps, frame) = (self.maps, self.frame);
+        let images = Images::new(&maps, &Cube { frame: &frame, cell: Cell::ROOT }, 1);
+        self.gather(universe, &images, images.grain)?;
+        let [universe, ..] = self.verdicts(&images, 1, false)?;
+        Ok(universe)
+    }
+
+    fn split(&mut self, cell: Cell, part: &TransformPart) -> Result<[Verdict<TransformPart>; 8], Error> {
+        let (maps, frame) = (self.maps, self.frame);
+        let images = Images::new(&maps, &Cube { frame: &frame, cell }, 2);
+        self.gather(*part, &images, images.grain)?;
+        self.verdicts(&images, 8, cell.level + 1 == frame.depth())
+    }
+
+    fn answer(&mut self, cell: Cell, part: &TransformPart, question: Question<'_>) -> Result<(), Error> {
+        match question {
+            Question::Centre(inside) => *inside = self.contains_centre(cell, *part)?,
+            Question::Enclosure(known) => *known = self.slab(cell, *part)?,
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+impl<W: Worker> TransformWorker<W> {
+    /// Whether the centre of a finest cell lies inside.
+    fn contains_centre(&mut self, cell: Cell, part: TransformPart) -> Result<Option<bool>, Error> {
         let inward = self.maps.inward;
         let mark = self.inner.mark();
         let centre = inward.image(cell.at.map(|a| a as f64 + 0.5), 0.0).0;
         let point = Point { map: &inward, at: centre };
-        self.gather(*part, &point, 0.0)?;
+        self.gather(part, &point, 0.0)?;
         let Met { empty, full, undecided, part } = self.met(point.reaches_beyond(self.own.cells() as f64));
         let inside = match [empty, full, undecided, part].map(|met| met != 0) {
             [true, false, false, false] => Some(false),
@@ -484,8 +507,9 @@ impl<W: Worker> Worker for TransformWorker<W> {
         Ok(inside)
     }
 
-    fn enclosure(&mut self, cell: Cell, part: &TransformPart) -> Result<Option<Enclosure>, Error> {
-        let range = self.range(*part);
+    /// What the cells of the solid's own frame know of a cell.
+    fn slab(&mut self, cell: Cell, part: TransformPart) -> Result<Option<Enclosure>, Error> {
+        let range = self.range(part);
         let mut sources = memory::with_capacity(range.len())?;
         for (source, verdict) in &self.known[range] {
             let enclosure = match verdict {

@@ -3,11 +3,15 @@
 use super::axis::{Axis, Run};
 use super::occupancy::Seen;
 use super::{Volume, VoxelGrid};
+use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::{Cell, Frame};
-use crate::octree::{Planes, Tag};
-use crate::solid::{Classifier, OCTANTS, Verdict, Worker, split_twice};
+use crate::octree::{Planes, Proof, Tag};
+use crate::solid::{
+    Batch, Classifier, FreeParts, OCTANTS, Question, Verdict, WholeQuestion, Worker, sample_one_by_one,
+    split_one_by_one, split_twice,
+};
 use alloc::vec::Vec;
 
 /// A volume on a frame: handle and worker. A cell is decided by the cell itself, so that its part is nothing.
@@ -107,6 +111,22 @@ impl<'a> VolumeOnFrame<'a> {
     }
 }
 
+impl VolumeOnFrame<'_> {
+    /// Whether the centre of a finest cell lies in the solid.
+    fn contains_centre(&self, cell: Cell) -> bool {
+        let mut voxel = [0; 3];
+        for axis in 0..3 {
+            // Shifted upward, a centre on a voxel's face lies in the upper one.
+            let place = self.axes[axis].place(self.grid(), &self.frame, 2 * cell.at[axis] + 1);
+            match u32::try_from(place.floor) {
+                Ok(floor) if floor < self.grid().extents()[axis] => voxel[axis] = floor,
+                _ => return false,
+            }
+        }
+        self.volume.field.contains(voxel)
+    }
+}
+
 impl<'a> Classifier for VolumeOnFrame<'a> {
     type Worker = VolumeOnFrame<'a>;
 
@@ -121,11 +141,57 @@ impl<'a> Classifier for VolumeOnFrame<'a> {
     fn exterior(&self) -> Tag {
         if self.grid().is_within(&self.frame) { Tag::Empty } else { Tag::Partial }
     }
+
+    fn proof(&self) -> Proof {
+        Proof::CERTIFIED
+    }
+
+    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
+impl FreeParts for VolumeOnFrame<'_> {
+    type Part = ();
+}
+
+impl Batch for VolumeOnFrame<'_> {
+    fn likes_many(&self) -> bool {
+        false
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, ())],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<()>; 8]>,
+    ) -> Result<(), Error> {
+        split_one_by_one(self, cells, control, verdicts)
+    }
+
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, ())],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        sample_one_by_one(self, cells, control, inside)
+    }
+
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        for (&point, answer) in points.iter().zip(answers) {
+            let voxel = self.grid().voxel_of(point);
+            *answer = Some(voxel.is_some_and(|voxel| self.volume.field.contains(voxel)));
+        }
+        Ok(())
+    }
+
+    fn recall(&mut self, _: Cell) -> Option<()> {
+        Some(())
+    }
 }
 
 impl Worker for VolumeOnFrame<'_> {
-    type Part = ();
-
     fn frame(&self) -> &Frame {
         &self.frame
     }
@@ -147,8 +213,12 @@ impl Worker for VolumeOnFrame<'_> {
         Ok(OCTANTS.map(|octant| self.verdict(axes(|axis| halves[axis][usize::from(octant >> axis & 1)]))))
     }
 
-    fn recall(&mut self, _: Cell) -> Option<()> {
-        Some(())
+    #[inline]
+    fn answer(&mut self, cell: Cell, _: &(), question: Question<'_>) -> Result<(), Error> {
+        if let Question::Centre(inside) = question {
+            *inside = Some(self.contains_centre(cell));
+        }
+        Ok(())
     }
 
     fn split64(&mut self, cell: Cell, part: &(), parts: &mut Vec<(u8, ())>) -> Result<Planes, Error> {
@@ -161,26 +231,5 @@ impl Worker for VolumeOnFrame<'_> {
             mixed &= mixed - 1;
         }
         Ok(planes)
-    }
-
-    fn sample(&mut self, cell: Cell, _: &()) -> Result<Option<bool>, Error> {
-        let mut voxel = [0; 3];
-        for axis in 0..3 {
-            // Shifted upward, a centre on a voxel's face lies in the upper one.
-            let place = self.axes[axis].place(self.grid(), &self.frame, 2 * cell.at[axis] + 1);
-            match u32::try_from(place.floor) {
-                Ok(floor) if floor < self.grid().extents()[axis] => voxel[axis] = floor,
-                _ => return Ok(Some(false)),
-            }
-        }
-        Ok(Some(self.volume.field.contains(voxel)))
-    }
-
-    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
-        for (&point, answer) in points.iter().zip(answers) {
-            let voxel = self.grid().voxel_of(point);
-            *answer = Some(voxel.is_some_and(|voxel| self.volume.field.contains(voxel)));
-        }
-        Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! Constructive solid geometry: the published tables, and what costs what.
 
 use crate::common::cubes::Plain;
-use leafless::solid::{HalfSpace, Touch, Transform};
+use leafless::solid::{HalfSpace, Parts, Touch, Transform};
 use leafless::{
     Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, Tag, Verdict,
     Worker, build,

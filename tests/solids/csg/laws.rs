@@ -5,7 +5,7 @@ use super::oracle::frames;
 use super::random::Maker;
 use crate::common::lattice_frame;
 use crate::common::{Dense, Random, alone};
-use leafless::solid::SplitCounter;
+use leafless::solid::{Parts, SplitCounter};
 use leafless::{
     AnySolid, Cell, Classifier, Control, Csg, Frame, Octree, Rule, Solid, Tag, Verdict, Worker, build,
     complement,

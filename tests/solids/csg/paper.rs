@@ -4,7 +4,7 @@
 use super::extremes::{Separable, corners};
 use crate::common::exact::Exact;
 use crate::common::{Dense, Random, alone, lattice_frame, positions};
-use leafless::solid::{HalfSpace, Touch};
+use leafless::solid::{HalfSpace, Parts, Touch};
 use leafless::{Cell, Classifier, Csg, Frame, Rule, Solid, Tag, Verdict, Worker, build};
 
 /// A primitive as the library has it, and its half-spaces.

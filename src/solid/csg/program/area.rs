@@ -1,18 +1,51 @@
 //! The area that half-spaces bound in a cell.
 
 use super::Program;
-use super::word::{Op, Word};
+use super::word::Op;
 use super::worker::{CsgPart, Scratch};
 use crate::cut;
+use crate::error::Error;
 use crate::lattice::{Cell, Interval};
+use crate::solid::Ask;
 use crate::solid::half_space::bounds::{centre, half_edge};
 
 impl Scratch {
-    /// Bounds of the area of the boundary in a cell; `None` if other solids than half-spaces are open there.
-    pub(crate) fn area(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Interval> {
+    /// Bounds of the area of the boundary in a cell; `None` if too little is known of an operand that is open there.
+    pub(crate) fn area(
+        &mut self,
+        program: &Program,
+        cell: Cell,
+        part: CsgPart,
+    ) -> Result<Option<Interval>, Error> {
         if program.paper || part.len == 0 {
-            return None;
+            return Ok(None);
         }
+        if part.is_table() || part.len == 1 {
+            return Ok(self.area_of_half_spaces(program, cell, part));
+        }
+        let mut sum = 0.0;
+        for i in 0..part.words() {
+            sum += match Scratch::list(program, &self.words, part)[i].op() {
+                Op::HalfSpace { index, .. } => match program.half_spaces[index as usize].degree() {
+                    Some(degree) => cut::most_area(degree),
+                    None => return Ok(None),
+                },
+                Op::Solid { index, .. } => {
+                    let Some((solid, part)) = self.slot(program, index)? else { return Ok(None) };
+                    let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
+                    match worker.area(cell, &part)? {
+                        Some(area) => area.upper,
+                        None => return Ok(None),
+                    }
+                }
+                Op::Join { .. } => 0.0,
+                Op::Unknown | Op::Group { .. } | Op::Primitive { .. } => return Ok(None),
+            };
+        }
+        Ok(Some(Interval::between(0.0, sum)))
+    }
+
+    fn area_of_half_spaces(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Interval> {
         let taylor = |index: u32| program.half_spaces[index as usize].taylor(centre(cell), half_edge(cell));
         // A union has the boundary of the complements' intersection.
         if let Some((literals, false, _)) = self.literals(program, part) {
@@ -26,29 +59,11 @@ impl Scratch {
                 _ => cut::area_of_faces(&surfaces),
             });
         }
-        let words = Scratch::list(program, &self.words, part);
-        let upper = if part.is_table() {
-            let half_spaces = Scratch::table_of(words).0.iter();
-            let areas = half_spaces.map(|word| Some(cut::area_of_surface(&taylor(word.variable().1)?).upper));
-            areas.sum::<Option<f64>>()?
-        } else {
-            most_area(program, words)?
-        };
-        Some(Interval::between(0.0, upper))
-    }
-}
-
-/// More than the area that all half-spaces of an expression have in a cell.
-fn most_area(program: &Program, words: &[Word]) -> Option<f64> {
-    let mut sum = 0.0;
-    for word in words {
-        match word.op() {
-            Op::HalfSpace { index, .. } => {
-                sum += cut::most_area(program.half_spaces[index as usize].degree()?)
-            }
-            Op::Join { .. } => {}
-            Op::Solid { .. } | Op::Unknown | Op::Group { .. } | Op::Primitive { .. } => return None,
+        if !part.is_table() {
+            return None;
         }
+        let half_spaces = Scratch::table_of(Scratch::list(program, &self.words, part)).0.iter();
+        let areas = half_spaces.map(|word| Some(cut::area_of_surface(&taylor(word.variable().1)?).upper));
+        Some(Interval::between(0.0, areas.sum::<Option<f64>>()?))
     }
-    Some(sum)
 }

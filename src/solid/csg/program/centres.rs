@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use crate::solid::csg::Join;
 use crate::solid::half_space::bounds::{Octants, centre};
-use crate::solid::{Verdict, Worker};
+use crate::solid::{Ask, Verdict, Worker};
 
 impl Scratch {
     /// Which of the given grandchildren of a cell have their centre inside; `None` if that cannot be told.
@@ -99,7 +99,7 @@ impl Scratch {
         cell: Cell,
     ) -> Result<Option<bool>, Error> {
         let centre = centre(cell);
-        let Scratch { words, operands, workers, slots, evaluations, .. } = self;
+        let Scratch { words, operands, workers, slots, evaluations, at_hand, .. } = self;
         let words = Scratch::list(program, words, part);
         if part.is_table() {
             let (half_spaces, mut table) = Scratch::table_of(words);
@@ -135,9 +135,10 @@ impl Scratch {
                         None => (index, Scratch::other(workers, program, index)?.root),
                     };
                     let inside = match part {
-                        Verdict::Partial(part) => {
-                            Scratch::other(workers, program, solid)?.worker.sample(cell, &part)?
-                        }
+                        Verdict::Partial(part) => match at_hand.sample(solid) {
+                            Some(inside) => inside,
+                            None => Scratch::other(workers, program, solid)?.worker.sample(cell, &part)?,
+                        },
                         _ => None,
                     };
                     inside.map_or(Kleene::UNKNOWN, all).complemented(complement)

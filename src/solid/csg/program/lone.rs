@@ -9,7 +9,7 @@ use crate::lattice::Cell;
 use crate::memory;
 use crate::octree::Planes;
 use crate::solid::erased::ErasedPart;
-use crate::solid::{AnyWorker, Verdict, Worker};
+use crate::solid::{AnyWorker, Parts, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// The only operand that is open in a cell: a part of another solid, or of its complement.
@@ -114,9 +114,8 @@ impl Scratch {
         part: CsgPart,
     ) -> Result<Option<[Verdict<CsgPart>; 8]>, Error> {
         let Some(Lone { solid, part, complement }) = self.lone(program, part)? else { return Ok(None) };
-        let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
-        let height = worker.mark();
-        let split = worker.split(cell, &part)?;
+        let Scratch { workers, at_hand, .. } = self;
+        let (height, split) = Scratch::split_other(workers, at_hand, program, solid, cell, &part)?;
         let mut verdicts = [Verdict::Undecided; 8];
         for (verdict, other) in verdicts.iter_mut().zip(split) {
             let own = other.try_map(|part| self.lone_part(program, solid, part, complement, height))?;

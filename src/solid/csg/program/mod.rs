@@ -2,6 +2,7 @@
 //! written as words in postfix order, so that a cell's share of it is an array of words again.
 
 mod area;
+mod batch;
 mod centres;
 mod chords;
 mod distinct;
@@ -46,6 +47,8 @@ pub(crate) struct Program {
     pub(crate) exterior: Tag,
     /// What the verdicts prove: all that the other solids do.
     pub(crate) proof: Proof,
+    /// Whether one of the other solids is better asked about many cells at once.
+    pub(crate) likes_many: bool,
     /// Counts the evaluations of workers that are gone.
     pub(crate) root: Arc<Node>,
 }
@@ -105,6 +108,7 @@ impl Program {
             words: Vec::new(),
             exterior: Tag::Partial,
             proof: Proof::CERTIFIED,
+            likes_many: false,
             root: csg.root.clone(),
         };
         let mut writer = Writer {

@@ -1,21 +1,75 @@
-//! The slabs of a cell: what those half-spaces know of it that are open there.
+//! The slabs of a cell: what those half-spaces and other solids know of it that are open there.
 
 use super::Program;
 use super::table::{MOST, Table};
 use super::word::{Op, Word};
 use super::worker::{CsgPart, Scratch};
+use crate::error::Error;
 use crate::lattice::Cell;
+use crate::memory;
+use crate::solid::csg::Join;
 use crate::solid::half_space::bounds::{centre, half_edge};
-use crate::solid::{Enclosure, Slab, SlabJoin};
+use crate::solid::{Ask, Enclosure, Slab, SlabJoin};
+use alloc::vec::Vec;
 
 impl Scratch {
     /// What the half-spaces that are open in a cell know of it. One to three that are joined by one operation
     /// give a slab each; of other expressions those that the solid lies in, or that lie in the solid, bound it
     /// from one side.
-    pub(crate) fn slabs(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Enclosure> {
+    fn slabs_of_half_spaces(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Enclosure> {
         let (literals, one_sided, complement) = self.literals(program, part)?;
         let enclosure = intersection(program, cell, literals, one_sided)?;
         Some(if complement { enclosure.complement() } else { enclosure })
+    }
+
+    /// What the open operands of a cell know of it, whatever they are, joined by the cell's words. Operands of which nothing is
+    /// known leave one side open, and so do more slabs than there is room for.
+    pub(crate) fn slabs(
+        &mut self,
+        program: &Program,
+        cell: Cell,
+        part: CsgPart,
+    ) -> Result<Option<Enclosure>, Error> {
+        let is_solid = |word: &Word| matches!(word.op(), Op::Solid { .. });
+        if program.paper || part.is_table() || !Scratch::list(program, &self.words, part).iter().any(is_solid)
+        {
+            return Ok(self.slabs_of_half_spaces(program, cell, part));
+        }
+        let mut stack: Vec<Option<Enclosure>> = memory::with_capacity(part.words())?;
+        for i in 0..part.words() {
+            let known = match Scratch::list(program, &self.words, part)[i].op() {
+                Op::HalfSpace { index, complement } => {
+                    let known = intersection(program, cell, [Some((index, false)), None, None], false);
+                    if complement { known.map(|known| known.complement()) } else { known }
+                }
+                Op::Solid { index, complement } => {
+                    let known = match self.slot(program, index)? {
+                        Some((solid, part)) => Scratch::other(&mut self.workers, program, solid)?
+                            .worker
+                            .enclosure(cell, &part)?,
+                        None => None,
+                    };
+                    if complement { known.map(|known| known.complement()) } else { known }
+                }
+                Op::Join { join, complement, count } => {
+                    let operands = &stack[stack.len() - count as usize..];
+                    let known = match join {
+                        Join::Intersection => Enclosure::of_intersection(operands.iter().copied()),
+                        Join::Union => {
+                            let others = operands.iter().map(|known| known.map(|known| known.complement()));
+                            Enclosure::of_intersection(others).map(|known| known.complement())
+                        }
+                        // The boundary of one operand may lie on either side of the other's.
+                        Join::Parity => (count == 1).then(|| operands[0]).flatten(),
+                    };
+                    stack.truncate(stack.len() - count as usize);
+                    if complement { known.map(|known| known.complement()) } else { known }
+                }
+                Op::Unknown | Op::Group { .. } | Op::Primitive { .. } => None,
+            };
+            stack.push(known);
+        }
+        Ok(stack.pop().flatten())
     }
 
     /// Half-spaces, or their complements, whose intersection is the part, or, if the first flag is set, contains it;

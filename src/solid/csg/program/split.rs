@@ -5,13 +5,13 @@ use super::chords::Rays;
 use super::kleene::Kleene;
 use super::worker::{Ask, CsgPart, Scratch};
 use crate::control::Control;
-use crate::dexel::Beam;
 use crate::error::Error;
-use crate::lattice::{Bounds, Cell, CellMoments, Frame, Interval, VolumeMoments};
-use crate::octree::{Block, Planes, Proof, Tag};
+use crate::lattice::{Bounds, Cell, Frame};
+use crate::octree::{Planes, Proof, Tag};
 use crate::solid::csg::Csg;
 use crate::solid::{
-    Classifier, Crossing, Enclosure, Fingerprint, OCTANTS, Segment, Solid, Subtree, Verdict, Worker,
+    AnyWorker, AskWhole, Batch, Classifier, Fingerprint, OCTANTS, Parts, Question, Solid, Subtree, Verdict,
+    WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -42,6 +42,7 @@ impl Solid for Csg {
         let mut scratch = Scratch::new(&program)?;
         let mut universe = scratch.begin(&program)?;
         self.count(scratch.evaluations);
+        program.likes_many = scratch.workers.iter().flatten().any(|other| other.worker.likes_many());
         if let Verdict::Partial(part) = universe {
             let (words, part) = scratch.into_words(&program, part)?;
             program.words = words;
@@ -96,18 +97,19 @@ impl Classifier for CsgClassifier {
         self.program.proof
     }
 
-    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
-        self.program.sole().map_or(Ok(None), |solid| solid.moments(control))
-    }
-
-    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
-        self.program.sole().map_or(Ok(None), |solid| solid.area(control))
-    }
-
-    fn is_off_lattice(&self) -> bool {
-        let depth = self.program.frame.depth();
-        self.program.solids.iter().all(Classifier::is_off_lattice)
-            && !self.program.half_spaces.iter().any(|half_space| half_space.may_hold_lattice_plane(depth))
+    /// What is known of the solid that the expression is another name of, if it is; and what of its half-spaces lies in
+    /// planes of the lattice.
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
+        let program = &*self.program;
+        match question {
+            WholeQuestion::OffLattice(known) => {
+                let depth = program.frame.depth();
+                *known = program.solids.iter().all(AskWhole::is_off_lattice)
+                    && !program.half_spaces.iter().any(|half_space| half_space.may_hold_lattice_plane(depth));
+                Ok(())
+            }
+            question => program.sole().map_or(Ok(()), |solid| solid.answer_whole(question, control)),
+        }
     }
 }
 
@@ -117,9 +119,70 @@ impl Drop for CsgWorker {
     }
 }
 
-impl Worker for CsgWorker {
+impl Parts for CsgWorker {
     type Part = CsgPart;
 
+    fn mark(&self) -> usize {
+        self.scratch.mark()
+    }
+
+    fn release(&mut self, mark: usize) {
+        self.scratch.release(mark);
+    }
+
+    fn scratch_bytes(&self) -> usize {
+        self.scratch.bytes()
+    }
+
+    fn hand_over(&mut self, from: &Self, part: &CsgPart) -> Result<CsgPart, Error> {
+        self.scratch.copy(&self.program, &from.scratch, *part)
+    }
+}
+
+impl Batch for CsgWorker {
+    fn likes_many(&self) -> bool {
+        self.program.likes_many
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, CsgPart)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<CsgPart>; 8]>,
+    ) -> Result<(), Error> {
+        if !self.program.likes_many {
+            return split_one_by_one(self, cells, control, verdicts);
+        }
+        self.scratch.split_many(&self.program, cells, control, verdicts)
+    }
+
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, CsgPart)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        if !self.program.likes_many {
+            return sample_one_by_one(self, cells, control, inside);
+        }
+        self.scratch.sample_many(&self.program, cells, control, inside)
+    }
+
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        let Verdict::Partial(part) = self.universe else { return Ok(()) };
+        self.scratch.inside(&self.program, part, points, answers)
+    }
+
+    fn recall(&mut self, cell: Cell) -> Option<CsgPart> {
+        let Verdict::Partial(part) = self.universe else { return None };
+        if !self.program.likes_many {
+            return None;
+        }
+        self.scratch.recall(&self.program, part, cell).ok().flatten()
+    }
+}
+
+impl Worker for CsgWorker {
     fn frame(&self) -> &Frame {
         &self.program.frame
     }
@@ -130,30 +193,32 @@ impl Worker for CsgWorker {
 
     #[inline]
     fn split(&mut self, cell: Cell, part: &CsgPart) -> Result<[Verdict<CsgPart>; 8], Error> {
-        let (program, scratch) = (&*self.program, &mut self.scratch);
-        if scratch.may_be_lone(program, *part)
-            && let Some(verdicts) = scratch.lone8(program, cell, *part)?
-        {
-            return Ok(verdicts);
+        self.scratch.split(&self.program, cell, *part)
+    }
+
+    /// A solid that is open alone answers itself.
+    fn answer(&mut self, cell: Cell, part: &CsgPart, mut question: Question<'_>) -> Result<(), Error> {
+        let (program, scratch, part) = (&*self.program, &mut self.scratch, *part);
+        if let Question::Centre(inside) = question {
+            *inside = scratch.contains(program, part, cell)?;
+            return Ok(());
         }
-        let cells = scratch.cells(program, *part, Ask::Split(cell))?;
-        Ok(OCTANTS.map(|k| cells.kleene.verdict(k.into(), cells.parts[k as usize])))
-    }
-
-    fn mark(&self) -> usize {
-        self.scratch.mark()
-    }
-
-    fn scratch_bytes(&self) -> usize {
-        self.scratch.bytes()
-    }
-
-    fn release(&mut self, mark: usize) {
-        self.scratch.release(mark);
-    }
-
-    fn hand_over(&mut self, from: &Self, part: &CsgPart) -> Result<CsgPart, Error> {
-        self.scratch.copy(&self.program, &from.scratch, *part)
+        if scratch.may_be_lone(program, part) {
+            let ask = |worker: &mut AnyWorker, part: &_| worker.answer(cell, part, question.again());
+            if let Some(((), complement)) = scratch.ask_lone(program, part, ask)? {
+                return if complement { question.complement() } else { Ok(()) };
+            }
+        }
+        match question {
+            Question::Enclosure(known) => *known = scratch.slabs(program, cell, part)?,
+            Question::Moments(known) => *known = scratch.moments(program, cell, part),
+            Question::Area(known) => *known = scratch.area(program, cell, part)?,
+            Question::Chords(chords) => {
+                *chords.found = self.rays.find(program, scratch, cell, part, chords.beam)?;
+            }
+            Question::Centre(_) | Question::Crossing(..) | Question::Block(..) => {}
+        }
+        Ok(())
     }
 
     fn split64(
@@ -194,86 +259,13 @@ impl Worker for CsgWorker {
         Ok(planes)
     }
 
-    fn fill(&mut self, cell: Cell, part: &CsgPart, block: &mut Block) -> Result<bool, Error> {
-        let (program, scratch) = (&*self.program, &mut self.scratch);
-        let filled = scratch.ask_lone(program, *part, |worker, part| worker.fill(cell, part, block))?;
-        if let Some((true, true)) = filled {
-            block.complement();
-        }
-        Ok(filled.is_some_and(|(filled, _)| filled))
-    }
-
-    fn chords(&mut self, cell: Cell, part: &CsgPart, beam: &mut Beam) -> Result<bool, Error> {
-        let (program, scratch) = (&*self.program, &mut self.scratch);
-        let before = beam.len();
-        let found = scratch.ask_lone(program, *part, |worker, part| worker.chords(cell, part, beam))?;
-        match found {
-            Some((found, complement)) => {
-                if found && complement {
-                    beam.complement(before)?;
-                }
-                Ok(found)
-            }
-            None => self.rays.find(program, scratch, cell, *part, beam),
-        }
-    }
-
     fn subtree(&self, part: &CsgPart) -> Option<Subtree<'_>> {
         let (worker, part, complement) = self.scratch.look_at_lone(&self.program, *part)?;
         let subtree = worker.subtree(&part)?;
         Some(if complement { subtree.complement() } else { subtree })
     }
 
-    fn sample(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<bool>, Error> {
-        self.scratch.contains(&self.program, *part, cell)
-    }
-
     fn sample64(&mut self, cell: Cell, parts: &[(u8, CsgPart)]) -> Result<Option<u64>, Error> {
         self.scratch.contained(&self.program, cell, parts)
-    }
-
-    fn enclosure(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<Enclosure>, Error> {
-        let (program, scratch) = (&*self.program, &mut self.scratch);
-        if !scratch.may_be_lone(program, *part) {
-            return Ok(scratch.slabs(program, cell, *part));
-        }
-        let found = scratch.ask_lone(program, *part, |worker, part| worker.enclosure(cell, part))?;
-        if found.is_none() {
-            return Ok(scratch.slabs(program, cell, *part));
-        }
-        Ok(found.and_then(|(enclosure, complement)| match (enclosure, complement) {
-            (Some(enclosure), true) => Some(enclosure.complement()),
-            (enclosure, _) => enclosure,
-        }))
-    }
-
-    fn moments(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<CellMoments>, Error> {
-        let (program, scratch) = (&*self.program, &mut self.scratch);
-        let found = scratch.ask_lone(program, *part, |worker, part| worker.moments(cell, part))?;
-        if found.is_none() {
-            return Ok(scratch.moments(program, cell, *part));
-        }
-        Ok(found.and_then(|(moments, complement)| match (moments, complement) {
-            (Some(moments), true) => Some(moments.complement()),
-            (moments, _) => moments,
-        }))
-    }
-
-    fn area(&mut self, cell: Cell, part: &CsgPart) -> Result<Option<Interval>, Error> {
-        let (program, scratch) = (&*self.program, &mut self.scratch);
-        if !scratch.may_be_lone(program, *part) {
-            return Ok(scratch.area(program, cell, *part));
-        }
-        let found = scratch.ask_lone(program, *part, |worker, part| worker.area(cell, part))?;
-        Ok(found.map_or_else(|| scratch.area(program, cell, *part), |(area, _)| area))
-    }
-
-    fn crossing(&mut self, cell: Cell, part: &CsgPart, segment: &Segment) -> Result<Option<Crossing>, Error> {
-        let (program, scratch) = (&*self.program, &mut self.scratch);
-        let found = scratch.ask_lone(program, *part, |worker, part| worker.crossing(cell, part, segment))?;
-        Ok(found.and_then(|(crossing, complement)| match (crossing, complement) {
-            (Some(crossing), true) => Some(crossing.complement()),
-            (crossing, _) => crossing,
-        }))
     }
 }

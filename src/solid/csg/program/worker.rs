@@ -1,6 +1,7 @@
 //! What a cell's words say of its children, and the words that each child keeps.
 
 use super::Program;
+use super::batch::AtHand;
 use super::hierarchy::Taken;
 use super::kleene::Kleene;
 use super::table;
@@ -14,7 +15,7 @@ use crate::solid::csg::Join;
 use crate::solid::erased::ErasedPart;
 use crate::solid::half_space::bounds::Octants;
 use crate::solid::half_space::points;
-use crate::solid::{AnyWorker, Classifier, Verdict, Worker};
+use crate::solid::{AnyWorker, Classifier, OCTANTS, Parts, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// What a [`Csg`](crate::solid::csg::Csg) remembers about a cell: the words of its expression that are still open there.
@@ -34,7 +35,7 @@ impl CsgPart {
 
     /// Words that the part takes.
     #[inline(always)]
-    fn words(self) -> usize {
+    pub(crate) fn words(self) -> usize {
         match self.len & CsgPart::TABLE {
             0 => self.len as usize,
             _ => (self.len & !CsgPart::TABLE) as usize + 2,
@@ -64,6 +65,7 @@ pub(crate) struct Scratch {
     open: Vec<Operand>,
     /// Parts of another solid on their way in or out.
     pub(crate) passing: Vec<(u8, ErasedPart)>,
+    pub(crate) at_hand: AtHand,
 }
 
 /// A worker on another solid, and the part of the universe.
@@ -218,6 +220,23 @@ impl Scratch {
         })
     }
 
+    /// Splits a cell of another solid, unless the answer is at hand; with the height of the solid's scratch memory before.
+    pub(crate) fn split_other(
+        workers: &mut [Option<Other>],
+        at_hand: &mut AtHand,
+        program: &Program,
+        solid: u32,
+        cell: Cell,
+        part: &ErasedPart,
+    ) -> Result<(usize, [Verdict<ErasedPart>; 8]), Error> {
+        if let Some(known) = at_hand.split(solid) {
+            return Ok(known);
+        }
+        let worker = &mut Scratch::other(workers, program, solid)?.worker;
+        let height = worker.mark();
+        Ok((height, worker.split(cell, part)?))
+    }
+
     /// The solid and the part behind an index in a word.
     #[inline]
     pub(crate) fn slot(&mut self, program: &Program, index: u32) -> Result<Option<(u32, ErasedPart)>, Error> {
@@ -272,6 +291,23 @@ impl Scratch {
             self.words.push(word);
         }
         Ok(CsgPart { start, ..part })
+    }
+
+    /// The children of a cell, by the words of its part.
+    #[inline]
+    pub(crate) fn split(
+        &mut self,
+        program: &Program,
+        cell: Cell,
+        part: CsgPart,
+    ) -> Result<[Verdict<CsgPart>; 8], Error> {
+        if self.may_be_lone(program, part)
+            && let Some(verdicts) = self.lone8(program, cell, part)?
+        {
+            return Ok(verdicts);
+        }
+        let cells = self.cells(program, part, Ask::Split(cell))?;
+        Ok(OCTANTS.map(|k| cells.kleene.verdict(k.into(), cells.parts[k as usize])))
     }
 
     /// The eight cells that are asked for, by the words of a part.
@@ -439,7 +475,7 @@ impl Scratch {
     /// The verdicts of the eight cells, those by each word being kept; and in which cells a word is decided.
     fn verdicts(&mut self, program: &Program, part: CsgPart, ask: Ask) -> Result<(Kleene, u8), Error> {
         let at = &ask.octants();
-        let Scratch { words, masks, operands, answers, workers, slots, evaluations, .. } = self;
+        let Scratch { words, masks, operands, answers, workers, slots, evaluations, at_hand, .. } = self;
         let words = Scratch::list(program, words, part);
         masks.clear();
         operands.clear();
@@ -460,11 +496,13 @@ impl Scratch {
                         Some(slot) => (slots[slot].solid, Verdict::Partial(slots[slot].part)),
                         None => (index, Scratch::other(workers, program, index)?.root),
                     };
-                    let worker = &mut Scratch::other(workers, program, solid)?.worker;
-                    let height = worker.mark();
-                    let verdicts = match (ask, part) {
-                        (Ask::Split(cell), Verdict::Partial(part)) => worker.split(cell, &part)?,
-                        (_, verdict) => [verdict; 8],
+                    let (height, verdicts) = match (ask, part) {
+                        (Ask::Split(cell), Verdict::Partial(part)) => {
+                            Scratch::split_other(workers, at_hand, program, solid, cell, &part)?
+                        }
+                        (_, verdict) => {
+                            (Scratch::other(workers, program, solid)?.worker.mark(), [verdict; 8])
+                        }
                     };
                     let answer = Answer { solid, height, verdicts };
                     let kleene = Kleene::of_tags(answer.verdicts.map(|verdict| verdict.tag()));

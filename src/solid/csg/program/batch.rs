@@ -1,0 +1,274 @@
+//! Many cells or points at once, where the other solids of an expression like that.
+//!
+//! What the other solids are asked about all cells is gathered first, and asked at once. Then the cells are split or sampled
+//! one by one, as ever, with those answers at hand.
+
+use super::Program;
+use super::kleene::Kleene;
+use super::word::{Op, Word};
+use super::worker::{CsgPart, Scratch, Slot};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::Cell;
+use crate::memory;
+use crate::solid::erased::ErasedPart;
+use crate::solid::half_space::bounds::Octants;
+use crate::solid::{Batch, Parts, Verdict};
+use alloc::vec::{IntoIter, Vec};
+
+/// Most words of an expression whose parts are had without the way to a cell.
+const MOST_RECALLED: usize = 64;
+
+/// Answers of the other solids that are at hand, one queue for each solid; none while no batch is under way.
+#[derive(Default)]
+pub(crate) struct AtHand {
+    splits: Vec<Splits>,
+    samples: Vec<IntoIter<Option<bool>>>,
+}
+
+/// Splits of one solid in the order in which they will be asked for.
+#[derive(Default)]
+struct Splits {
+    /// Height of the solid's scratch memory before all of them.
+    height: usize,
+    verdicts: IntoIter<[Verdict<ErasedPart>; 8]>,
+}
+
+impl AtHand {
+    /// The next split of a solid that is at hand, and the height of its scratch memory before.
+    pub(crate) fn split(&mut self, solid: u32) -> Option<(usize, [Verdict<ErasedPart>; 8])> {
+        let splits = self.splits.get_mut(solid as usize)?;
+        Some((splits.height, splits.verdicts.next()?))
+    }
+
+    /// The next sample of a solid that is at hand.
+    pub(crate) fn sample(&mut self, solid: u32) -> Option<Option<bool>> {
+        self.samples.get_mut(solid as usize)?.next()
+    }
+}
+
+impl Scratch {
+    /// The questions for each of the other solids that splitting or sampling cells will ask, in that order.
+    fn questions(
+        &mut self,
+        program: &Program,
+        cells: &[(Cell, CsgPart)],
+    ) -> Result<Vec<Vec<(Cell, ErasedPart)>>, Error> {
+        let mut questions = memory::filled(program.solids.len(), Vec::new())?;
+        for &(cell, part) in cells {
+            self.open_solids(program, part, |solid, part| {
+                memory::push(&mut questions[solid as usize], (cell, part))
+            })?;
+        }
+        Ok(questions)
+    }
+
+    /// Shows the other solids that are open in a cell, with their parts.
+    fn open_solids(
+        &mut self,
+        program: &Program,
+        part: CsgPart,
+        mut show: impl FnMut(u32, ErasedPart) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        if part.is_table() {
+            return Ok(());
+        }
+        for i in 0..part.words() {
+            if let Op::Solid { index, .. } = Scratch::list(program, &self.words, part)[i].op()
+                && let Some((solid, part)) = self.slot(program, index)?
+            {
+                show(solid, part)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// How many answers of each kind a cell needs that are not at hand: none, unless a solid ended early.
+    fn lacks(
+        &mut self,
+        program: &Program,
+        part: CsgPart,
+        left: impl Fn(&AtHand, usize) -> usize,
+    ) -> Result<bool, Error> {
+        let mut needed = memory::filled(program.solids.len(), 0)?;
+        self.open_solids(program, part, |solid, _| {
+            needed[solid as usize] += 1;
+            Ok(())
+        })?;
+        Ok((0..).zip(needed).any(|(solid, needed)| needed > left(&self.at_hand, solid)))
+    }
+
+    /// Splits many cells; see [`Batch::split_many`].
+    pub(crate) fn split_many(
+        &mut self,
+        program: &Program,
+        cells: &[(Cell, CsgPart)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<CsgPart>; 8]>,
+    ) -> Result<(), Error> {
+        verdicts.try_reserve(cells.len())?;
+        let mut done = Ok(());
+        let mut splits: Vec<Splits> = memory::with_capacity(program.solids.len())?;
+        for (solid, cells) in (0..).zip(self.questions(program, cells)?) {
+            let mut own = Splits::default();
+            if !cells.is_empty() && done.is_ok() {
+                let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
+                let mut found = Vec::new();
+                own.height = worker.mark();
+                done = worker.split_many(&cells, control, &mut found);
+                own.verdicts = found.into_iter();
+            }
+            splits.push(own);
+        }
+        self.at_hand.splits = splits;
+        for &(cell, part) in cells {
+            if done.is_err() && self.lacks(program, part, |at_hand, i| at_hand.splits[i].verdicts.len())? {
+                break;
+            }
+            let eight = self.split(program, cell, part);
+            match eight {
+                Ok(eight) => verdicts.push(eight),
+                Err(error) => {
+                    done = Err(error);
+                    break;
+                }
+            }
+        }
+        self.at_hand = AtHand::default();
+        done
+    }
+
+    /// Samples many cells; see [`Batch::sample_many`].
+    pub(crate) fn sample_many(
+        &mut self,
+        program: &Program,
+        cells: &[(Cell, CsgPart)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        inside.try_reserve(cells.len())?;
+        let mut done = Ok(());
+        let mut samples: Vec<IntoIter<Option<bool>>> = memory::with_capacity(program.solids.len())?;
+        for (solid, cells) in (0..).zip(self.questions(program, cells)?) {
+            let mut found = Vec::new();
+            if !cells.is_empty() && done.is_ok() {
+                let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
+                done = worker.sample_many(&cells, control, &mut found);
+            }
+            samples.push(found.into_iter());
+        }
+        self.at_hand.samples = samples;
+        for &(cell, part) in cells {
+            if done.is_err() && self.lacks(program, part, |at_hand, i| at_hand.samples[i].len())? {
+                break;
+            }
+            match self.contains(program, part, cell) {
+                Ok(answer) => inside.push(answer),
+                Err(error) => {
+                    done = Err(error);
+                    break;
+                }
+            }
+        }
+        self.at_hand = AtHand::default();
+        done
+    }
+
+    /// Whether points lie inside: by what the other solids know of them, and what half-spaces say of their finest cells. See
+    /// [`Batch::inside`].
+    pub(crate) fn inside(
+        &mut self,
+        program: &Program,
+        part: CsgPart,
+        points: &[[f64; 3]],
+        answers: &mut [Option<bool>],
+    ) -> Result<(), Error> {
+        // (Half-spaces alone are as fast by cells.)
+        if program.solids.is_empty() || program.paper || part.is_table() {
+            return Ok(());
+        }
+        let mut known = memory::with_capacity(program.solids.len())?;
+        for solid in 0..program.solids.len() as u32 {
+            let mut own = memory::filled(points.len(), None)?;
+            Scratch::other(&mut self.workers, program, solid)?.worker.inside(points, &mut own)?;
+            known.push(own);
+        }
+        if known.iter().flatten().all(Option::is_none) {
+            return Ok(());
+        }
+        let Scratch { words, operands, evaluations, .. } = self;
+        let words = Scratch::list(program, words, part);
+        for (i, (&point, answer)) in points.iter().zip(answers).enumerate() {
+            let Some(at) = program.frame.cell_of(point) else { continue };
+            let cell = Cell { level: program.frame.depth(), at };
+            let (octants, bit) = (Octants::of(cell.parent()), 1u8 << cell.octant());
+            operands.clear();
+            operands.try_reserve(words.len())?;
+            for word in words {
+                let kleene = match word.op() {
+                    Op::HalfSpace { index, complement } => {
+                        let sides = program.half_spaces[index as usize].sides(&octants, bit, evaluations)?;
+                        Kleene::of(sides, complement)
+                    }
+                    Op::Solid { index, complement } => {
+                        let kleene = match known[index as usize][i] {
+                            Some(true) => Kleene::FULL,
+                            Some(false) => Kleene::EMPTY,
+                            None => Kleene::UNKNOWN,
+                        };
+                        kleene.complemented(complement)
+                    }
+                    Op::Join { join, complement, count } => {
+                        Kleene::join_last(operands, join, count).complemented(complement)
+                    }
+                    Op::Group { index } => program.groups.kleene(index as usize, &octants),
+                    Op::Unknown | Op::Primitive { .. } => Kleene::UNKNOWN,
+                };
+                operands.push(kleene);
+            }
+            let Some(kleene) = operands.pop() else { continue };
+            if kleene.decided() & bit != 0 {
+                *answer = Some(kleene.lower & bit != 0);
+            }
+        }
+        Ok(())
+    }
+
+    /// The part of a cell without the way to it, if all other solids have theirs so: the words of the whole expression, which
+    /// say of the cell what its own words would. See [`Batch::recall`].
+    pub(crate) fn recall(
+        &mut self,
+        program: &Program,
+        root: CsgPart,
+        cell: Cell,
+    ) -> Result<Option<CsgPart>, Error> {
+        if root.words() > MOST_RECALLED || program.paper {
+            return Ok(None);
+        }
+        let (start, first) = (self.start(program)?, self.words.len());
+        self.words.try_reserve(root.words())?;
+        for i in 0..root.words() {
+            let word = Scratch::list(program, &self.words, root)[i];
+            let word = match word.op() {
+                _ if root.is_table() => word,
+                Op::Group { .. } => {
+                    self.release(first);
+                    return Ok(None);
+                }
+                Op::Solid { index: solid, complement } => {
+                    let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
+                    let height = worker.mark();
+                    let Some(part) = worker.recall(cell) else {
+                        self.release(first);
+                        return Ok(None);
+                    };
+                    let index = self.keep(program, Slot { solid, part, words: first, height })?;
+                    Word::new(Op::Solid { index, complement })
+                }
+                _ => word,
+            };
+            self.words.push(word);
+        }
+        Ok(Some(CsgPart { start, ..root }))
+    }
+}

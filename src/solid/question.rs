@@ -1,0 +1,238 @@
+//! What may be asked of a solid beside its cells.
+
+use super::{Classifier, Crossing, Enclosure, Segment, Worker};
+use crate::control::Control;
+use crate::dexel::Beam;
+use crate::error::Error;
+use crate::lattice::{Cell, CellMoments, Interval, VolumeMoments};
+use crate::octree::Block;
+
+/// A question about one PARTIAL cell, with the place for the answer. Where nothing is known the place is left as it is.
+///
+/// The answers are proven as verdicts are, and depend on the cell and the shape alone. Questions may be added: a worker
+/// answers those that it knows, and passes over the others. A wrapper hands the question on.
+#[non_exhaustive]
+pub enum Question<'q> {
+    /// Whether the centre of the cell, which has the frame's depth, lies in the solid. A centre on the boundary is decided as
+    /// if all centres were shifted by (ε, ε², ε³), to first order: on a curved surface too, the first axis that leads across
+    /// it decides.
+    Centre(&'q mut Option<bool>),
+
+    /// Slabs between which the boundary lies in the cell, by the law that [`Enclosure`] states.
+    Enclosure(&'q mut Option<Enclosure>),
+
+    /// Volume and moments of the solid in the cell, if they are known better than by an enclosure.
+    Moments(&'q mut Option<CellMoments>),
+
+    /// Bounds of the area that the boundary has in the cell, in squares of the cell's half edge, if any are known beside those
+    /// by an enclosure with a cone.
+    Area(&'q mut Option<Interval>),
+
+    /// Where a segment with both ends in the closed cell first crosses the boundary, by the law that [`Crossing`] states.
+    /// Nothing if it does not, or the solid cannot tell.
+    Crossing(&'q Segment, &'q mut Option<Crossing>),
+
+    /// The cell's 64³ finest cells at once, where that is faster than descent: fills what the block asks for with just what
+    /// descending by [`Worker::split`] would find, and sets the flag.
+    Block(&'q mut Block, &'q mut bool),
+
+    /// Where rays through the centres of finest cells enter and leave the solid in the cell, if that is known for all rays that
+    /// the beam asks for.
+    Chords(Chords<'q>),
+    // The next thing to be known of a cell has its place here: which surfaces cross it, and which function of their signs the
+    // solid is.
+}
+
+/// The place for intervals of rays.
+pub struct Chords<'q> {
+    /// The rays. Their intervals in the cell are added; each holds just those centres that [`Question::Centre`] would find
+    /// inside.
+    pub beam: &'q mut Beam,
+    /// Set once the intervals of all rays have been added.
+    pub found: &'q mut bool,
+    /// Intervals that the beam held before the question.
+    first: usize,
+}
+
+impl<'q> Question<'q> {
+    /// The question for the intervals of a beam's rays.
+    pub fn chords(beam: &'q mut Beam, found: &'q mut bool) -> Question<'q> {
+        let first = beam.len();
+        Question::Chords(Chords { beam, found, first })
+    }
+
+    /// Makes the answer to a question about a solid that of its complement.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn complement(self) -> Result<(), Error> {
+        match self {
+            Question::Centre(inside) => *inside = inside.map(|inside| !inside),
+            Question::Enclosure(known) => *known = known.map(|known| known.complement()),
+            Question::Moments(known) => *known = known.map(|known| known.complement()),
+            Question::Area(_) => {}
+            Question::Crossing(_, known) => *known = known.map(|known| known.complement()),
+            Question::Block(block, filled) => {
+                if *filled {
+                    block.complement();
+                }
+            }
+            Question::Chords(Chords { beam, found, first }) => {
+                if *found {
+                    beam.complement(first)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The same question once more: another borrow of the same places.
+    pub fn again(&mut self) -> Question<'_> {
+        match self {
+            Question::Centre(inside) => Question::Centre(inside),
+            Question::Enclosure(known) => Question::Enclosure(known),
+            Question::Moments(known) => Question::Moments(known),
+            Question::Area(known) => Question::Area(known),
+            Question::Crossing(segment, known) => Question::Crossing(segment, known),
+            Question::Block(block, filled) => Question::Block(block, filled),
+            Question::Chords(Chords { beam, found, first }) => {
+                Question::Chords(Chords { beam, found, first: *first })
+            }
+        }
+    }
+}
+
+/// The questions as functions. Every worker has them, and none can change them: they ask [`Worker::answer`].
+pub trait Ask: Worker {
+    /// Whether the centre of a PARTIAL cell of the frame's depth lies in the solid: [`Question::Centre`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline(always)]
+    fn sample(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<bool>, Error> {
+        let mut inside = None;
+        self.answer(cell, part, Question::Centre(&mut inside))?;
+        Ok(inside)
+    }
+
+    /// Slabs between which the boundary lies in a PARTIAL cell: [`Question::Enclosure`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline(always)]
+    fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error> {
+        let mut known = None;
+        self.answer(cell, part, Question::Enclosure(&mut known))?;
+        Ok(known)
+    }
+
+    /// Volume and moments of the solid in a PARTIAL cell: [`Question::Moments`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline(always)]
+    fn moments(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<CellMoments>, Error> {
+        let mut known = None;
+        self.answer(cell, part, Question::Moments(&mut known))?;
+        Ok(known)
+    }
+
+    /// Bounds of the area that the boundary has in a PARTIAL cell: [`Question::Area`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline(always)]
+    fn area(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Interval>, Error> {
+        let mut known = None;
+        self.answer(cell, part, Question::Area(&mut known))?;
+        Ok(known)
+    }
+
+    /// Where a segment in a PARTIAL cell first crosses the boundary: [`Question::Crossing`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline(always)]
+    fn crossing(
+        &mut self,
+        cell: Cell,
+        part: &Self::Part,
+        segment: &Segment,
+    ) -> Result<Option<Crossing>, Error> {
+        let mut known = None;
+        self.answer(cell, part, Question::Crossing(segment, &mut known))?;
+        Ok(known)
+    }
+
+    /// Fills a block of 64³ finest cells, if that is faster than descent: [`Question::Block`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline(always)]
+    fn fill(&mut self, cell: Cell, part: &Self::Part, block: &mut Block) -> Result<bool, Error> {
+        let mut filled = false;
+        self.answer(cell, part, Question::Block(block, &mut filled))?;
+        Ok(filled)
+    }
+
+    /// Adds the intervals of rays in a PARTIAL cell, if they are known: [`Question::Chords`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline(always)]
+    fn chords(&mut self, cell: Cell, part: &Self::Part, beam: &mut Beam) -> Result<bool, Error> {
+        let mut found = false;
+        self.answer(cell, part, Question::chords(beam, &mut found))?;
+        Ok(found)
+    }
+}
+
+impl<W: Worker + ?Sized> Ask for W {}
+
+/// A question about a whole shape on a frame, inside and outside of the universe, with the place for the answer. Where nothing
+/// is known the place is left as it is. The answers are proven as verdicts are.
+#[non_exhaustive]
+pub enum WholeQuestion<'q> {
+    /// The volume and the moments, if they are known without splitting cells.
+    Moments(&'q mut Option<VolumeMoments>),
+
+    /// The area of the boundary (square model units), if it is known without splitting cells.
+    Area(&'q mut Option<Interval>),
+
+    /// Whether no piece of the boundary lies in a plane of the lattice, so that all area of the boundary lies in open PARTIAL
+    /// cells. The flag is set if that is known.
+    OffLattice(&'q mut bool),
+}
+
+/// The questions about whole shapes as functions. Every classifier has them, and none can change them: they ask
+/// [`Classifier::answer_whole`].
+pub trait AskWhole: Classifier {
+    /// The volume and the moments of the shape: [`WholeQuestion::Moments`].
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
+    fn moments(&self, control: &Control<'_>) -> Result<Option<VolumeMoments>, Error> {
+        let mut known = None;
+        self.answer_whole(WholeQuestion::Moments(&mut known), control)?;
+        Ok(known)
+    }
+
+    /// The area of the shape's boundary: [`WholeQuestion::Area`].
+    ///
+    /// # Errors
+    /// As [`moments`](Self::moments).
+    fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
+        let mut known = None;
+        self.answer_whole(WholeQuestion::Area(&mut known), control)?;
+        Ok(known)
+    }
+
+    /// Whether no piece of the boundary is known to lie in a plane of the lattice: [`WholeQuestion::OffLattice`].
+    fn is_off_lattice(&self) -> bool {
+        let mut known = false;
+        // (What cannot be found out is not known.)
+        self.answer_whole(WholeQuestion::OffLattice(&mut known), &Control::default()).is_ok() && known
+    }
+}
+
+impl<C: Classifier + ?Sized> AskWhole for C {}
