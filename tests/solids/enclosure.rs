@@ -8,9 +8,7 @@ use crate::model::{Model, Other, Point};
 use crate::random::Maker;
 use leafless::lattice::MAX_DEPTH;
 use leafless::solid::{Ask, Enclosure, GradientRange, Slab, TangentBalls, Transform};
-use leafless::{
-    Affine, AnySolid, Callback, Cell, Classifier, Csg, Error, Frame, Interval, Solid, Verdict, Worker,
-};
+use leafless::{Affine, AnySolid, Callback, Cell, Classifier, Csg, Error, Frame, Interval, Solid, Verdict};
 
 /// Frames whose planes are integers, exact doubles, no doubles at all; far from the origin, tiny.
 fn frames(depth: u8) -> [Frame; 5] {

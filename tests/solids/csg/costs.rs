@@ -8,7 +8,7 @@ use leafless::{
 };
 
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
-type CsgPart = <CsgWorker as Worker>::Part;
+type CsgPart = <CsgWorker as Parts>::Part;
 
 /// Cells that were split above each level and the volumes of FULL, and of FULL and PARTIAL cells, of a full
 /// descent.

@@ -12,7 +12,7 @@ use leafless::{
 };
 
 type CsgWorker = <<Csg as Solid>::Classifier as Classifier>::Worker;
-type CsgPart = <CsgWorker as Worker>::Part;
+type CsgPart = <CsgWorker as Parts>::Part;
 
 /// Ways to descend to the finest cells, which must all find the same.
 #[derive(Clone, Copy, Debug)]
