@@ -97,6 +97,15 @@ impl Affine {
         (cofactors, determinant.estimate())
     }
 
+    /// Whether the linear part has one entry a row, and that a power of two: then nothing of it or of its inverse is rounded.
+    pub(crate) fn is_monomial(&self) -> bool {
+        self.rows.iter().all(|[x, y, z, _]| {
+            let mut entries = [x, y, z].into_iter().filter(|&&c| c != 0.0);
+            let is_power = |c: &f64| c.is_normal() && c.to_bits() << 12 == 0;
+            entries.next().is_some_and(is_power) && entries.next().is_none()
+        })
+    }
+
     /// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a minor
     /// and the determinant, both of which come from exact sums.
     pub(crate) fn inverse_linear(&self) -> [[f64; 3]; 3] {

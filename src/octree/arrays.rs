@@ -19,6 +19,8 @@ pub(crate) struct Arrays {
     pub base: Vec<u64>,
     pub bricks: OwnedBricks,
     pub starts: [usize; MAX_ELEMENT_LEVELS + 1],
+    /// Whether the links are those that the planes determine.
+    pub is_linked: bool,
 }
 
 impl Arrays {
@@ -55,7 +57,7 @@ impl Arrays {
                 next += planes.branch().count_ones() as usize;
             }
         }
-        Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts })
+        Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts, is_linked: true })
     }
 
     pub(crate) fn view(&self) -> OctreeRef<'_> {
@@ -70,6 +72,7 @@ impl Arrays {
             bricks: self.bricks.view(),
             starts: self.starts,
             table: None,
+            is_linked: self.is_linked,
         }
     }
 }

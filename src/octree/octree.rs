@@ -83,6 +83,7 @@ impl Octree {
                 None => copy_raw(&tree.bricks)?,
             },
             starts: tree.starts,
+            is_linked: tree.is_linked,
         });
         Ok(recoded.with_proof(tree.proof))
     }

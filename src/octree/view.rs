@@ -87,6 +87,8 @@ pub struct OctreeRef<'a> {
     pub(crate) starts: [usize; MAX_ELEMENT_LEVELS + 1],
     /// The stored level table, if there is one.
     pub(crate) table: Option<&'a [LevelCounts]>,
+    /// Whether all links are known to be sound: they were made here or checked, and nobody else can change them.
+    pub(crate) is_linked: bool,
 }
 
 impl<'a> OctreeRef<'a> {

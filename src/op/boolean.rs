@@ -513,6 +513,7 @@ mod tests {
             bricks: Bricks::One(BrickArray::Raw(&bricks)),
             starts,
             table: None,
+            is_linked: false,
         })
     }
 

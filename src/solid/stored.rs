@@ -128,7 +128,7 @@ impl<T: Tree> StoredOnFrame<T> {
         }
         // A descent remembers nothing, so elements with shared children would be visited again and again:
         // 64^10 times in a file of a few kilobytes.
-        tree.tree().check_links()?;
+        tree.tree().ensure_links()?;
         Ok(StoredOnFrame { tree, frame: *frame })
     }
 }

@@ -50,7 +50,7 @@ impl<'a> Samples<'a> {
     /// [`Error::Damaged`] if links of the tree are.
     pub fn new(tree: &OctreeRef<'a>, partial: bool, end: u32) -> Result<Samples<'a>, Error> {
         // Elements are met beside others, too. With sound links each is met as often as it has neighbours.
-        tree.check_links()?;
+        tree.ensure_links()?;
         Ok(Samples { tree: *tree, partial, end: end.min(tree.frame().cells()) })
     }
 

@@ -76,7 +76,7 @@ impl<'a> Walk<'a> {
         if options.touching() {
             // Looking beside every cell, a descent remembers nothing: elements with shared children would be
             // met again and again.
-            tree.check_links()?;
+            tree.ensure_links()?;
         }
         let boundary_level = options.boundary_level(tree);
         let all = CellFilter::tags(&[Tag::Empty, Tag::Full, Tag::Partial, Tag::Branch]);

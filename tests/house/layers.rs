@@ -29,8 +29,20 @@ const LAYERS: [&[&str]; 17] = [
 ];
 
 /// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
-const SHARED: [&str; 8] =
-    ["any", "erased", "fingerprint", "forward", "half_space", "motion", "prepared", "subtree"];
+const SHARED: [&str; 12] = [
+    "any",
+    "batch",
+    "erased",
+    "fingerprint",
+    "forward",
+    "half_space",
+    "motion",
+    "parts",
+    "prepared",
+    "question",
+    "subtree",
+    "verdict",
+];
 
 /// Folders in which some files still use each other. Strike out those that have become clean.
 const WITH_CIRCLES: [&str; 0] = [];

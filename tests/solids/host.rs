@@ -2,9 +2,10 @@
 //! a cancel is answered.
 
 use leafless::op::{Refinement, Zone};
+use leafless::solid::{Adaptive, Prepared, SplitCounter, Transform};
 use leafless::{
-    AnySolid, Bounds, Callback, Control, Csg, Error, Frame, LazyOctree, Octree, Rule, Solid, Verdict,
-    bounding_box, build, clearance, interference, measure,
+    Affine, AnySolid, Bounds, Callback, Control, Csg, Error, Frame, LazyOctree, Membership, Octree, Rule,
+    Solid, Verdict, bounding_box, build, clearance, contains, interference, measure,
 };
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
@@ -310,6 +311,127 @@ fn distances_decide_cells() {
     assert!(classified.load(Relaxed) < asked.load(Relaxed));
 }
 
+/// The ways in which a host's solid is part of another one that is just as large, or has a box in a corner besides.
+fn wrapped(solid: AnySolid) -> Vec<(&'static str, AnySolid)> {
+    let corner = || Csg::cuboid([0.0625; 3], [0.125; 3]).unwrap();
+    // Turns about the ball's centre, by the angle whose cosine is 0.8, and by a quarter.
+    let about = |[x, y]: [[f64; 2]; 2]| {
+        let [a, b, _] = CENTRE;
+        let moved = [x, y].map(|row| row[0] * a + row[1] * b);
+        let rows = [[x[0], x[1], 0.0, a - moved[0]], [y[0], y[1], 0.0, b - moved[1]], [0.0, 0.0, 1.0, 0.0]];
+        Affine::new(rows).unwrap()
+    };
+    let (turn, quarter) = (about([[0.8, -0.6], [0.6, 0.8]]), about([[0.0, -1.0], [1.0, 0.0]]));
+    let still = Affine::translation([0.0; 3]).unwrap();
+    let nested = SplitCounter::new(Adaptive::new(Csg::solid(solid.clone()), 0.0).unwrap());
+    let twice = AnySolid::new(Transform::of(AnySolid::new(Prepared::new(solid.clone())), &still));
+    vec![
+        ("alone", solid.clone()),
+        ("united with a box", AnySolid::new(Csg::union_of([Csg::solid(solid.clone()), corner()]).unwrap())),
+        ("less a box", AnySolid::new(Csg::solid(solid.clone()).difference(&corner()).unwrap())),
+        ("turned", solid.placed(&turn).unwrap()),
+        ("turned by a quarter", solid.placed(&quarter).unwrap()),
+        ("under three wrappers", AnySolid::new(nested)),
+        ("under a transform of another solid", twice),
+        (
+            "turned under an expression",
+            AnySolid::new(Csg::union_of([Csg::solid(solid), corner()]).unwrap().placed(&turn).unwrap()),
+        ),
+    ]
+}
+
+/// How many more boxes a turned shape may be asked about: cells of a turned lattice have larger boxes around them.
+const TURNED: u64 = 3;
+
+#[test]
+fn wrappers_hand_on_many_questions_at_once() {
+    let frame = unit(5);
+    for many in [false, true] {
+        let mut alone = 0;
+        for (k, (name, _)) in wrapped(host(&Arc::default(), Duration::ZERO, many)).into_iter().enumerate() {
+            let solid = |calls: &Arc<Calls>| wrapped(host(calls, Duration::ZERO, many)).swap_remove(k).1;
+            let (calls, control) = (Arc::new(Calls::default()), Control::threads(3));
+            let tree = build(&solid(&calls), &frame, Rule::Certified, &control).unwrap();
+            let (boxes, batches) = (calls.boxes.load(Relaxed), calls.batches.load(Relaxed));
+            if k == 0 {
+                alone = boxes;
+            }
+            let most =
+                if name.contains("turned") && !name.contains("quarter") { TURNED * alone } else { alone + 8 };
+            assert!(alone / 2 < boxes && boxes <= most, "{name}: {boxes} boxes, {alone} alone");
+            // Two rounds a level for what is found by the way, and as many threads.
+            assert!(!many || batches <= 2 * (1 + 5 * 3), "{name}: {boxes} boxes in {batches} calls");
+            // What comes out does not depend on how it was asked.
+            let serial =
+                build(&solid(&Arc::default()), &frame, Rule::Certified, &Control::threads(1)).unwrap();
+            assert_eq!(tree, serial, "{name}");
+            let volume = tree.statistics().volume();
+            let ball = 4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3);
+            let corner = 0.0625f64.powi(3);
+            let truth =
+                if name.contains("united") || name.contains("expression") { ball + corner } else { ball };
+            assert!(volume.contains(truth), "{name}: {volume:?}");
+            // Points are answered without cells, where nothing is rounded.
+            let calls = Arc::new(Calls::default());
+            let mut answers = [Membership::Undecided; 3];
+            let points = [CENTRE, [0.1; 3], [0.46875, 0.5, 0.953125]];
+            contains(&solid(&calls), &frame, &points, &mut answers, &control).unwrap();
+            assert_eq!(answers[0], Membership::Inside, "{name}");
+            assert_eq!(answers[2], Membership::Outside, "{name}");
+            if !name.contains("turned") {
+                assert_eq!(calls.points.load(Relaxed), 3, "{name}");
+            }
+            // Sampled, too.
+            let sampled = build(&solid(&Arc::default()), &frame, Rule::Sampled, &control).unwrap();
+            let serial = build(&solid(&Arc::default()), &frame, Rule::Sampled, &Control::threads(1)).unwrap();
+            assert_eq!(sampled, serial, "{name}");
+            let cells = (sampled.statistics().volume().lower - truth).abs();
+            assert!(cells < 0.003, "{name}: {cells}");
+        }
+    }
+}
+
+#[test]
+fn wrapped_hosts_are_asked_by_all_threads() {
+    let frame = unit(5);
+    for k in 0..wrapped(host(&Arc::default(), Duration::ZERO, true)).len() {
+        for many in [false, true] {
+            let calls = Arc::new(Calls::default());
+            let (name, solid) = wrapped(host(&calls, Duration::from_millis(1), many)).swap_remove(k);
+            let found = measure(&solid, &frame, 0.0, &Control::threads(4)).unwrap();
+            assert!(calls.threads() >= 4, "{name}: {} threads", calls.threads());
+            assert!(found.volume.width() < 0.2, "{name}");
+            let calls = Arc::new(Calls::default());
+            let (_, solid) = wrapped(host(&calls, Duration::from_millis(1), many)).swap_remove(k);
+            let mut lazy = LazyOctree::new(solid, &frame).unwrap();
+            lazy.refine(&Zone::Whole, 4, &Control::threads(4)).unwrap();
+            // (What is found on the way to a cell is found by one thread.)
+            assert!(name.contains("transform") || calls.threads() >= 4, "{name}: {}", calls.threads());
+        }
+    }
+}
+
+#[test]
+fn errors_and_cancels_pass_through_wrappers() {
+    let frame = unit(6);
+    for k in 0..wrapped(host(&Arc::default(), Duration::ZERO, true)).len() {
+        let asked = Arc::new(AtomicU64::new(0));
+        let own = asked.clone();
+        let failing = AnySolid::new(
+            Callback::new(move |min, max| match own.fetch_add(1, Relaxed) {
+                100.. => Err(Error::Callback { code: 7 }),
+                _ => Ok(ball(min, max)),
+            })
+            .with_bounds(Bounds::new(CENTRE.map(|c| c - RADIUS), CENTRE.map(|c| c + RADIUS)).unwrap()),
+        );
+        let (name, solid) = wrapped(failing).swap_remove(k);
+        for threads in [1, 3] {
+            let failed = build(&solid, &frame, Rule::Certified, &Control::threads(threads)).map(|_| ());
+            assert!(matches!(failed, Err(Error::Callback { code: 7 })), "{name}: {failed:?}");
+        }
+    }
+}
+
 /// With a host of 50 ms a call, as `cargo test --release --test solids host:: -- --ignored --nocapture` prints it.
 #[test]
 #[ignore = "takes a minute: prints calls, threads and times"]
@@ -343,6 +465,13 @@ fn fifty_milliseconds_a_call() {
                 interference(solid, &Csg::ball([0.9; 3], 0.1).unwrap(), &frame, f64::INFINITY, &control)
                     .unwrap();
             });
+            for k in 1..wrapped(host(&Arc::default(), Duration::ZERO, many)).len() {
+                let name = wrapped(host(&Arc::default(), Duration::ZERO, many))[k].0;
+                run(&format!("build to depth 3 {name}"), &|solid| {
+                    let solid = wrapped(solid.clone()).swap_remove(k).1;
+                    build(&solid, &frame.with_depth(3).unwrap(), Rule::Certified, &control).unwrap();
+                });
+            }
             run("lazy, to level 3", &|solid| {
                 LazyOctree::new(solid.clone(), &frame).unwrap().refine(&Zone::Whole, 3, &control).unwrap();
             });

@@ -1,28 +1,27 @@
 //! A host program's own shape, through its functions.
 
 mod gradient;
+mod placement;
 mod tangent;
 
 pub use gradient::GradientRange;
 pub use tangent::TangentBalls;
 
 use super::{
-    Batch, Classifier, Enclosure, Fingerprint, FreeParts, OCTANTS, Question, Solid, Verdict, WholeQuestion,
-    Worker,
+    Batch, Classifier, Enclosure, Fingerprint, Fingerprinter, FreeParts, OCTANTS, Question, Solid, Verdict,
+    WholeQuestion, Worker,
 };
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
-use crate::lattice::{Bounds, Cell, Cube, Frame};
+use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, Interval};
 use crate::memory;
 use crate::octree::{Proof, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-
-/// A box in model units: lower and upper corner.
-type Corners = [[f64; 3]; 2];
+use placement::{Corners, Placement};
 
 /// Decides points, where the host can.
 type Contains<'a> = Box<dyn Fn(&[[f64; 3]], &mut [bool]) -> Result<(), Error> + Send + Sync + 'a>;
@@ -55,7 +54,11 @@ type Local<'a, T> = Box<dyn Fn([f64; 3], [f64; 3], [f64; 3]) -> Result<Option<T>
 ///
 /// # Panics
 /// The methods that add to a callback panic once it has been put on a frame.
-pub struct Callback<'a, F>(Arc<Functions<'a, F>>);
+pub struct Callback<'a, F> {
+    functions: Arc<Functions<'a, F>>,
+    /// Where it was moved to.
+    placement: Option<Placement>,
+}
 
 struct Functions<'a, F> {
     classify: F,
@@ -81,7 +84,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     /// answer to the same box. An error, such as [`Error::Callback`], ends the operation and is what that
     /// returns.
     pub fn new(classify: F) -> Callback<'a, F> {
-        Callback(Arc::new(Functions {
+        let functions = Arc::new(Functions {
             classify,
             classify_many: None,
             contains: None,
@@ -92,11 +95,12 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
             exterior: Tag::Partial,
             bounds: None,
             fingerprint: None,
-        }))
+        });
+        Callback { functions, placement: None }
     }
 
     fn with(mut self, set: impl FnOnce(&mut Functions<'a, F>)) -> Callback<'a, F> {
-        set(Arc::get_mut(&mut self.0).expect(SHARED));
+        set(Arc::get_mut(&mut self.functions).expect(SHARED));
         self
     }
 
@@ -205,7 +209,8 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     }
 
     /// The same solid with a promise about the space around the universe: EMPTY if the shape ends inside.
-    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL.
+    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL. The promise does not hold of the shape
+    /// under an affine map; [`with_bounds`](Self::with_bounds) moves along.
     #[must_use]
     pub fn with_exterior(self, exterior: Tag) -> Callback<'a, F> {
         self.with(|functions| {
@@ -231,27 +236,45 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     type Classifier = CallbackOnFrame<'a, F>;
 
     fn on(&self, frame: &Frame, _: &Control<'_>) -> Result<CallbackOnFrame<'a, F>, Error> {
-        Ok(CallbackOnFrame { functions: self.0.clone(), frame: *frame })
+        Ok(CallbackOnFrame { functions: self.functions.clone(), placement: self.placement, frame: *frame })
     }
 
     fn bounds(&self) -> Option<Bounds> {
-        self.0.bounds
+        match &self.placement {
+            Some(placement) => placement.bounds,
+            None => self.functions.bounds,
+        }
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        self.0.fingerprint
+        let own = self.functions.fingerprint?;
+        let Some(placement) = &self.placement else { return Some(own) };
+        let all = Fingerprinter::new("placed callback").part(own);
+        Some(placement.back.numbers().fold(all, |all, number| all.numbers(&[number])).finish())
+    }
+
+    /// A cell is classified by the box around its inverse image, with as many calls as ever. A surface that is not parallel to
+    /// the lattice blurs by about a cell. Where the placement permutes axes, with signs and powers of two as scales, and moves,
+    /// nothing blurs.
+    fn placed(&self, placement: &Affine) -> Result<Option<Self>, Error> {
+        let placement = match &self.placement {
+            Some(before) => before.then(placement),
+            None => Placement::new(placement, self.functions.bounds),
+        };
+        Ok(Some(Callback { functions: self.functions.clone(), placement: Some(placement) }))
     }
 }
 
 /// A host's shape on a frame: handle and worker.
 pub struct CallbackOnFrame<'a, F> {
     functions: Arc<Functions<'a, F>>,
+    placement: Option<Placement>,
     frame: Frame,
 }
 
 impl<F> Clone for CallbackOnFrame<'_, F> {
     fn clone(&self) -> Self {
-        CallbackOnFrame { functions: self.functions.clone(), frame: self.frame }
+        CallbackOnFrame { functions: self.functions.clone(), placement: self.placement, frame: self.frame }
     }
 }
 
@@ -269,10 +292,11 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     }
 
     fn exterior(&self) -> Tag {
-        match self.functions.bounds {
-            Some(bounds) if bounds.is_within(&self.frame) => Tag::Empty,
-            _ => self.functions.exterior,
-        }
+        let (bounds, promised) = match &self.placement {
+            Some(placement) => (placement.bounds, Tag::Partial),
+            None => (self.functions.bounds, self.functions.exterior),
+        };
+        if bounds.is_some_and(|bounds| bounds.is_within(&self.frame)) { Tag::Empty } else { promised }
     }
 
     /// The host promises that FULL and EMPTY are proven.
@@ -286,6 +310,37 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
 }
 
 impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> CallbackOnFrame<'_, F> {
+    /// The box in the host's own space that is asked about for a cell.
+    fn corners(&self, cell: Cell) -> Corners {
+        let (min, max) = Cube { frame: &self.frame, cell }.bounds();
+        match &self.placement {
+            Some(placement) => placement.corners(min, max),
+            None => [min, max],
+        }
+    }
+
+    /// The centre of a cell of the frame's depth in the host's own space, rounded.
+    fn centre(&self, cell: Cell) -> [f64; 3] {
+        let centre = centre(&self.frame, cell);
+        match &self.placement {
+            Some(placement) => {
+                placement.back.image(&centre.map(Interval::exactly)).map(|c| 0.5 * c.lower + 0.5 * c.upper)
+            }
+            None => centre,
+        }
+    }
+
+    /// Whether the host says that points of its own space lie inside, if it can tell.
+    fn host_contains(&self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        let Some(contains) = self.functions.contains.as_ref().filter(|_| !points.is_empty()) else {
+            return Ok(());
+        };
+        let mut inside = memory::filled(points.len(), false)?;
+        contains(points, &mut inside)?;
+        answers.iter_mut().zip(inside).for_each(|(answer, inside)| *answer = Some(inside));
+        Ok(())
+    }
+
     /// What the host says of cells: of all that its distances leave open. With an error comes how many of the
     /// cells are known from the first on.
     fn classify(
@@ -300,7 +355,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         }
         verdicts.fill(Verdict::Partial(()));
         let open = self.by_distance(cells, verdicts).map_err(|error| (0, error))?;
-        let boxed = |i: usize| <Corners>::from(Cube { frame: &self.frame, cell: cells[i] }.bounds());
+        let boxed = |i: usize| self.corners(cells[i]);
         let Some(classify_many) = &self.functions.classify_many else {
             for i in open {
                 // A cancel waits for one call at the most.
@@ -327,16 +382,33 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
     fn slabs(&self, cell: Cell) -> Result<Option<Enclosure>, Error> {
         let Functions { gradient, tangent, .. } = &*self.functions;
         let cube = Cube { frame: &self.frame, cell };
-        let (min, max) = cube.bounds();
+        let [min, max] = self.corners(cell);
         let middle = middle(min, max);
         if let Some(gradient) = gradient
             && let Some(range) = gradient(min, max, middle)?
-            && let Some(enclosure) = range.enclosure(&cube, middle)
         {
-            return Ok(Some(enclosure));
+            let known = match &self.placement {
+                Some(placement) => placement.enclosure(&range, middle, &cube),
+                None => range.enclosure(&cube, middle),
+            };
+            if known.is_some() {
+                return Ok(known);
+            }
         }
         let Some(tangent) = tangent else { return Ok(None) };
-        Ok(tangent(min, max, middle)?.and_then(|balls| balls.enclosure(&cube)))
+        let Some(balls) = tangent(min, max, middle)? else { return Ok(None) };
+        let slab = match &self.placement {
+            Some(placement) => {
+                let centre = placement.centre(&cube);
+                let reach =
+                    |axis: usize| (max[axis] - centre[axis].lower).max(centre[axis].upper - min[axis]);
+                let half = reach(0).max(reach(1)).max(reach(2)).next_up();
+                let to_centre = axes(|axis| centre[axis].minus(Interval::exactly(balls.point[axis])));
+                balls.slab(half, to_centre).map(|slab| placement.slab(&slab, half, &cube))
+            }
+            None => balls.slab(cube.half_edge(), cube.centre_from(balls.point)),
+        };
+        Ok(slab.and_then(|slab| Enclosure::of_one(slab, f64::INFINITY)))
     }
 
     /// Decides cells by the distances of their middles; returns those that this leaves open.
@@ -350,13 +422,13 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
         points.try_reserve_exact(cells.len())?;
         found.try_reserve_exact(cells.len())?;
         points.extend(cells.iter().map(|&cell| {
-            let (min, max) = Cube { frame: &self.frame, cell }.bounds();
+            let [min, max] = self.corners(cell);
             middle(min, max)
         }));
         found.resize(cells.len(), f64::NAN);
         distance(&points, &mut found)?;
         for (i, (&cell, found)) in cells.iter().zip(found).enumerate() {
-            let (min, max) = Cube { frame: &self.frame, cell }.bounds();
+            let [min, max] = self.corners(cell);
             // The corner that is farthest from the middle, each step rounded up by far less than a part in
             // 2^48.
             let reach = |axis: usize| (max[axis] - points[i][axis]).max(points[i][axis] - min[axis]);
@@ -410,7 +482,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Batc
         inside: &mut Vec<Option<bool>>,
     ) -> Result<(), Error> {
         control.check()?;
-        let points = memory::collected(cells.iter().map(|(cell, ())| centre(&self.frame, *cell)))?;
+        let points = memory::collected(cells.iter().map(|(cell, ())| self.centre(*cell)))?;
         let first = inside.len();
         inside.try_reserve(cells.len())?;
         inside.resize(first + cells.len(), None);
@@ -418,18 +490,27 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Batc
         let piece = if self.functions.contains_one { 1 } else { cells.len().max(1) };
         for (points, inside) in points.chunks(piece).zip(inside[first..].chunks_mut(piece)) {
             control.check()?;
-            self.inside(points, inside)?;
+            self.host_contains(points, inside)?;
         }
         Ok(())
     }
 
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
-        let Some(contains) = self.functions.contains.as_ref().filter(|_| !points.is_empty()) else {
+        let Some(placement) = &self.placement else { return self.host_contains(points, answers) };
+        if self.functions.contains.is_none() {
             return Ok(());
-        };
-        let mut inside = memory::filled(points.len(), false)?;
-        contains(points, &mut inside)?;
-        answers.iter_mut().zip(inside).for_each(|(answer, inside)| *answer = Some(inside));
+        }
+        // The host decides points that are moved without rounding. Where others lie is not known well enough.
+        let (mut exact, mut places) = (Vec::new(), Vec::new());
+        for (place, &point) in points.iter().enumerate() {
+            if let Some(image) = placement.back.exact_image(point) {
+                memory::push(&mut exact, image)?;
+                memory::push(&mut places, place)?;
+            }
+        }
+        let mut found = memory::filled(exact.len(), None)?;
+        self.host_contains(&exact, &mut found)?;
+        places.into_iter().zip(found).for_each(|(place, found)| answers[place] = found);
         Ok(())
     }
 
@@ -462,7 +543,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
         match question {
             Question::Centre(inside) => {
                 let mut answer = [None];
-                self.inside(&[centre(&self.frame, cell)], &mut answer)?;
+                self.host_contains(&[self.centre(cell)], &mut answer)?;
                 *inside = answer[0];
             }
             Question::Enclosure(known) => *known = self.slabs(cell)?,
@@ -479,7 +560,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Work
         let (mut points, mut inside) = ([[0.0; 3]; 64], [false; 64]);
         let parts = parts.get(..64).unwrap_or(parts);
         for ((c, ()), point) in parts.iter().zip(&mut points) {
-            *point = centre(&self.frame, cell.child(c >> 3).child(c & 7));
+            *point = self.centre(cell.child(c >> 3).child(c & 7));
         }
         let count = parts.len();
         contains(&points[..count], &mut inside[..count])?;

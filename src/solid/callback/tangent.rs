@@ -1,8 +1,8 @@
 //! What a host knows of its surface next to a point: balls on both sides that touch it.
 
+use crate::lattice::Interval;
 use crate::lattice::axes;
-use crate::lattice::{Cube, Interval};
-use crate::solid::{Enclosure, Slab};
+use crate::solid::Slab;
 
 /// Two balls that touch the surface at a point, one in the solid and one outside of it.
 ///
@@ -42,13 +42,14 @@ pub struct TangentBalls {
 }
 
 impl TangentBalls {
-    /// What this proves of a cube in the box.
-    pub(super) fn enclosure(&self, cube: &Cube<'_>) -> Option<Enclosure> {
+    /// What this proves of the cube of half edge `half` around a centre, as far as it lies in the box: a slab from the centre, in
+    /// half edges. `to_centre` leads from `point` to the centre.
+    pub(super) fn slab(&self, half: f64, to_centre: [Interval; 3]) -> Option<Slab> {
         let numbers = [self.inner_curvature, self.outer_curvature];
         if self.error >= 0.0 && !numbers.iter().chain(&self.point).any(|c| c.is_nan()) {
-            let inner = self.beyond(cube, self.normal, self.inner_curvature);
-            let outer = -self.beyond(cube, self.normal.map(|c| -c), self.outer_curvature);
-            Enclosure::of_one(Slab { normal: self.normal, inner, outer }, f64::INFINITY)
+            let inner = self.beyond(half, to_centre, self.normal, self.inner_curvature);
+            let outer = -self.beyond(half, to_centre, self.normal.map(|c| -c), self.outer_curvature);
+            Some(Slab { normal: self.normal, inner, outer })
         } else {
             None
         }
@@ -63,7 +64,7 @@ impl TangentBalls {
     /// n · a + l (κ/2 |a|² + error) + h (1 + l κ α) n · x + h l κ t · x + h² l κ/2 |x|² < 0,
     ///
     /// where |t · x| is at most the sum of the magnitudes of t's components, and |x|² ≤ 3.
-    fn beyond(&self, cube: &Cube<'_>, n: [f64; 3], curvature: f64) -> f64 {
+    fn beyond(&self, half: f64, a: [Interval; 3], n: [f64; 3], curvature: f64) -> f64 {
         let dot = |a: &[Interval; 3], b: &[Interval; 3]| {
             a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
         };
@@ -72,8 +73,7 @@ impl TangentBalls {
         if !(square.lower > 0.0 && square.upper < f64::INFINITY) {
             return f64::NEG_INFINITY;
         }
-        let half = Interval::exactly(cube.half_edge());
-        let a = cube.centre_from(self.point);
+        let half = Interval::exactly(half);
         let along = dot(&n, &a);
         let share = along.over(square);
         let bend = square.root().times(Interval::exactly(curvature));

@@ -3,7 +3,7 @@
 use crate::lattice::axes;
 use crate::lattice::exact::Expansion;
 use crate::lattice::exact::{floor, sqrt, two_product};
-use crate::lattice::{Affine, Bounds, Cube, Frame, MAX_DEPTH};
+use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, MAX_DEPTH};
 
 /// From the lattice of one frame to that of another, in finest cells: u = linear · k + offset.
 #[derive(Debug, Clone, Copy)]
@@ -167,7 +167,7 @@ impl Maps {
         let rows = placement.rows();
         let linear = rows.map(|[x, y, z, _]| [x, y, z]);
         let offset = rows.map(|[_, _, _, t]| t);
-        let monomial = is_monomial(&linear);
+        let monomial = placement.is_monomial();
         let inward = LatticeMap::new(inverse, offset, [0.0; 3], monomial, frame, own);
         let outward = LatticeMap::new(&linear, [0.0; 3], offset, monomial, own, frame);
         Maps { inward, outward, grain: inward.grain() }
@@ -303,7 +303,12 @@ pub(super) struct Point<'m> {
     pub(super) at: [f64; 3],
 }
 
-impl Point<'_> {
+impl<'m> Point<'m> {
+    /// The image of a finest cell's centre.
+    pub(super) fn centre(map: &'m LatticeMap, cell: Cell) -> Point<'m> {
+        Point { map, at: map.image(cell.at.map(|a| a as f64 + 0.5), 0.0).0 }
+    }
+
     /// Whether it may lie beyond the universe of this many cells, as a bit.
     pub(super) fn reaches_beyond(&self, cells: f64) -> u8 {
         if self.map.is_exact() {
@@ -334,20 +339,11 @@ impl Target for Point<'_> {
     }
 }
 
-/// Whether a matrix has one entry a row, and that a power of two. (It is not singular.)
-fn is_monomial(linear: &[[f64; 3]; 3]) -> bool {
-    linear.iter().all(|row| {
-        let mut entries = row.iter().filter(|&&c| c != 0.0);
-        entries.next().is_some_and(|c| c.to_bits() & MANTISSA == 0) && entries.next().is_none()
-    })
-}
-
 /// The frame whose cells have those of `frame` as their images, if there is one and its origin is a double.
 pub(super) fn source_frame(placement: &Affine, inverse: &[[f64; 3]; 3], frame: &Frame) -> Option<Frame> {
-    let linear = placement.rows().map(|[x, y, z, _]| [x, y, z]);
     let scale = |row: [f64; 3]| row.iter().map(|c| c.abs()).sum::<f64>();
     let factor = scale(inverse[0]);
-    if !is_monomial(&linear) || inverse.iter().any(|&row| scale(row) != factor) {
+    if !placement.is_monomial() || inverse.iter().any(|&row| scale(row) != factor) {
         return None;
     }
     let mut origin = [0.0; 3];

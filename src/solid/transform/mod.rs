@@ -1,22 +1,26 @@
 //! Any solid under an affine map.
 
 mod image;
+mod same;
 mod slabs;
+mod splits;
 
 use super::{
-    Ask, Classifier, Enclosure, Fingerprint, Fingerprinter, OneByOne, Parts, Question, Solid, Verdict,
-    WholeQuestion, Worker,
+    Ask, Batch, Classifier, Enclosure, Fingerprint, Fingerprinter, Parts, Question, Solid, Verdict,
+    WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, MAX_DEPTH};
+use crate::lattice::{Affine, Bounds, Cell, Cube, Frame, Inverse, MAX_DEPTH};
 use crate::memory;
 use crate::octree::{Proof, Tag};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 use image::{Images, Maps, Point, Target};
+use same::Turn;
 use slabs::Source;
+use splits::{AtOnce, Gathered, Splits};
 
 /// A solid, known on a frame of its own, under an affine placement.
 ///
@@ -65,6 +69,7 @@ pub struct TransformClassifier<C> {
     frame: Frame,
     /// A box around the placed solid, if one is known.
     bounds: Option<Bounds>,
+    placement: Affine,
     proof: Proof,
 }
 
@@ -73,6 +78,7 @@ pub struct TransformWorker<W: Worker> {
     inner: W,
     own: Frame,
     maps: Maps,
+    placement: Affine,
     frame: Frame,
     /// What is known of the space around the solid's own universe.
     exterior: Tag,
@@ -208,7 +214,7 @@ impl<C: Classifier> TransformClassifier<C> {
         let maps = Maps::new(placement, &placement.inverse_linear(), frame, &own);
         let proof = inner.proof();
         let proof = proof.moved(placement.stretched(proof.displacement()));
-        TransformClassifier { inner, own, maps, frame: *frame, bounds, proof }
+        TransformClassifier { inner, own, maps, frame: *frame, bounds, placement: *placement, proof }
     }
 
     /// Lower corner and edge of a cell of the solid's own frame, in its finest cells.
@@ -259,6 +265,7 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
             inner: self.inner.worker()?,
             own: self.own,
             maps: self.maps,
+            placement: self.placement,
             frame: self.frame,
             exterior: self.inner.exterior(),
             known: Vec::new(),
@@ -317,34 +324,49 @@ impl<W: Worker> TransformWorker<W> {
     /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their
     /// children. Where rounding makes a target so large that too many cells touch it, they stay larger.
     fn gather(&mut self, part: TransformPart, target: &impl Target, grain: f64) -> Result<(), Error> {
-        let range = self.range(part);
-        let TransformWorker { known, at_hand, inner, own, .. } = self;
-        at_hand.clear();
-        let list = &known[range];
-        at_hand.try_reserve(list.len())?;
-        for known in list {
-            let touched = if is_large(own, known, grain) && at_hand.len() < MOST_AT_HAND {
-                replace(own, known, inner, target, at_hand)?;
-                0
-            } else {
-                let (corner, edge) = extent(own, known.0);
-                target.touched(corner, edge)
-            };
-            if touched != 0 {
-                memory::push(at_hand, (known.clone(), touched))?;
-            }
-        }
-        // Mostly one step is all; the first, and that to a point, may take more.
-        let mut i = 0;
-        while let Some((known, _)) = at_hand.get(i) {
-            if is_large(own, known, grain) && at_hand.len() < MOST_AT_HAND {
-                let (known, _) = at_hand.swap_remove(i);
-                replace(own, &known, inner, target, at_hand)?;
-            } else {
-                i += 1;
-            }
-        }
+        let (range, own) = (self.range(part), self.own);
+        let TransformWorker { known, at_hand, inner, .. } = self;
+        let is_complete = gather(&own, &known[range], target, grain, &mut AtOnce(inner), at_hand)?;
+        debug_assert!(is_complete);
         Ok(())
+    }
+
+    /// The same for many targets, whose cells are split together, round by round. With an error comes what is known.
+    fn gather_many<T: Target>(
+        &mut self,
+        targets: &[(TransformPart, T, f64)],
+        control: &Control<'_>,
+    ) -> Result<(Gathered<W::Part>, Result<(), Error>), Error> {
+        let mut splits = Gathered::new();
+        // The cells of a list are at most some levels too large, and each round splits all of one level.
+        loop {
+            for (part, target, grain) in targets {
+                let (range, own) = (self.range(*part), self.own);
+                gather(&own, &self.known[range], target, *grain, &mut splits, &mut self.at_hand)?;
+            }
+            let wanted = splits.take_wanted();
+            if wanted.is_empty() {
+                return Ok((splits, Ok(())));
+            }
+            let mut answers = Vec::new();
+            let done = self.inner.split_many(&wanted, control, &mut answers);
+            splits.learn(&wanted, answers)?;
+            if done.is_err() {
+                return Ok((splits, done));
+            }
+        }
+    }
+
+    /// Puts the cells of a list at hand by splits that were asked for before; `false` if some are missing.
+    fn gather_known(
+        &mut self,
+        part: TransformPart,
+        target: &impl Target,
+        grain: f64,
+        splits: &mut Gathered<W::Part>,
+    ) -> Result<bool, Error> {
+        let (range, own) = (self.range(part), self.own);
+        gather(&own, &self.known[range], target, grain, splits, &mut self.at_hand)
     }
 
     /// What the cells at hand say of the first `count` children, whose centres may be asked for if they are
@@ -395,16 +417,53 @@ fn is_large<P>(own: &Frame, (cell, verdict): &Known<P>, grain: f64) -> bool {
     matches!(verdict, Verdict::Partial(_)) && cell.level < own.depth() && extent(own, *cell).1 > grain
 }
 
-/// Puts the children of a PARTIAL cell at hand that touch a target.
-fn replace<W: Worker>(
+/// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their children; `false` if some of
+/// these are not known.
+fn gather<P: Clone>(
     own: &Frame,
-    (cell, verdict): &Known<W::Part>,
-    inner: &mut W,
+    list: &[Known<P>],
     target: &impl Target,
-    at_hand: &mut Vec<(Known<W::Part>, u8)>,
-) -> Result<(), Error> {
-    let Verdict::Partial(part) = verdict else { return Ok(()) };
-    let children = inner.split(*cell, part)?;
+    grain: f64,
+    splits: &mut impl Splits<P>,
+    at_hand: &mut Vec<(Known<P>, u8)>,
+) -> Result<bool, Error> {
+    at_hand.clear();
+    at_hand.try_reserve(list.len())?;
+    let mut is_complete = true;
+    for known in list {
+        if is_large(own, known, grain) && at_hand.len() < MOST_AT_HAND {
+            is_complete &= replace(own, known, splits, target, at_hand)?;
+            continue;
+        }
+        let (corner, edge) = extent(own, known.0);
+        let touched = target.touched(corner, edge);
+        if touched != 0 {
+            memory::push(at_hand, (known.clone(), touched))?;
+        }
+    }
+    // Mostly one step is all; the first, and that to a point, may take more.
+    let mut i = 0;
+    while let Some((known, _)) = at_hand.get(i) {
+        if is_large(own, known, grain) && at_hand.len() < MOST_AT_HAND {
+            let (known, _) = at_hand.swap_remove(i);
+            is_complete &= replace(own, &known, splits, target, at_hand)?;
+        } else {
+            i += 1;
+        }
+    }
+    Ok(is_complete)
+}
+
+/// Puts the children of a PARTIAL cell at hand that touch a target; `false` if they are not known.
+fn replace<P: Clone>(
+    own: &Frame,
+    (cell, verdict): &Known<P>,
+    splits: &mut impl Splits<P>,
+    target: &impl Target,
+    at_hand: &mut Vec<(Known<P>, u8)>,
+) -> Result<bool, Error> {
+    let Verdict::Partial(part) = verdict else { return Ok(true) };
+    let Some(children) = splits.children(*cell, part)? else { return Ok(false) };
     let (corner, edge) = extent(own, *cell);
     let touched = target.touched_by_children(corner, edge);
     at_hand.try_reserve(8)?;
@@ -413,7 +472,7 @@ fn replace<W: Worker>(
             at_hand.push(((cell.child(octant), child), touched));
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 impl<W: Worker> Parts for TransformWorker<W> {
@@ -448,7 +507,99 @@ impl<W: Worker> Parts for TransformWorker<W> {
     }
 }
 
-impl<W: Worker> OneByOne for TransformWorker<W> {}
+impl<W: Worker> Batch for TransformWorker<W> {
+    fn likes_many(&self) -> bool {
+        self.inner.likes_many()
+    }
+
+    /// Cells that touch the same cells of the solid's own frame have these split once.
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, TransformPart)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<TransformPart>; 8]>,
+    ) -> Result<(), Error> {
+        if !self.inner.likes_many() {
+            return split_one_by_one(self, cells, control, verdicts);
+        }
+        verdicts.try_reserve(cells.len())?;
+        let (maps, frame) = (self.maps, self.frame);
+        let targets = memory::collected(cells.iter().map(|&(cell, part)| {
+            let images = Images::new(&maps, &Cube { frame: &frame, cell }, 2);
+            let grain = images.grain;
+            (part, images, grain)
+        }))?;
+        let (mut splits, done) = self.gather_many(&targets, control)?;
+        for ((cell, _), (part, images, grain)) in cells.iter().zip(&targets) {
+            if !self.gather_known(*part, images, *grain, &mut splits)? {
+                break;
+            }
+            verdicts.push(self.verdicts(images, 8, cell.level + 1 == frame.depth())?);
+        }
+        done
+    }
+
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, TransformPart)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        if !self.inner.likes_many() {
+            return sample_one_by_one(self, cells, control, inside);
+        }
+        inside.try_reserve(cells.len())?;
+        let (inward, mark) = (self.maps.inward, self.inner.mark());
+        let targets =
+            memory::collected(cells.iter().map(|&(cell, part)| (part, Point::centre(&inward, cell), 0.0)))?;
+        let (mut splits, mut done) = self.gather_many(&targets, control)?;
+        let (first, mut asked, mut places) = (inside.len(), Vec::new(), Vec::new());
+        for (part, point, grain) in &targets {
+            if !self.gather_known(*part, point, *grain, &mut splits)? {
+                break;
+            }
+            let (answer, open) = self.at_point(point);
+            if let Some(open) = open {
+                memory::push(&mut asked, open)?;
+                memory::push(&mut places, inside.len())?;
+            }
+            inside.push(answer);
+        }
+        if !asked.is_empty() && done.is_ok() {
+            let mut found = Vec::new();
+            done = self.inner.sample_many(&asked, control, &mut found);
+            for (&place, answer) in places.iter().zip(&found) {
+                inside[place] = *answer;
+            }
+            // What the solid did not come to is not known.
+            inside.truncate(places.get(found.len()).map_or(inside.len(), |&place| place.max(first)));
+        }
+        self.inner.release(mark);
+        done
+    }
+
+    /// Points are moved where that rounds nothing.
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        let back = Inverse::of(&self.placement);
+        let (mut exact, mut places) = (Vec::new(), Vec::new());
+        for (place, &point) in points.iter().enumerate() {
+            // (The solid knows points of its own universe.)
+            if let Some(image) = back.exact_image(point).filter(|image| self.own.cell_of(*image).is_some()) {
+                memory::push(&mut exact, image)?;
+                memory::push(&mut places, place)?;
+            }
+        }
+        let mut found = memory::filled(exact.len(), None)?;
+        self.inner.inside(&exact, &mut found)?;
+        places.into_iter().zip(found).for_each(|(place, found)| answers[place] = found);
+        Ok(())
+    }
+
+    /// The cells of the solid's own frame that a cell touches are found on the way to it.
+    fn recall(&mut self, _: Cell) -> Option<TransformPart> {
+        None
+    }
+}
 
 impl<W: Worker> Worker for TransformWorker<W> {
     fn frame(&self) -> &Frame {
@@ -477,7 +628,24 @@ impl<W: Worker> Worker for TransformWorker<W> {
         match question {
             Question::Centre(inside) => *inside = self.contains_centre(cell, *part)?,
             Question::Enclosure(known) => *known = self.slab(cell, *part)?,
-            _ => {}
+            Question::Moments(known) => {
+                if let Some((turn, source, own)) = self.source(cell, *part) {
+                    *known = self.inner.moments(source, &own)?.map(|known| turn.moments(&known));
+                }
+            }
+            // (In half edges of cells, which the map stretches as the surface.)
+            Question::Area(known) => {
+                if let Some((_, source, own)) = self.source(cell, *part) {
+                    *known = self.inner.area(source, &own)?;
+                }
+            }
+            Question::Crossing(segment, known) => {
+                let moved = same::segment(&Inverse::of(&self.placement), segment);
+                if let (Some((turn, source, own)), Some(segment)) = (self.source(cell, *part), moved) {
+                    *known = self.inner.crossing(source, &own, &segment)?.map(|known| turn.crossing(&known));
+                }
+            }
+            Question::Block(..) | Question::Chords(_) => {}
         }
         Ok(())
     }
@@ -486,25 +654,39 @@ impl<W: Worker> Worker for TransformWorker<W> {
 impl<W: Worker> TransformWorker<W> {
     /// Whether the centre of a finest cell lies inside.
     fn contains_centre(&mut self, cell: Cell, part: TransformPart) -> Result<Option<bool>, Error> {
-        let inward = self.maps.inward;
-        let mark = self.inner.mark();
-        let centre = inward.image(cell.at.map(|a| a as f64 + 0.5), 0.0).0;
-        let point = Point { map: &inward, at: centre };
+        let (inward, mark) = (self.maps.inward, self.inner.mark());
+        let point = Point::centre(&inward, cell);
         self.gather(part, &point, 0.0)?;
-        let Met { empty, full, undecided, part } = self.met(point.reaches_beyond(self.own.cells() as f64));
-        let inside = match [empty, full, undecided, part].map(|met| met != 0) {
-            [true, false, false, false] => Some(false),
-            [false, true, false, false] => Some(true),
-            _ => match self.at_hand.as_slice() {
-                [((cell, Verdict::Partial(part)), _)] if inward.keeps_centres() => {
-                    let (cell, part) = (*cell, part.clone());
-                    self.inner.sample(cell, &part)?
-                }
-                _ => None,
-            },
-        };
+        let (mut inside, open) = self.at_point(&point);
+        if let Some((cell, part)) = open {
+            inside = self.inner.sample(cell, &part)?;
+        }
         self.inner.release(mark);
         Ok(inside)
+    }
+
+    /// What the cells at hand say of the image of a centre; and the finest cell of the solid's own frame that has the image as its
+    /// centre, if that is left to ask.
+    #[allow(clippy::type_complexity)]
+    fn at_point(&self, point: &Point<'_>) -> (Option<bool>, Option<(Cell, W::Part)>) {
+        let Met { empty, full, undecided, part } = self.met(point.reaches_beyond(self.own.cells() as f64));
+        match [empty, full, undecided, part].map(|met| met != 0) {
+            [true, false, false, false] => (Some(false), None),
+            [false, true, false, false] => (Some(true), None),
+            _ => match self.at_hand.as_slice() {
+                [((cell, Verdict::Partial(part)), _)] if point.map.keeps_centres() => {
+                    (None, Some((*cell, part.clone())))
+                }
+                _ => (None, None),
+            },
+        }
+    }
+
+    /// The cell of the solid's own frame that a cell is just the image of, with its part.
+    fn source(&self, cell: Cell, part: TransformPart) -> Option<(Turn, Cell, W::Part)> {
+        let [(source, Verdict::Partial(own))] = &self.known[self.range(part)] else { return None };
+        let turn = Turn::of(&self.maps, &self.frame, cell, &self.own, *source)?;
+        Some((turn, *source, own.clone()))
     }
 
     /// What the cells of the solid's own frame know of a cell.

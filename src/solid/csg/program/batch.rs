@@ -4,9 +4,10 @@
 //! one by one, as ever, with those answers at hand.
 
 use super::Program;
+use super::at_hand::{AtHand, Splits};
 use super::kleene::Kleene;
 use super::word::{Op, Word};
-use super::worker::{CsgPart, Scratch, Slot};
+use super::worker::{CsgPart, Other, Scratch, Slot};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -18,34 +19,6 @@ use alloc::vec::{IntoIter, Vec};
 
 /// Most words of an expression whose parts are had without the way to a cell.
 const MOST_RECALLED: usize = 64;
-
-/// Answers of the other solids that are at hand, one queue for each solid; none while no batch is under way.
-#[derive(Default)]
-pub(crate) struct AtHand {
-    splits: Vec<Splits>,
-    samples: Vec<IntoIter<Option<bool>>>,
-}
-
-/// Splits of one solid in the order in which they will be asked for.
-#[derive(Default)]
-struct Splits {
-    /// Height of the solid's scratch memory before all of them.
-    height: usize,
-    verdicts: IntoIter<[Verdict<ErasedPart>; 8]>,
-}
-
-impl AtHand {
-    /// The next split of a solid that is at hand, and the height of its scratch memory before.
-    pub(crate) fn split(&mut self, solid: u32) -> Option<(usize, [Verdict<ErasedPart>; 8])> {
-        let splits = self.splits.get_mut(solid as usize)?;
-        Some((splits.height, splits.verdicts.next()?))
-    }
-
-    /// The next sample of a solid that is at hand.
-    pub(crate) fn sample(&mut self, solid: u32) -> Option<Option<bool>> {
-        self.samples.get_mut(solid as usize)?.next()
-    }
-}
 
 impl Scratch {
     /// The questions for each of the other solids that splitting or sampling cells will ask, in that order.
@@ -96,6 +69,17 @@ impl Scratch {
             Ok(())
         })?;
         Ok((0..).zip(needed).any(|(solid, needed)| needed > left(&self.at_hand, solid)))
+    }
+
+    /// Of which of the other solids, all of which have been asked for the universe, it is PARTIAL with a part that is had without
+    /// asking: a worker of a host's function would ask once more.
+    pub(crate) fn recalls(&mut self) -> Result<Vec<bool>, Error> {
+        memory::collected(self.workers.iter_mut().map(|other| match other {
+            Some(Other { worker, root: Verdict::Partial(_) }) => {
+                worker.likes_many() && worker.recall(Cell::ROOT).is_some()
+            }
+            _ => false,
+        }))
     }
 
     /// Splits many cells; see [`Batch::split_many`].

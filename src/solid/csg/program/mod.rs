@@ -2,6 +2,7 @@
 //! written as words in postfix order, so that a cell's share of it is an array of words again.
 
 mod area;
+mod at_hand;
 mod batch;
 mod centres;
 mod chords;
@@ -49,6 +50,8 @@ pub(crate) struct Program {
     pub(crate) proof: Proof,
     /// Whether one of the other solids is better asked about many cells at once.
     pub(crate) likes_many: bool,
+    /// Of which of the other solids the universe is PARTIAL, with a part that is had without asking.
+    pub(crate) recalls: Vec<bool>,
     /// Counts the evaluations of workers that are gone.
     pub(crate) root: Arc<Node>,
 }
@@ -109,6 +112,7 @@ impl Program {
             exterior: Tag::Partial,
             proof: Proof::CERTIFIED,
             likes_many: false,
+            recalls: Vec::new(),
             root: csg.root.clone(),
         };
         let mut writer = Writer {

@@ -43,6 +43,9 @@ impl Solid for Csg {
         let mut universe = scratch.begin(&program)?;
         self.count(scratch.evaluations);
         program.likes_many = scratch.workers.iter().flatten().any(|other| other.worker.likes_many());
+        if program.likes_many {
+            program.recalls = scratch.recalls()?;
+        }
         if let Verdict::Partial(part) = universe {
             let (words, part) = scratch.into_words(&program, part)?;
             program.words = words;

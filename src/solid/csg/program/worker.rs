@@ -1,7 +1,7 @@
 //! What a cell's words say of its children, and the words that each child keeps.
 
 use super::Program;
-use super::batch::AtHand;
+use super::at_hand::AtHand;
 use super::hierarchy::Taken;
 use super::kleene::Kleene;
 use super::table;
@@ -15,7 +15,7 @@ use crate::solid::csg::Join;
 use crate::solid::erased::ErasedPart;
 use crate::solid::half_space::bounds::Octants;
 use crate::solid::half_space::points;
-use crate::solid::{AnyWorker, Classifier, OCTANTS, Parts, Verdict, Worker};
+use crate::solid::{AnyWorker, Batch, Classifier, OCTANTS, Parts, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// What a [`Csg`](crate::solid::csg::Csg) remembers about a cell: the words of its expression that are still open there.
@@ -214,7 +214,15 @@ impl Scratch {
             Some(other) => other,
             none => {
                 let mut worker = program.solids[solid as usize].worker()?;
-                let root = worker.root()?;
+                let known = if program.recalls.get(solid as usize) == Some(&true) {
+                    worker.recall(Cell::ROOT)
+                } else {
+                    None
+                };
+                let root = match known {
+                    Some(part) => Verdict::Partial(part),
+                    None => worker.root()?,
+                };
                 none.insert(Other { worker, root })
             }
         })

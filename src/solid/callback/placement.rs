@@ -1,0 +1,73 @@
+//! A host's shape that was moved: where cells and points lie in the host's own space.
+
+use super::gradient::GradientRange;
+use super::middle;
+use crate::lattice::{Affine, Bounds, Cube, Interval, Inverse, axes};
+use crate::solid::{Enclosure, Slab};
+
+/// A box in model units: lower and upper corner.
+pub(super) type Corners = [[f64; 3]; 2];
+
+/// Where a shape was moved to.
+#[derive(Clone, Copy)]
+pub(super) struct Placement {
+    pub(super) back: Inverse,
+    /// A box around the moved shape, if the host promised one.
+    pub(super) bounds: Option<Bounds>,
+}
+
+impl Placement {
+    /// Of a shape that lies in `bounds` before it is moved.
+    pub(super) fn new(placement: &Affine, bounds: Option<Bounds>) -> Placement {
+        let bounds = bounds.and_then(|bounds| bounds.placed(placement));
+        Placement { back: Inverse::of(placement), bounds }
+    }
+
+    /// Moved once more.
+    pub(super) fn then(&self, placement: &Affine) -> Placement {
+        let bounds = self.bounds.and_then(|bounds| bounds.placed(placement));
+        Placement { back: self.back.then(placement), bounds }
+    }
+
+    /// A box around the inverse image of a box.
+    pub(super) fn corners(&self, min: [f64; 3], max: [f64; 3]) -> Corners {
+        let image = self.back.image(&axes(|axis| Interval::between(min[axis], max[axis])));
+        [image.map(|x| x.lower), image.map(|x| x.upper)]
+    }
+
+    /// What a range of the gradient over the box around a cell's inverse image proves of the cell; the value is that at `at`, a
+    /// point of the box.
+    pub(super) fn enclosure(
+        &self,
+        range: &GradientRange,
+        at: [f64; 3],
+        cube: &Cube<'_>,
+    ) -> Option<Enclosure> {
+        let (min, max) = cube.bounds();
+        let middle = middle(min, max);
+        // By the mean value theorem from `at` to the image of the cell's middle, both of which lie in the box.
+        let image = self.back.image(&middle.map(Interval::exactly));
+        let way = |axis: usize| image[axis].minus(Interval::exactly(at[axis]));
+        let value = (0..3).fold(range.value, |sum, axis| sum.plus(range.gradient[axis].times(way(axis))));
+        GradientRange { value, gradient: self.back.pulled_back(&range.gradient) }.enclosure(cube, middle)
+    }
+
+    /// The inverse image of a cell's centre.
+    pub(super) fn centre(&self, cube: &Cube<'_>) -> [Interval; 3] {
+        self.back.image(&cube.centre_from([0.0; 3]))
+    }
+
+    /// A slab over the cube of half edge `half` around the inverse image of a cell's centre, as a slab over the cell.
+    pub(super) fn slab(&self, slab: &Slab, half: f64, cube: &Cube<'_>) -> Slab {
+        let ratio = Interval::exactly(cube.half_edge()).over(Interval::exactly(half));
+        let pulled = self.back.pulled_back(&slab.normal.map(Interval::exactly)).map(|c| c.times(ratio));
+        let normal = pulled.map(|c| 0.5 * c.lower + 0.5 * c.upper);
+        // Coordinates of the cell are at most 1.
+        let slack = (0..3).fold(Interval::exactly(0.0), |sum, axis| {
+            let off = (pulled[axis].upper - normal[axis]).max(normal[axis] - pulled[axis].lower).next_up();
+            sum.plus(Interval::between(-off, off))
+        });
+        let [inner, outer] = [slab.inner, slab.outer].map(|offset| Interval::exactly(offset).plus(slack));
+        Slab { normal, inner: inner.lower, outer: outer.upper }
+    }
+}
