@@ -25,7 +25,7 @@
 //! 3. **Budget.** What splits on demand heeds `control.max_splits`, or a default that is a public constant, and tells in its
 //!    answer whether it was spent; what keeps parts of cells heeds `control.max_bytes`.
 //! 4. **Walk.** `walk::split_one` splits a cell, `walk::descend` goes depth first, `walk::Queue` best first,
-//!    `walk::Subject` counts splits and keeps parts. Slabs (`Worker::enclosure`) make an answer better by an order.
+//!    `walk::Subject` counts splits and keeps parts. Slabs (`Question::Enclosure`) make an answer better by an order.
 //! 5. **Job.** `Job` checks for a cancel now and then and reports progress; `parallel::each` shares out what is independent,
 //!    in an order that does not depend on the number of threads.
 //! 6. **Doors.** The name in `lib.rs`, a function in `capi/src`, a module in `tests/queries` with a dense oracle and a ball's

@@ -166,6 +166,38 @@ fn lone(maker: &mut Maker<'_>) -> Model {
     }
 }
 
+/// Two to four operands, half-spaces and other solids that know slabs, joined once or twice.
+fn several(maker: &mut Maker<'_>) -> Model {
+    let operand = |maker: &mut Maker<'_>| match maker.below(3) {
+        0 => maker.half_space(),
+        1 => Model::Other(Other::Model(Box::new(maker.half_space()))),
+        _ => Model::Other(Other::Model(Box::new(maker.joined(2)))),
+    };
+    let join = |maker: &mut Maker<'_>| {
+        let mut parts: Vec<Model> = (0..2 + maker.below(3)).map(|_| operand(maker)).collect();
+        match maker.below(4) {
+            0 => Model::Union(parts),
+            1 => Model::Difference(Box::new([operand(maker), Model::Union(parts)])),
+            2 => Model::Complement(Box::new(Model::Intersection(parts))),
+            _ => {
+                parts.truncate(3);
+                Model::Intersection(parts)
+            }
+        }
+    };
+    match maker.below(3) {
+        0 => {
+            let (a, b) = (join(maker), join(maker));
+            Model::Union(vec![a, b])
+        }
+        1 => {
+            let (a, b) = (join(maker), join(maker));
+            Model::Intersection(vec![a, b])
+        }
+        _ => join(maker),
+    }
+}
+
 fn moved(maker: &mut Maker<'_>, make: impl Fn(&mut Maker<'_>) -> Model) -> Model {
     let model = make(maker);
     maker.placed(model)
@@ -288,12 +320,29 @@ fn every_producer(points: u64) {
         maker.placed(joined)
     });
     hold("other solids", points, lone);
+    hold("joined other solids", points, several);
     hold_as("moved half-spaces", points, |maker| moved(maker, |maker| maker.half_space()), by_transform);
     hold_as("moved joined half-spaces", points, |maker| moved(maker, joined), by_transform);
     hold_as("moved primitives", points, |maker| moved(maker, |maker| maker.primitive()), by_transform);
     hold_as("gradients of a host", points, |maker| maker.quadric(true), by_gradient);
     hold_as("balls of a host", points, ball, by_tangent);
     hold_as("tori of a host", points, slim_torus, by_tangent);
+    let by_placement = |model: &Model, frame: &Frame, host: fn(&Model, &Frame) -> Result<Csg, Error>| {
+        let Model::Placed(model, placement) = model else { panic!("not placed") };
+        host(model, frame)?.placed(placement)
+    };
+    hold_as(
+        "moved gradients of a host",
+        points,
+        |maker| moved(maker, |maker| maker.quadric(true)),
+        |model, frame| by_placement(model, frame, by_gradient),
+    );
+    hold_as(
+        "moved balls of a host",
+        points,
+        |maker| moved(maker, ball),
+        |model, frame| by_placement(model, frame, by_tangent),
+    );
 }
 
 #[test]

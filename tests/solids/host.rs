@@ -1,11 +1,15 @@
 //! A host program whose functions take their time: how often it is called, by how many threads, and how soon
 //! a cancel is answered.
 
+use crate::common::exact::Exact;
+use crate::common::{Random, Way};
+use crate::model::Model;
+use leafless::lattice::Cube;
 use leafless::op::{Refinement, Zone};
-use leafless::solid::{Adaptive, Prepared, SplitCounter, Transform};
+use leafless::solid::{Adaptive, Batch, Prepared, SplitCounter, Transform};
 use leafless::{
-    Affine, AnySolid, Bounds, Callback, Control, Csg, Error, Frame, LazyOctree, Membership, Octree, Rule,
-    Solid, Verdict, bounding_box, build, clearance, contains, interference, measure,
+    Affine, AnySolid, Bounds, Callback, Classifier, Control, Csg, Error, Frame, LazyOctree, Membership,
+    Octree, Rule, Solid, Verdict, Worker, bounding_box, build, clearance, contains, interference, measure,
 };
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
@@ -393,7 +397,7 @@ fn wrappers_hand_on_many_questions_at_once() {
 
 #[test]
 fn wrapped_hosts_are_asked_by_all_threads() {
-    let frame = unit(5);
+    let frame = unit(4);
     for k in 0..wrapped(host(&Arc::default(), Duration::ZERO, true)).len() {
         for many in [false, true] {
             let calls = Arc::new(Calls::default());
@@ -404,11 +408,91 @@ fn wrapped_hosts_are_asked_by_all_threads() {
             let calls = Arc::new(Calls::default());
             let (_, solid) = wrapped(host(&calls, Duration::from_millis(1), many)).swap_remove(k);
             let mut lazy = LazyOctree::new(solid, &frame).unwrap();
-            lazy.refine(&Zone::Whole, 4, &Control::threads(4)).unwrap();
+            lazy.refine(&Zone::Whole, 3, &Control::threads(4)).unwrap();
             // (What is found on the way to a cell is found by one thread.)
             assert!(name.contains("transform") || calls.threads() >= 4, "{name}: {}", calls.threads());
         }
     }
+}
+
+/// A ball by its definition, moved, against exact arithmetic.
+#[test]
+fn what_is_proven_of_a_moved_host_is_true() {
+    let mut random = Random(77);
+    let (mut decided, mut exact) = (0, 0);
+    for round in 0..600 {
+        let model = Model::Ellipsoid(CENTRE, [RADIUS; 3]);
+        let small = |random: &mut Random| random.between(-1.5, 1.5);
+        let rows = if round % 3 == 0 {
+            // Nothing is rounded.
+            [[0.0, -2.0, 0.0, 1.25], [0.5, 0.0, 0.0, 0.25], [0.0, 0.0, -1.0, 1.0]]
+        } else {
+            [0; 3].map(|_| [0; 4].map(|_| small(&mut random)))
+        };
+        let Ok(placement) = Affine::new(rows) else { continue };
+        let again = Affine::translation([0.125, -0.25, 0.0]).unwrap();
+        let moved = host(&Arc::default(), Duration::ZERO, round % 2 == 0).placed(&placement).unwrap();
+        let moved = moved.placed(&again).unwrap();
+        let model = Model::Placed(Box::new(Model::Placed(Box::new(model), placement)), again);
+        let frame = Frame::new([-1.0 + 0.1 * f64::from(round % 2); 3], 3.0, 7).unwrap();
+        let Some(mut way) = Way::new(moved.on(&frame, &Control::default()).unwrap().worker().unwrap()) else {
+            continue;
+        };
+        loop {
+            let (min, max) = Cube { frame: &frame, cell: way.cell }.bounds();
+            let verdicts = way.worker.split(way.cell, &way.part).unwrap();
+            for (octant, verdict) in (0..8).zip(verdicts) {
+                let wanted = match verdict {
+                    Verdict::Full => 1,
+                    Verdict::Empty => -1,
+                    _ => continue,
+                };
+                decided += 1;
+                // Points of the inner part of the child, whatever its corners are rounded to.
+                let half = |axis: usize| 0.5 * (max[axis] - min[axis]);
+                for _ in 0..3 {
+                    let point = [0, 1, 2].map(|axis| {
+                        let low = min[axis] + f64::from(octant >> axis & 1) * half(axis);
+                        Exact::from(low + random.between(1e-9, 1.0 - 1e-9) * half(axis))
+                    });
+                    let [x, y, z] = point;
+                    let sign = model.sign(&[x, y, z, Exact::from(1.0)]);
+                    assert!(sign * wanted >= 0, "{verdict:?} of {octant} in {:?}: {model:?}", way.cell);
+                }
+            }
+            // Points without cells.
+            let point = [0, 1, 2].map(|axis| (64.0 * random.between(min[axis], max[axis])).round() / 64.0);
+            let mut answer = [None];
+            way.worker.inside(&[point], &mut answer).unwrap();
+            if let Some(inside) = answer[0] {
+                exact += 1;
+                let [x, y, z] = point.map(Exact::from);
+                let sign = model.sign(&[x, y, z, Exact::from(1.0)]);
+                assert!(sign * if inside { 1 } else { -1 } >= 0, "{point:?} {inside}: {model:?}");
+            }
+            if !way.descend(&mut random) {
+                break;
+            }
+        }
+    }
+    assert!(decided > 5_000 && exact > 200, "{decided} {exact}");
+}
+
+#[test]
+fn a_host_on_the_lattice_does_not_blur_when_it_is_turned_on_the_lattice() {
+    let slab = |min: [f64; 3], max: [f64; 3]| {
+        Ok(match (min[2], max[2]) {
+            (low, high) if high <= 0.25 || low >= 0.5 => Verdict::Empty,
+            (low, high) if low >= 0.25 && high <= 0.5 => Verdict::Full,
+            _ => Verdict::Partial(()),
+        })
+    };
+    let quarter = Affine::new([[0.0, 0.0, 1.0, 0.125], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, 1.0]]).unwrap();
+    let turned = AnySolid::new(Callback::new(slab)).placed(&quarter).unwrap();
+    let tree = build(&turned, &unit(5), Rule::Certified, &Control::default()).unwrap();
+    assert_eq!(tree.statistics().volume(), leafless::Interval::exactly(0.25));
+    assert_eq!(tree.view().contains([0.5, 0.1, 0.9]), Membership::Inside);
+    assert_eq!(tree.view().contains([0.7, 0.1, 0.9]), Membership::Outside);
 }
 
 #[test]

@@ -4,11 +4,12 @@
 use crate::common;
 use crate::common::exact::Exact;
 use crate::common::{Dense, Random, alone, lattice_frame, positions, shapes};
+use leafless::lattice::{Cube, CubeMoments};
 use leafless::op::Zone;
-use leafless::solid::{Ask, Transform};
+use leafless::solid::{Ask, Crossing, Segment, Transform};
 use leafless::{
-    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Rule, Solid, Tag, Verdict,
-    Worker, build, measure,
+    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid, Rule,
+    Solid, Tag, Verdict, Worker, build, measure,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -471,18 +472,32 @@ fn part() -> Csg {
     block.difference(&Csg::ball([0.4, 0.3, 0.2], 0.3).unwrap()).unwrap()
 }
 
-/// Walks down both ways at once: from cells to the cells of which they are the images.
+/// How many cells told of which: enclosures, moments, areas and crossings.
+type Told = [u32; 4];
+
 #[test]
-fn maps_of_the_lattice_hand_enclosures_on_exactly() {
+fn maps_of_the_lattice_hand_on_exactly_what_is_known_of_cells() {
+    let told = handed_on(&part());
+    assert!(told[0] > 200 && told[1] > 50 && told[2] > 200, "{told:?}");
+    let tree = build(&part(), &Frame::new([-1.0; 3], 2.0, 4).unwrap(), Rule::Sampled, &alone()).unwrap();
+    let mesh = leafless::marching_cubes(tree.view(), None, &alone()).unwrap();
+    let told = handed_on(&MeshSolid::new(mesh, FillRule::NonZero).unwrap());
+    assert!(told.iter().all(|&told| told > 50), "{told:?}");
+}
+
+/// Walks down both ways at once: from cells to the cells of which they are the images.
+fn handed_on<S: Solid + Clone>(solid: &S) -> Told {
+    let mut told = [0; 4];
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
     for (rows, scale) in [
         ([[0.0, -1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]], 1.0),
         ([[0.0, 0.0, 2.0, 0.0], [-2.0, 0.0, 0.0, 0.0], [0.0, 2.0, 0.0, 0.0]], 0.5),
     ] {
         let own = Frame::new([-scale; 3], 2.0 * scale, 5).unwrap();
-        let moved = Transform::new(part(), &own, &Affine::new(rows).unwrap());
+        let map = Affine::new(rows).unwrap();
+        let moved = Transform::new(solid.clone(), &own, &map);
         let mut outer = moved.on(&frame, &alone()).unwrap().worker().unwrap();
-        let mut inner = part().on(&own, &alone()).unwrap().worker().unwrap();
+        let mut inner = solid.on(&own, &alone()).unwrap().worker().unwrap();
         let (Verdict::Partial(a), Verdict::Partial(b)) = (outer.root().unwrap(), inner.root().unwrap())
         else {
             panic!("decided");
@@ -496,21 +511,49 @@ fn maps_of_the_lattice_hand_enclosures_on_exactly() {
             });
             Cell { level: cell.level, at }
         };
-        let (mut open, mut asked) = (vec![(Cell::ROOT, a, b)], 0);
+        let sign = |i: usize, j: usize| rows[i][j].signum() * (rows[i][j] != 0.0) as u8 as f64;
+        let turned = |n: [f64; 3]| [0, 1, 2].map(|i| (0..3).map(|j| sign(i, j) * n[j]).sum::<f64>());
+        let mut open = vec![(Cell::ROOT, a, b)];
         while let Some((cell, a, b)) = open.pop() {
             let found = outer.enclosure(cell, &a).unwrap();
             let known = inner.enclosure(source(cell), &b).unwrap();
-            asked += known.is_some() as u32;
+            told[0] += known.is_some() as u32;
             // n · y = n · (P x) = (Pᵀ n) · x.
             let expected = known.map(|mut known| {
-                for slab in &mut known.slabs {
-                    let sign = |i: usize, j: usize| rows[i][j].signum() * (rows[i][j] != 0.0) as u8 as f64;
-                    let n = slab.normal;
-                    slab.normal = [0, 1, 2].map(|i| (0..3).map(|j| sign(i, j) * n[j]).sum::<f64>());
-                }
+                known.slabs.iter_mut().for_each(|slab| slab.normal = turned(slab.normal));
                 known
             });
             assert_eq!(found, expected, "{cell:?}");
+            // M becomes S M Sᵀ.
+            let known = inner.moments(source(cell), &b).unwrap();
+            told[1] += known.is_some() as u32;
+            let expected = known.map(|mut known| {
+                let CubeMoments { first, second: [xx, yy, zz, xy, xz, yz], .. } = known.moments;
+                let matrix = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+                let half = matrix.map(turned);
+                let columns = [0, 1, 2].map(|j| turned(half.map(|row| row[j])));
+                known.moments.first = turned(first);
+                known.moments.second =
+                    [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| columns[j][i]);
+                known
+            });
+            assert_eq!(outer.moments(cell, &a).unwrap(), expected, "{cell:?}");
+            let known = inner.area(source(cell), &b).unwrap();
+            told[2] += known.is_some() as u32;
+            assert_eq!(outer.area(cell, &a).unwrap(), known, "{cell:?}");
+            // Along the diagonals of the cell, whose ends are doubles.
+            let (min, max) = Cube { frame: &frame, cell }.bounds();
+            for k in 0..4 {
+                let end =
+                    |k: u32| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min[axis] } else { max[axis] });
+                let [from, to] = [k, 7 - k].map(end);
+                let back = map.inverse().unwrap();
+                let own_segment = Segment { from: back.apply(from), to: back.apply(to) };
+                let known = inner.crossing(source(cell), &b, &own_segment).unwrap();
+                told[3] += known.is_some() as u32;
+                let expected = known.map(|known| Crossing { normal: turned(known.normal), ..known });
+                assert_eq!(outer.crossing(cell, &a, &Segment { from, to }).unwrap(), expected, "{cell:?}");
+            }
             if cell.level == 5 {
                 continue;
             }
@@ -519,15 +562,15 @@ fn maps_of_the_lattice_hand_enclosures_on_exactly() {
             for (octant, child) in (0..8).zip(children) {
                 let child_cell = cell.child(octant);
                 let at = source(child_cell).at.map(|c| c & 1);
-                let other = own[(at[0] | at[1] << 1 | at[2] << 2) as usize];
+                let other = own[(at[0] | at[1] << 1 | at[2] << 2) as usize].clone();
                 assert_eq!(child.tag(), other.tag());
                 if let (Verdict::Partial(a), Verdict::Partial(b)) = (child, other) {
                     open.push((child_cell, a, b));
                 }
             }
         }
-        assert!(asked > 200, "{asked}");
     }
+    told
 }
 
 #[test]

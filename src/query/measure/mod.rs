@@ -109,7 +109,7 @@ pub const MEASURE_SPLITS: u64 = 1 << 26;
 /// doubt.
 ///
 /// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), the cell contributes what the slabs
-/// cut off, and only the rest is in doubt; where it knows the moments ([`Worker::moments`](crate::Worker::moments)), nothing
+/// cut off, and only the rest is in doubt; where it knows the moments ([`Question::Moments`](crate::solid::Question::Moments)), nothing
 /// is but their error. With N splits the width goes down with N^-1.5 where one curved half-space cuts a cell, with 1/N at
 /// other curved surfaces, with 1/N² at plane ones, and with N^-½ for solids that know no slabs.
 ///

@@ -20,13 +20,13 @@ pub(super) trait Cells {
     /// The children of a cell; `None` if it is not to be split.
     fn split(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<[Verdict<Self::Part>; 8]>, Error>;
 
-    /// As [`Worker::enclosure`](crate::solid::Worker::enclosure).
+    /// As [`Ask::enclosure`](crate::solid::Ask::enclosure).
     fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error>;
 
-    /// As [`Worker::mark`](crate::solid::Worker::mark).
+    /// As [`Parts::mark`](crate::solid::Parts::mark).
     fn mark(&self) -> usize;
 
-    /// As [`Worker::release`](crate::solid::Worker::release).
+    /// As [`Parts::release`](crate::solid::Parts::release).
     fn release(&mut self, mark: usize);
 }
 
