@@ -148,6 +148,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     print("volume", &volumes);
     print("area", &areas);
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/convergence.svg");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("convergence.svg");
     draw(&path, &[("Volume", volumes), ("Area", areas)])
 }

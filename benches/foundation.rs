@@ -92,7 +92,7 @@ fn large(c: &mut Criterion) {
     group.sample_size(10);
     let mesh = Arc::new(torus(1582));
     let frame = frame(&mesh);
-    let threads: &[usize] = if cfg!(feature = "parallel") { &[1, 2] } else { &[1] };
+    let threads: &[usize] = &[1, 2];
     for rule in [Rule::Sampled, Rule::Certified] {
         for &threads in threads {
             group.bench_function(format!("{rule:?}, {threads}"), |b| {

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec4};
 
 /// Red, green, blue and opacity, 0 to 1. Colours are linear, and multiplied by the opacity.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Light(pub Vec4);
+pub struct Light(pub(super) Vec4);
 
 impl Light {
     /// Nothing.
@@ -29,13 +29,15 @@ impl Light {
     }
 }
 
-/// How light becomes bytes.
+/// A table by which light becomes bytes.
 pub struct Tones {
     /// The light from which on a byte is at least as large as its place here.
     from: [f32; 256],
 }
 
 impl Tones {
+    /// The tones of sRGB (IEC 61966-2-1).
+    #[allow(clippy::new_without_default)]
     pub fn new() -> Tones {
         let mut from = [0.0; 256];
         for (byte, from) in from.iter_mut().enumerate().skip(1) {

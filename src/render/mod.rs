@@ -38,6 +38,7 @@ pub use camera::{Camera, FIELD_OF_VIEW, Lens};
 pub use clip::Clip;
 pub use clipped::ClippedLayer;
 pub use legend::{LegendBox, LegendSide, draw_colour_bar, draw_names};
+pub use light::{Light, Tones};
 pub use lines::LinesLayer;
 pub use mesh::{MeshEdges, MeshLayer};
 pub use octree::OctreeLayer;
@@ -55,7 +56,7 @@ use crate::error::Error;
 use crate::memory;
 use crate::parallel::each;
 use camera::View;
-use light::{Light, Tones};
+
 use picture::check_size;
 use stage::{Pass, Stage};
 use tile::{TILE, Tile};

@@ -18,6 +18,7 @@ mod distance_field;
 mod extent;
 mod interference;
 mod measure;
+mod measure_mixed;
 mod measure_primitives;
 mod points;
 mod ray_models;

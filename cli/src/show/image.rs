@@ -1,6 +1,6 @@
 //! Smaller copies of pictures.
 
-use leafless::render::Picture;
+use leafless::render::{Light, Picture, Tones};
 use std::borrow::Cow;
 
 /// A picture without depths: red, green, blue (sRGB) and opacity a pixel, row by row from the upper left corner. Colours are
@@ -34,31 +34,22 @@ impl Image<'_> {
         if [width, height] == [self.width, self.height] {
             return self;
         }
-        let light: Vec<f32> = (0..=255u8).map(linear).collect();
+        let tones = Tones::new();
         let mut pixels = Vec::with_capacity(width * height);
-        let mut sums = vec![[0f32; 4]; width];
+        let mut sums = vec![Light::NONE; width];
         for y in 0..height {
-            sums.fill([0.0; 4]);
+            sums.fill(Light::NONE);
             for (row, part) in covered(y, height, self.height) {
                 let row = &self.pixels[row * self.width..][..self.width];
                 for (x, sum) in sums.iter_mut().enumerate() {
                     for (column, share) in covered(x, width, self.width) {
-                        let [r, g, b, a] = row[column];
-                        let weight = part * share * f32::from(a) / 255.0;
-                        for (sum, byte) in sum.iter_mut().zip([r, g, b]) {
-                            *sum += weight * light[usize::from(byte)];
-                        }
-                        sum[3] += weight;
+                        *sum = *sum + Light::of(row[column]) * (part * share);
                     }
                 }
             }
-            pixels.extend(sums.iter().map(|&[r, g, b, a]| {
-                if a < 0.5 / 255.0 {
-                    return [0; 4];
-                }
-                let [r, g, b] = [r, g, b].map(|light| byte(encoded(light / a)));
-                [r, g, b, byte(a)]
-            }));
+            // What is as good as transparent has no colour.
+            let pixel = |sum: &Light| Some(tones.rgba(*sum)).filter(|rgba| rgba[3] > 0).unwrap_or([0; 4]);
+            pixels.extend(sums.iter().map(pixel));
         }
         Image { width, height, pixels: Cow::Owned(pixels) }
     }
@@ -72,22 +63,6 @@ fn covered(i: usize, to: usize, from: usize) -> impl Iterator<Item = (usize, f32
         let overlap = end.min((pixel + 1) * to) - start.max(pixel * to);
         (pixel, overlap as f32 / from as f32)
     })
-}
-
-/// The byte nearest to a number from 0 to 1.
-fn byte(x: f32) -> u8 {
-    (x * 255.0).round() as u8
-}
-
-/// The light of an sRGB value, 0 to 1 (IEC 61966-2-1).
-fn linear(byte: u8) -> f32 {
-    let x = f32::from(byte) / 255.0;
-    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-}
-
-/// The sRGB value of light, both 0 to 1.
-fn encoded(x: f32) -> f32 {
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]
@@ -119,7 +94,7 @@ mod tests {
         assert_eq!(of(vec![white, none, none, none], 2, [1, 2]), [[255, 255, 255, 128], [0; 4]]);
         // Three pixels on two: the middle one is shared.
         let thirds = of(vec![white, black, black], 3, [2, 1]);
-        let third = byte(encoded(2.0 / 3.0));
-        assert_eq!(thirds, [[third, third, third, 255], [0, 0, 0, 255]]);
+        // 255 (1.055 (2/3)^(1/2.4) − 0.055) = 213.2
+        assert_eq!(thirds, [[213, 213, 213, 255], [0, 0, 0, 255]]);
     }
 }
