@@ -726,6 +726,7 @@ static void is_moved(void) {
     leafless_solid *solid = NULL, *moved = NULL, *known = NULL;
     leafless_octree *own = NULL, *box = NULL;
     leafless_motion motion = 77;
+    leafless_octree_info info;
     leafless_statistics found;
     uint64_t state = 3;
     size_t i;
@@ -754,6 +755,9 @@ static void is_moved(void) {
     CHECK(h.destroyed == 0);
     OK(leafless_octree_build(moved, &frame, LEAFLESS_RULE_CERTIFIED, &options, &own));
     found = statistics_of(own);
+    /* Nobody said where the shape ends. */
+    OK(leafless_octree_describe(own, &info));
+    CHECK(info.is_clipped);
     CHECK(0.2 * volume < found.volume_model.lower && found.volume_model.lower < volume);
     CHECK(volume < found.volume_model.upper && found.volume_model.upper < 2.5 * volume);
     for (i = 0; i < COUNT(points); i++) {
@@ -778,6 +782,27 @@ static void is_moved(void) {
     leafless_octree_free(own);
     leafless_solid_free(moved);
     CHECK(h.destroyed == 1);
+
+    /* A box around the shape moves along. */
+    callbacks.exterior = LEAFLESS_EXTERIOR_UNKNOWN;
+    for (axis = 0; axis < 6; axis++) {
+        callbacks.bounds[axis] = BRICK[axis / 3][axis % 3];
+    }
+    OK(leafless_solid_new_callbacks(&callbacks, &solid));
+    OK(leafless_solid_placed(solid, turn, NULL, &moved));
+    OK(leafless_octree_build(moved, &frame, LEAFLESS_RULE_CERTIFIED, &options, &own));
+    OK(leafless_octree_describe(own, &info));
+    CHECK(!info.is_clipped);
+    leafless_octree_free(own);
+    leafless_solid_free(moved);
+    leafless_solid_free(solid);
+    CHECK(h.destroyed == 2);
+    callbacks.bounds[3] = -1;
+    solid = NULL;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_callbacks(&callbacks, &solid));
+    callbacks.bounds[3] = NAN;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_callbacks(&callbacks, &solid));
+    CHECK(solid == NULL && h.destroyed == 2);
 }
 
 int main(void) {

@@ -2408,6 +2408,12 @@ typedef struct {
      * both are set, where that one proves nothing.
      */
     leafless_tangent_fn tangent;
+    /**
+     * A box that the shape lies in: its lower and its upper corner (model units). All zero: none is known. In a universe that
+     * holds the box the shape ends inside, whatever `exterior` says. The box moves along with the shape; `exterior` does so only
+     * where axes are permuted and mirrored, and all are stretched by one power of two.
+     */
+    double bounds[6];
 } leafless_callbacks;
 
 /**
@@ -5559,7 +5565,7 @@ leafless_status leafless_callbacks_init(leafless_callbacks *callbacks, size_t st
  * - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
  * - Result: `*solid`.
  * - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
- *   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
+ *   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior, or `bounds` is no box.
  *   After an error `destroy` is not called.
  * - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
  *   leafless_solid_free.

@@ -11,7 +11,7 @@ use leafless::Interval;
 use leafless::Tag;
 use leafless::memory;
 use leafless::solid::{Fingerprint, GradientRange, HalfSpace, TangentBalls};
-use leafless::{Callback, Csg, Verdict};
+use leafless::{Bounds, Callback, Csg, Verdict};
 use std::sync::Arc;
 
 /// What a host promises of its shape outside of the universe that it is asked about.
@@ -160,6 +160,10 @@ pub struct leafless_callbacks {
     /// Tells of the surface next to the middle of a box; optional. It is asked for the same as `gradient`; if
     /// both are set, where that one proves nothing.
     pub tangent: leafless_tangent_fn,
+    /// A box that the shape lies in: its lower and its upper corner (model units). All zero: none is known. In a universe that
+    /// holds the box the shape ends inside, whatever `exterior` says. The box moves along with the shape; `exterior` does so only
+    /// where axes are permuted and mirrored, and all are stretched by one power of two.
+    pub bounds: [f64; 6],
 }
 
 // SAFETY: numbers, a pointer, and optional functions.
@@ -314,7 +318,7 @@ pub unsafe extern "C" fn leafless_callbacks_init(
 /// - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL if `classify` is NULL, unless `distance_many` is set and `classify_many` is not;
-///   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior.
+///   LEAFLESS_E_ARGUMENT if `exterior` is no leafless_exterior, or `bounds` is no box.
 ///   After an error `destroy` is not called.
 /// - Ownership: `ctx` must live until `destroy` is called with it; give `*solid` back with
 ///   leafless_solid_free.
@@ -345,6 +349,17 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
                 return Err(Failure::Argument { name: "callbacks.exterior", problem });
             }
         };
+        let [a, b, c, d, e, f] = callbacks.bounds;
+        let bounds = match callbacks.bounds == [0.0; 6] {
+            true => None,
+            false => match Bounds::new([a, b, c], [d, e, f]) {
+                None => {
+                    let problem = "must be a lower and an upper corner, all numbers finite";
+                    return Err(Failure::Argument { name: "callbacks.bounds", problem });
+                }
+                known => known,
+            },
+        };
         let solid = out(solid, "solid")?;
         let has_many = callbacks.classify_many.is_some();
         let has_distance = callbacks.distance_many.is_some();
@@ -358,6 +373,9 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
         let mut callback = Callback::new(classify).with_exterior(exterior);
         if let Some(fingerprint) = fingerprint {
             callback = callback.with_fingerprint(fingerprint);
+        }
+        if let Some(bounds) = bounds {
+            callback = callback.with_bounds(bounds);
         }
         if has_many {
             let host = host.clone();

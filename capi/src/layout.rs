@@ -89,7 +89,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_legend_name { name, name_length, colour, reserved }
         leafless_callbacks {
             struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many,
-            gradient, tangent
+            gradient, tangent, bounds
         }
         leafless_gradient { value, gradient }
         leafless_tangent { point, normal, inner_curvature, outer_curvature, error }

@@ -203,6 +203,21 @@ fn moved(maker: &mut Maker<'_>, make: impl Fn(&mut Maker<'_>) -> Model) -> Model
     maker.placed(model)
 }
 
+/// Turned about a point, by a rotation of rational numbers as doubles have them, and stretched a little.
+fn turned(maker: &mut Maker<'_>, make: impl Fn(&mut Maker<'_>) -> Model) -> Model {
+    let (model, point) = (make(maker), maker.point());
+    let scale = maker.random.between(0.8, 1.25);
+    let rows = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]].map(|row| {
+        let [a, b, c] = row.map(|c| c * scale);
+        [a, b, c, a * point[0] + b * point[1] + c * point[2]]
+    });
+    let about = [0, 1, 2].map(|axis| {
+        let [a, b, c, moved] = rows[axis];
+        [a, b, c, point[axis] - moved]
+    });
+    Model::Placed(Box::new(model), Affine::new(about).unwrap_or(Affine::IDENTITY))
+}
+
 /// A placed model that is not placed as an expression, but from a frame of its own; some as complements of
 /// complements.
 fn by_transform(model: &Model, frame: &Frame) -> Result<Csg, Error> {
@@ -338,9 +353,9 @@ fn every_producer(points: u64) {
         |model, frame| by_placement(model, frame, by_gradient),
     );
     hold_as(
-        "moved balls of a host",
+        "turned balls of a host",
         points,
-        |maker| moved(maker, ball),
+        |maker| turned(maker, ball),
         |model, frame| by_placement(model, frame, by_tangent),
     );
 }

@@ -438,7 +438,7 @@ fn what_is_proven_of_a_moved_host_is_true() {
         let Some(mut way) = Way::new(moved.on(&frame, &Control::default()).unwrap().worker().unwrap()) else {
             continue;
         };
-        loop {
+        while way.cell.level < frame.depth() {
             let (min, max) = Cube { frame: &frame, cell: way.cell }.bounds();
             let verdicts = way.worker.split(way.cell, &way.part).unwrap();
             for (octant, verdict) in (0..8).zip(verdicts) {

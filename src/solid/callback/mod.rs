@@ -209,8 +209,9 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     }
 
     /// The same solid with a promise about the space around the universe: EMPTY if the shape ends inside.
-    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL. The promise does not hold of the shape
-    /// under an affine map; [`with_bounds`](Self::with_bounds) moves along.
+    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL. Of the shape under an
+    /// affine map the promise holds if the map permutes and mirrors axes, and stretches all by one power of two;
+    /// [`with_bounds`](Self::with_bounds) moves along with every map.
     #[must_use]
     pub fn with_exterior(self, exterior: Tag) -> Callback<'a, F> {
         self.with(|functions| {
@@ -293,6 +294,8 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
 
     fn exterior(&self) -> Tag {
         let (bounds, promised) = match &self.placement {
+            // The inverse image of the universe is the one that the promise is about if it is a universe.
+            Some(placement) if placement.is_on_lattice => (placement.bounds, self.functions.exterior),
             Some(placement) => (placement.bounds, Tag::Partial),
             None => (self.functions.bounds, self.functions.exterior),
         };

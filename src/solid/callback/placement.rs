@@ -12,6 +12,8 @@ pub(super) type Corners = [[f64; 3]; 2];
 #[derive(Clone, Copy)]
 pub(super) struct Placement {
     pub(super) back: Inverse,
+    /// Whether inverse images of universes are universes.
+    pub(super) is_on_lattice: bool,
     /// A box around the moved shape, if the host promised one.
     pub(super) bounds: Option<Bounds>,
 }
@@ -20,13 +22,14 @@ impl Placement {
     /// Of a shape that lies in `bounds` before it is moved.
     pub(super) fn new(placement: &Affine, bounds: Option<Bounds>) -> Placement {
         let bounds = bounds.and_then(|bounds| bounds.placed(placement));
-        Placement { back: Inverse::of(placement), bounds }
+        Placement { back: Inverse::of(placement), is_on_lattice: is_on_lattice(placement), bounds }
     }
 
     /// Moved once more.
     pub(super) fn then(&self, placement: &Affine) -> Placement {
         let bounds = self.bounds.and_then(|bounds| bounds.placed(placement));
-        Placement { back: self.back.then(placement), bounds }
+        let is_on_lattice = self.is_on_lattice && is_on_lattice(placement);
+        Placement { back: self.back.then(placement), is_on_lattice, bounds }
     }
 
     /// A box around the inverse image of a box.
@@ -70,4 +73,10 @@ impl Placement {
         let [inner, outer] = [slab.inner, slab.outer].map(|offset| Interval::exactly(offset).plus(slack));
         Slab { normal, inner: inner.lower, outer: outer.upper }
     }
+}
+
+/// Whether a map takes universes to universes: it permutes and mirrors axes, and stretches all of them by one power of two.
+fn is_on_lattice(placement: &Affine) -> bool {
+    let [x, y, z] = placement.rows().map(|[x, y, z, _]| x.abs() + y.abs() + z.abs());
+    placement.is_monomial() && x == y && y == z
 }
