@@ -68,7 +68,7 @@ fn expressions_of_other_solids_to_a_ten_thousandth() {
     for (name, csg, truth) in mixed(8) {
         for tolerance in [1e-2, 1e-3, 1e-4] {
             let begun = std::time::Instant::now();
-            let control = Control { max_splits: Some(20_000_000), ..alone() };
+            let control = Control { max_splits: Some(1_000_000), ..alone() };
             let found = measure(&csg, &around_cube(16), tolerance, &control).unwrap();
             assert!(found.volume.contains(truth), "{name}: {:?} {truth}", found.volume);
             let width = found.volume.width() / truth;
