@@ -202,6 +202,11 @@ use alloc::vec::Vec;
 ///
 /// # Law
 /// What [`on`](Solid::on) returns depends on the shape and the frame alone.
+///
+/// # One question after the other
+/// Every query puts the solid on its frame first: O(1) for octrees that this library made and for a host's functions, O(n) in
+/// the half-spaces of an expression, the triangles of a mesh, and the links of an octree that was mapped. Whoever asks one point
+/// after the other wraps the solid in [`Prepared`], which keeps what was prepared.
 pub trait Solid: Send + Sync {
     /// The shape on a frame.
     type Classifier: Classifier;

@@ -111,11 +111,13 @@ pub fn line_of_sight<S: Solid>(
     let job = Job::new(control);
     let mut worker = classifier.worker()?;
     let found = Asked::new(&mut worker, &job).first(&Line::new(frame, ray))?;
-    let all_known =
-        classifier.exterior() == Tag::Empty || frame.cell_of(from).is_some() && frame.cell_of(to).is_some();
+    // (What lies around the universe may take long to find out.)
+    let all_known = || {
+        frame.cell_of(from).is_some() && frame.cell_of(to).is_some() || classifier.exterior() == Tag::Empty
+    };
     Ok(match found.stops() {
         (true, _) => Sight::Blocked,
-        (false, false) if all_known => Sight::Clear,
+        (false, false) if all_known() => Sight::Clear,
         _ => Sight::Undecided,
     })
 }
