@@ -30,10 +30,14 @@ impl Scratch {
         cell: Cell,
         part: CsgPart,
     ) -> Result<Option<Enclosure>, Error> {
+        let words = Scratch::list(program, &self.words, part);
         let is_solid = |word: &Word| matches!(word.op(), Op::Solid { .. });
-        if program.paper || part.is_table() || !Scratch::list(program, &self.words, part).iter().any(is_solid)
-        {
+        if program.paper || part.is_table() || !words.iter().any(is_solid) {
             return Ok(self.slabs_of_half_spaces(program, cell, part));
+        }
+        // An operand that stays undecided leaves most of the cell in doubt, whatever the others know.
+        if words.len() > MOST_JOINED || words.iter().any(|word| matches!(word.op(), Op::Unknown)) {
+            return Ok(None);
         }
         let mut stack: Vec<Option<Enclosure>> = memory::with_capacity(part.words())?;
         for i in 0..part.words() {
@@ -94,6 +98,9 @@ impl Scratch {
         }
     }
 }
+
+/// Most words whose operands are asked for slabs one by one.
+const MOST_JOINED: usize = 64;
 
 /// Up to three half-spaces, or their complements.
 pub(crate) type Literals = [Option<(u32, bool)>; 3];
