@@ -7,7 +7,7 @@ use crate::dexel::{Occupied, TriDexelRef};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::octree::block::BLOCK_LEVELS;
-use crate::octree::{Octree, Proof, Tag};
+use crate::octree::{Block, Octree, Proof, Tag};
 use crate::solid::{Classifier, FreeParts, OneByOne, Question, Verdict, WholeQuestion, Worker};
 
 /// The octree of a tri-dexel model by the centres of its cells: a finest cell is FULL if its centre lies inside, and EMPTY
@@ -106,17 +106,17 @@ impl Worker for Centres<'_> {
     }
 
     fn answer(&mut self, cell: Cell, _: &(), question: Question<'_>) -> Result<(), Error> {
-        match question {
-            Question::Centre(inside) => *inside = Some(self.model.contains_cell(cell.at)),
-            Question::Block(block, filled) => {
-                let Some(words) = block.centres_mut() else { return Ok(()) };
-                if !self.model.fill_centres(cell.at.map(|a| 64 * a), 2, words) {
-                    words.fill(0);
-                }
-                *filled = true;
-            }
-            _ => {}
+        if let Question::Centre(inside) = question {
+            *inside = Some(self.model.contains_cell(cell.at));
         }
         Ok(())
+    }
+
+    fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
+        let Some(words) = block.centres_mut() else { return Ok(false) };
+        if !self.model.fill_centres(cell.at.map(|a| 64 * a), 2, words) {
+            words.fill(0);
+        }
+        Ok(true)
     }
 }

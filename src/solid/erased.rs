@@ -13,7 +13,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
-use crate::octree::{Planes, Proof, Tag};
+use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -277,6 +277,7 @@ trait ErasedWorker: Send + Sync {
         control: &Control<'_>,
         inside: &mut Vec<Option<bool>>,
     ) -> Result<(), Error>;
+    fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error>;
     fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>>;
     fn sample64(&mut self, cell: Cell, parts: &[(u8, ErasedPart)]) -> Result<Option<u64>, Error>;
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error>;
@@ -368,6 +369,11 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
         Ok(())
     }
 
+    fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error> {
+        let part = self[0].part(part);
+        self[0].worker.fill(cell, &part, block)
+    }
+
     fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>> {
         self[0].worker.subtree(&self[0].parts[part.0].0)
     }
@@ -424,6 +430,10 @@ impl Worker for AnyWorker {
         parts: &mut Vec<(u8, ErasedPart)>,
     ) -> Result<Planes, Error> {
         self.0.split64(cell, part, parts)
+    }
+
+    fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error> {
+        self.0.fill(cell, part, block)
     }
 
     fn subtree(&self, part: &ErasedPart) -> Option<Subtree<'_>> {

@@ -17,7 +17,7 @@
 //! | answers [`Question::Enclosure`] | second order: volume, centroid and inertia to N^-1 (plane faces: N^-2), a bounding box in some hundred splits, rays and vertices to a curvature times a cell's square, octrees that end where the surface is known to a tolerance ([`Adaptive`]) |
 //! | answers [`Question::Moments`], [`Question::Area`] | third order: volume and moments to N^-1.5, areas |
 //! | answers [`Question::Crossing`] | vertices of surfaces on the surface, with normals, without a search |
-//! | answers [`Question::Block`], [`Question::Chords`] | nothing but speed: sampled octrees, tri-dexel models |
+//! | answers [`Question::Chords`], writes [`fill`](Worker::fill) | nothing but speed: tri-dexel models, octrees |
 //! | writes [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for functions that take long; points without a descent ([`Batch::inside`]); cells without the way to them ([`Batch::recall`]) |
 //! | writes [`Parts`] in place of [`FreeParts`] | parts that are lists in scratch memory, so that children look only at what cut their parent |
 //!
@@ -85,7 +85,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
-use crate::octree::{Planes, Proof, Tag};
+use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::vec::Vec;
 
 /// A shape in model space.
@@ -338,6 +338,17 @@ pub trait Worker: Batch {
         parts: &mut Vec<(u8, Self::Part)>,
     ) -> Result<Planes, Error> {
         split_twice(self, cell, part, parts)
+    }
+
+    /// Classifies a PARTIAL cell of 64³ finest cells at once, where that is faster than descent: fills what
+    /// `block` asks for with just what descending by [`split`](Self::split) would find, and returns `true`.
+    /// The default returns `false`: descend.
+    ///
+    /// # Errors
+    /// As all questions.
+    fn fill(&mut self, cell: Cell, part: &Self::Part, block: &mut Block) -> Result<bool, Error> {
+        let _ = (cell, part, block);
+        Ok(false)
     }
 
     /// Samples many at once, the grain of storage: of those 64 grandchildren of a cell whose parts are given,

@@ -5,7 +5,6 @@ use crate::control::Control;
 use crate::dexel::Beam;
 use crate::error::Error;
 use crate::lattice::{Cell, CellMoments, Interval, VolumeMoments};
-use crate::octree::Block;
 
 /// A question about one PARTIAL cell, with the place for the answer. Where nothing is known the place is left as it is.
 ///
@@ -31,10 +30,6 @@ pub enum Question<'q> {
     /// Where a segment with both ends in the closed cell first crosses the boundary, by the law that [`Crossing`] states.
     /// Nothing if it does not, or the solid cannot tell.
     Crossing(&'q Segment, &'q mut Option<Crossing>),
-
-    /// The cell's 64³ finest cells at once, where that is faster than descent: fills what the block asks for with just what
-    /// descending by [`Worker::split`] would find, and sets the flag.
-    Block(&'q mut Block, &'q mut bool),
 
     /// Where rays through the centres of finest cells enter and leave the solid in the cell, if that is known for all rays that
     /// the beam asks for.
@@ -72,11 +67,6 @@ impl<'q> Question<'q> {
             Question::Moments(known) => *known = known.map(|known| known.complement()),
             Question::Area(_) => {}
             Question::Crossing(_, known) => *known = known.map(|known| known.complement()),
-            Question::Block(block, filled) => {
-                if *filled {
-                    block.complement();
-                }
-            }
             Question::Chords(Chords { beam, found, first }) => {
                 if *found {
                     beam.complement(first)?;
@@ -94,7 +84,6 @@ impl<'q> Question<'q> {
             Question::Moments(known) => Question::Moments(known),
             Question::Area(known) => Question::Area(known),
             Question::Crossing(segment, known) => Question::Crossing(segment, known),
-            Question::Block(block, filled) => Question::Block(block, filled),
             Question::Chords(Chords { beam, found, first }) => {
                 Question::Chords(Chords { beam, found, first: *first })
             }
@@ -162,17 +151,6 @@ pub trait Ask: Worker {
         let mut known = None;
         self.answer(cell, part, Question::Crossing(segment, &mut known))?;
         Ok(known)
-    }
-
-    /// Fills a block of 64³ finest cells, if that is faster than descent: [`Question::Block`].
-    ///
-    /// # Errors
-    /// As all questions.
-    #[inline(always)]
-    fn fill(&mut self, cell: Cell, part: &Self::Part, block: &mut Block) -> Result<bool, Error> {
-        let mut filled = false;
-        self.answer(cell, part, Question::Block(block, &mut filled))?;
-        Ok(filled)
     }
 
     /// Adds the intervals of rays in a PARTIAL cell, if they are known: [`Question::Chords`].

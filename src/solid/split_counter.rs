@@ -136,10 +136,10 @@ impl<W: Worker> Worker for CountingWorker<W> {
         self.inner.split(cell, part)
     }
 
-    /// Blocks and rays are descended, so that their splits are counted.
+    /// Rays are descended, so that their splits are counted.
     fn answer(&mut self, cell: Cell, part: &W::Part, question: Question<'_>) -> Result<(), Error> {
         match question {
-            Question::Block(..) | Question::Chords(_) => Ok(()),
+            Question::Chords(_) => Ok(()),
             question => self.inner.answer(cell, part, question),
         }
     }

@@ -157,11 +157,7 @@ impl<W: Worker> Worker for ProvenWorker<W> {
                     }
                 }
             }
-            Question::Moments(_)
-            | Question::Area(_)
-            | Question::Crossing(..)
-            | Question::Block(..)
-            | Question::Chords(_) => {}
+            Question::Moments(_) | Question::Area(_) | Question::Crossing(..) | Question::Chords(_) => {}
         }
         Ok(())
     }

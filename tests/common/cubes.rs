@@ -126,12 +126,14 @@ impl<T: Cubes> Worker for OnFrame<T> {
 
     fn answer(&mut self, cell: Cell, _: &(), question: Question<'_>) -> Result<(), Error> {
         let cube = Cube { frame: &self.frame, cell };
-        match question {
-            Question::Centre(inside) => *inside = self.shape.sample(&cube)?,
-            Question::Block(block, filled) => *filled = self.shape.fill(&cube, block)?,
-            _ => {}
+        if let Question::Centre(inside) = question {
+            *inside = self.shape.sample(&cube)?;
         }
         Ok(())
+    }
+
+    fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
+        self.shape.fill(&Cube { frame: &self.frame, cell }, block)
     }
 }
 

@@ -3,10 +3,10 @@
 use crate::common::alone;
 use leafless::octree::Cursor;
 use leafless::op::Zone;
-use leafless::solid::{Adaptive, Ask};
+use leafless::solid::{Adaptive, Ask, SplitCounter};
 use leafless::{
-    Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Rule, Solid, Tag,
-    Verdict, Worker, build,
+    Affine, AnySolid, Callback, Cell, Classifier, Control, Csg, Error, FillRule, Frame, LazyOctree,
+    MeshSolid, Octree, Rule, Solid, Tag, TriangleMesh, Verdict, Worker, build,
 };
 
 fn turned_block() -> Csg {
@@ -114,4 +114,25 @@ fn what_knows_nothing_is_split_as_ever() {
         let refused = Adaptive::new(Callback::new(ball), tolerance);
         assert!(matches!(refused, Err(Error::Argument { name: "tolerance", .. })));
     }
+}
+
+/// Where a mesh and a ball meet, both are open in a cell, and what each knows of it is joined.
+#[test]
+fn expressions_of_meshes_and_half_spaces_end_where_both_are_known() {
+    let vertices = (0..8).map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1))).collect();
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let mesh = MeshSolid::new(TriangleMesh::new(vertices, triangles).unwrap(), FillRule::NonZero).unwrap();
+    let ball = Csg::ball([1.0; 3], 0.75).unwrap();
+    let part = Csg::solid(AnySolid::new(mesh.clone())).difference(&ball).unwrap();
+    let frame = Frame::new([-0.77; 3], 2.7, 14).unwrap();
+    let adaptive = Adaptive::new(part, 1e-3).unwrap();
+    let tree = build(&adaptive, &frame, Rule::Certified, &alone()).unwrap();
+    // Nothing that is faster than splitting gets past the tolerance.
+    assert_eq!(build(&SplitCounter::new(adaptive), &frame, Rule::Certified, &alone()).unwrap(), tree);
+    // What is left are edges of the mesh. The curves where it meets the ball take some ten thousand cells by verdicts.
+    let finest = |tree: &Octree| tree.statistics().levels()[14].partial;
+    let alone = build(&Adaptive::new(mesh, 1e-3).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
+    println!("{} cells are undecided at level 14, {} of the mesh alone", finest(&tree), finest(&alone));
+    assert!(finest(&tree) < finest(&alone));
 }

@@ -738,13 +738,11 @@ impl Worker for BulkOnFrame<'_> {
     }
 
     fn answer(&mut self, cell: Cell, part: &(), question: Question<'_>) -> Result<(), Error> {
-        match question {
-            Question::Block(block, filled) => {
-                *filled = self.fill_block(cell, block);
-                Ok(())
-            }
-            question => self.ball.answer(cell, part, question),
-        }
+        Worker::answer(&mut self.ball, cell, part, question)
+    }
+
+    fn fill(&mut self, cell: Cell, _: &(), block: &mut Block) -> Result<bool, Error> {
+        Ok(self.fill_block(cell, block))
     }
 }
 

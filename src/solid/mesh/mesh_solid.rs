@@ -450,11 +450,26 @@ impl Worker for MeshWorker {
         Ok(verdicts)
     }
 
+    fn fill(&mut self, cell: Cell, part: &MeshPart, block: &mut Block) -> Result<bool, Error> {
+        if part.caps.is_some() {
+            return Ok(false);
+        }
+        let MeshWorker { mesh, triangles, scan, .. } = self;
+        let (at, _) = extent(cell, mesh.placed.frame.depth());
+        let triangles = list(&mesh.roots, triangles, part);
+        let task = Task { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
+        let scan = match scan {
+            Some(scan) => scan,
+            none => none.insert(Box::new(Scan::new()?)),
+        };
+        scan.fill(task, block)?;
+        Ok(true)
+    }
+
     fn answer(&mut self, cell: Cell, part: &MeshPart, question: Question<'_>) -> Result<(), Error> {
         let (at, size) = extent(cell, self.mesh.placed.frame.depth());
         let fill = self.mesh.fill;
         match question {
-            Question::Block(block, filled) => *filled = self.fill_block(at, part, block)?,
             Question::Chords(chords) => *chords.found = self.find_chords(at, part, chords.beam)?,
             // A finest cell's lowest centre is its only one.
             Question::Centre(inside) => {
@@ -504,21 +519,6 @@ impl MeshWorker {
             (Some(sides), Some(view)) => tell(&view, sides),
             _ => Ok(None),
         }
-    }
-
-    fn fill_block(&mut self, at: [i32; 3], part: &MeshPart, block: &mut Block) -> Result<bool, Error> {
-        if part.caps.is_some() {
-            return Ok(false);
-        }
-        let MeshWorker { mesh, triangles, scan, .. } = self;
-        let triangles = list(&mesh.roots, triangles, part);
-        let task = Task { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
-        let scan = match scan {
-            Some(scan) => scan,
-            none => none.insert(Box::new(Scan::new()?)),
-        };
-        scan.fill(task, block)?;
-        Ok(true)
     }
 
     fn find_chords(&mut self, at: [i32; 3], part: &MeshPart, beam: &mut Beam) -> Result<bool, Error> {

@@ -645,7 +645,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
                     *known = self.inner.crossing(source, &own, &segment)?.map(|known| turn.crossing(&known));
                 }
             }
-            Question::Block(..) | Question::Chords(_) => {}
+            Question::Chords(_) => {}
         }
         Ok(())
     }

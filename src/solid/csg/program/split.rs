@@ -7,7 +7,7 @@ use super::worker::{Ask, CsgPart, Scratch};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Frame};
-use crate::octree::{Planes, Proof, Tag};
+use crate::octree::{Block, Planes, Proof, Tag};
 use crate::solid::csg::Csg;
 use crate::solid::{
     AnyWorker, AskWhole, Batch, Classifier, Fingerprint, OCTANTS, Parts, Question, Solid, Subtree, Verdict,
@@ -219,7 +219,7 @@ impl Worker for CsgWorker {
             Question::Chords(chords) => {
                 *chords.found = self.rays.find(program, scratch, cell, part, chords.beam)?;
             }
-            Question::Centre(_) | Question::Crossing(..) | Question::Block(..) => {}
+            Question::Centre(_) | Question::Crossing(..) => {}
         }
         Ok(())
     }
@@ -260,6 +260,15 @@ impl Worker for CsgWorker {
             planes.upper |= (cells.upper as u64) << (8 * k);
         }
         Ok(planes)
+    }
+
+    fn fill(&mut self, cell: Cell, part: &CsgPart, block: &mut Block) -> Result<bool, Error> {
+        let (program, scratch) = (&*self.program, &mut self.scratch);
+        let filled = scratch.ask_lone(program, *part, |worker, part| worker.fill(cell, part, block))?;
+        if let Some((true, true)) = filled {
+            block.complement();
+        }
+        Ok(filled.is_some_and(|(filled, _)| filled))
     }
 
     fn subtree(&self, part: &CsgPart) -> Option<Subtree<'_>> {
