@@ -386,8 +386,9 @@ enum leafless_motion
      */
     LEAFLESS_MOTION_VERTICES = 1,
     /**
-     * As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not
-     * parallel to the lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
+     * A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_new_transform does, on a frame
+     * that is chosen for the solid; a host's shape is asked about boxes around the inverse images of cells. Where cells
+     * are the images of cells, nothing blurs.
      */
     LEAFLESS_MOTION_CONSERVATIVE = 2,
 };
@@ -2410,8 +2411,8 @@ typedef struct {
     leafless_tangent_fn tangent;
     /**
      * A box that the shape lies in: its lower and its upper corner (model units). All zero: none is known. In a universe that
-     * holds the box the shape ends inside, whatever `exterior` says. The box moves along with the shape; `exterior` does so only
-     * where axes are permuted and mirrored, and all are stretched by one power of two.
+     * holds the box the shape ends inside, whatever `exterior` says. The box moves along with the shape; of a moved shape
+     * `exterior` says nothing.
      */
     double bounds[6];
 } leafless_callbacks;

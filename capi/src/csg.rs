@@ -493,8 +493,9 @@ pub enum leafless_motion {
     /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
     /// allows for that.
     LEAFLESS_MOTION_VERTICES = 1,
-    /// As leafless_solid_new_transform does, on a frame that is chosen for the solid: a surface that is not
-    /// parallel to the lattice blurs by about a cell. Where cells are the images of cells, nothing blurs.
+    /// A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_new_transform does, on a frame
+    /// that is chosen for the solid; a host's shape is asked about boxes around the inverse images of cells. Where cells
+    /// are the images of cells, nothing blurs.
     LEAFLESS_MOTION_CONSERVATIVE = 2,
 }
 use leafless_motion::*;

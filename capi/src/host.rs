@@ -161,8 +161,8 @@ pub struct leafless_callbacks {
     /// both are set, where that one proves nothing.
     pub tangent: leafless_tangent_fn,
     /// A box that the shape lies in: its lower and its upper corner (model units). All zero: none is known. In a universe that
-    /// holds the box the shape ends inside, whatever `exterior` says. The box moves along with the shape; `exterior` does so only
-    /// where axes are permuted and mirrored, and all are stretched by one power of two.
+    /// holds the box the shape ends inside, whatever `exterior` says. The box moves along with the shape; of a moved shape
+    /// `exterior` says nothing.
     pub bounds: [f64; 6],
 }
 

@@ -78,6 +78,7 @@ impl Enclosure {
             };
             let is_slab = |slab: &Slab| slab.normal != [0.0; 3];
             let mut own = known.slabs;
+            is_whole &= own.iter().any(is_slab);
             if known.join == SlabJoin::Any && own.iter().filter(|slab| is_slab(slab)).count() > 1 {
                 // Each slab of a union tells of points that lie inside. That one counts which holds most of them.
                 let best = own

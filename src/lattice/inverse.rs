@@ -3,7 +3,8 @@
 use super::{Affine, Interval, axes};
 
 /// The inverse of an affine map, or of several after each other: y = L x + o, with intervals that contain the exact numbers. The
-/// intervals of maps that permute and mirror axes, stretch them by powers of two, and move are single numbers.
+/// intervals of a map that permutes and mirrors axes, stretches them by powers of two, and moves are single numbers, and so are
+/// those of several unless the sum of their offsets is rounded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inverse {
     linear: [[Interval; 3]; 3],

@@ -51,7 +51,7 @@ impl OctreeRef<'_> {
     }
 
     /// Checks the links as [`check_links`](Self::check_links) does, unless they are known to be sound. A solid is asked for one
-    /// point as often as for a million: then O(1) for trees that were made or read by this library.
+    /// point as often as for a million: then O(1) for trees that were made by this library in memory.
     pub(crate) fn ensure_links(&self) -> Result<(), Damage> {
         if self.is_linked { Ok(()) } else { self.check_links() }
     }

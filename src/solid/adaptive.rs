@@ -152,8 +152,14 @@ impl<W: Worker> Batch for AdaptiveWorker<W> {
     ) -> Result<(), Error> {
         let before = verdicts.len();
         let done = self.inner.split_many(cells, control, verdicts);
-        for ((cell, _), eight) in cells.iter().zip(&mut verdicts[before..]) {
-            *eight = self.enough(*cell, eight.clone())?;
+        for (k, (cell, _)) in (before..verdicts.len()).zip(cells) {
+            match self.enough(*cell, verdicts[k].clone()) {
+                Ok(eight) => verdicts[k] = eight,
+                Err(error) => {
+                    verdicts.truncate(k);
+                    return Err(error);
+                }
+            }
         }
         done
     }

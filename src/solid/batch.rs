@@ -34,6 +34,7 @@ pub trait Batch: Parts {
 
     /// Samples the centres of many PARTIAL cells of the frame's depth: appends what
     /// [`Question::Centre`](super::Question::Centre) answers for each, in their order. `control` can cancel the call half-way.
+    /// What was appended before an error is right.
     ///
     /// # Errors
     /// As all questions, and [`Error::Cancelled`].
@@ -51,7 +52,8 @@ pub trait Batch: Parts {
     /// As all questions.
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error>;
 
-    /// The part of a PARTIAL cell without the way to it, if the part depends on the cell alone; then no caller replays splits.
+    /// The part of a PARTIAL cell without the way to it, if the part depends on the cell alone; then no caller replays splits. A
+    /// worker that answers for one cell answers for all.
     fn recall(&mut self, cell: Cell) -> Option<Self::Part>;
 }
 

@@ -361,12 +361,12 @@ impl<W: Worker<Part: 'static> + 'static> ErasedWorker for [Typed<W>; 1] {
         verdicts: &mut Vec<[Verdict<ErasedPart>; 8]>,
     ) -> Result<(), Error> {
         let (own, mut found) = (self[0].own(cells)?, Vec::new());
-        self[0].worker.split_many(&own, control, &mut found)?;
+        let done = self[0].worker.split_many(&own, control, &mut found);
         verdicts.try_reserve(found.len())?;
         for eight in found {
             verdicts.push(self[0].hand_out_eight(eight)?);
         }
-        Ok(())
+        done
     }
 
     fn fill(&mut self, cell: Cell, part: &ErasedPart, block: &mut Block) -> Result<bool, Error> {

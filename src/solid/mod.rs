@@ -26,9 +26,9 @@
 //!
 //! # A new wrapper
 //!
-//! A solid that is made of another one writes every method: no trait that a wrapper needs has defaults for what can be lost.
-//! Questions that a wrapper does not change are handed on as they are, those of the future included. What is not handed on, a
-//! wrapper has to say.
+//! A solid that is made of another one writes all of [`Parts`], [`Batch`], [`Classifier::proof`] and the two `answer`s: they have no
+//! defaults, because what they say would be lost in silence. Questions that a wrapper does not change are handed on as they are,
+//! those of the future included. The other methods have defaults that are right, and slower or less sure.
 
 // The contract: what a solid answers (here), where parts live, many questions at once, and what else can be known.
 mod batch;

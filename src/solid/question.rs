@@ -6,7 +6,8 @@ use crate::dexel::Beam;
 use crate::error::Error;
 use crate::lattice::{Cell, CellMoments, Interval, VolumeMoments};
 
-/// A question about one PARTIAL cell, with the place for the answer. Where nothing is known the place is left as it is.
+/// A question about one PARTIAL cell, with the place for the answer, in which nothing is to be before. Nothing is put there where
+/// nothing is known.
 ///
 /// The answers are proven as verdicts are, and depend on the cell and the shape alone. Questions may be added: a worker
 /// answers those that it knows, and passes over the others. A wrapper hands the question on.
@@ -167,8 +168,8 @@ pub trait Ask: Worker {
 
 impl<W: Worker + ?Sized> Ask for W {}
 
-/// A question about a whole shape on a frame, inside and outside of the universe, with the place for the answer. Where nothing
-/// is known the place is left as it is. The answers are proven as verdicts are.
+/// A question about a whole shape on a frame, inside and outside of the universe, with the place for the answer, in which
+/// nothing is to be before. Nothing is put there where nothing is known. The answers are proven as verdicts are.
 #[non_exhaustive]
 pub enum WholeQuestion<'q> {
     /// The volume and the moments, if they are known without splitting cells.

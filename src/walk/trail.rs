@@ -90,6 +90,8 @@ impl<W: Worker> Trail<W> {
             self.own = None;
             let verdicts = split_one(&mut self.worker, cell, &part, control);
             self.worker.release(mark);
+            // The steps at hand do not lead to this cell.
+            self.cut(0);
             (self.own, self.cell) = (Some(verdicts?), cell);
             self.splits += 1;
             return Ok(());
@@ -100,7 +102,7 @@ impl<W: Worker> Trail<W> {
     /// As [`lead`](Self::lead), with all splits on the way whether or not the part can be had without them.
     pub(crate) fn follow(&mut self, cell: Cell, control: &Control<'_>) -> Result<(), Error> {
         self.cut(self.at_hand(cell));
-        self.cell = cell;
+        (self.own, self.cell) = (None, cell);
         while self.steps.len() <= cell.level.into() {
             let ancestor = cell.ancestor(self.steps.len() as u8);
             let Verdict::Partial(part) = verdict_at(&self.steps, &self.root, ancestor) else { break };

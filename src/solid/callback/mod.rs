@@ -53,7 +53,7 @@ type Local<'a, T> = Box<dyn Fn([f64; 3], [f64; 3], [f64; 3]) -> Result<Option<T>
 /// ```
 ///
 /// # Panics
-/// The methods that add to a callback panic once it has been put on a frame.
+/// The methods that add to a callback panic once it has been put on a frame or moved.
 pub struct Callback<'a, F> {
     functions: Arc<Functions<'a, F>>,
     /// Where it was moved to.
@@ -75,13 +75,13 @@ struct Functions<'a, F> {
 }
 
 /// A handle that nobody else has yet.
-const SHARED: &str = "a callback is put on frames only once it is complete";
+const SHARED: &str = "a callback is put on frames, and moved, only once it is complete";
 
 impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Callback<'a, F> {
     /// A solid from a function that classifies the box `(min, max)` in model units. The box contains the
     /// cell (it is the cell itself on frames whose lattice planes are doubles), and FULL and EMPTY must be
     /// proven for all of it. The function is called from several threads at once, and must give the same
-    /// answer to the same box. An error, such as [`Error::Callback`], ends the operation and is what that
+    /// answer to the same box; boxes within a box that is FULL or EMPTY must be so, too. An error, such as [`Error::Callback`], ends the operation and is what that
     /// returns.
     pub fn new(classify: F) -> Callback<'a, F> {
         let functions = Arc::new(Functions {
@@ -100,6 +100,7 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     }
 
     fn with(mut self, set: impl FnOnce(&mut Functions<'a, F>)) -> Callback<'a, F> {
+        assert!(self.placement.is_none(), "{SHARED}");
         set(Arc::get_mut(&mut self.functions).expect(SHARED));
         self
     }
@@ -209,9 +210,8 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     }
 
     /// The same solid with a promise about the space around the universe: EMPTY if the shape ends inside.
-    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL. Of the shape under an
-    /// affine map the promise holds if the map permutes and mirrors axes, and stretches all by one power of two;
-    /// [`with_bounds`](Self::with_bounds) moves along with every map.
+    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL. The promise does not hold of
+    /// the shape under an affine map, whose universe is another one; [`with_bounds`](Self::with_bounds) moves along.
     #[must_use]
     pub fn with_exterior(self, exterior: Tag) -> Callback<'a, F> {
         self.with(|functions| {
@@ -256,7 +256,8 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
 
     /// A cell is classified by the box around its inverse image, with as many calls as ever. A surface that is not parallel to
     /// the lattice blurs by about a cell. Where the placement permutes axes, with signs and powers of two as scales, and moves,
-    /// nothing blurs.
+    /// nothing blurs, as far as coordinates are not rounded. Centres of cells are moved back and rounded, and the host decides
+    /// there; other points only where nothing is rounded.
     fn placed(&self, placement: &Affine) -> Result<Option<Self>, Error> {
         let placement = match &self.placement {
             Some(before) => before.then(placement),
@@ -294,8 +295,6 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
 
     fn exterior(&self) -> Tag {
         let (bounds, promised) = match &self.placement {
-            // The inverse image of the universe is the one that the promise is about if it is a universe.
-            Some(placement) if placement.is_on_lattice => (placement.bounds, self.functions.exterior),
             Some(placement) => (placement.bounds, Tag::Partial),
             None => (self.functions.bounds, self.functions.exterior),
         };
@@ -407,7 +406,7 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Call
                     |axis: usize| (max[axis] - centre[axis].lower).max(centre[axis].upper - min[axis]);
                 let half = reach(0).max(reach(1)).max(reach(2)).next_up();
                 let to_centre = axes(|axis| centre[axis].minus(Interval::exactly(balls.point[axis])));
-                balls.slab(half, to_centre).map(|slab| placement.slab(&slab, half, &cube))
+                balls.slab(half, to_centre).and_then(|slab| placement.slab(&slab, half, &cube))
             }
             None => balls.slab(cube.half_edge(), cube.centre_from(balls.point)),
         };
@@ -491,9 +490,15 @@ impl<F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Batc
         inside.resize(first + cells.len(), None);
         // A function that decides one point at a time is cancelled between pieces.
         let piece = if self.functions.contains_one { 1 } else { cells.len().max(1) };
-        for (points, inside) in points.chunks(piece).zip(inside[first..].chunks_mut(piece)) {
-            control.check()?;
-            self.host_contains(points, inside)?;
+        for (k, points) in points.chunks(piece).enumerate() {
+            let start = first + k * piece;
+            let done = control
+                .check()
+                .and_then(|()| self.host_contains(points, &mut inside[start..start + points.len()]));
+            if done.is_err() {
+                inside.truncate(start);
+                return done;
+            }
         }
         Ok(())
     }

@@ -12,8 +12,6 @@ pub(super) type Corners = [[f64; 3]; 2];
 #[derive(Clone, Copy)]
 pub(super) struct Placement {
     pub(super) back: Inverse,
-    /// Whether inverse images of universes are universes.
-    pub(super) is_on_lattice: bool,
     /// A box around the moved shape, if the host promised one.
     pub(super) bounds: Option<Bounds>,
 }
@@ -22,14 +20,13 @@ impl Placement {
     /// Of a shape that lies in `bounds` before it is moved.
     pub(super) fn new(placement: &Affine, bounds: Option<Bounds>) -> Placement {
         let bounds = bounds.and_then(|bounds| bounds.placed(placement));
-        Placement { back: Inverse::of(placement), is_on_lattice: is_on_lattice(placement), bounds }
+        Placement { back: Inverse::of(placement), bounds }
     }
 
     /// Moved once more.
     pub(super) fn then(&self, placement: &Affine) -> Placement {
         let bounds = self.bounds.and_then(|bounds| bounds.placed(placement));
-        let is_on_lattice = self.is_on_lattice && is_on_lattice(placement);
-        Placement { back: self.back.then(placement), is_on_lattice, bounds }
+        Placement { back: self.back.then(placement), bounds }
     }
 
     /// A box around the inverse image of a box.
@@ -61,22 +58,19 @@ impl Placement {
     }
 
     /// A slab over the cube of half edge `half` around the inverse image of a cell's centre, as a slab over the cell.
-    pub(super) fn slab(&self, slab: &Slab, half: f64, cube: &Cube<'_>) -> Slab {
+    pub(super) fn slab(&self, slab: &Slab, half: f64, cube: &Cube<'_>) -> Option<Slab> {
         let ratio = Interval::exactly(cube.half_edge()).over(Interval::exactly(half));
         let pulled = self.back.pulled_back(&slab.normal.map(Interval::exactly)).map(|c| c.times(ratio));
         let normal = pulled.map(|c| 0.5 * c.lower + 0.5 * c.upper);
+        if !normal.iter().all(|c| c.is_finite()) {
+            return None;
+        }
         // Coordinates of the cell are at most 1.
         let slack = (0..3).fold(Interval::exactly(0.0), |sum, axis| {
             let off = (pulled[axis].upper - normal[axis]).max(normal[axis] - pulled[axis].lower).next_up();
             sum.plus(Interval::between(-off, off))
         });
         let [inner, outer] = [slab.inner, slab.outer].map(|offset| Interval::exactly(offset).plus(slack));
-        Slab { normal, inner: inner.lower, outer: outer.upper }
+        Some(Slab { normal, inner: inner.lower, outer: outer.upper })
     }
-}
-
-/// Whether a map takes universes to universes: it permutes and mirrors axes, and stretches all of them by one power of two.
-fn is_on_lattice(placement: &Affine) -> bool {
-    let [x, y, z] = placement.rows().map(|[x, y, z, _]| x.abs() + y.abs() + z.abs());
-    placement.is_monomial() && x == y && y == z
 }

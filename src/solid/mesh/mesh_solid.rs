@@ -18,8 +18,8 @@ use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
 use crate::solid::{
-    Classifier, Fingerprint, Fingerprinter, Motion, OneByOne, Parts, Question, Solid, Verdict, WholeQuestion,
-    Worker,
+    Classifier, Crossing, Enclosure, Fingerprint, Fingerprinter, Motion, OneByOne, Parts, Question, Segment,
+    Solid, Verdict, WholeQuestion, Worker,
 };
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -466,47 +466,26 @@ impl Worker for MeshWorker {
         Ok(true)
     }
 
+    #[inline]
     fn answer(&mut self, cell: Cell, part: &MeshPart, question: Question<'_>) -> Result<(), Error> {
-        let (at, size) = extent(cell, self.mesh.placed.frame.depth());
         let fill = self.mesh.fill;
         match question {
-            Question::Chords(chords) => *chords.found = self.find_chords(at, part, chords.beam)?,
-            // A finest cell's lowest centre is its only one.
-            Question::Centre(inside) => {
-                *inside = Some(match part.caps {
-                    Some(_) => self.mesh.open_sample(&mut self.surroundings, at, *part),
-                    None => fill.encloses(part.winding),
-                });
-            }
-            Question::Enclosure(known) => {
-                *known = match self.view(cell, part) {
-                    Some(view) => view.slab(fill),
-                    None => {
-                        let MeshWorker { mesh, triangles, surroundings, .. } = self;
-                        mesh.open_slab(surroundings, list(&mesh.roots, triangles, part), at, size, *part)
-                    }
-                };
-            }
+            Question::Centre(inside) => *inside = Some(self.contains_centre(cell, part)),
+            Question::Enclosure(known) => *known = self.slab(cell, part),
             Question::Moments(known) => {
                 *known = self.of_sides(cell, part, |view, sides| view.moments(sides, fill))?
             }
             Question::Area(known) => {
                 *known = self.of_sides(cell, part, |view, sides| view.area(sides, fill))?
             }
-            Question::Crossing(segment, known) => {
-                *known = self.view(cell, part).and_then(|view| view.first_crossing(segment, fill));
-            }
+            Question::Crossing(segment, known) => *known = self.first_crossing(cell, part, segment),
+            Question::Chords(chords) => *chords.found = self.find_chords(cell, part, chords.beam)?,
         }
         Ok(())
     }
 }
 
 impl MeshWorker {
-    /// What of the surface lies in a cell, if it cuts the cell, and its winding number there is an integer or near to one.
-    fn view(&mut self, cell: Cell, part: &MeshPart) -> Option<View<'_>> {
-        view(&self.mesh, &self.triangles, &mut self.surroundings, cell, part)
-    }
-
     /// What is told of a cell by which sides of which triangles the solid lies on.
     fn of_sides<T>(
         &mut self,
@@ -521,11 +500,38 @@ impl MeshWorker {
         }
     }
 
-    fn find_chords(&mut self, at: [i32; 3], part: &MeshPart, beam: &mut Beam) -> Result<bool, Error> {
+    /// Whether the centre of a finest cell lies inside: the lowest centre of such a cell is its only one.
+    fn contains_centre(&mut self, cell: Cell, part: &MeshPart) -> bool {
+        match part.caps {
+            Some(_) => {
+                let (at, _) = extent(cell, self.mesh.placed.frame.depth());
+                self.mesh.open_sample(&mut self.surroundings, at, *part)
+            }
+            None => self.mesh.fill.encloses(part.winding),
+        }
+    }
+
+    fn slab(&mut self, cell: Cell, part: &MeshPart) -> Option<Enclosure> {
+        let MeshWorker { mesh, triangles, surroundings, .. } = self;
+        if let Some(view) = view(mesh, triangles, surroundings, cell, part) {
+            return view.slab(mesh.fill);
+        }
+        let (at, size) = extent(cell, mesh.placed.frame.depth());
+        mesh.open_slab(surroundings, list(&mesh.roots, triangles, part), at, size, *part)
+    }
+
+    fn first_crossing(&mut self, cell: Cell, part: &MeshPart, segment: &Segment) -> Option<Crossing> {
+        let MeshWorker { mesh, triangles, surroundings, .. } = self;
+        let view = view(mesh, triangles, surroundings, cell, part);
+        view.and_then(|view| view.first_crossing(segment, mesh.fill))
+    }
+
+    fn find_chords(&mut self, cell: Cell, part: &MeshPart, beam: &mut Beam) -> Result<bool, Error> {
         if part.caps.is_some() || self.mesh.placed.count() > Chords::MOST {
             return Ok(false);
         }
         let MeshWorker { mesh, triangles, chords, .. } = self;
+        let (at, _) = extent(cell, mesh.placed.frame.depth());
         let triangles = list(&mesh.roots, triangles, part);
         // Caps come last. They are not counted where the surface's own winding number is known.
         let triangles = &triangles[..triangles.partition_point(|&triangle| !mesh.placed.is_cap(triangle))];

@@ -345,13 +345,15 @@ impl<W: Worker> TransformWorker<W> {
                 gather(&own, &self.known[range], target, *grain, &mut splits, &mut self.at_hand)?;
             }
             let wanted = splits.take_wanted();
-            if wanted.is_empty() {
-                return Ok((splits, Ok(())));
-            }
             let mut answers = Vec::new();
-            let done = self.inner.split_many(&wanted, control, &mut answers);
+            let done = match wanted.is_empty() {
+                true => Ok(()),
+                false => control.check().and_then(|()| self.inner.split_many(&wanted, control, &mut answers)),
+            };
+            // What does not answer does not go on.
+            let is_last = answers.is_empty() || done.is_err();
             splits.learn(&wanted, answers)?;
-            if done.is_err() {
+            if is_last {
                 return Ok((splits, done));
             }
         }
@@ -553,7 +555,7 @@ impl<W: Worker> Batch for TransformWorker<W> {
         let targets =
             memory::collected(cells.iter().map(|&(cell, part)| (part, Point::centre(&inward, cell), 0.0)))?;
         let (mut splits, mut done) = self.gather_many(&targets, control)?;
-        let (first, mut asked, mut places) = (inside.len(), Vec::new(), Vec::new());
+        let (mut asked, mut places) = (Vec::new(), Vec::new());
         for (part, point, grain) in &targets {
             if !self.gather_known(*part, point, *grain, &mut splits)? {
                 break;
@@ -565,14 +567,16 @@ impl<W: Worker> Batch for TransformWorker<W> {
             }
             inside.push(answer);
         }
-        if !asked.is_empty() && done.is_ok() {
+        if !asked.is_empty() {
             let mut found = Vec::new();
-            done = self.inner.sample_many(&asked, control, &mut found);
+            if done.is_ok() {
+                done = self.inner.sample_many(&asked, control, &mut found);
+            }
             for (&place, answer) in places.iter().zip(&found) {
                 inside[place] = *answer;
             }
             // What the solid did not come to is not known.
-            inside.truncate(places.get(found.len()).map_or(inside.len(), |&place| place.max(first)));
+            inside.truncate(places.get(found.len()).map_or(inside.len(), |&place| place));
         }
         self.inner.release(mark);
         done
@@ -640,8 +644,9 @@ impl<W: Worker> Worker for TransformWorker<W> {
                 }
             }
             Question::Crossing(segment, known) => {
-                let moved = same::segment(&Inverse::of(&self.placement), segment);
-                if let (Some((turn, source, own)), Some(segment)) = (self.source(cell, *part), moved) {
+                if let Some((turn, source, own)) = self.source(cell, *part)
+                    && let Some(segment) = same::segment(&Inverse::of(&self.placement), segment)
+                {
                     *known = self.inner.crossing(source, &own, &segment)?.map(|known| turn.crossing(&known));
                 }
             }

@@ -1,4 +1,4 @@
-//! The area that half-spaces bound in a cell.
+//! The area that half-spaces and other solids bound in a cell.
 
 use super::Program;
 use super::word::Op;
@@ -25,7 +25,7 @@ impl Scratch {
         }
         let mut sum = 0.0;
         for i in 0..part.words() {
-            sum += match Scratch::list(program, &self.words, part)[i].op() {
+            let own = match Scratch::list(program, &self.words, part)[i].op() {
                 Op::HalfSpace { index, .. } => match program.half_spaces[index as usize].degree() {
                     Some(degree) => cut::most_area(degree),
                     None => return Ok(None),
@@ -41,6 +41,7 @@ impl Scratch {
                 Op::Join { .. } => 0.0,
                 Op::Unknown | Op::Group { .. } | Op::Primitive { .. } => return Ok(None),
             };
+            sum = (sum + own).next_up();
         }
         Ok(Some(Interval::between(0.0, sum)))
     }

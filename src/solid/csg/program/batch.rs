@@ -17,8 +17,8 @@ use crate::solid::half_space::bounds::Octants;
 use crate::solid::{Batch, Parts, Verdict};
 use alloc::vec::{IntoIter, Vec};
 
-/// Most words of an expression whose parts are had without the way to a cell.
-const MOST_RECALLED: usize = 64;
+/// Most words of an expression that are looked at for a point, or for a part without the way to its cell.
+const MOST_WORDS: usize = 64;
 
 impl Scratch {
     /// The questions for each of the other solids that splitting or sampling cells will ask, in that order.
@@ -106,7 +106,10 @@ impl Scratch {
         }
         self.at_hand.splits = splits;
         for &(cell, part) in cells {
-            if done.is_err() && self.lacks(program, part, |at_hand, i| at_hand.splits[i].verdicts.len())? {
+            // (Without memory to find out, it is not known.)
+            if done.is_err()
+                && self.lacks(program, part, |at_hand, i| at_hand.splits[i].verdicts.len()).unwrap_or(true)
+            {
                 break;
             }
             let eight = self.split(program, cell, part);
@@ -143,7 +146,9 @@ impl Scratch {
         }
         self.at_hand.samples = samples;
         for &(cell, part) in cells {
-            if done.is_err() && self.lacks(program, part, |at_hand, i| at_hand.samples[i].len())? {
+            if done.is_err()
+                && self.lacks(program, part, |at_hand, i| at_hand.samples[i].len()).unwrap_or(true)
+            {
                 break;
             }
             match self.contains(program, part, cell) {
@@ -167,8 +172,9 @@ impl Scratch {
         points: &[[f64; 3]],
         answers: &mut [Option<bool>],
     ) -> Result<(), Error> {
-        // (Half-spaces alone are as fast by cells.)
-        if program.solids.is_empty() || program.paper || part.is_table() {
+        // (Half-spaces alone are as fast by cells.) Two solids may both say that a point is outside on which their faces meet, and
+        // which their union holds: where there are several, cells decide.
+        if program.solids.len() != 1 || program.paper || part.words() > MOST_WORDS {
             return Ok(());
         }
         let mut known = memory::with_capacity(program.solids.len())?;
@@ -218,15 +224,16 @@ impl Scratch {
         Ok(())
     }
 
-    /// The part of a cell without the way to it, if all other solids have theirs so: the words of the whole expression, which
-    /// say of the cell what its own words would. See [`Batch::recall`].
+    /// The part of a cell without the way to it, if there is one other solid and that has its own so: the words of the whole
+    /// expression, which say of the cell what its own words would. (Of several solids all would be asked, also those that are
+    /// decided there.) See [`Batch::recall`].
     pub(crate) fn recall(
         &mut self,
         program: &Program,
         root: CsgPart,
         cell: Cell,
     ) -> Result<Option<CsgPart>, Error> {
-        if root.words() > MOST_RECALLED || program.paper {
+        if program.solids.len() != 1 || program.paper || root.words() > MOST_WORDS {
             return Ok(None);
         }
         let (start, first) = (self.start(program)?, self.words.len());

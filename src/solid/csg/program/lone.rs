@@ -9,7 +9,7 @@ use crate::lattice::Cell;
 use crate::memory;
 use crate::octree::Planes;
 use crate::solid::erased::ErasedPart;
-use crate::solid::{AnyWorker, Parts, Verdict, Worker};
+use crate::solid::{AnyWorker, Parts, Question, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// The only operand that is open in a cell: a part of another solid, or of its complement.
@@ -48,6 +48,23 @@ impl Scratch {
         let Some(Lone { solid, part, complement }) = self.lone(program, part)? else { return Ok(None) };
         let other = Scratch::other(&mut self.workers, program, solid)?;
         Ok(Some((ask(&mut other.worker, &part)?, complement)))
+    }
+
+    /// Has the only operand that is open answer a question, if there is only one; `false` if not.
+    #[inline(never)]
+    pub(crate) fn answer_of_lone(
+        &mut self,
+        program: &Program,
+        cell: Cell,
+        part: CsgPart,
+        question: &mut Question<'_>,
+    ) -> Result<bool, Error> {
+        let ask = |worker: &mut AnyWorker, part: &ErasedPart| worker.answer(cell, part, question.again());
+        let answered = self.ask_lone(program, part, ask)?;
+        if let Some(((), true)) = answered {
+            question.again().complement()?;
+        }
+        Ok(answered.is_some())
     }
 
     /// The worker and the part of the only operand that is open, if its worker has been asked before.

@@ -24,7 +24,21 @@ impl Scratch {
 
     /// What the open operands of a cell know of it, whatever they are, joined by the cell's words. Operands of which nothing is
     /// known leave one side open, and so do more slabs than there is room for.
+    #[inline]
     pub(crate) fn slabs(
+        &mut self,
+        program: &Program,
+        cell: Cell,
+        part: CsgPart,
+    ) -> Result<Option<Enclosure>, Error> {
+        if program.solids.is_empty() {
+            return Ok(self.slabs_of_half_spaces(program, cell, part));
+        }
+        self.joined_slabs(program, cell, part)
+    }
+
+    #[inline(never)]
+    fn joined_slabs(
         &mut self,
         program: &Program,
         cell: Cell,

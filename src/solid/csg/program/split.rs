@@ -10,7 +10,7 @@ use crate::lattice::{Bounds, Cell, Frame};
 use crate::octree::{Block, Planes, Proof, Tag};
 use crate::solid::csg::Csg;
 use crate::solid::{
-    AnyWorker, AskWhole, Batch, Classifier, Fingerprint, OCTANTS, Parts, Question, Solid, Subtree, Verdict,
+    AskWhole, Batch, Classifier, Fingerprint, OCTANTS, Parts, Question, Solid, Subtree, Verdict,
     WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use alloc::sync::Arc;
@@ -200,17 +200,15 @@ impl Worker for CsgWorker {
     }
 
     /// A solid that is open alone answers itself.
+    #[inline]
     fn answer(&mut self, cell: Cell, part: &CsgPart, mut question: Question<'_>) -> Result<(), Error> {
         let (program, scratch, part) = (&*self.program, &mut self.scratch, *part);
         if let Question::Centre(inside) = question {
             *inside = scratch.contains(program, part, cell)?;
             return Ok(());
         }
-        if scratch.may_be_lone(program, part) {
-            let ask = |worker: &mut AnyWorker, part: &_| worker.answer(cell, part, question.again());
-            if let Some(((), complement)) = scratch.ask_lone(program, part, ask)? {
-                return if complement { question.complement() } else { Ok(()) };
-            }
+        if scratch.may_be_lone(program, part) && scratch.answer_of_lone(program, cell, part, &mut question)? {
+            return Ok(());
         }
         match question {
             Question::Enclosure(known) => *known = scratch.slabs(program, cell, part)?,

@@ -79,8 +79,8 @@ pub(crate) struct Other {
 pub(crate) struct Slot {
     pub(crate) solid: u32,
     pub(crate) part: ErasedPart,
-    /// The number of words when its cell's were begun (words may be taken back until the cell's are complete,
-    /// and then there are more), and the height of the solid's own scratch memory before.
+    /// The number of words when its cell's were begun, and the height of the solid's own scratch memory before. Once the cell's
+    /// words are complete, there are more.
     pub(crate) words: usize,
     pub(crate) height: usize,
 }
@@ -345,6 +345,7 @@ impl Scratch {
         let list = Scratch::list(program, &self.words, part);
         let grouped = list.iter().any(|word| matches!(word.op(), Op::Group { .. }));
         for k in (0..8).filter(|k| open >> k & 1 != 0) {
+            let (words, slots) = (self.words.len(), self.slots.len());
             if !grouped && self.answers.is_empty() && somewhere >> k & 1 == 0 {
                 cells.parts[k as usize] = part;
                 if let Ask::Root = ask {
@@ -358,6 +359,11 @@ impl Scratch {
                     cells.parts[k as usize] = part;
                     self.tabulate(program, &mut cells, k, true)?;
                 }
+            }
+            // A child without words has no slots: they would be released as what comes after its siblings. What other solids
+            // remember of it goes with the siblings' or the parent's.
+            if self.words.len() == words {
+                self.slots.truncate(slots);
             }
         }
         Ok(cells)
