@@ -214,4 +214,4 @@ pub trait AskWhole: Classifier {
     }
 }
 
-impl<C: Classifier + ?Sized> AskWhole for C {}
+impl<C: Classifier> AskWhole for C {}

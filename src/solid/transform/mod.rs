@@ -93,6 +93,9 @@ pub struct TransformWorker<W: Worker> {
 #[derive(Debug, Clone, Copy)]
 pub struct TransformPart(usize);
 
+/// What was found before an error, if there was one.
+type SoFar<T> = (T, Result<(), Error>);
+
 /// What is known of one cell of the solid's own frame.
 type Known<P> = (Cell, Verdict<P>);
 
@@ -336,7 +339,7 @@ impl<W: Worker> TransformWorker<W> {
         &mut self,
         targets: &[(TransformPart, T, f64)],
         control: &Control<'_>,
-    ) -> Result<(Gathered<W::Part>, Result<(), Error>), Error> {
+    ) -> Result<SoFar<Gathered<W::Part>>, Error> {
         let mut splits = Gathered::new();
         // The cells of a list are at most some levels too large, and each round splits all of one level.
         loop {
