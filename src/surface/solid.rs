@@ -32,7 +32,7 @@ pub enum VertexPlacement {
     Midpoint,
     /// Where the edge crosses the solid's surface. If it does so several times, at one of them.
     ///
-    /// The solid is asked for the crossing ([`Worker::crossing`](crate::Worker::crossing)). If it cannot
+    /// The solid is asked for the crossing ([`Question::Crossing`](crate::solid::Question::Crossing)). If it cannot
     /// tell, cells along the edge are split, down to the depth of 20, and their verdicts and slabs narrow
     /// down where the crossing is. With slabs, as half-spaces, CSG and meshes know them, it is found to
     /// rounding in a few steps; without, to a finest cell of depth 20 or somewhat more.
