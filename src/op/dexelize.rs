@@ -1,7 +1,7 @@
 //! From any solid to a tri-dexel model.
 //!
 //! Rays are made in tiles, each with a descent of its own through the cells that it crosses. A solid that knows rays
-//! ([`Worker::chords`]) answers for large cells at once: meshes by scan conversion, expressions of half-spaces by roots. Of
+//! ([`Question::Chords`](crate::solid::Question::Chords)) answers for large cells at once: meshes by scan conversion, expressions of half-spaces by roots. Of
 //! others the finest cells are sampled, and between two centres on different sides the crossing is narrowed down by finer
 //! cells and their slabs.
 
