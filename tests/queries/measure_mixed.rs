@@ -80,3 +80,23 @@ fn expressions_of_other_solids_to_a_ten_thousandth() {
         }
     }
 }
+
+/// Children that are decided once their groups are taken apart leave nothing behind that belongs to their siblings.
+#[test]
+fn many_small_bodies_in_a_mesh_are_walked_depth_first() {
+    let at = |k: i32, count: i32| 0.1 + 0.8 * f64::from(k) / f64::from(count - 1);
+    let balls = (0..125).map(|k| Csg::ball([at(k % 5, 5), at(k / 5 % 5, 5), at(k / 25, 5)], 0.03).unwrap());
+    let balls = Csg::union_of(balls).unwrap();
+    let truth = 125.0 * 4.0 / 3.0 * PI * 0.03f64.powi(3);
+    for (csg, truth) in [
+        (Csg::intersection_of([Csg::solid(unit_cube()), balls.clone()]).unwrap(), truth),
+        (Csg::solid(unit_cube()).difference(&balls).unwrap(), 1.0 - truth),
+    ] {
+        for depth in 4..=8 {
+            let tree = build(&csg, &around_cube(depth), Rule::Certified, &alone()).unwrap();
+            let volume = tree.statistics().volume();
+            assert!(volume.contains(truth), "{depth}: {volume:?} {truth}");
+            assert!(depth < 8 || volume.width() < 0.1, "{volume:?}");
+        }
+    }
+}
