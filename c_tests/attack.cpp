@@ -73,8 +73,10 @@ void counts() {
         [&](uint64_t n) {
             return leafless_solid_interfere_many(solid, solid, &frame, numbers, n, &frame, 0, nullptr, interferences);
         },
-        [&](uint64_t n) { return leafless_octree_union_of(octrees, n, nullptr, &result); },
-        [&](uint64_t n) { return leafless_solid_union(solids, n, reinterpret_cast<leafless_solid **>(&result)); },
+        [&](uint64_t n) { return leafless_octree_combine(LEAFLESS_OPERATION_UNION, octrees, n, nullptr, &result); },
+        [&](uint64_t n) {
+            return leafless_solid_combine(LEAFLESS_OPERATION_UNION, solids, n, reinterpret_cast<leafless_solid **>(&result));
+        },
         [&](uint64_t n) {
             leafless_voxel_arrays arrays;
             leafless_transfer transfer;
@@ -342,7 +344,7 @@ void editor_in_threads() {
     leafless_tridexel *left = nullptr, *beyond = nullptr;
     OK(leafless_tridexel_editor_freeze(editor, nullptr, &left));
     OK(leafless_tridexel_check(left));
-    OK(leafless_tridexel_difference(left, model, nullptr, &beyond));
+    OK(check_tridexels(LEAFLESS_OPERATION_DIFFERENCE, left, model, nullptr, &beyond));
     for (uint32_t axis = 0; axis < 3; axis++) {
         leafless_dexel_statistics statistics;
         OK(leafless_tridexel_statistics(beyond, axis, &statistics));

@@ -70,11 +70,11 @@ static int32_t asks(void *ctx, const double *min, const double *max) {
     if (h->classified % 50 == 1) {
         leafless_octree *other = NULL, *joined = NULL;
         leafless_solid *again = NULL;
-        if (leafless_octree_union(h->octree, NULL, NULL, &other) != LEAFLESS_E_NULL) {
+        if (check_octrees(LEAFLESS_OPERATION_UNION, h->octree, NULL, NULL, &other) != LEAFLESS_E_NULL) {
             return -2;
         }
         if (leafless_octree_complement(h->octree, NULL, &other) != LEAFLESS_OK ||
-            leafless_octree_union(h->octree, other, NULL, &joined) != LEAFLESS_OK) {
+            check_octrees(LEAFLESS_OPERATION_UNION, h->octree, other, NULL, &joined) != LEAFLESS_OK) {
             return -3;
         }
         leafless_octree_free(other);

@@ -42,7 +42,7 @@ void progress_is_monotone() {
         const leafless_options options = watched(seen);
         switch (operation) {
             case 0: OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &ball)); break;
-            case 1: OK(leafless_octree_difference(box, ball, &options, &result)); break;
+            case 1: OK(check_octrees(LEAFLESS_OPERATION_DIFFERENCE, box, ball, &options, &result)); break;
             case 2: OK(leafless_octree_resolve(ball, LEAFLESS_RULE_INNER, &options, &result)); break;
             default: OK(leafless_octree_complement(ball, &options, &result)); break;
         }
@@ -155,14 +155,14 @@ void another_thread_cancels(uint32_t threads) {
     OK(leafless_control_state(control, &cancelled, nullptr));
     CHECK(cancelled);
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
-    FAILS(LEAFLESS_E_CANCELLED, leafless_octree_union(ball, ball, &options, &result));
+    FAILS(LEAFLESS_E_CANCELLED, check_octrees(LEAFLESS_OPERATION_UNION, ball, ball, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_complement(ball, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_resolve(ball, LEAFLESS_RULE_INNER, &options, &result));
     const leafless_octree *both[] = {ball, ball};
-    FAILS(LEAFLESS_E_CANCELLED, leafless_octree_union_of(both, 2, &options, &result));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_octree_combine(LEAFLESS_OPERATION_UNION, both, 2, &options, &result));
     CHECK(result == nullptr);
     OK(leafless_control_reset(control));
-    OK(leafless_octree_union(ball, ball, &options, &result));
+    OK(check_octrees(LEAFLESS_OPERATION_UNION, ball, ball, &options, &result));
     CHECK(check_same(ball, result));
     OK(leafless_control_state(control, &cancelled, &fraction));
     CHECK(!cancelled && fraction == 1.0);

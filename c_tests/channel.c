@@ -502,7 +502,7 @@ static void octrees(void) {
     OK(leafless_octree_complement(octree, NULL, &result));
     CHECK(channel_count(result) == 0);
     leafless_octree_free(result);
-    OK(leafless_octree_union(octree, octree, NULL, &result));
+    OK(check_octrees(LEAFLESS_OPERATION_UNION, octree, octree, NULL, &result));
     CHECK(channel_count(result) == 0);
     leafless_octree_free(result);
     result = NULL;
@@ -579,7 +579,7 @@ static void carried(void) {
     b = bearing(bearing(bearing(b, 30, "heat"), 10, "wear"), 2, "only b");
     operands[0] = a;
     operands[1] = b;
-    OK(leafless_octree_union(a, b, NULL, &both));
+    OK(check_octrees(LEAFLESS_OPERATION_UNION, a, b, NULL, &both));
     both = bearing(both, 7, "own");
     for (i = 0; i < 4; i++) {
         OK(leafless_octree_carry_channels(both, operands, 2, all[i].carry, NULL, 0, NULL, &result));

@@ -70,6 +70,25 @@ static inline bool check_same(const leafless_octree *a, const leafless_octree *b
     return equal;
 }
 
+/* What a set operation makes of two operands. */
+static inline leafless_status check_octrees(uint32_t operation, const leafless_octree *a, const leafless_octree *b,
+                                            const leafless_options *options, leafless_octree **result) {
+    const leafless_octree *const both[2] = {a, b};
+    return leafless_octree_combine(operation, both, 2, options, result);
+}
+
+static inline leafless_status check_tridexels(uint32_t operation, const leafless_tridexel *a, const leafless_tridexel *b,
+                                              const leafless_options *options, leafless_tridexel **result) {
+    const leafless_tridexel *const both[2] = {a, b};
+    return leafless_tridexel_combine(operation, both, 2, options, result);
+}
+
+static inline leafless_status check_solids(uint32_t operation, const leafless_solid *a, const leafless_solid *b,
+                                           leafless_solid **result) {
+    const leafless_solid *const both[2] = {a, b};
+    return leafless_solid_combine(operation, both, 2, result);
+}
+
 /* The cube [0, 1]³: corners in octant order, two triangles a face, seen from outside counter-clockwise. */
 static const double CHECK_CUBE[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
                                         {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};

@@ -113,7 +113,7 @@ static void functions(void) {
     OK(leafless_solid_new_function(&function, &a));
     OK(leafless_solid_new_box(low, high, &b));
     parts[0] = a, parts[1] = b;
-    OK(leafless_solid_intersection(parts, 2, &c));
+    OK(leafless_solid_combine(LEAFLESS_OPERATION_INTERSECTION, parts, 2, &c));
     leafless_solid_free(b);
     CHECK(statistics_of(c, LEAFLESS_RULE_SAMPLED).partial == 0);
     has_volume(c, 4);
@@ -179,12 +179,9 @@ static void has_exactly(leafless_solid *solid, double truth) {
     leafless_solid_free(solid);
 }
 
-static leafless_solid *joined(leafless_status (*join)(const leafless_solid *const *, uint64_t, leafless_solid **),
-                              const leafless_solid *a, const leafless_solid *b) {
-    const leafless_solid *parts[2];
+static leafless_solid *joined(uint32_t operation, const leafless_solid *a, const leafless_solid *b) {
     leafless_solid *solid = NULL;
-    parts[0] = a, parts[1] = b;
-    OK(join(parts, 2, &solid));
+    OK(check_solids(operation, a, b, &solid));
     return solid;
 }
 
@@ -240,8 +237,8 @@ static void motions(void) {
     }
 
     /* The worst of all parts is told, under whatever joins them. */
-    two = joined(leafless_solid_union, box, meshed);
-    all = joined(leafless_solid_union, two, stored);
+    two = joined(LEAFLESS_OPERATION_UNION, box, meshed);
+    all = joined(LEAFLESS_OPERATION_UNION, two, stored);
     OK(leafless_solid_complement(all, &not_all));
     has_volume(placed(box, turn, LEAFLESS_MOTION_EXACT), 1);
     has_volume(placed(meshed, turn, LEAFLESS_MOTION_VERTICES), 0.125);
@@ -294,8 +291,8 @@ static void evaluations(void) {
     leafless_measures measures;
     uint64_t built, asked;
     OK(leafless_solid_new_box(low, high, &box));
-    both = joined(leafless_solid_intersection, box, round);
-    again = joined(leafless_solid_intersection, box, round);
+    both = joined(LEAFLESS_OPERATION_INTERSECTION, box, round);
+    again = joined(LEAFLESS_OPERATION_INTERSECTION, box, round);
     CHECK(evaluations_of(both) == 0 && evaluations_of(box) == 0);
     build_alone(both);
     built = evaluations_of(both);
@@ -347,6 +344,64 @@ static void evaluations(void) {
     leafless_solid_free(box);
 }
 
+/* Both have one octree; the first is freed. */
+static void same_octrees(leafless_solid *solid, const leafless_solid *other) {
+    leafless_octree *a = NULL, *b = NULL;
+    OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &a));
+    OK(leafless_octree_build(other, &frame, LEAFLESS_RULE_SAMPLED, NULL, &b));
+    CHECK(check_same(a, b));
+    leafless_octree_free(a);
+    leafless_octree_free(b);
+    leafless_solid_free(solid);
+}
+
+/* Of no solid, of one, and of three; and what is no operation. */
+static void other_numbers(void) {
+    const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, slab[3] = {0.5, -2, -2}, end[3] = {2, 2, 2};
+    const double of_none[4] = {0, 64, -1, 0};
+    leafless_solid *box = NULL, *round = ball(1.125), *side = NULL, *solid = NULL, *two, *three;
+    const leafless_solid *parts[3];
+    uint32_t operation;
+    OK(leafless_solid_new_box(low, high, &box));
+    OK(leafless_solid_new_box(slab, end, &side));
+    parts[0] = box, parts[1] = round, parts[2] = side;
+    for (operation = 0; operation < 4; operation++) {
+        if (operation == LEAFLESS_OPERATION_DIFFERENCE) {
+            FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_combine(operation, NULL, 0, &solid));
+            FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_combine(operation, parts, 0, &solid));
+            CHECK(solid == NULL);
+        } else {
+            leafless_statistics found;
+            OK(leafless_solid_combine(operation, NULL, 0, &solid));
+            found = statistics_of(solid, LEAFLESS_RULE_CERTIFIED);
+            CHECK(found.volume_model.lower == of_none[operation] && found.volume_model.upper == of_none[operation]);
+            leafless_solid_free(solid);
+        }
+        OK(leafless_solid_combine(operation, parts, 1, &solid));
+        same_octrees(solid, box);
+        /* Of three, one after the other. */
+        OK(leafless_solid_combine(operation, parts, 3, &solid));
+        two = joined(operation, box, round);
+        three = joined(operation, two, side);
+        same_octrees(solid, three);
+        leafless_solid_free(three);
+        leafless_solid_free(two);
+        solid = NULL;
+    }
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_combine(4, parts, 2, &solid));
+    CHECK(solid == NULL);
+    /* The first less the union of the others. */
+    OK(leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, parts, 3, &solid));
+    two = joined(LEAFLESS_OPERATION_UNION, round, side);
+    three = joined(LEAFLESS_OPERATION_DIFFERENCE, box, two);
+    same_octrees(solid, three);
+    leafless_solid_free(three);
+    leafless_solid_free(two);
+    leafless_solid_free(side);
+    leafless_solid_free(round);
+    leafless_solid_free(box);
+}
+
 int main(void) {
     const double pi = 3.14159265358979323846;
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1}, radii[3] = {1, 1.5, 0.5};
@@ -365,6 +420,7 @@ int main(void) {
     other_primitives();
     motions();
     evaluations();
+    other_numbers();
     OK(leafless_solid_new_quadric(quadric, &a));
     has_volume(a, 4.0 / 3.0 * pi / sqrt(0.75));
     OK(leafless_solid_new_ellipsoid(origin, radii, &a));
@@ -379,28 +435,23 @@ int main(void) {
     /* A box minus a ball, and the like; the operands are freed at once. */
     OK(leafless_solid_new_box(low, high, &a));
     b = ball(1);
-    OK(leafless_solid_difference(a, b, &c));
+    OK(check_solids(LEAFLESS_OPERATION_DIFFERENCE, a, b, &c));
     has_volume(c, 8 - 4.0 / 3.0 * pi);
     parts[0] = a, parts[1] = b, parts[2] = a;
-    OK(leafless_solid_union(parts, 3, &c));
+    OK(leafless_solid_combine(LEAFLESS_OPERATION_UNION, parts, 3, &c));
     has_volume(c, 8);
-    OK(leafless_solid_intersection(parts, 2, &c));
+    OK(leafless_solid_combine(LEAFLESS_OPERATION_INTERSECTION, parts, 2, &c));
     has_volume(c, 4.0 / 3.0 * pi);
-    OK(leafless_solid_xor(parts, 2, &c));
+    OK(leafless_solid_combine(LEAFLESS_OPERATION_XOR, parts, 2, &c));
     has_volume(c, 8 - 4.0 / 3.0 * pi);
     OK(leafless_solid_complement(b, &c));
     leafless_solid_free(b);
     parts[1] = c;
-    OK(leafless_solid_intersection(parts, 2, &b));
+    OK(leafless_solid_combine(LEAFLESS_OPERATION_INTERSECTION, parts, 2, &b));
     leafless_solid_free(c);
     OK(leafless_solid_placed(b, matrix, NULL, &c));
     leafless_solid_free(b);
     has_volume(c, (8 - 4.0 / 3.0 * pi) / 8);
-    OK(leafless_solid_union(NULL, 0, &c));
-    has_volume(c, 0);
-    OK(leafless_solid_intersection(NULL, 0, &c));
-    CHECK(statistics_of(c, LEAFLESS_RULE_CERTIFIED).volume_model.lower == 64);
-    leafless_solid_free(c);
 
     /* Solids of any kind join, and are placed together. */
     {
@@ -409,7 +460,7 @@ int main(void) {
         OK(leafless_octree_as_solid(octree, &b));
         leafless_octree_free(octree);
         c = ball(1);
-        OK(leafless_solid_difference(b, c, &deep));
+        OK(check_solids(LEAFLESS_OPERATION_DIFFERENCE, b, c, &deep));
         leafless_solid_free(c);
         leafless_solid_free(b);
         b = placed(deep, matrix, LEAFLESS_MOTION_CONSERVATIVE);
@@ -429,7 +480,7 @@ int main(void) {
     deep = ball(1);
     for (i = 0; i < 60; i++) {
         parts[0] = parts[1] = deep;
-        OK(leafless_solid_union(parts, 2, &b));
+        OK(leafless_solid_combine(LEAFLESS_OPERATION_UNION, parts, 2, &b));
         leafless_solid_free(deep);
         deep = b;
     }

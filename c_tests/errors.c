@@ -395,8 +395,8 @@ int main(int argc, char **argv) {
     CHECK(leafless_last_status() == LEAFLESS_OK);
     seen[LEAFLESS_OK] = true;
 
-    FAILS(LEAFLESS_E_NULL, leafless_octree_union(ball, NULL, NULL, &octree));
-    failed(LEAFLESS_E_NULL, "LEAFLESS_E_NULL", "b: must not be NULL");
+    FAILS(LEAFLESS_E_NULL, check_octrees(LEAFLESS_OPERATION_UNION, ball, NULL, NULL, &octree));
+    failed(LEAFLESS_E_NULL, "LEAFLESS_E_NULL", "octrees: must not be NULL");
     /* What succeeds leaves the message alone. */
     OK(leafless_octree_check(ball));
     CHECK(leafless_last_status() == LEAFLESS_E_NULL);
@@ -415,7 +415,7 @@ int main(int argc, char **argv) {
     FAILS(LEAFLESS_E_BUFFER, leafless_octree_levels(ball, levels, 2, &count));
     CHECK(count == 77);
 
-    FAILS(LEAFLESS_E_FRAME, leafless_octree_union(ball, finer, NULL, &octree));
+    FAILS(LEAFLESS_E_FRAME, check_octrees(LEAFLESS_OPERATION_UNION, ball, finer, NULL, &octree));
     failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [");
     {
         /* A stored octree is known on its own universe only, whatever it is asked; a mesh on any. */
@@ -575,7 +575,7 @@ int main(int argc, char **argv) {
     OK(leafless_control_new(&control));
     OK(leafless_control_cancel(control));
     options.control = control;
-    FAILS(LEAFLESS_E_CANCELLED, leafless_octree_union(ball, ball, &options, &octree));
+    FAILS(LEAFLESS_E_CANCELLED, check_octrees(LEAFLESS_OPERATION_UNION, ball, ball, &options, &octree));
     failed(LEAFLESS_E_CANCELLED, "LEAFLESS_E_CANCELLED", "cancelled");
     OK(leafless_options_init(&options, sizeof options));
     options.progress = stops;
@@ -726,12 +726,12 @@ int main(int argc, char **argv) {
         OK(leafless_tridexel_editor_new(model, &editor));
         FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "take sampled, inner or outer");
-        FAILS(LEAFLESS_E_FRAME, leafless_tridexel_union(model, other, NULL, &result));
+        FAILS(LEAFLESS_E_FRAME, check_tridexels(LEAFLESS_OPERATION_UNION, model, other, NULL, &result));
         failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [-1");
         failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "origin [0");
         FAILS(LEAFLESS_E_FRAME, leafless_tridexel_editor_subtract(editor, other, NULL));
         failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [-1");
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_xor(model, column, NULL, &result));
+        FAILS(LEAFLESS_E_ARGUMENT, check_tridexels(LEAFLESS_OPERATION_XOR, model, column, NULL, &result));
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "must have rays in the same directions");
         FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_ray(column, 2, ray, NULL, 0, &count));
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "axis: is none that the model has rays along");
@@ -762,7 +762,7 @@ int main(int argc, char **argv) {
             OK(leafless_tridexel_view_bytes(file, file_length, &viewed));
             FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_check(viewed));
             failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "the tri-dexel model is damaged: its rays along axis 0");
-            FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_union(model, viewed, NULL, &result));
+            FAILS(LEAFLESS_E_DAMAGED, check_tridexels(LEAFLESS_OPERATION_UNION, model, viewed, NULL, &result));
             FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_editor_subtract(editor, viewed, NULL));
             FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_save(viewed, "damaged.lfl", 11));
             leafless_tridexel_free(viewed);

@@ -23,6 +23,7 @@ const SECTIONS: &[&str] = &[
     "polyhedron",
     "metadata",
     "octree",
+    "operation",
     "solid",
     "csg",
     "host",

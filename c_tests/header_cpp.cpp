@@ -10,6 +10,7 @@ static_assert(std::is_same<std::underlying_type<leafless_tag>::type, uint8_t>::v
 static_assert(std::is_same<std::underlying_type<leafless_membership>::type, uint8_t>::value, "leafless_membership");
 static_assert(std::is_same<std::underlying_type<leafless_region>::type, uint8_t>::value, "leafless_region");
 static_assert(std::is_same<std::underlying_type<leafless_rule>::type, uint32_t>::value, "leafless_rule");
+static_assert(std::is_same<std::underlying_type<leafless_operation>::type, uint32_t>::value, "leafless_operation");
 static_assert(std::is_standard_layout<leafless_octree_info>::value, "leafless_octree_info");
 static_assert(std::is_trivial<leafless_options>::value, "leafless_options");
 

@@ -183,7 +183,7 @@ static void solids(void) {
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &slab));
     leafless_solid_free(solid);
 
-    OK(leafless_octree_difference(box, slab, NULL, &cut));
+    OK(check_octrees(LEAFLESS_OPERATION_DIFFERENCE, box, slab, NULL, &cut));
     OK(leafless_octree_statistics(cut, &statistics));
     CHECK(statistics.volume_model.lower == 0.0 && statistics.volume_model.upper == 0.0);
     leafless_octree_free(box);
@@ -193,39 +193,57 @@ static void solids(void) {
 }
 
 static void set_algebra(void) {
-    leafless_octree *a = check_box(4, -0.75, 0.25), *b = check_box(4, -0.25, 0.75), *r[8];
-    const leafless_octree *both[3];
+    leafless_octree *a = check_box(4, -0.75, 0.25), *b = check_box(4, -0.25, 0.75), *c = check_box(4, -0.5, 0.0);
+    leafless_octree *r[9], *one = NULL, *others = NULL, *rest = NULL;
+    const leafless_octree *both[3], *three[3];
     leafless_statistics s;
     leafless_options options;
     size_t i;
-    double volume[8];
+    uint32_t operation;
+    double volume[9];
     OK(leafless_options_init(&options, sizeof options));
     options.threads = 1;
-    both[0] = a;
-    both[1] = b;
-    both[2] = a;
-    OK(leafless_octree_union(a, b, &options, &r[0]));
-    OK(leafless_octree_intersection(a, b, &options, &r[1]));
-    OK(leafless_octree_difference(a, b, &options, &r[2]));
-    OK(leafless_octree_xor(a, b, &options, &r[3]));
-    OK(leafless_octree_complement(a, &options, &r[4]));
-    OK(leafless_octree_union_of(both, 3, &options, &r[5]));
-    OK(leafless_octree_intersection_of(both, 3, &options, &r[6]));
-    OK(leafless_octree_xor_of(both, 3, &options, &r[7]));
-    for (i = 0; i < 8; i++) {
+    both[0] = a, both[1] = b, both[2] = a;
+    three[0] = a, three[1] = b, three[2] = c;
+    for (operation = 0; operation < 4; operation++) {
+        OK(check_octrees(operation, a, b, &options, &r[operation]));
+        OK(leafless_octree_combine(operation, both, 3, &options, &r[4 + operation]));
+        /* Of one it is itself. */
+        OK(leafless_octree_combine(operation, both, 1, &options, &one));
+        CHECK(check_same(one, a));
+        leafless_octree_free(one);
+        /* Of three, one after the other. */
+        OK(leafless_octree_combine(operation, three, 3, &options, &one));
+        OK(check_octrees(operation, r[operation], c, &options, &rest));
+        CHECK(check_same(one, rest));
+        leafless_octree_free(one);
+        leafless_octree_free(rest);
+    }
+    OK(leafless_octree_complement(a, &options, &r[8]));
+    for (i = 0; i < 9; i++) {
         OK(leafless_octree_statistics(r[i], &s));
         OK(leafless_octree_check(r[i]));
         CHECK(s.volume_model.lower == s.volume_model.upper);
         volume[i] = s.volume_model.lower;
     }
-    CHECK(volume[0] == 1.875 && volume[1] == 0.125 && volume[2] == 0.875 && volume[3] == 1.75 && volume[4] == 7.0);
-    CHECK(check_same(r[0], r[5]) && check_same(r[1], r[6]) && check_same(b, r[7]));
+    CHECK(volume[0] == 1.875 && volume[1] == 0.125 && volume[2] == 0.875 && volume[3] == 1.75 && volume[8] == 7.0);
+    CHECK(check_same(r[0], r[4]) && check_same(r[1], r[5]) && volume[6] == 0.0 && check_same(b, r[7]));
     CHECK(!check_same(a, b));
+    /* The first less the union of the others. */
+    OK(leafless_octree_combine(LEAFLESS_OPERATION_DIFFERENCE, three, 3, &options, &one));
+    OK(leafless_octree_combine(LEAFLESS_OPERATION_UNION, three + 1, 2, &options, &others));
+    OK(check_octrees(LEAFLESS_OPERATION_DIFFERENCE, a, others, &options, &rest));
+    OK(leafless_octree_statistics(one, &s));
+    CHECK(check_same(one, rest) && s.volume_model.lower == 0.765625);
+    leafless_octree_free(one);
+    leafless_octree_free(others);
+    leafless_octree_free(rest);
     /* In the order in which they came, which is not that in which they were made. */
     leafless_octree_free(a);
-    for (i = 0; i < 8; i++) {
+    for (i = 0; i < 9; i++) {
         leafless_octree_free(r[i]);
     }
+    leafless_octree_free(c);
     leafless_octree_free(b);
 }
 
@@ -363,7 +381,7 @@ static void octrees(void) {
             OK(leafless_octree_complement(said, NULL, &inverse));
             OK(leafless_octree_describe(inverse, &info));
             CHECK(info.proof.full == (i / 2 == 1) && info.proof.empty == (i % 2 == 1));
-            OK(leafless_octree_union(said, inner, NULL, &both));
+            OK(check_octrees(LEAFLESS_OPERATION_UNION, said, inner, NULL, &both));
             OK(leafless_octree_describe(both, &info));
             CHECK(info.proof.full == (i % 2 == 1) && !info.proof.empty && info.proof.displacement_model == 0.125);
             leafless_octree_free(both);
@@ -394,11 +412,11 @@ static void octrees(void) {
         const leafless_octree *const both[3] = {more, named, more}, *const same[2] = {more, more};
         leafless_octree *made[6] = {NULL, NULL, NULL, NULL, NULL, NULL};
         int i;
-        OK(leafless_octree_union(more, named, NULL, &made[0]));
-        OK(leafless_octree_xor_of(both, 3, NULL, &made[1]));
-        OK(leafless_octree_difference(named, ball, NULL, &made[2]));
+        OK(check_octrees(LEAFLESS_OPERATION_UNION, more, named, NULL, &made[0]));
+        OK(leafless_octree_combine(LEAFLESS_OPERATION_XOR, both, 3, NULL, &made[1]));
+        OK(check_octrees(LEAFLESS_OPERATION_DIFFERENCE, named, ball, NULL, &made[2]));
         OK(leafless_octree_complement(more, NULL, &made[3]));
-        OK(leafless_octree_intersection_of(same, 2, NULL, &made[4]));
+        OK(leafless_octree_combine(LEAFLESS_OPERATION_INTERSECTION, same, 2, NULL, &made[4]));
         OK(leafless_octree_resolve(more, LEAFLESS_RULE_INNER, NULL, &made[5]));
         for (i = 0; i < 6; i++) {
             OK(leafless_octree_peek_metadata_at(made[i], 0, &count, NULL, NULL, NULL, NULL));

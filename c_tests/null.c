@@ -59,6 +59,7 @@ static void null_pointers(void) {
     leafless_solid **solid_result = (leafless_solid **)&never;
     const leafless_octree *list[2];
     const leafless_solid *solids[2];
+    uint32_t operation;
     const uint32_t exponents[3] = {2, 4, 3};
     const double triangle[6] = {0, 0, 1, 0, 0, 1};
     leafless_function function;
@@ -299,29 +300,27 @@ static void null_pointers(void) {
     refused(LEAFLESS_E_ARGUMENT, "leafless_solid_new_function", "function.reserved",
             leafless_solid_new_function(&function, solid_result));
     solids[0] = solids[1] = solid;
-#define JOIN(function)                                                                                               \
-    NULL_POINTER(function, solids, function(NULL, 2, solid_result));                                                 \
-    NULL_POINTER(function, solid, function(solids, 2, NULL));                                                        \
-    solids[1] = NULL;                                                                                                \
-    refused(LEAFLESS_E_NULL, #function, "solids", function(solids, 2, solid_result));                                \
-    solids[1] = solid
-    JOIN(leafless_solid_union);
-    JOIN(leafless_solid_intersection);
-    JOIN(leafless_solid_xor);
-#undef JOIN
-    NULL_POINTER(leafless_solid_difference, a, leafless_solid_difference(NULL, solid, solid_result));
-    NULL_POINTER(leafless_solid_difference, b, leafless_solid_difference(solid, NULL, solid_result));
-    NULL_POINTER(leafless_solid_difference, solid, leafless_solid_difference(solid, solid, NULL));
+    for (operation = 0; operation < 4; operation++) {
+        NULL_POINTER(leafless_solid_combine, solids, leafless_solid_combine(operation, NULL, 1, solid_result));
+        NULL_POINTER(leafless_solid_combine, solids, leafless_solid_combine(operation, NULL, 2, solid_result));
+        NULL_POINTER(leafless_solid_combine, result, leafless_solid_combine(operation, solids, 2, NULL));
+        solids[1] = NULL;
+        NULL_POINTER(leafless_solid_combine, solids, leafless_solid_combine(operation, solids, 2, solid_result));
+        solids[0] = NULL, solids[1] = solid;
+        NULL_POINTER(leafless_solid_combine, solids, leafless_solid_combine(operation, solids, 2, solid_result));
+        solids[0] = solid;
+        if (operation == LEAFLESS_OPERATION_DIFFERENCE) {
+            BAD_NUMBER(leafless_solid_combine, count, leafless_solid_combine(operation, NULL, 0, solid_result));
+        } else {
+            NULL_POINTER(leafless_solid_combine, result, leafless_solid_combine(operation, NULL, 0, NULL));
+        }
+    }
+    BAD_NUMBER(leafless_solid_combine, operation, leafless_solid_combine(4, solids, 2, solid_result));
+    BAD_NUMBER(leafless_solid_combine, operation, leafless_solid_combine(UINT32_MAX, solids, 2, solid_result));
     NULL_POINTER(leafless_solid_complement, operand, leafless_solid_complement(NULL, solid_result));
     NULL_POINTER(leafless_solid_complement, solid, leafless_solid_complement(solid, NULL));
     NULL_POINTER(leafless_solid_adaptive, operand, leafless_solid_adaptive(NULL, 0.1, solid_result));
     NULL_POINTER(leafless_solid_adaptive, solid, leafless_solid_adaptive(solid, 0.1, NULL));
-    NULL_POINTER(leafless_solid_union, solids, leafless_solid_union(NULL, 1, solid_result));
-    NULL_POINTER(leafless_solid_union, solid, leafless_solid_union(NULL, 0, NULL));
-    NULL_POINTER(leafless_solid_intersection, solids, leafless_solid_intersection(NULL, 1, solid_result));
-    NULL_POINTER(leafless_solid_intersection, solid, leafless_solid_intersection(NULL, 0, NULL));
-    NULL_POINTER(leafless_solid_xor, solids, leafless_solid_xor(NULL, 1, solid_result));
-    NULL_POINTER(leafless_solid_xor, solid, leafless_solid_xor(NULL, 0, NULL));
     NULL_POINTER(leafless_solid_placed, operand,
                  leafless_solid_placed(NULL, matrix, (leafless_motion *)out, solid_result));
     NULL_POINTER(leafless_solid_placed, matrix,
@@ -488,29 +487,22 @@ static void null_pointers(void) {
                  leafless_octree_peek_metadata_at(octree, 0, (uint64_t *)out, (const char **)out + 1,
                                                   (size_t *)out + 2, (const char **)out + 3, NULL));
 
-#define BINARY(function)                                                                                         \
-    NULL_POINTER(function, a, function(NULL, octree, NULL, result));                                             \
-    NULL_POINTER(function, b, function(octree, NULL, NULL, result));                                             \
-    NULL_POINTER(function, result, function(octree, octree, NULL, NULL))
-    BINARY(leafless_octree_union);
-    BINARY(leafless_octree_intersection);
-    BINARY(leafless_octree_difference);
-    BINARY(leafless_octree_xor);
     NULL_POINTER(leafless_octree_complement, octree, leafless_octree_complement(NULL, NULL, result));
     NULL_POINTER(leafless_octree_complement, result, leafless_octree_complement(octree, NULL, NULL));
-    list[0] = octree;
-    list[1] = octree;
-#define NARY(function)                                                                                           \
-    list[1] = octree;                                                                                            \
-    NULL_POINTER(function, octrees, function(NULL, 2, NULL, result));                                            \
-    NULL_POINTER(function, result, function(list, 2, NULL, NULL));                                               \
-    BAD_NUMBER(function, count, function(list, 0, NULL, result));                                                \
-    BAD_NUMBER(function, count, function(NULL, 0, NULL, result));                                                \
-    list[1] = NULL;                                                                                              \
-    NULL_POINTER(function, octrees, function(list, 2, NULL, result))
-    NARY(leafless_octree_union_of);
-    NARY(leafless_octree_intersection_of);
-    NARY(leafless_octree_xor_of);
+    list[0] = list[1] = octree;
+    for (operation = 0; operation < 4; operation++) {
+        NULL_POINTER(leafless_octree_combine, octrees, leafless_octree_combine(operation, NULL, 2, NULL, result));
+        NULL_POINTER(leafless_octree_combine, result, leafless_octree_combine(operation, list, 2, NULL, NULL));
+        BAD_NUMBER(leafless_octree_combine, count, leafless_octree_combine(operation, list, 0, NULL, result));
+        BAD_NUMBER(leafless_octree_combine, count, leafless_octree_combine(operation, NULL, 0, NULL, result));
+        list[1] = NULL;
+        NULL_POINTER(leafless_octree_combine, octrees, leafless_octree_combine(operation, list, 2, NULL, result));
+        list[0] = NULL, list[1] = octree;
+        NULL_POINTER(leafless_octree_combine, octrees, leafless_octree_combine(operation, list, 2, NULL, result));
+        list[0] = octree;
+    }
+    BAD_NUMBER(leafless_octree_combine, operation, leafless_octree_combine(4, list, 2, NULL, result));
+    BAD_NUMBER(leafless_octree_combine, operation, leafless_octree_combine(UINT32_MAX, list, 2, NULL, result));
 
     NULL_POINTER(leafless_octree_contains, octree, leafless_octree_contains(NULL, point, (leafless_membership *)out));
     NULL_POINTER(leafless_octree_contains, point_model,
@@ -686,10 +678,12 @@ static void null_pointers(void) {
     leafless_octree_free(*result);
     MAY_BE_NULL(leafless_octree_complement, options, leafless_octree_complement(octree, NULL, result));
     leafless_octree_free(*result);
-    list[1] = octree;
-#define OPTIONS(function, first, second)                                                                         \
-    MAY_BE_NULL(function, options, function(first, second, NULL, result));                                       \
-    leafless_octree_free(*result)
+    for (operation = 0; operation < 4; operation++) {
+        for (number = 1; number <= 2; number++) {
+            MAY_BE_NULL(leafless_octree_combine, options, leafless_octree_combine(operation, list, number, NULL, result));
+            leafless_octree_free(*result);
+        }
+    }
     MAY_BE_NULL(leafless_mesh_from_polyhedron, deviation_model,
                 leafless_mesh_from_polyhedron(&polyhedron, NULL, mesh_result));
     leafless_mesh_free(*mesh_result);
@@ -708,13 +702,6 @@ static void null_pointers(void) {
     MAY_BE_NULL(leafless_mesh_from_bytes, source,
                 leafless_mesh_from_bytes(stl, sizeof stl, &mesh_options, NULL, mesh_result));
     leafless_mesh_free(*mesh_result);
-    OPTIONS(leafless_octree_union, octree, octree);
-    OPTIONS(leafless_octree_intersection, octree, octree);
-    OPTIONS(leafless_octree_difference, octree, octree);
-    OPTIONS(leafless_octree_xor, octree, octree);
-    OPTIONS(leafless_octree_union_of, list, 2);
-    OPTIONS(leafless_octree_intersection_of, list, 2);
-    OPTIONS(leafless_octree_xor_of, list, 2);
     refused(LEAFLESS_E_FORMAT, "leafless_bytes_verify", "", leafless_bytes_verify(NULL, 0));
     refused(LEAFLESS_E_FORMAT, "leafless_octree_from_bytes", "", leafless_octree_from_bytes(NULL, 0, result));
     refused(LEAFLESS_E_FORMAT, "leafless_octree_view_bytes", "", leafless_octree_view_bytes(NULL, 0, result));
@@ -746,7 +733,9 @@ static void misaligned(void) {
     const uint32_t *cell = (const uint32_t *)WRONG(CHECK_CUBE);
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
     const leafless_frame *bad_frame = (const leafless_frame *)WRONG(&frame);
-    const leafless_octree *bad_octree = (const leafless_octree *)WRONG(octree), *list[1];
+    const leafless_octree *bad_octree = (const leafless_octree *)WRONG(octree), *list[2];
+    const leafless_solid *solids[2];
+    uint32_t operation;
     const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     uint64_t length = 0;
     uint8_t *bytes = check_bytes(octree, &length), *beside = (uint8_t *)malloc((size_t)length + 1);
@@ -853,11 +842,23 @@ static void misaligned(void) {
                leafless_octree_with_proof(octree, 3, 0, (leafless_octree **)WRONG(out)));
     MISALIGNED(leafless_octree_levels, levels,
                leafless_octree_levels(octree, (leafless_statistics *)WRONG(out), 5, (uint64_t *)out));
-    MISALIGNED(leafless_octree_union, b, leafless_octree_union(octree, bad_octree, NULL, result));
-    list[0] = bad_octree;
-    MISALIGNED(leafless_octree_union_of, octrees, leafless_octree_union_of(list, 1, NULL, result));
-    MISALIGNED(leafless_octree_union_of, octrees,
-               leafless_octree_union_of((const leafless_octree *const *)WRONG(list), 1, NULL, result));
+    for (operation = 0; operation < 4; operation++) {
+        list[0] = octree, list[1] = bad_octree;
+        MISALIGNED(leafless_octree_combine, octrees, leafless_octree_combine(operation, list, 2, NULL, result));
+        list[0] = bad_octree;
+        MISALIGNED(leafless_octree_combine, octrees, leafless_octree_combine(operation, list, 1, NULL, result));
+        MISALIGNED(leafless_octree_combine, octrees,
+                   leafless_octree_combine(operation, (const leafless_octree *const *)WRONG(list), 1, NULL, result));
+        list[0] = octree;
+        MISALIGNED(leafless_octree_combine, result,
+                   leafless_octree_combine(operation, list, 1, NULL, (leafless_octree **)WRONG(out)));
+        solids[0] = solid, solids[1] = (const leafless_solid *)WRONG(solid);
+        MISALIGNED(leafless_solid_combine, solids, leafless_solid_combine(operation, solids, 2, solid_result));
+        MISALIGNED(leafless_solid_combine, solids,
+                   leafless_solid_combine(operation, (const leafless_solid *const *)WRONG(solids), 1, solid_result));
+        MISALIGNED(leafless_solid_combine, result,
+                   leafless_solid_combine(operation, solids, 1, (leafless_solid **)WRONG(out)));
+    }
     MISALIGNED(leafless_octree_contains, point_model,
                leafless_octree_contains(octree, numbers, (leafless_membership *)out));
     MISALIGNED(leafless_octree_contains_many, points_model,

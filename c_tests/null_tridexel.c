@@ -147,37 +147,38 @@ static void operations(void) {
     leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
     const leafless_tridexel *list[2];
     leafless_tridexel_format format;
+    uint64_t number;
+    uint32_t operation;
     OK(leafless_tridexel_format_init(&format, sizeof format));
     list[0] = list[1] = model;
-#define BINARY(function)                                                               \
-    NULL_POINTER(function, a, function(NULL, model, NULL, result));                    \
-    NULL_POINTER(function, b, function(model, NULL, NULL, result));                    \
-    NULL_POINTER(function, result, function(model, model, NULL, NULL));                \
-    MISALIGNED(function, options, function(model, model, (leafless_options *)WRONG(out), result)); \
-    MAY_BE_NULL(function, options, function(model, model, NULL, &other));              \
-    leafless_tridexel_free(other)
-    BINARY(leafless_tridexel_union);
-    BINARY(leafless_tridexel_intersection);
-    BINARY(leafless_tridexel_difference);
-    BINARY(leafless_tridexel_xor);
-#undef BINARY
-#define NARY(function)                                                                 \
-    NULL_POINTER(function, tridexels, function(NULL, 2, NULL, result));                \
-    BAD_NUMBER(function, count, function(list, 0, NULL, result));                      \
-    BAD_NUMBER(function, tridexels, function(list, UINT64_MAX, NULL, result));         \
-    NULL_POINTER(function, result, function(list, 2, NULL, NULL));                     \
-    list[1] = NULL;                                                                    \
-    NULL_POINTER(function, tridexels, function(list, 2, NULL, result));                \
-    list[1] = model;                                                                   \
-    MAY_BE_NULL(function, options, function(list, 2, NULL, &other));                   \
-    leafless_tridexel_free(other)
-    NARY(leafless_tridexel_union_of);
-    NARY(leafless_tridexel_intersection_of);
-    NARY(leafless_tridexel_xor_of);
-    NULL_POINTER(leafless_tridexel_union_of, tridexels, leafless_tridexel_union_of(NULL, 2, NULL, result));
-    NULL_POINTER(leafless_tridexel_intersection_of, tridexels, leafless_tridexel_intersection_of(NULL, 2, NULL, result));
-    NULL_POINTER(leafless_tridexel_xor_of, tridexels, leafless_tridexel_xor_of(NULL, 2, NULL, result));
-#undef NARY
+#define COMBINE(tridexels, count, options, result) leafless_tridexel_combine(operation, tridexels, count, options, result)
+    for (operation = 0; operation < 4; operation++) {
+        NULL_POINTER(leafless_tridexel_combine, tridexels, COMBINE(NULL, 2, NULL, result));
+        BAD_NUMBER(leafless_tridexel_combine, count, COMBINE(list, 0, NULL, result));
+        BAD_NUMBER(leafless_tridexel_combine, count, COMBINE(NULL, 0, NULL, result));
+        BAD_NUMBER(leafless_tridexel_combine, tridexels, COMBINE(list, UINT64_MAX, NULL, result));
+        NULL_POINTER(leafless_tridexel_combine, result, COMBINE(list, 2, NULL, NULL));
+        MISALIGNED(leafless_tridexel_combine, result, COMBINE(list, 2, NULL, (leafless_tridexel **)WRONG(out)));
+        MISALIGNED(leafless_tridexel_combine, options, COMBINE(list, 2, (leafless_options *)WRONG(out), result));
+        MISALIGNED(leafless_tridexel_combine, tridexels,
+                   COMBINE((const leafless_tridexel *const *)WRONG(list), 1, NULL, result));
+        list[1] = NULL;
+        NULL_POINTER(leafless_tridexel_combine, tridexels, COMBINE(list, 2, NULL, result));
+        list[0] = NULL, list[1] = model;
+        NULL_POINTER(leafless_tridexel_combine, tridexels, COMBINE(list, 2, NULL, result));
+        list[0] = (const leafless_tridexel *)WRONG(model);
+        MISALIGNED(leafless_tridexel_combine, tridexels, COMBINE(list, 2, NULL, result));
+        list[0] = model;
+        for (number = 1; number <= 2; number++) {
+            MAY_BE_NULL(leafless_tridexel_combine, options, COMBINE(list, number, NULL, &other));
+            leafless_tridexel_free(other);
+        }
+    }
+    /* No operations. */
+    BAD_NUMBER(leafless_tridexel_combine, operation, COMBINE(list, 2, NULL, result));
+    operation = UINT32_MAX;
+    BAD_NUMBER(leafless_tridexel_combine, operation, COMBINE(list, 2, NULL, result));
+#undef COMBINE
     NULL_POINTER(leafless_tridexel_complement, tridexel, leafless_tridexel_complement(NULL, NULL, result));
     NULL_POINTER(leafless_tridexel_complement, result, leafless_tridexel_complement(model, NULL, NULL));
     MAY_BE_NULL(leafless_tridexel_complement, options, leafless_tridexel_complement(model, NULL, &other));

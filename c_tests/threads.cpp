@@ -115,7 +115,7 @@ void reads(const leafless_octree *octree) {
         options.threads = 1 + number % 2;
         leafless_octree *complement = nullptr, *nothing = nullptr;
         OK(leafless_octree_complement(octree, &options, &complement));
-        OK(leafless_octree_difference(octree, octree, &options, &nothing));
+        OK(check_octrees(LEAFLESS_OPERATION_DIFFERENCE, octree, octree, &options, &nothing));
         leafless_octree_free(complement);
         leafless_octree_free(nothing);
     });
@@ -273,7 +273,7 @@ void numbers_of_threads(const std::vector<uint32_t> &numbers) {
         options.progress_ctx = control;
         leafless_octree *octree = nullptr, *both = nullptr;
         OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
-        OK(leafless_octree_union(octree, expected, &options, &both));
+        OK(check_octrees(LEAFLESS_OPERATION_UNION, octree, expected, &options, &both));
         CHECK(check_same(octree, expected) && check_same(both, expected));
         leafless_octree_free(octree);
         leafless_octree_free(both);
@@ -428,7 +428,7 @@ void one_solid() {
     on_frames([&] {
         leafless_solid *solid = nullptr, *ball = check_ball_solid(), *both = nullptr, *moved = nullptr;
         OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &solid));
-        OK(leafless_solid_difference(solid, ball, &both));
+        OK(check_solids(LEAFLESS_OPERATION_DIFFERENCE, solid, ball, &both));
         OK(leafless_solid_placed(both, turn, nullptr, &moved));
         leafless_solid_free(both);
         leafless_solid_free(ball);

@@ -62,12 +62,9 @@ static double volume(const leafless_tridexel *model, uint32_t axis) {
     return statistics.volume_model;
 }
 
-typedef leafless_status binary(const leafless_tridexel *, const leafless_tridexel *, const leafless_options *,
-                               leafless_tridexel **);
-
-static leafless_tridexel *both(binary *operation, const leafless_tridexel *a, const leafless_tridexel *b) {
+static leafless_tridexel *both(uint32_t operation, const leafless_tridexel *a, const leafless_tridexel *b) {
     leafless_tridexel *result = NULL;
-    OK(operation(a, b, NULL, &result));
+    OK(check_tridexels(operation, a, b, NULL, &result));
     OK(leafless_tridexel_check(result));
     return result;
 }
@@ -408,8 +405,9 @@ static void sources(void) {
         CHECK(volume(inner, axis) < volume(model, axis) && volume(model, axis) < volume(outer, axis));
     }
     /* What is inside lies in what is there, and that in what is outside of it. */
-    CHECK(same_and_free(both(leafless_tridexel_union, inner, model), both(leafless_tridexel_union, model, inner)));
-    CHECK(same_and_free(both(leafless_tridexel_difference, inner, model), both(leafless_tridexel_difference, model, outer)));
+    CHECK(same_and_free(both(LEAFLESS_OPERATION_UNION, inner, model), both(LEAFLESS_OPERATION_UNION, model, inner)));
+    CHECK(same_and_free(both(LEAFLESS_OPERATION_DIFFERENCE, inner, model),
+                        both(LEAFLESS_OPERATION_DIFFERENCE, model, outer)));
     leafless_tridexel_free(inner);
     leafless_tridexel_free(outer);
     leafless_tridexel_free(threads);
@@ -427,33 +425,47 @@ static void laws(void) {
         leafless_tridexel *b = made_of(ball_at(0.3, 0.1, 0.2, 0.45), DEPTH, &format);
         leafless_tridexel *c = made_of(ball_at(0.1, -0.4, 0.3, 0.5), DEPTH, &format);
         leafless_tridexel *not_a = complement(a), *not_b = complement(b), *result = NULL;
-        leafless_tridexel *joined = both(leafless_tridexel_union, a, b), *common = both(leafless_tridexel_intersection, a, b);
-        leafless_tridexel *rest = both(leafless_tridexel_difference, a, b), *odd = both(leafless_tridexel_xor, a, b);
+        leafless_tridexel *joined = both(LEAFLESS_OPERATION_UNION, a, b);
+        leafless_tridexel *common = both(LEAFLESS_OPERATION_INTERSECTION, a, b), *others;
+        leafless_tridexel *rest = both(LEAFLESS_OPERATION_DIFFERENCE, a, b);
         const leafless_tridexel *list[3];
-        uint32_t axis;
+        uint32_t axis, operation;
         for (axis = 0; axis < 3; axis++) {
             CHECK(volume(common, axis) > 0.1 && volume(rest, axis) > 0.1);
             CHECK(fabs(volume(joined, axis) + volume(common, axis) - volume(a, axis) - volume(b, axis)) < 1e-9);
             CHECK(fabs(volume(rest, axis) + volume(common, axis) - volume(a, axis)) < 1e-9);
             CHECK(fabs(volume(not_a, axis) + volume(a, axis) - 8) < 1e-9);
         }
-        CHECK(same_and_free(complement(joined), both(leafless_tridexel_intersection, not_a, not_b)));
-        CHECK(same_and_free(complement(common), both(leafless_tridexel_union, not_a, not_b)));
-        CHECK(same_and_free(both(leafless_tridexel_intersection, a, not_b), both(leafless_tridexel_difference, a, b)));
-        CHECK(same_and_free(both(leafless_tridexel_difference, joined, common), both(leafless_tridexel_xor, b, a)));
-        CHECK(same_and_free(both(leafless_tridexel_union, rest, common), both(leafless_tridexel_union, a, a)));
-        CHECK(same_and_free(complement(not_a), both(leafless_tridexel_intersection, a, joined)));
+        CHECK(same_and_free(complement(joined), both(LEAFLESS_OPERATION_INTERSECTION, not_a, not_b)));
+        CHECK(same_and_free(complement(common), both(LEAFLESS_OPERATION_UNION, not_a, not_b)));
+        CHECK(same_and_free(both(LEAFLESS_OPERATION_INTERSECTION, a, not_b), both(LEAFLESS_OPERATION_DIFFERENCE, a, b)));
+        CHECK(same_and_free(both(LEAFLESS_OPERATION_DIFFERENCE, joined, common), both(LEAFLESS_OPERATION_XOR, b, a)));
+        CHECK(same_and_free(both(LEAFLESS_OPERATION_UNION, rest, common), both(LEAFLESS_OPERATION_UNION, a, a)));
+        CHECK(same_and_free(complement(not_a), both(LEAFLESS_OPERATION_INTERSECTION, a, joined)));
         list[0] = a, list[1] = b, list[2] = c;
-        OK(leafless_tridexel_union_of(list, 3, NULL, &result));
-        CHECK(same_and_free(result, both(leafless_tridexel_union, joined, c)));
-        OK(leafless_tridexel_intersection_of(list, 3, NULL, &result));
-        CHECK(same_and_free(result, both(leafless_tridexel_intersection, common, c)));
-        OK(leafless_tridexel_xor_of(list, 3, NULL, &result));
-        CHECK(same_and_free(result, both(leafless_tridexel_xor, odd, c)));
-        OK(leafless_tridexel_xor_of(list, 1, NULL, &result));
-        CHECK(same(result, a));
-        leafless_tridexel_free(result);
-        leafless_tridexel_free(odd);
+        for (operation = 0; operation < 4; operation++) {
+            leafless_tridexel *two = both(operation, a, b);
+            OK(leafless_tridexel_combine(operation, list, 3, NULL, &result));
+            CHECK(same_and_free(result, both(operation, two, c)));
+            leafless_tridexel_free(two);
+            OK(leafless_tridexel_combine(operation, list, 1, NULL, &result));
+            CHECK(same(result, a));
+            leafless_tridexel_free(result);
+            result = NULL;
+            FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_combine(operation, NULL, 0, NULL, &result));
+            FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_combine(operation, list, 0, NULL, &result));
+            CHECK(result == NULL);
+        }
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_combine(4, list, 2, NULL, &result));
+        CHECK(result == NULL);
+        /* The first less the union of the others. */
+        OK(leafless_tridexel_combine(LEAFLESS_OPERATION_DIFFERENCE, list, 3, NULL, &result));
+        others = both(LEAFLESS_OPERATION_UNION, b, c);
+        for (axis = 0; axis < 3; axis++) {
+            CHECK(volume(result, axis) > 0.1 && volume(result, axis) < volume(rest, axis) - 0.01);
+        }
+        CHECK(same_and_free(result, both(LEAFLESS_OPERATION_DIFFERENCE, a, others)));
+        leafless_tridexel_free(others);
         leafless_tridexel_free(rest);
         leafless_tridexel_free(common);
         leafless_tridexel_free(joined);
@@ -515,19 +527,19 @@ static void contents(void) {
     OK(leafless_tridexel_with_material(box, 2, NULL, &copper));
     steel = with_fact(with_fact(with_fact(steel, "name", "part"), "units", "mm"), "maker", "me");
     copper = with_fact(with_fact(copper, "name", "part"), "units", "inch");
-    joined = both(leafless_tridexel_union, steel, copper);
+    joined = both(LEAFLESS_OPERATION_UNION, steel, copper);
     OK(leafless_tridexel_ray(joined, 0, ray, dexels, 3, &count));
     CHECK(count == 2 && dexels[0].material == 1 && dexels[1].material == 2);
     CHECK(dexels[0].end.at_model == dexels[1].start.at_model && dexels[1].end.at_model > 0.89);
     CHECK(fabs(dexels[0].end.at_model - 0.75) < 2e-3);
     CHECK(is_named(joined, "name", "part") && is_named(joined, "units", NULL) && is_named(joined, "maker", NULL));
     leafless_tridexel_free(joined);
-    joined = both(leafless_tridexel_union, copper, steel);
+    joined = both(LEAFLESS_OPERATION_UNION, copper, steel);
     OK(leafless_tridexel_ray(joined, 0, ray, dexels, 3, &count));
     CHECK(count == 2 && dexels[0].material == 1 && dexels[1].material == 2 && fabs(dexels[1].start.at_model) < 1e-9);
     leafless_tridexel_free(joined);
     /* A cut shows the other side of the tool: its surface, and its normal turned about. */
-    cut = both(leafless_tridexel_difference, box, ball);
+    cut = both(LEAFLESS_OPERATION_DIFFERENCE, box, ball);
     OK(leafless_tridexel_ray(cut, 0, ray, dexels, 3, &count));
     CHECK(count == 1 && dexels[0].start.surface == 0 && dexels[0].start.normal[0] < -0.99);
     leafless_tridexel_free(cut);
@@ -584,7 +596,7 @@ static void cuts(void) {
     CHECK(frame.depth == DEPTH && frame.edge == 2 && frame.origin[0] == -1);
     OK(leafless_tridexel_editor_bytes(by_solids, &bytes));
     CHECK(bytes >= 3 * 12 * 64 * 64);
-    CHECK(same_and_free(frozen(by_solids), both(leafless_tridexel_union, block, block)));
+    CHECK(same_and_free(frozen(by_solids), both(LEAFLESS_OPERATION_UNION, block, block)));
     early = frozen(by_solids);
     for (i = 0; i < STEPS; i++) {
         leafless_solid *ball = step_of_tool(i);
@@ -598,11 +610,11 @@ static void cuts(void) {
     CHECK(same(early, block));
     leafless_tridexel_free(early);
     part = frozen(by_solids);
-    OK(leafless_tridexel_union_of((const leafless_tridexel *const *)steps, STEPS, NULL, &path));
+    OK(leafless_tridexel_combine(LEAFLESS_OPERATION_UNION, (const leafless_tridexel *const *)steps, STEPS, NULL, &path));
     {
         /* Which step shows at an end is another question. */
         const leafless_tridexel_format plain = format_of(0, 0, 0, 0);
-        leafless_tridexel *whole = both(leafless_tridexel_difference, block, path), *one = NULL, *other = NULL;
+        leafless_tridexel *whole = both(LEAFLESS_OPERATION_DIFFERENCE, block, path), *one = NULL, *other = NULL;
         OK(leafless_tridexel_to_format(whole, &plain, NULL, &one));
         OK(leafless_tridexel_to_format(part, &plain, NULL, &other));
         CHECK(same_and_free(one, other));
@@ -688,19 +700,19 @@ static void refused(void) {
     OK(leafless_options_init(&options, sizeof options));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
     FAILS(LEAFLESS_E_CALLBACK, leafless_tridexel_editor_subtract_solid(editor, busy, NULL));
-    FAILS(LEAFLESS_E_FRAME, leafless_tridexel_union(model, finer, NULL, &result));
+    FAILS(LEAFLESS_E_FRAME, check_tridexels(LEAFLESS_OPERATION_UNION, model, finer, NULL, &result));
     FAILS(LEAFLESS_E_FRAME, leafless_tridexel_editor_subtract(editor, finer, NULL));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_difference(model, columns, NULL, &result));
+    FAILS(LEAFLESS_E_ARGUMENT, check_tridexels(LEAFLESS_OPERATION_DIFFERENCE, model, columns, NULL, &result));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_editor_unite(editor, columns, NULL));
     options.max_bytes = 1000;
     FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
-    FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_union(model, model, &options, &result));
+    FAILS(LEAFLESS_E_LIMIT, check_tridexels(LEAFLESS_OPERATION_UNION, model, model, &options, &result));
     FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_complement(model, &options, &result));
     options.max_bytes = 0;
     options.control = control;
     OK(leafless_control_cancel(control));
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
-    FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_xor(model, model, &options, &result));
+    FAILS(LEAFLESS_E_CANCELLED, check_tridexels(LEAFLESS_OPERATION_XOR, model, model, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_with_material(model, 1, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_subtract_solid(editor, ball, &options));
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_subtract(editor, model, &options));

@@ -836,6 +836,35 @@ typedef uint32_t leafless_rule;
 #endif // __cplusplus
 
 /**
+ * What is made of several operands.
+ */
+enum leafless_operation
+#ifdef __cplusplus
+  : uint32_t
+#endif // __cplusplus
+ {
+    /**
+     * The points of at least one operand.
+     */
+    LEAFLESS_OPERATION_UNION = 0,
+    /**
+     * The points that all operands have in common.
+     */
+    LEAFLESS_OPERATION_INTERSECTION = 1,
+    /**
+     * The points of the first operand that lie in none of the others.
+     */
+    LEAFLESS_OPERATION_DIFFERENCE = 2,
+    /**
+     * The points that lie in an odd number of operands: of two, in just one.
+     */
+    LEAFLESS_OPERATION_XOR = 3,
+};
+#ifndef __cplusplus
+typedef uint32_t leafless_operation;
+#endif // __cplusplus
+
+/**
  * What a host promises of its shape outside of the universe that it is asked about.
  */
 enum leafless_exterior
@@ -5416,68 +5445,24 @@ leafless_status leafless_solid_new_prism(const double *polygon_model,
 leafless_status leafless_solid_new_convex(const double *planes, uint64_t count, leafless_solid **solid);
 
 /**
- * What at least one of the solids contains; nothing, if there is none. No tree is built: the result asks its
- * operands about each cell that it is asked about, and expressions of half-spaces join into one.
+ * What a set operation makes of solids. Of no solid, the union and the xor are empty. The intersection of no
+ * solid is everything. No tree is built: the result asks its operands about each cell that it is asked about,
+ * and expressions of half-spaces join into one.
  *
- * - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
- * - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+ * - Buffers: `solids`, `count` handles, or NULL if there is none; `result`, one pointer. `operation` is a
+ *   leafless_operation.
+ * - Result: `*result`.
+ * - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if `count` is 0 for a difference;
+ *   LEAFLESS_E_NO_MEMORY.
+ * - Ownership: the operands are shared and may be freed; give `*result` back with leafless_solid_free.
  * - Threads: any.
  * - Untrusted input: any solids.
  * - Since: 0.1
  */
-leafless_status leafless_solid_union(const leafless_solid *const *solids,
-                                     uint64_t count,
-                                     leafless_solid **solid);
-
-/**
- * What all of the solids contain; everything, if there is none. No tree is built: the result asks its
- * operands about each cell that it is asked about, and expressions of half-spaces join into one.
- *
- * - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
- * - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
- * - Threads: any.
- * - Untrusted input: any solids.
- * - Since: 0.1
- */
-leafless_status leafless_solid_intersection(const leafless_solid *const *solids,
-                                            uint64_t count,
-                                            leafless_solid **solid);
-
-/**
- * What an odd number of the solids contain: of two, what is in one and not in the other. No tree is built:
- * the result asks its operands about each cell that it is asked about, and expressions of half-spaces join
- * into one.
- *
- * - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
- * - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
- * - Threads: any.
- * - Untrusted input: any solids.
- * - Since: 0.1
- */
-leafless_status leafless_solid_xor(const leafless_solid *const *solids,
-                                   uint64_t count,
-                                   leafless_solid **solid);
-
-/**
- * What `a` contains and `b` does not. No tree is built.
- *
- * - Buffers: `solid`, one pointer.
- * - Result: `*solid`.
- * - Errors: LEAFLESS_E_NULL; LEAFLESS_E_NO_MEMORY.
- * - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
- * - Threads: any.
- * - Untrusted input: any solids.
- * - Since: 0.1
- */
-leafless_status leafless_solid_difference(const leafless_solid *a,
-                                          const leafless_solid *b,
-                                          leafless_solid **solid);
+leafless_status leafless_solid_combine(uint32_t operation,
+                                       const leafless_solid *const *solids,
+                                       uint64_t count,
+                                       leafless_solid **result);
 
 /**
  * What `operand` does not contain. A solid and its complement share their boundary.
@@ -6803,136 +6788,42 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree,
 leafless_status leafless_octree_compact(const leafless_octree *octree, leafless_octree **compacted);
 
 /**
- * The points that lie in `a`, in `b`, or in both. Exact, and the same bit for bit for any number of threads; never larger
- * than both operands together. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
+ * What a set operation makes of octrees, at least one. Exact, and the same bit for bit for any number of threads; never
+ * larger than all operands together. Operands are joined two by two: limits and progress of `options` concern each of
+ * these steps. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
  *
- * - Buffers: `options`, one struct or NULL; `result`, one pointer.
+ * - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
+ *   leafless_operation.
  * - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
  *   no other metadata.
- * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT;
- *   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if
+ *   `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
  * - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
  * - Threads: any; uses as many as `options` says.
  * - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
  *   PARTIAL.
  * - Since: 0.1
  */
-leafless_status leafless_octree_union(const leafless_octree *a,
-                                      const leafless_octree *b,
-                                      const leafless_options *options,
-                                      leafless_octree **result);
-
-/**
- * The points that `a` and `b` have in common.
- *
- * - Buffers: as leafless_octree_union.
- * - Result: as leafless_octree_union.
- * - Errors: as leafless_octree_union.
- * - Ownership: as leafless_octree_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: as leafless_octree_union.
- * - Since: 0.1
- */
-leafless_status leafless_octree_intersection(const leafless_octree *a,
-                                             const leafless_octree *b,
-                                             const leafless_options *options,
-                                             leafless_octree **result);
-
-/**
- * `a` without `b`.
- *
- * - Buffers: as leafless_octree_union.
- * - Result: as leafless_octree_union.
- * - Errors: as leafless_octree_union.
- * - Ownership: as leafless_octree_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: as leafless_octree_union.
- * - Since: 0.1
- */
-leafless_status leafless_octree_difference(const leafless_octree *a,
-                                           const leafless_octree *b,
-                                           const leafless_options *options,
-                                           leafless_octree **result);
-
-/**
- * The points of just one of `a` and `b`.
- *
- * - Buffers: as leafless_octree_union.
- * - Result: as leafless_octree_union.
- * - Errors: as leafless_octree_union.
- * - Ownership: as leafless_octree_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: as leafless_octree_union.
- * - Since: 0.1
- */
-leafless_status leafless_octree_xor(const leafless_octree *a,
-                                    const leafless_octree *b,
-                                    const leafless_options *options,
-                                    leafless_octree **result);
+leafless_status leafless_octree_combine(uint32_t operation,
+                                        const leafless_octree *const *octrees,
+                                        uint64_t count,
+                                        const leafless_options *options,
+                                        leafless_octree **result);
 
 /**
  * Everything but `octree`, inside of its universe and out.
  *
- * - Buffers: as leafless_octree_union.
- * - Result: as leafless_octree_union.
- * - Errors: as leafless_octree_union.
- * - Ownership: as leafless_octree_union.
+ * - Buffers: `options`, one struct or NULL; `result`, one pointer.
+ * - Result: as leafless_octree_combine.
+ * - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Ownership: as leafless_octree_combine.
  * - Threads: any; uses as many as `options` says.
- * - Untrusted input: as leafless_octree_union.
+ * - Untrusted input: as leafless_octree_combine.
  * - Since: 0.1
  */
 leafless_status leafless_octree_complement(const leafless_octree *octree,
                                            const leafless_options *options,
                                            leafless_octree **result);
-
-/**
- * The union of any number of octrees, at least one. Limits and progress of `options` concern each of its
- * steps.
- *
- * - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
- * - Result: as leafless_octree_union.
- * - Errors: as leafless_octree_union, and LEAFLESS_E_ARGUMENT if `count` is 0.
- * - Ownership: as leafless_octree_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: as leafless_octree_union.
- * - Since: 0.1
- */
-leafless_status leafless_octree_union_of(const leafless_octree *const *octrees,
-                                         uint64_t count,
-                                         const leafless_options *options,
-                                         leafless_octree **result);
-
-/**
- * The intersection of any number of octrees, at least one.
- *
- * - Buffers: as leafless_octree_union_of.
- * - Result: as leafless_octree_union.
- * - Errors: as leafless_octree_union_of.
- * - Ownership: as leafless_octree_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: as leafless_octree_union.
- * - Since: 0.1
- */
-leafless_status leafless_octree_intersection_of(const leafless_octree *const *octrees,
-                                                uint64_t count,
-                                                const leafless_options *options,
-                                                leafless_octree **result);
-
-/**
- * The points that lie in an odd number of octrees, at least one.
- *
- * - Buffers: as leafless_octree_union_of.
- * - Result: as leafless_octree_union.
- * - Errors: as leafless_octree_union_of.
- * - Ownership: as leafless_octree_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: as leafless_octree_union.
- * - Since: 0.1
- */
-leafless_status leafless_octree_xor_of(const leafless_octree *const *octrees,
-                                       uint64_t count,
-                                       const leafless_options *options,
-                                       leafless_octree **result);
 
 /**
  * Whether the solid contains a point. A point on the boundary may be answered either way; one that is
@@ -9598,83 +9489,39 @@ leafless_status leafless_tridexel_read_cells(const leafless_tridexel *tridexel,
                                              uint64_t *interval_count);
 
 /**
- * The points that lie in `a`, in `b`, or in both. Exact: all laws of sets hold. O(rays + intervals), and the same bit for
- * bit for any number of threads. The result stores what either operand does; ends are doubles if those of one operand
- * are. An end keeps its surface and its normal, turned about where a subtraction shows its other side. Where both
- * operands hold a place, the material of `a` counts.
+ * What a set operation makes of tri-dexel models, at least one. Exact: all laws of sets hold. O(rays + intervals · log
+ * models), and the same bit for bit for any number of threads. The result stores what any operand does; ends are doubles if
+ * those of one operand are. An end keeps its surface and its normal, turned about where a subtraction shows its other side.
+ * Where several operands hold a place, the material of the first one counts. Operands are joined two by two: limits of
+ * `options` concern each of these steps. Where more than one operand is taken away, progress begins anew for the last step.
  *
- * - Buffers: `options`, one struct or NULL; `result`, one pointer.
+ * - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
+ *   leafless_operation.
  * - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
  *   no other metadata.
- * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT if the operands have rays along different axes;
- *   LEAFLESS_E_DAMAGED if an operand was mapped unverified and is damaged; LEAFLESS_E_LIMIT, also for 2^32 intervals along
- *   one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+ * - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if
+ *   `count` is 0 or the operands have rays along different axes; LEAFLESS_E_DAMAGED if an operand was mapped unverified
+ *   and is damaged; LEAFLESS_E_LIMIT, also for 2^32 intervals along one axis; LEAFLESS_E_CANCELLED;
+ *   LEAFLESS_E_NO_MEMORY.
  * - Ownership: the operands stay as they are; give `*result` back with leafless_tridexel_free.
  * - Threads: any; uses as many as `options` says.
  * - Untrusted input: any models.
  * - Since: 0.1
  */
-leafless_status leafless_tridexel_union(const leafless_tridexel *a,
-                                        const leafless_tridexel *b,
-                                        const leafless_options *options,
-                                        leafless_tridexel **result);
-
-/**
- * The points that `a` and `b` have in common.
- *
- * - Buffers: as leafless_tridexel_union.
- * - Result: as leafless_tridexel_union.
- * - Errors: as leafless_tridexel_union.
- * - Ownership: as leafless_tridexel_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: any models.
- * - Since: 0.1
- */
-leafless_status leafless_tridexel_intersection(const leafless_tridexel *a,
-                                               const leafless_tridexel *b,
-                                               const leafless_options *options,
-                                               leafless_tridexel **result);
-
-/**
- * `a` without `b`.
- *
- * - Buffers: as leafless_tridexel_union.
- * - Result: as leafless_tridexel_union.
- * - Errors: as leafless_tridexel_union.
- * - Ownership: as leafless_tridexel_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: any models.
- * - Since: 0.1
- */
-leafless_status leafless_tridexel_difference(const leafless_tridexel *a,
-                                             const leafless_tridexel *b,
-                                             const leafless_options *options,
-                                             leafless_tridexel **result);
-
-/**
- * The points of just one of `a` and `b`.
- *
- * - Buffers: as leafless_tridexel_union.
- * - Result: as leafless_tridexel_union.
- * - Errors: as leafless_tridexel_union.
- * - Ownership: as leafless_tridexel_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: any models.
- * - Since: 0.1
- */
-leafless_status leafless_tridexel_xor(const leafless_tridexel *a,
-                                      const leafless_tridexel *b,
-                                      const leafless_options *options,
-                                      leafless_tridexel **result);
+leafless_status leafless_tridexel_combine(uint32_t operation,
+                                          const leafless_tridexel *const *tridexels,
+                                          uint64_t count,
+                                          const leafless_options *options,
+                                          leafless_tridexel **result);
 
 /**
  * The points of the universe that do not lie in `tridexel`. O(rays of the universe + intervals).
  *
- * - Buffers: as leafless_tridexel_union.
- * - Result: as leafless_tridexel_union.
+ * - Buffers: `options`, one struct or NULL; `result`, one pointer.
+ * - Result: as leafless_tridexel_combine.
  * - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also for 2^32 rays along one axis; LEAFLESS_E_CANCELLED;
  *   LEAFLESS_E_NO_MEMORY.
- * - Ownership: as leafless_tridexel_union.
+ * - Ownership: as leafless_tridexel_combine.
  * - Threads: any; uses as many as `options` says.
  * - Untrusted input: any model; set `max_bytes` where its depth is not your own choice.
  * - Since: 0.1
@@ -9682,55 +9529,6 @@ leafless_status leafless_tridexel_xor(const leafless_tridexel *a,
 leafless_status leafless_tridexel_complement(const leafless_tridexel *tridexel,
                                              const leafless_options *options,
                                              leafless_tridexel **result);
-
-/**
- * The union of any number of tri-dexel models, at least one. Where several hold a place, the material of the first one
- * counts. O(rays + intervals · log models). Limits of `options` concern each of its steps.
- *
- * - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
- * - Result: as leafless_tridexel_union.
- * - Errors: as leafless_tridexel_union, and LEAFLESS_E_ARGUMENT if `count` is 0.
- * - Ownership: as leafless_tridexel_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: any models.
- * - Since: 0.1
- */
-leafless_status leafless_tridexel_union_of(const leafless_tridexel *const *tridexels,
-                                           uint64_t count,
-                                           const leafless_options *options,
-                                           leafless_tridexel **result);
-
-/**
- * The intersection of any number of tri-dexel models, at least one.
- *
- * - Buffers: as leafless_tridexel_union_of.
- * - Result: as leafless_tridexel_union.
- * - Errors: as leafless_tridexel_union_of.
- * - Ownership: as leafless_tridexel_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: any models.
- * - Since: 0.1
- */
-leafless_status leafless_tridexel_intersection_of(const leafless_tridexel *const *tridexels,
-                                                  uint64_t count,
-                                                  const leafless_options *options,
-                                                  leafless_tridexel **result);
-
-/**
- * The points that lie in an odd number of tri-dexel models, at least one.
- *
- * - Buffers: as leafless_tridexel_union_of.
- * - Result: as leafless_tridexel_union.
- * - Errors: as leafless_tridexel_union_of.
- * - Ownership: as leafless_tridexel_union.
- * - Threads: any; uses as many as `options` says.
- * - Untrusted input: any models.
- * - Since: 0.1
- */
-leafless_status leafless_tridexel_xor_of(const leafless_tridexel *const *tridexels,
-                                         uint64_t count,
-                                         const leafless_options *options,
-                                         leafless_tridexel **result);
 
 /**
  * The same tri-dexel model with other things stored. What `tridexel` does not store is unknown in the result: no surface,

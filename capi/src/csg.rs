@@ -1,6 +1,7 @@
 //! Constructive solid geometry: half-spaces, primitives, and the set operations that join solids.
 
 use super::boundary::{Failure, array, guard, out, shared, slice};
+use super::operation::{leafless_operation::*, operands, operation};
 use super::solid::{give, give_any, leafless_solid};
 use super::status::leafless_status;
 use leafless::Affine;
@@ -31,27 +32,8 @@ fn touch(touch: u32) -> Result<Touch, Failure> {
 }
 
 /// A solid as an expression.
-///
-/// # Safety
-/// As [`shared`].
-unsafe fn operand(solid: *const leafless_solid, name: &'static str) -> Result<Csg, Failure> {
-    // SAFETY: as the caller promises.
-    Ok(Csg::solid(unsafe { shared(solid, name)? }.solid.solid().clone()))
-}
-
-/// An array of solids as expressions.
-///
-/// # Safety
-/// As [`slice`] and, for each element, [`shared`].
-unsafe fn operands(solids: *const *const leafless_solid, count: u64) -> Result<Vec<Csg>, Failure> {
-    // SAFETY: as the caller promises.
-    let solids = unsafe { slice(solids, count, "solids")? };
-    let mut operands = memory::with_capacity(solids.len())?;
-    for &solid in solids {
-        // SAFETY: as the caller promises.
-        operands.push(unsafe { operand(solid, "solids")? });
-    }
-    Ok(operands)
+fn expression(solid: &leafless_solid) -> Csg {
+    Csg::solid(solid.solid.solid().clone())
 }
 
 /// The map of twelve numbers.
@@ -371,95 +353,40 @@ pub unsafe extern "C" fn leafless_solid_new_convex(
     })
 }
 
-/// What at least one of the solids contains; nothing, if there is none. No tree is built: the result asks its
-/// operands about each cell that it is asked about, and expressions of half-spaces join into one.
+/// What a set operation makes of solids. Of no solid, the union and the xor are empty. The intersection of no
+/// solid is everything. No tree is built: the result asks its operands about each cell that it is asked about,
+/// and expressions of half-spaces join into one.
 ///
-/// - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
-/// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Buffers: `solids`, `count` handles, or NULL if there is none; `result`, one pointer. `operation` is a
+///   leafless_operation.
+/// - Result: `*result`.
+/// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if `count` is 0 for a difference;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the operands are shared and may be freed; give `*result` back with leafless_solid_free.
 /// - Threads: any.
 /// - Untrusted input: any solids.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_union(
+pub unsafe extern "C" fn leafless_solid_combine(
+    operation: u32,
     solids: *const *const leafless_solid,
     count: u64,
-    solid: *mut *mut leafless_solid,
+    result: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operands = operands(solids, count)?;
-        let solid = out(solid, "solid")?;
-        solid.write(give(Csg::union_of(operands)?))
-    })
-}
-
-/// What all of the solids contain; everything, if there is none. No tree is built: the result asks its
-/// operands about each cell that it is asked about, and expressions of half-spaces join into one.
-///
-/// - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
-/// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
-/// - Untrusted input: any solids.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_intersection(
-    solids: *const *const leafless_solid,
-    count: u64,
-    solid: *mut *mut leafless_solid,
-) -> leafless_status {
-    guard(|| unsafe {
-        let operands = operands(solids, count)?;
-        let solid = out(solid, "solid")?;
-        solid.write(give(Csg::intersection_of(operands)?))
-    })
-}
-
-/// What an odd number of the solids contain: of two, what is in one and not in the other. No tree is built:
-/// the result asks its operands about each cell that it is asked about, and expressions of half-spaces join
-/// into one.
-///
-/// - Buffers: `solids`, `count` pointers, or NULL if there is none; `solid`, one pointer.
-/// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
-/// - Untrusted input: any solids.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_xor(
-    solids: *const *const leafless_solid,
-    count: u64,
-    solid: *mut *mut leafless_solid,
-) -> leafless_status {
-    guard(|| unsafe {
-        let operands = operands(solids, count)?;
-        let solid = out(solid, "solid")?;
-        solid.write(give(Csg::xor_of(operands)?))
-    })
-}
-
-/// What `a` contains and `b` does not. No tree is built.
-///
-/// - Buffers: `solid`, one pointer.
-/// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the operands are shared and may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
-/// - Untrusted input: any solids.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_difference(
-    a: *const leafless_solid,
-    b: *const leafless_solid,
-    solid: *mut *mut leafless_solid,
-) -> leafless_status {
-    guard(|| unsafe {
-        let (a, b) = (operand(a, "a")?, operand(b, "b")?);
-        let solid = out(solid, "solid")?;
-        solid.write(give(a.difference(&b)?))
+        let operation = self::operation(operation)?;
+        let may_be_none = !matches!(operation, LEAFLESS_OPERATION_DIFFERENCE);
+        let solids = operands(solids, count, may_be_none, "solids", expression)?;
+        let result = out(result, "result")?;
+        result.write(give(match (operation, &*solids) {
+            (LEAFLESS_OPERATION_DIFFERENCE, [a, b]) => a.difference(b)?,
+            (LEAFLESS_OPERATION_DIFFERENCE, [a, rest @ ..]) if !rest.is_empty() => {
+                a.difference(&Csg::union_of(rest.iter().cloned())?)?
+            }
+            (LEAFLESS_OPERATION_UNION | LEAFLESS_OPERATION_DIFFERENCE, _) => Csg::union_of(solids)?,
+            (LEAFLESS_OPERATION_INTERSECTION, _) => Csg::intersection_of(solids)?,
+            (LEAFLESS_OPERATION_XOR, _) => Csg::xor_of(solids)?,
+        }))
     })
 }
 
@@ -478,7 +405,7 @@ pub unsafe extern "C" fn leafless_solid_complement(
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operand = self::operand(operand, "operand")?;
+        let operand = expression(shared(operand, "operand")?);
         let solid = out(solid, "solid")?;
         solid.write(give(operand.complement()))
     })
@@ -590,7 +517,7 @@ pub unsafe extern "C" fn leafless_solid_with_touch(
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operand = self::operand(operand, "operand")?;
+        let operand = expression(shared(operand, "operand")?);
         let touch = self::touch(touch)?;
         let solid = out(solid, "solid")?;
         solid.write(give(operand.with_touch(touch)))

@@ -240,6 +240,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_rule {
             LEAFLESS_RULE_CERTIFIED, LEAFLESS_RULE_SAMPLED, LEAFLESS_RULE_INNER, LEAFLESS_RULE_OUTER
         }
+        leafless_operation {
+            LEAFLESS_OPERATION_UNION, LEAFLESS_OPERATION_INTERSECTION, LEAFLESS_OPERATION_DIFFERENCE, LEAFLESS_OPERATION_XOR
+        }
         leafless_facets { LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON }
         leafless_range_kind { LEAFLESS_RANGE_UNKNOWN, LEAFLESS_RANGE_NOWHERE, LEAFLESS_RANGE_WITHIN }
         leafless_scalar_type {

@@ -17,6 +17,7 @@
 //! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
 //! | `metadata` | facts of octrees and channels, for both |
 //! | `octree` | octrees: describing, statistics, metadata |
+//! | `operation` | set operations, for operands of every kind |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
 //! | `volume` | bitmaps and arrays of samples, and solids of them |
 //! | `volume_arrays` | volumes from the host's arrays |
@@ -98,6 +99,7 @@ mod metadata;
 mod octree;
 mod octree_channels;
 mod op;
+mod operation;
 mod picture;
 mod point_cursor;
 mod polyhedron;
@@ -156,6 +158,7 @@ pub use mesh_write::*;
 pub use octree::*;
 pub use octree_channels::*;
 pub use op::*;
+pub use operation::*;
 pub use picture::*;
 pub use point_cursor::*;
 pub use polyhedron::*;

@@ -4,6 +4,7 @@ use super::boundary::{Failure, guard, out, shared, slice, text};
 use super::channel::{give as give_channel, leafless_channel};
 use super::control::{controlled, leafless_options};
 use super::octree::{give, leafless_octree};
+use super::operation::operands;
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::attribute::{CarryRule, carry_channels};
@@ -197,14 +198,10 @@ pub unsafe extern "C" fn leafless_octree_carry_channels(
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
-        let operands = slice(operands, count, "operands")?;
+        let octrees = self::operands(operands, count, true, "operands", |handle| &handle.octree)?;
         let carry = self::rule(carry, "carry")?;
         let rules = slice(rules, rule_count, "rules")?;
         let result = out(result, "result")?;
-        let mut octrees = memory::with_capacity(operands.len())?;
-        for &operand in operands {
-            octrees.push(&shared(operand, "operands")?.octree);
-        }
         let mut named = memory::with_capacity(rules.len())?;
         for given in rules {
             let name = text(given.name, given.name_length, "rules.name")?;

@@ -1,18 +1,14 @@
 //! From solids to octrees, and from octrees to others: building, resolving, set algebra.
 
-use super::boundary::{Failure, guard, out, shared, slice};
+use super::boundary::{Failure, guard, out, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::octree::{give, leafless_octree};
+use super::operation::{leafless_operation::*, operands, operation};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
-use leafless::Control;
-use leafless::Error;
-use leafless::Rule;
-use leafless::memory;
-use leafless::op::resolve;
-use leafless::{self, build, compact};
-use leafless::{Metadata, Octree, OctreeRef};
+use leafless::op::{intersection_of, resolve, union_of, xor_of};
+use leafless::{Metadata, Rule, build, compact, memory};
 
 /// What becomes of finest cells that are not decided.
 #[derive(Clone, Copy)]
@@ -121,145 +117,56 @@ pub unsafe extern "C" fn leafless_octree_compact(
     })
 }
 
-type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
-type Nary = fn(&[OctreeRef<'_>], &Control<'_>) -> Result<Octree, Error>;
-
-/// # Safety
-/// As the functions below.
-unsafe fn binary(
-    operation: Binary,
-    a: *const leafless_octree,
-    b: *const leafless_octree,
-    options: *const leafless_options,
-    result: *mut *mut leafless_octree,
-) -> leafless_status {
-    guard(|| unsafe {
-        let (a, b) = (&shared(a, "a")?.octree, &shared(b, "b")?.octree);
-        let result = out(result, "result")?;
-        let made = controlled(options, |control| operation(a.view(), b.view(), control))?;
-        result.write(give(made.with_metadata(Metadata::common([a.metadata(), b.metadata()])?)))
-    })
-}
-
-/// # Safety
-/// As the functions below.
-unsafe fn nary(
-    operation: Nary,
-    octrees: *const *const leafless_octree,
-    count: u64,
-    options: *const leafless_options,
-    result: *mut *mut leafless_octree,
-) -> leafless_status {
-    guard(|| unsafe {
-        let octrees = slice(octrees, count, "octrees")?;
-        let result = out(result, "result")?;
-        let mut views = memory::with_capacity(octrees.len())?;
-        let mut metadata = memory::with_capacity(octrees.len())?;
-        for &octree in octrees {
-            let octree = &shared(octree, "octrees")?.octree;
-            views.push(*octree.view());
-            metadata.push(octree.metadata());
-        }
-        if views.is_empty() {
-            return Err(Failure::Argument { name: "count", problem: "must be at least 1" });
-        }
-        let made = controlled(options, |control| operation(&views, control))?;
-        result.write(give(made.with_metadata(Metadata::common(metadata.iter().copied())?)))
-    })
-}
-
-/// The points that lie in `a`, in `b`, or in both. Exact, and the same bit for bit for any number of threads; never larger
-/// than both operands together. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
+/// What a set operation makes of octrees, at least one. Exact, and the same bit for bit for any number of threads; never
+/// larger than all operands together. Operands are joined two by two: limits and progress of `options` concern each of
+/// these steps. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
 ///
-/// - Buffers: `options`, one struct or NULL; `result`, one pointer.
+/// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
+///   leafless_operation.
 /// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
 ///   no other metadata.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT;
-///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if
+///   `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
 ///   PARTIAL.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_union(
-    a: *const leafless_octree,
-    b: *const leafless_octree,
+pub unsafe extern "C" fn leafless_octree_combine(
+    operation: u32,
+    octrees: *const *const leafless_octree,
+    count: u64,
     options: *const leafless_options,
     result: *mut *mut leafless_octree,
 ) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { binary(leafless::union, a, b, options, result) }
-}
-
-/// The points that `a` and `b` have in common.
-///
-/// - Buffers: as leafless_octree_union.
-/// - Result: as leafless_octree_union.
-/// - Errors: as leafless_octree_union.
-/// - Ownership: as leafless_octree_union.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: as leafless_octree_union.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_intersection(
-    a: *const leafless_octree,
-    b: *const leafless_octree,
-    options: *const leafless_options,
-    result: *mut *mut leafless_octree,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { binary(leafless::intersection, a, b, options, result) }
-}
-
-/// `a` without `b`.
-///
-/// - Buffers: as leafless_octree_union.
-/// - Result: as leafless_octree_union.
-/// - Errors: as leafless_octree_union.
-/// - Ownership: as leafless_octree_union.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: as leafless_octree_union.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_difference(
-    a: *const leafless_octree,
-    b: *const leafless_octree,
-    options: *const leafless_options,
-    result: *mut *mut leafless_octree,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { binary(leafless::difference, a, b, options, result) }
-}
-
-/// The points of just one of `a` and `b`.
-///
-/// - Buffers: as leafless_octree_union.
-/// - Result: as leafless_octree_union.
-/// - Errors: as leafless_octree_union.
-/// - Ownership: as leafless_octree_union.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: as leafless_octree_union.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_xor(
-    a: *const leafless_octree,
-    b: *const leafless_octree,
-    options: *const leafless_options,
-    result: *mut *mut leafless_octree,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { binary(leafless::xor, a, b, options, result) }
+    guard(|| unsafe {
+        let operation = self::operation(operation)?;
+        let octrees = operands(octrees, count, false, "octrees", |handle| &handle.octree)?;
+        let result = out(result, "result")?;
+        let views = memory::collected(octrees.iter().map(|octree| *octree.view()))?;
+        let made = controlled(options, |control| match (operation, &*views) {
+            (LEAFLESS_OPERATION_DIFFERENCE, [a, b]) => leafless::difference(a, b, control),
+            (LEAFLESS_OPERATION_DIFFERENCE, [a, rest @ ..]) if !rest.is_empty() => {
+                leafless::difference(a, union_of(rest, control)?.view(), control)
+            }
+            (LEAFLESS_OPERATION_UNION | LEAFLESS_OPERATION_DIFFERENCE, all) => union_of(all, control),
+            (LEAFLESS_OPERATION_INTERSECTION, all) => intersection_of(all, control),
+            (LEAFLESS_OPERATION_XOR, all) => xor_of(all, control),
+        })?;
+        let common = Metadata::common(octrees.iter().map(|octree| octree.metadata()))?;
+        result.write(give(made.with_metadata(common)))
+    })
 }
 
 /// Everything but `octree`, inside of its universe and out.
 ///
-/// - Buffers: as leafless_octree_union.
-/// - Result: as leafless_octree_union.
-/// - Errors: as leafless_octree_union.
-/// - Ownership: as leafless_octree_union.
+/// - Buffers: `options`, one struct or NULL; `result`, one pointer.
+/// - Result: as leafless_octree_combine.
+/// - Errors: LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_octree_combine.
 /// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: as leafless_octree_union.
+/// - Untrusted input: as leafless_octree_combine.
 /// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_complement(
@@ -273,65 +180,4 @@ pub unsafe extern "C" fn leafless_octree_complement(
         let made = controlled(options, |control| leafless::complement(octree.view(), control))?;
         result.write(give(made.with_metadata(Metadata::common([octree.metadata()])?)))
     })
-}
-
-/// The union of any number of octrees, at least one. Limits and progress of `options` concern each of its
-/// steps.
-///
-/// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
-/// - Result: as leafless_octree_union.
-/// - Errors: as leafless_octree_union, and LEAFLESS_E_ARGUMENT if `count` is 0.
-/// - Ownership: as leafless_octree_union.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: as leafless_octree_union.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_union_of(
-    octrees: *const *const leafless_octree,
-    count: u64,
-    options: *const leafless_options,
-    result: *mut *mut leafless_octree,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { nary(leafless::op::union_of, octrees, count, options, result) }
-}
-
-/// The intersection of any number of octrees, at least one.
-///
-/// - Buffers: as leafless_octree_union_of.
-/// - Result: as leafless_octree_union.
-/// - Errors: as leafless_octree_union_of.
-/// - Ownership: as leafless_octree_union.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: as leafless_octree_union.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_intersection_of(
-    octrees: *const *const leafless_octree,
-    count: u64,
-    options: *const leafless_options,
-    result: *mut *mut leafless_octree,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { nary(leafless::op::intersection_of, octrees, count, options, result) }
-}
-
-/// The points that lie in an odd number of octrees, at least one.
-///
-/// - Buffers: as leafless_octree_union_of.
-/// - Result: as leafless_octree_union.
-/// - Errors: as leafless_octree_union_of.
-/// - Ownership: as leafless_octree_union.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: as leafless_octree_union.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_xor_of(
-    octrees: *const *const leafless_octree,
-    count: u64,
-    options: *const leafless_options,
-    result: *mut *mut leafless_octree,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { nary(leafless::op::xor_of, octrees, count, options, result) }
 }

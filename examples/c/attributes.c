@@ -148,8 +148,8 @@ int main(int argc, char **argv) {
     if (!s) s = leafless_solid_placed(upright, lying, NULL, &rod);
     if (!s) s = part(block, STEEL, heat, &steel);
     if (!s) s = part(rod, COPPER, heat, &copper);
-    if (!s) s = leafless_octree_union(steel, copper, NULL, &both);
     parts[0] = steel, parts[1] = copper;
+    if (!s) s = leafless_octree_combine(LEAFLESS_OPERATION_UNION, parts, 2, NULL, &both);
     if (!s) s = leafless_octree_carry_channels(both, parts, 2, LEAFLESS_CARRY_MEAN, rules, 1, NULL, &whole);
     if (!s) s = leafless_octree_save(whole, path, strlen(path));
     /* Mapped, channels are read from the file where they lie. */

@@ -91,7 +91,10 @@ int main(int argc, char **argv) {
         s = cut(editor, step);
     }
     if (!s) s = leafless_tridexel_editor_freeze(editor, NULL, &part);
-    if (!s) s = leafless_tridexel_difference(block, part, NULL, &chips);
+    if (!s) {
+        const leafless_tridexel *const operands[] = {block, part};
+        s = leafless_tridexel_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 2, NULL, &chips);
+    }
     if (!s) s = print_model("block", block);
     if (!s) s = print_model("part", part);
     if (!s) s = print_model("chips", chips);

@@ -15,17 +15,15 @@ enum { POSITIONS = 9, DEPTH = 12 };
 /* A block of 120 with a bore of radius 22, and below it a narrower one for the end of the shaft. */
 static leafless_status housing(leafless_solid **result) {
     const double low[3] = {-60, -60, -60}, high[3] = {60, 60, 60};
-    leafless_solid *block = NULL, *bore = NULL, *seat = NULL, *both = NULL;
+    leafless_solid *block = NULL, *bore = NULL, *seat = NULL;
     leafless_status s = leafless_solid_new_box(low, high, &block);
     if (!s) s = leafless_solid_new_cylinder(22, -20, 61, &bore);
     if (!s) s = leafless_solid_new_cylinder(13, -61, -20, &seat);
     if (!s) {
-        const leafless_solid *holes[2];
-        holes[0] = bore, holes[1] = seat;
-        s = leafless_solid_union(holes, 2, &both);
+        const leafless_solid *const operands[] = {block, bore, seat};
+        s = leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 3, result);
     }
-    if (!s) s = leafless_solid_difference(block, both, result);
-    leafless_solid_free(both), leafless_solid_free(seat), leafless_solid_free(bore), leafless_solid_free(block);
+    leafless_solid_free(seat), leafless_solid_free(bore), leafless_solid_free(block);
     return s;
 }
 
@@ -37,9 +35,8 @@ static leafless_status shaft(double slope, double height, leafless_solid **resul
     leafless_status s = leafless_solid_new_cylinder(20, 0, 90, &thick);
     if (!s) s = leafless_solid_new_cylinder(11.5, -35, 1, &thin);
     if (!s) {
-        const leafless_solid *parts[2];
-        parts[0] = thick, parts[1] = thin;
-        s = leafless_solid_union(parts, 2, &both);
+        const leafless_solid *const parts[] = {thick, thin};
+        s = leafless_solid_combine(LEAFLESS_OPERATION_UNION, parts, 2, &both);
     }
     if (!s) s = leafless_solid_placed(both, matrix, NULL, result);
     leafless_solid_free(both), leafless_solid_free(thin), leafless_solid_free(thick);

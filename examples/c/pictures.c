@@ -24,7 +24,10 @@ static leafless_status block(leafless_solid **solid) {
     leafless_status s = leafless_solid_new_box(min, max, &whole);
     if (!s) s = leafless_solid_new_cylinder(0.3, -1, 1, &upright);
     if (!s) s = leafless_solid_placed(upright, lay, NULL, &bore);
-    if (!s) s = leafless_solid_difference(whole, bore, solid);
+    if (!s) {
+        const leafless_solid *const operands[] = {whole, bore};
+        s = leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 2, solid);
+    }
     leafless_solid_free(whole);
     leafless_solid_free(upright);
     leafless_solid_free(bore);

@@ -35,6 +35,7 @@ int main(void) {
     leafless_mesh *mesh = NULL;
     leafless_solid *wedge_solid = NULL, *hole_solid = NULL;
     leafless_octree *wedge = NULL, *hole = NULL, *drilled = NULL, *named = NULL, *mapped = NULL;
+    const leafless_octree *operands[2];
     leafless_frame frame;
     leafless_membership answers[3];
     double min[3], max[3];
@@ -49,8 +50,11 @@ int main(void) {
         goto failed;
     }
     if (leafless_octree_build(wedge_solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &wedge) != LEAFLESS_OK ||
-        leafless_octree_build(hole_solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &hole) != LEAFLESS_OK ||
-        leafless_octree_difference(wedge, hole, NULL, &drilled) != LEAFLESS_OK) {
+        leafless_octree_build(hole_solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &hole) != LEAFLESS_OK) {
+        goto failed;
+    }
+    operands[0] = wedge, operands[1] = hole;
+    if (leafless_octree_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 2, NULL, &drilled) != LEAFLESS_OK) {
         goto failed;
     }
     printf("%-14s %9s %12s %12s\n", "", "nodes", "volume >=", "volume <=");

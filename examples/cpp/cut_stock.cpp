@@ -116,7 +116,8 @@ void cut() {
         const Point centre = {-0.8 + 0.2 * step, 0.2 * std::sin(0.8 * step), 0.25};
         const Octree tool = build(tool_at(centre), frame, options);
         leafless_octree *left = nullptr;
-        check(leafless_octree_difference(stock.get(), tool.get(), &options, &left));
+        const leafless_octree *const operands[] = {stock.get(), tool.get()};
+        check(leafless_octree_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 2, &options, &left));
         stock.reset(left);
         leafless_statistics statistics;
         check(leafless_octree_statistics(stock.get(), &statistics));

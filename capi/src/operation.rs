@@ -1,0 +1,53 @@
+//! The set operations, on operands of every kind.
+
+use super::boundary::{Failure, shared, slice};
+use leafless::memory;
+
+/// What is made of several operands.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_operation {
+    /// The points of at least one operand.
+    LEAFLESS_OPERATION_UNION = 0,
+    /// The points that all operands have in common.
+    LEAFLESS_OPERATION_INTERSECTION = 1,
+    /// The points of the first operand that lie in none of the others.
+    LEAFLESS_OPERATION_DIFFERENCE = 2,
+    /// The points that lie in an odd number of operands: of two, in just one.
+    LEAFLESS_OPERATION_XOR = 3,
+}
+use leafless_operation::*;
+
+pub(super) fn operation(operation: u32) -> Result<leafless_operation, Failure> {
+    match operation {
+        _ if operation == LEAFLESS_OPERATION_UNION as u32 => Ok(LEAFLESS_OPERATION_UNION),
+        _ if operation == LEAFLESS_OPERATION_INTERSECTION as u32 => Ok(LEAFLESS_OPERATION_INTERSECTION),
+        _ if operation == LEAFLESS_OPERATION_DIFFERENCE as u32 => Ok(LEAFLESS_OPERATION_DIFFERENCE),
+        _ if operation == LEAFLESS_OPERATION_XOR as u32 => Ok(LEAFLESS_OPERATION_XOR),
+        _ => Err(Failure::Argument { name: "operation", problem: "is no leafless_operation" }),
+    }
+}
+
+/// What `part` makes of each operand.
+///
+/// # Safety
+/// As [`slice`] and, for each element, [`shared`].
+pub(super) unsafe fn operands<'a, H: 'a, P>(
+    handles: *const *const H,
+    count: u64,
+    may_be_none: bool,
+    name: &'static str,
+    part: impl Fn(&'a H) -> P,
+) -> Result<Vec<P>, Failure> {
+    // SAFETY: as the caller promises.
+    let handles = unsafe { slice(handles, count, name)? };
+    if handles.is_empty() && !may_be_none {
+        return Err(Failure::Argument { name: "count", problem: "must be at least 1" });
+    }
+    let mut parts = memory::with_capacity(handles.len())?;
+    for &handle in handles {
+        // SAFETY: as the caller promises.
+        parts.push(part(unsafe { shared(handle, name)? }));
+    }
+    Ok(parts)
+}
