@@ -17,7 +17,7 @@ constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
 leafless_options with_threads(uint32_t threads) {
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = threads;
     return options;
 }
@@ -80,8 +80,8 @@ void counts() {
         [&](uint64_t n) {
             leafless_voxel_arrays arrays;
             leafless_transfer transfer;
-            OK(leafless_voxel_arrays_init(&arrays, sizeof arrays));
-            OK(leafless_transfer_init(&transfer, sizeof transfer));
+            OK(leafless_init(&arrays, sizeof arrays));
+            OK(leafless_init(&transfer, sizeof transfer));
             arrays.lattice = frame;
             arrays.count = n;
             arrays.codes = codes;
@@ -116,7 +116,7 @@ struct Nonsense {
 
 leafless_attribute *attribute_of(Nonsense &nonsense) {
     leafless_attribute_callbacks callbacks;
-    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.components = 1;
     callbacks.value = [](void *ctx, const double *point, double *value) -> int32_t {
         return static_cast<Nonsense *>(ctx)->value(point, value);
@@ -144,7 +144,7 @@ void ask(const leafless_attribute *attribute, uint32_t threads) {
     leafless_octree *octree = check_ball(4, LEAFLESS_RULE_SAMPLED);
     for (uint32_t criterion = LEAFLESS_CRITERION_NONE; criterion <= LEAFLESS_CRITERION_RANGE; criterion++) {
         leafless_channel_fill_options fill;
-        OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+        OK(leafless_init(&fill, sizeof fill));
         fill.solid = octree;
         fill.criterion = criterion;
         if (criterion != LEAFLESS_CRITERION_NONE) {
@@ -162,7 +162,7 @@ void ask(const leafless_attribute *attribute, uint32_t threads) {
             leafless_channel_free(channel);
         }
         leafless_voxel_options voxels;
-        OK(leafless_voxel_options_init(&voxels, sizeof voxels));
+        OK(leafless_init(&voxels, sizeof voxels));
         voxels.attribute = attribute;
         voxels.criterion = criterion;
         voxels.coarse_model = 1;
@@ -176,8 +176,8 @@ void ask(const leafless_attribute *attribute, uint32_t threads) {
     }
     leafless_look look;
     leafless_transfer transfer;
-    OK(leafless_look_init(&look, sizeof look));
-    OK(leafless_transfer_init(&transfer, sizeof transfer));
+    OK(leafless_init(&look, sizeof look));
+    OK(leafless_init(&transfer, sizeof transfer));
     transfer.range_upper = 1;
     look.attribute = attribute;
     look.transfer = &transfer;
@@ -186,7 +186,7 @@ void ask(const leafless_attribute *attribute, uint32_t threads) {
     CHECK(is_expected(made));
     if (layer != nullptr) {
         leafless_shot shot;
-        OK(leafless_shot_init(&shot, sizeof shot));
+        OK(leafless_init(&shot, sizeof shot));
         shot.width = shot.height = 24;
         const double corners[6] = {-1, -1, -1, 1, 1, 1};
         OK(leafless_camera_fitted(corners, 2, 30, 20, 0, 1, &shot.camera));
@@ -363,7 +363,7 @@ void editor_in_threads() {
 
 std::vector<uint8_t> picture(const std::vector<const leafless_layer *> &layers) {
     leafless_shot shot;
-    OK(leafless_shot_init(&shot, sizeof shot));
+    OK(leafless_init(&shot, sizeof shot));
     shot.width = shot.height = 48;
     shot.samples = 4;
     const double corners[6] = {-1, -1, -1, 1, 1, 1};
@@ -385,15 +385,15 @@ void layers_outlive() {
     leafless_attribute *attribute = nullptr;
     OK(leafless_attribute_new_constant(one, 1, &attribute));
     leafless_transfer transfer;
-    OK(leafless_transfer_init(&transfer, sizeof transfer));
+    OK(leafless_init(&transfer, sizeof transfer));
     transfer.range_upper = 1;
     leafless_look look;
-    OK(leafless_look_init(&look, sizeof look));
+    OK(leafless_init(&look, sizeof look));
     leafless_look coloured = look;
     coloured.attribute = attribute;
     coloured.transfer = &transfer;
     leafless_slice_look slice;
-    OK(leafless_slice_look_init(&slice, sizeof slice));
+    OK(leafless_init(&slice, sizeof slice));
 
     std::vector<leafless_layer *> layers(7, nullptr);
     OK(leafless_layer_new_octree(octree, &coloured, &layers[0]));

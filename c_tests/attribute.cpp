@@ -28,7 +28,7 @@ using Function = std::function<double(const double *)>;
 // The attribute owns the function.
 Attribute attribute_of(Function function) {
     leafless_attribute_callbacks callbacks;
-    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.components = 1;
     callbacks.values = [](void *ctx, const double *points, uint64_t count, double *values) -> int32_t {
         const Function &function = *static_cast<Function *>(ctx);
@@ -44,7 +44,7 @@ Attribute attribute_of(Function function) {
 
 Channel filled(const Attribute &attribute, const leafless_frame &frame, uint32_t threads) {
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = threads;
     leafless_channel *channel = nullptr;
     OK(leafless_channel_fill(attribute.get(), &frame, nullptr, &options, &channel));
@@ -126,7 +126,7 @@ void progress_and_cancelling() {
     const Attribute attribute = attribute_of(grain);
     std::atomic<int> reports{0};
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.progress_ctx = &reports;
     options.progress = [](void *ctx, double fraction) -> int32_t {
         CHECK(fraction >= 0 && fraction <= 1);

@@ -245,7 +245,7 @@ static leafless_callbacks callbacks_of(host *h) {
 
 static leafless_options one_thread(void) {
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     return options;
 }

@@ -24,7 +24,7 @@ int32_t watch(void *ctx, double fraction) {
 
 leafless_options watched(Watch &watched_by) {
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     options.progress = watch;
     options.progress_ctx = &watched_by;
@@ -126,7 +126,7 @@ void another_thread_cancels(uint32_t threads) {
     leafless_control *control = nullptr;
     OK(leafless_control_new(&control));
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = threads;
     options.control = control;
 
@@ -222,13 +222,13 @@ void functions_are_not_entered_again() {
     Inner inner;
     inner.ball = check_ball_solid();
     leafless_callbacks callbacks;
-    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = builds;
     callbacks.ctx = &inner;
     leafless_solid *solid = nullptr;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 4;
     leafless_octree *octree = nullptr;
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));

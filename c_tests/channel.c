@@ -65,7 +65,7 @@ static void destroyed(void *ctx) {
 static leafless_attribute *host_attribute(host *own, bool many) {
     leafless_attribute_callbacks callbacks;
     leafless_attribute *attribute = NULL;
-    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.components = 3;
     callbacks.value = value_at;
     callbacks.values = many ? values_at : NULL;
@@ -78,7 +78,7 @@ static leafless_attribute *host_attribute(host *own, bool many) {
 static leafless_attribute *along_z(host *own) {
     leafless_attribute_callbacks callbacks;
     leafless_attribute *attribute = NULL;
-    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.components = 1;
     callbacks.value = one_number_at;
     callbacks.range = range_along_z;
@@ -95,7 +95,7 @@ static leafless_attribute *constant(double value) {
 
 static leafless_channel_fill_options fill_options(void) {
     leafless_channel_fill_options fill;
-    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+    OK(leafless_init(&fill, sizeof fill));
     return fill;
 }
 
@@ -246,7 +246,7 @@ static void filled(void) {
             leafless_channel_fill_options fill = fill_options();
             leafless_options options;
             leafless_channel_info info;
-            OK(leafless_options_init(&options, sizeof options));
+            OK(leafless_init(&options, sizeof options));
             options.threads = 1;
             fill.scalar = scalar;
             fill.components = 3;
@@ -591,7 +591,7 @@ static void carried(void) {
         leafless_octree_free(result);
     }
     /* By name: the first rule that names a channel counts. */
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 2;
     OK(leafless_octree_carry_channels(both, operands, 2, LEAFLESS_CARRY_RIGHT, rules, 2, &options, &result));
     CHECK(first_at(result, "heat", 0.1, 0.1, 0.1) == 20 && first_at(result, "wear", 0.1, 0.1, 0.1) == 10);

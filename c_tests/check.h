@@ -9,6 +9,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef LEAFLESS_TEST
+/* What the library exports for tests alone. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+leafless_status leafless_test_panic(void);
+size_t leafless_test_layout(char *text, size_t capacity);
+#ifdef __cplusplus
+}
+#endif
+#endif
+
 #define CHECK(condition) ((condition) ? (void)0 : check_failed(__FILE__, __LINE__, #condition))
 #define OK(call) check_status(__FILE__, __LINE__, #call, (call), LEAFLESS_OK)
 #define FAILS(status, call) check_status(__FILE__, __LINE__, #call, (call), (status))
@@ -100,7 +112,7 @@ static const uint32_t CHECK_CUBE_TRIANGLES[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5
 static inline leafless_mesh_arrays check_arrays(const void *vertices, uint64_t vertex_count, const void *indices,
                                                 uint64_t triangle_count) {
     leafless_mesh_arrays arrays;
-    OK(leafless_mesh_arrays_init(&arrays, sizeof arrays));
+    OK(leafless_init(&arrays, sizeof arrays));
     arrays.vertices = vertices;
     arrays.vertex_count = vertex_count;
     arrays.indices = indices;

@@ -108,7 +108,7 @@ static void limits(void) {
     leafless_columns *columns = NULL;
     leafless_control *control = NULL;
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.max_bytes = 1000;
     FAILS(LEAFLESS_E_LIMIT, leafless_solid_columns(solid, &frame, 0, NULL, NULL, &options, &columns));
     OK(leafless_control_new(&control));

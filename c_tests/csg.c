@@ -77,7 +77,7 @@ static void ranges_that_say_nothing(void) {
                             all_inside = {1, INFINITY}, all_outside = {-INFINITY, -1}, open = {-1, INFINITY};
     leafless_function function;
     size_t i;
-    OK(leafless_function_init(&function, sizeof function));
+    OK(leafless_init(&function, sizeof function));
     function.value = constant_value;
     function.range = constant_range;
     for (i = 0; i < COUNT(nothing) + 3; i++) {
@@ -105,7 +105,7 @@ static void functions(void) {
     const leafless_solid *parts[2];
     leafless_octree *octree = NULL;
     char message[512];
-    OK(leafless_function_init(&function, sizeof function));
+    OK(leafless_init(&function, sizeof function));
     function.value = saddle_value;
     function.range = saddle_range;
     function.destroy = gone;
@@ -273,7 +273,7 @@ static uint64_t evaluations_of(const leafless_solid *solid) {
 static void build_alone(const leafless_solid *solid) {
     leafless_options options;
     leafless_octree *octree = NULL;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
     leafless_octree_free(octree);

@@ -84,7 +84,7 @@ static void field(const leafless_octree *octree) {
     CHECK(leafless_octree_distance_field(octree, min, beyond, NULL, &entries[0][0][0][0], 66) == LEAFLESS_E_ARGUMENT);
     CHECK(leafless_octree_distance_field(octree, min, max, NULL, &entries[0][0][0][0], 2) == LEAFLESS_E_ARGUMENT);
     CHECK(leafless_octree_distance_field(octree, min, max, NULL, &entries[0][0][0][0], 3) == LEAFLESS_E_ARGUMENT);
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.progress = refuse;
     CHECK(leafless_octree_distance_field(octree, min, max, &options, &entries[0][0][0][0], capacity) ==
           LEAFLESS_E_CANCELLED);

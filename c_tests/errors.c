@@ -65,7 +65,7 @@ static int32_t grain(void *ctx, const double *points, uint64_t count, double *va
 static leafless_attribute *host_attribute(leafless_attribute_values_fn values) {
     leafless_attribute_callbacks callbacks;
     leafless_attribute *attribute = NULL;
-    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.components = 1;
     callbacks.values = values;
     OK(leafless_attribute_new_callbacks(&callbacks, &attribute));
@@ -168,7 +168,7 @@ static leafless_status deep_ball(void) {
     leafless_octree *octree = UNTOUCHED;
     leafless_options options;
     leafless_status status;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     status = leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree);
     if (status == LEAFLESS_OK) {
@@ -214,7 +214,7 @@ static leafless_status open_sheet(void) {
     }
     arrays.vertex_type = LEAFLESS_VERTEX_F32;
     arrays.index_type = LEAFLESS_INDEX_U16;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     status = leafless_mesh_new(&arrays, &mesh);
     if (status != LEAFLESS_OK) {
@@ -262,14 +262,14 @@ static leafless_status scanned_ball(void) {
             }
         }
     }
-    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    OK(leafless_init(&layout, sizeof layout));
     layout.sample_type = LEAFLESS_SAMPLE_U16;
     layout.extents[0] = layout.extents[1] = layout.extents[2] = SIDE;
-    OK(leafless_surface_options_init(&surface, sizeof surface));
+    OK(leafless_init(&surface, sizeof surface));
     surface.method = LEAFLESS_SURFACE_SMC;
-    OK(leafless_mesh_write_options_init(&write, sizeof write));
+    OK(leafless_init(&write, sizeof write));
     write.format = LEAFLESS_MESH_FORMAT_PLY;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     status = leafless_volume_new(&layout, samples, sizeof samples, &volume);
     if (status != LEAFLESS_OK) {
@@ -309,11 +309,11 @@ static leafless_status grainy_ball(void) {
     uint64_t length = 0;
     uint8_t *bytes = NULL;
     const double value = 3;
-    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+    OK(leafless_init(&fill, sizeof fill));
     fill.solid = grainy;
     fill.name = "grain";
     fill.name_length = 5;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     status = leafless_channel_fill(attribute, NULL, &fill, &options, &channel);
     if (status != LEAFLESS_OK) {
@@ -536,7 +536,7 @@ int main(int argc, char **argv) {
         free(altered);
     }
 
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.max_nodes = 10;
     FAILS(LEAFLESS_E_LIMIT, leafless_octree_complement(ball, &options, &octree));
     failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "10 nodes");
@@ -571,13 +571,13 @@ int main(int argc, char **argv) {
         leafless_octree_free(grainy);
     }
 
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     OK(leafless_control_new(&control));
     OK(leafless_control_cancel(control));
     options.control = control;
     FAILS(LEAFLESS_E_CANCELLED, check_octrees(LEAFLESS_OPERATION_UNION, ball, ball, &options, &octree));
     failed(LEAFLESS_E_CANCELLED, "LEAFLESS_E_CANCELLED", "cancelled");
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.progress = stops;
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_build(solid, &other, LEAFLESS_RULE_CERTIFIED, &options, &octree));
 
@@ -592,7 +592,7 @@ int main(int argc, char **argv) {
         options.control = control;
         FAILS(LEAFLESS_E_CANCELLED, leafless_solid_contains(solid, &other, at, 1, &options, &membership));
         FAILS(LEAFLESS_E_CANCELLED, leafless_solid_classify_box(solid, &other, at, beside, &options, &region));
-        OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+        OK(leafless_init(&callbacks, sizeof callbacks));
         callbacks.distance_many = knows_nothing;
         OK(leafless_solid_new_callbacks(&callbacks, &host));
         FAILS(LEAFLESS_E_CALLBACK, leafless_solid_contains(host, &other, at, 1, NULL, &membership));
@@ -658,7 +658,7 @@ int main(int argc, char **argv) {
         uint8_t *file;
         double value = 77;
         OK(leafless_attribute_new_constant(&large, 1, &one));
-        OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+        OK(leafless_init(&fill, sizeof fill));
         fill.scalar = LEAFLESS_SCALAR_U8;
         FAILS(LEAFLESS_E_ARGUMENT, leafless_channel_fill(one, &frame, &fill, NULL, &channel));
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "value: must lie in the range of the channel's type");
@@ -672,7 +672,7 @@ int main(int argc, char **argv) {
         fill.name_length = 1;
         FAILS(LEAFLESS_E_UTF8, leafless_channel_fill(many, NULL, &fill, NULL, &channel));
         fill.name_length = 0;
-        OK(leafless_options_init(&options, sizeof options));
+        OK(leafless_init(&options, sizeof options));
         options.max_bytes = 100;
         FAILS(LEAFLESS_E_LIMIT, leafless_channel_fill(many, NULL, &fill, &options, &channel));
         failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "100 bytes");
@@ -718,7 +718,7 @@ int main(int argc, char **argv) {
         leafless_tridexel_format along_y;
         const uint32_t ray[2] = {8, 8};
         uint64_t count = 77, offset_count = 77;
-        OK(leafless_tridexel_format_init(&along_y, sizeof along_y));
+        OK(leafless_init(&along_y, sizeof along_y));
         along_y.directions = LEAFLESS_AXES_Y;
         OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
         OK(leafless_tridexel_make(solid, &apart, LEAFLESS_RULE_SAMPLED, NULL, NULL, &other));
@@ -768,7 +768,7 @@ int main(int argc, char **argv) {
             leafless_tridexel_free(viewed);
             free(file);
         }
-        OK(leafless_options_init(&options, sizeof options));
+        OK(leafless_init(&options, sizeof options));
         options.max_bytes = 100;
         FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
         failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "100 bytes");
@@ -799,7 +799,7 @@ int main(int argc, char **argv) {
         leafless_lazy *lazy = NULL;
         leafless_callbacks callbacks;
         leafless_solid *host = NULL;
-        OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+        OK(leafless_init(&callbacks, sizeof callbacks));
         callbacks.classify = uses_the_octree;
         callbacks.ctx = &lazy;
         OK(leafless_solid_new_callbacks(&callbacks, &host));

@@ -35,7 +35,7 @@ std::vector<uint16_t> shells() {
 
 volume_ptr view(const std::vector<uint16_t> &samples) {
     leafless_volume_layout layout;
-    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    OK(leafless_init(&layout, sizeof layout));
     layout.sample_type = LEAFLESS_SAMPLE_U16;
     for (uint32_t &extent : layout.extents) extent = SIDE;
     leafless_volume *volume = nullptr;
@@ -57,7 +57,7 @@ octree_ptr voxels(const leafless_volume *volume, double threshold) {
 
 mesh_ptr surface_of(const leafless_octree *octree, uint32_t threads) {
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = threads;
     leafless_mesh *mesh = nullptr;
     OK(leafless_octree_surface(octree, nullptr, &options, &mesh));
@@ -117,7 +117,7 @@ void progress(const std::vector<uint16_t> &samples) {
         return all.calls++ == all.most;
     };
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     heard whole;
     options.threads = 1;
     options.progress = hear;
@@ -144,10 +144,10 @@ void cancelling() {
     OK(leafless_control_new(&control));
     const control_ptr owner(control);
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.control = control;
     leafless_surface_options surface;
-    OK(leafless_surface_options_init(&surface, sizeof surface));
+    OK(leafless_init(&surface, sizeof surface));
     surface.placement = LEAFLESS_PLACEMENT_CROSSING;
     std::atomic<bool> is_done{false};
     std::thread other([&] {

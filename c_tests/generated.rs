@@ -6,79 +6,65 @@
 //!
 //! writes it anew.
 
+use crate::arrange::{Section, arranged};
 use crate::root;
 
-/// The files of the interface, as the header's sections follow each other.
-const SECTIONS: &[&str] = &[
-    "version",
-    "status",
-    "boundary",
-    "control",
-    "frame",
-    "mesh",
-    "mesh_arrays",
-    "mesh_file",
-    "mesh_write",
-    "mesh_moments",
-    "polyhedron",
-    "metadata",
-    "octree",
-    "operation",
-    "solid",
-    "csg",
-    "host",
-    "volume",
-    "volume_arrays",
-    "volume_file",
-    "attribute",
-    "attribute_host",
-    "mesh_attribute",
-    "channel",
-    "channel_fill",
-    "octree_channels",
-    "scene",
-    "op",
-    "contains",
-    "cursor",
-    "point_cursor",
-    "rays",
-    "columns",
-    "content",
-    "cells",
-    "bitmap",
-    "voxel",
-    "surface",
-    "camera",
-    "layer",
-    "layer_surface",
-    "layer_section",
-    "picture",
-    "lazy",
-    "interference",
-    "measure",
-    "channel_summary",
-    "distance",
-    "tridexel",
-    "tridexel_read",
-    "tridexel_op",
-    "tridexel_editor",
-    "tridexel_arrays",
-    "tridexel_surface",
-    "file",
-    "tridexel_file",
-    "layout",
+/// The header's sections in the order in which one needs them, and the files that each is made of.
+const SECTIONS: &[Section] = &[
+    Section { title: "Versions", files: &["version"] },
+    Section { title: "Errors", files: &["status", "boundary"] },
+    Section { title: "Options, cancelling, progress", files: &["control"] },
+    Section { title: "Frames", files: &["frame"] },
+    Section { title: "Meshes", files: &["mesh", "mesh_arrays", "polyhedron", "mesh_moments"] },
+    Section { title: "Mesh files", files: &["mesh_file", "mesh_write"] },
+    Section { title: "Solids", files: &["operation", "solid", "csg"] },
+    Section { title: "Solids by functions of the host", files: &["host"] },
+    Section { title: "Volumes", files: &["volume", "volume_arrays", "volume_file"] },
+    Section { title: "Scenes", files: &["scene"] },
+    Section { title: "Octrees", files: &["metadata", "octree", "op"] },
+    Section { title: "Points and boxes", files: &["contains", "point_cursor"] },
+    Section { title: "Cells of octrees", files: &["cursor", "cells", "bitmap"] },
+    Section { title: "Rays, columns, heights", files: &["rays", "columns"] },
+    Section { title: "Volumes, areas, bounding boxes", files: &["content", "measure"] },
+    Section { title: "Distance and interference", files: &["distance", "interference"] },
+    Section { title: "Octrees that are split on demand", files: &["lazy"] },
+    Section { title: "Voxel records", files: &["voxel"] },
+    Section { title: "Surfaces", files: &["surface"] },
+    Section {
+        title: "Tri-dexel models",
+        files: &[
+            "tridexel",
+            "tridexel_arrays",
+            "tridexel_read",
+            "tridexel_op",
+            "tridexel_editor",
+            "tridexel_surface",
+        ],
+    },
+    Section { title: "Files of octrees and tri-dexel models", files: &["file", "tridexel_file"] },
+    Section { title: "Attributes", files: &["attribute", "attribute_host", "mesh_attribute"] },
+    Section { title: "Channels", files: &["channel", "channel_fill", "channel_summary", "octree_channels"] },
+    Section { title: "Pictures", files: &["camera", "layer", "layer_surface", "layer_section", "picture"] },
 ];
 
+fn source(file: &str) -> String {
+    std::fs::read_to_string(root().join("capi/src").join(file).with_extension("rs")).unwrap()
+}
+
 fn generated() -> String {
-    let mut config = cbindgen::Config::from_file(root().join("include/cbindgen.toml")).unwrap();
-    config.header = Some(std::fs::read_to_string(root().join("include/preface.h")).unwrap());
+    let config = cbindgen::Config::from_file(root().join("include/cbindgen.toml")).unwrap();
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for section in SECTIONS {
-        builder = builder.with_src(root().join("capi/src").join(section).with_extension("rs"));
+    for file in SECTIONS.iter().flat_map(|section| section.files) {
+        builder = builder.with_src(root().join("capi/src").join(file).with_extension("rs"));
     }
-    let mut header = Vec::new();
-    builder.generate().unwrap().write(&mut header);
-    String::from_utf8(header).unwrap()
+    let mut raw = Vec::new();
+    builder.generate().unwrap().write(&mut raw);
+    let (sections, contents) = arranged(&String::from_utf8(raw).unwrap(), SECTIONS, source);
+    let preface = std::fs::read_to_string(root().join("include/preface.h")).unwrap();
+    let preface = preface.replace("@CONTENTS@", contents.trim_end());
+    format!(
+        "{preface}{sections}\n#ifdef __cplusplus\n}} /* extern \"C\" */\n#endif\n\n#endif /* LEAFLESS_H */\n"
+    )
 }
 
 #[test]
@@ -95,41 +81,53 @@ fn the_header_is_current() {
     );
 }
 
-/// The header's functions with their doc blocks.
-fn functions(header: &str) -> Vec<(&str, &str)> {
-    let blocks = header.split("/**").skip(1).filter_map(|block| block.split_once("*/"));
-    let functions = blocks.filter_map(|(doc, code)| {
-        let declaration = code.trim_start().lines().next()?;
-        let name = declaration.split_once('(')?.0.rsplit([' ', '*']).next()?;
-        (name.starts_with("leafless_") && !declaration.starts_with("typedef")).then_some((name, doc))
-    });
-    functions.collect()
+/// The header's functions with the lines of their comments.
+fn functions(header: &str) -> Vec<(&str, Vec<&str>)> {
+    let mut functions = Vec::new();
+    let mut comment = Vec::new();
+    for line in header.lines() {
+        if let Some(text) = line.strip_prefix("///") {
+            comment.push(text.trim());
+            continue;
+        }
+        let name = line.split_once('(').and_then(|(before, _)| before.rsplit([' ', '*']).next());
+        let is_type = ["typedef", "LEAFLESS_ENUM", "#", " "].iter().any(|start| line.starts_with(start));
+        if let Some(name) = name.filter(|name| name.starts_with("leafless_") && !is_type) {
+            functions.push((name, std::mem::take(&mut comment)));
+        }
+        comment.clear();
+    }
+    functions
 }
 
 #[test]
-fn every_doc_block_has_the_fixed_order() {
+fn every_comment_has_the_fixed_order() {
     let header = generated();
     let functions = functions(&header);
-    for (name, doc) in &functions {
-        let lines: Vec<&str> = doc.lines().filter_map(|line| line.trim_start().strip_prefix("* ")).collect();
-        assert!(lines[0].ends_with(['.', ',']) || lines.len() > 8, "{name} has no purpose: {}", lines[0]);
+    for (name, comment) in &functions {
+        assert!(!comment.is_empty() && !comment[0].starts_with("- "), "{name} has no purpose: {comment:?}");
         let heads: Vec<&str> =
-            lines.iter().filter_map(|line| Some(line.strip_prefix("- ")?.split_once(':')?.0)).collect();
+            comment.iter().filter_map(|line| Some(line.strip_prefix("- ")?.split_once(':')?.0)).collect();
         let order = ["Buffers", "Result", "Errors", "Ownership", "Threads", "Untrusted input", "Since"];
-        assert_eq!(heads, order, "{name}");
+        let mut places = heads.iter().map(|head| order.iter().position(|known| known == head));
+        let places: Option<Vec<usize>> = places.by_ref().collect();
+        assert!(places.is_some_and(|places| places.is_sorted_by(|a, b| a < b)), "{name}: {heads:?}");
     }
     // The sources export just these.
-    let sources: usize = SECTIONS
-        .iter()
-        .map(|section| {
-            let path = root().join("capi/src").join(section).with_extension("rs");
-            std::fs::read_to_string(path).unwrap().matches("#[unsafe(no_mangle)]").count()
-        })
-        .sum();
-    assert_eq!(functions.len(), sources);
-    let files = std::fs::read_dir(root().join("capi/src")).unwrap().count();
-    // And `lib.rs`, which exports nothing itself.
-    assert_eq!(files, SECTIONS.len() + 1);
+    let files = || SECTIONS.iter().flat_map(|section| section.files);
+    let exported = files().map(|file| source(file).matches("#[unsafe(no_mangle)]").count()).sum::<usize>();
+    // `boundary` has a function for tests.
+    assert_eq!(functions.len() + 1, exported);
+    let sources = std::fs::read_dir(root().join("capi/src")).unwrap().count();
+    // And `lib.rs`, which exports nothing itself, and `layout.rs`, which is for tests.
+    assert_eq!(sources, files().count() + 2);
+}
+
+#[test]
+fn no_line_is_long() {
+    for line in generated().lines() {
+        assert!(line.chars().count() <= 110, "{line}");
+    }
 }
 
 /// What the library's lists name, the interface names: it cannot be compiled against them to the last.

@@ -50,18 +50,24 @@ impl Header {
                 }
             }
         }
-        let plain: String = code
-            .lines()
-            .filter(|line| !line.trim_start().starts_with(['#', '\\']))
-            .collect::<Vec<_>>()
-            .join("\n");
+        // Macros go on behind a backslash.
+        let mut plain = String::new();
+        let mut is_macro = false;
+        for line in code.lines() {
+            is_macro |= line.trim_start().starts_with('#');
+            if !is_macro {
+                plain.push_str(line);
+                plain.push('\n');
+            }
+            is_macro &= line.ends_with('\\');
+        }
         let mut rest = plain.as_str();
         while let Some(end) = rest.find([';', '{']) {
             let declaration = rest[..end].trim();
             if rest[end..].starts_with('{') && !declaration.ends_with("\"C\"") {
                 let (body, after) = rest[end + 1..].split_once('}').expect("a closed body");
-                if declaration.contains("enum ") {
-                    header.others.push(declaration.split_whitespace().nth(1).unwrap().to_string());
+                if let Some((_, enumeration)) = declaration.rsplit_once("LEAFLESS_ENUM(") {
+                    header.others.push(enumeration.split(',').next().unwrap().to_string());
                     let names = body.split(',').filter_map(|value| value.split('=').next());
                     header
                         .values

@@ -7,11 +7,13 @@ static const leafless_status ALLOWED[] = {LEAFLESS_OK, LEAFLESS_E_CANCELLED};
 static leafless_tag tag = LEAFLESS_TAG_BRANCH;
 
 int main(void) {
-    leafless_options options = {0};
+    leafless_options options = LEAFLESS_INIT(leafless_options);
     leafless_frame frame = {{0.0, 0.0, 0.0}, 1.0, 4};
     leafless_octree *octree = NULL;
     leafless_octree_info info;
-    options.struct_size = sizeof options;
+    if (options.struct_size != sizeof options || options.max_nodes != 0) {
+        return 4;
+    }
     if (leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &octree) != ALLOWED[0]) {
         return 1;
     }

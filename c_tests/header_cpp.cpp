@@ -16,6 +16,10 @@ static_assert(std::is_trivial<leafless_options>::value, "leafless_options");
 
 int main() {
     leafless_frame frame = {{0.0, 0.0, 0.0}, 1.0, 4};
+    const leafless_options options = LEAFLESS_INIT(leafless_options);
+    if (options.struct_size != sizeof options || options.max_nodes != 0) {
+        return 4;
+    }
     leafless_octree *octree = nullptr;
     // Enumerators convert to the numbers that functions take.
     if (leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &octree) != LEAFLESS_OK) {

@@ -60,7 +60,7 @@ static void many(const leafless_solid *a, const leafless_solid *b) {
         matrices[i][0] = matrices[i][5] = matrices[i][10] = 1;
         matrices[i][3] = 8.0 * (double)i - 160.0;
     }
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.max_splits = 2000;
     for (threads = 1; threads <= 2; threads++) {
         options.threads = threads;

@@ -175,7 +175,7 @@ static void limits(const leafless_solid *solid) {
     int reports = 0;
 
     OK(leafless_lazy_new(solid, &frame, &lazy));
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.max_splits = 100;
     for (;;) {
         OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
@@ -243,7 +243,7 @@ static void taken_up(const leafless_solid *ball) {
     const char *source = NULL;
     size_t source_length = 0;
 
-    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = slab;
     callbacks.ctx = &asked;
     OK(leafless_solid_new_callbacks(&callbacks, &nameless));

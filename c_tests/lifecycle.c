@@ -201,7 +201,7 @@ static void set_algebra(void) {
     size_t i;
     uint32_t operation;
     double volume[9];
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     both[0] = a, both[1] = b, both[2] = a;
     three[0] = a, three[1] = b, three[2] = c;

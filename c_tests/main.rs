@@ -10,6 +10,7 @@
 
 #![cfg(unix)]
 
+mod arrange;
 mod check;
 mod generated;
 mod header;
@@ -383,6 +384,27 @@ fn readme() {
     }
 }
 
+/// The example at the top of the header.
+#[test]
+fn header_example() {
+    let header = text("include/leafless.h");
+    let (_, example) = header.split_once(" * EXAMPLE").unwrap();
+    let (example, _) = example.split_once(" * CONTENTS").unwrap();
+    let lines: Vec<&str> = example.lines().filter_map(|line| line.strip_prefix(" *   ")).collect();
+    assert!((10..=16).contains(&lines.len()), "{lines:?}");
+    let source = kit().folder("header_example").join("header_example.c");
+    let includes = "#include <leafless.h>\n#include <stdio.h>\n#include <string.h>\n";
+    let end = "leafless_octree_free(octree), leafless_solid_free(bored);\n\
+               leafless_solid_free(parts[0]), leafless_solid_free(parts[1]);\nreturn 0;\n}\n";
+    std::fs::write(&source, format!("{includes}int main(void) {{\n{}\n{end}", lines.join("\n"))).unwrap();
+    let program = kit().compile("header_example", &[source], C99, Link::Static);
+    let told = kit().run(&program, &[]);
+    // A ball of radius 0.75 with a bore of radius 0.25: what is left is 4π/3 times the third power of half the bore's length.
+    let bounds: Vec<f64> = told.split(" to ").map(|bound| bound.trim().parse().unwrap()).collect();
+    let truth = 4.0 / 3.0 * std::f64::consts::PI * (0.75f64.powi(2) - 0.25f64.powi(2)).powf(1.5);
+    assert!(bounds[0] <= truth && truth <= bounds[1] && bounds[1] - bounds[0] < 0.2, "{told} {truth}");
+}
+
 #[test]
 fn examples() {
     let examples = [
@@ -476,6 +498,7 @@ fn table(program: &str, arguments: &[&str], file: &Path) -> Vec<Vec<String>> {
 
 fn sorted_functions() -> Vec<String> {
     let mut names: Vec<String> = header().functions.into_iter().map(|function| function.name).collect();
+    names.extend(["leafless_test_layout", "leafless_test_panic"].map(str::to_string));
     names.sort();
     names
 }

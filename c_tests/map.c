@@ -43,7 +43,7 @@ static void ask_everything(const leafless_octree *octree) {
     OK(leafless_octree_classify_box(octree, low, high, &region));
     OK(leafless_octree_statistics(octree, &statistics));
     OK(leafless_octree_describe(octree, &info));
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     if (leafless_octree_complement(octree, &options, &result) == LEAFLESS_OK) {
         leafless_octree_free(result);

@@ -58,7 +58,7 @@ static void ball(void) {
         CHECK(holds(measures.inertia_centroid_model[i], i % 4 == 0 ? inertia : 0.0));
     }
 
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     options.progress = stop;
     options.progress_ctx = &last;
@@ -184,7 +184,7 @@ static void host(void) {
     leafless_solid *solid = NULL;
     leafless_measures measures;
     leafless_extent extent;
-    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = fails;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
     FAILS(LEAFLESS_E_CALLBACK, leafless_solid_measure(solid, &frame, 0.0, 0.0, NULL, &measures));

@@ -39,7 +39,7 @@ static void colours(void) {
     leafless_mesh_free(mesh);
     OK(leafless_attribute_values(colour, &points[0][0], 2, &at[0][0]));
     CHECK(fabs(at[0][0] - 60) < 1e-9 && at[0][1] == 7 && at[0][3] == 255 && fabs(at[1][0] - 180) < 1e-9);
-    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+    OK(leafless_init(&fill, sizeof fill));
     fill.scalar = LEAFLESS_SCALAR_U8;
     OK(leafless_channel_fill(colour, &frame, &fill, NULL, &channel));
     OK(leafless_channel_values(channel, &points[0][0], 2, &at[0][0]));
@@ -62,7 +62,7 @@ static void parts(void) {
     bool per_corner;
     double labels[12], own[8], value[2];
     const double below[3] = {0.2, 0.2, -1};
-    OK(leafless_polyhedron_arrays_init(&arrays, sizeof arrays));
+    OK(leafless_init(&arrays, sizeof arrays));
     arrays.vertices = corners;
     arrays.vertex_count = 4;
     arrays.corners = faces;

@@ -166,7 +166,7 @@ static void is_tetrahedron(const leafless_mesh *mesh, double edge) {
 
 static leafless_mesh_options defaults(void) {
     leafless_mesh_options options;
-    OK(leafless_mesh_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     CHECK(options.struct_size == sizeof options && options.format == LEAFLESS_MESH_FORMAT_ANY);
     CHECK(options.unit == LEAFLESS_UNIT_UNKNOWN && options.target == LEAFLESS_UNIT_UNKNOWN && options.scale == 0.0);
     return options;

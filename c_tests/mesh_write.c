@@ -40,7 +40,7 @@ static void same(const leafless_mesh *a, const leafless_mesh *b, bool is_single)
 
 static leafless_mesh_write_options defaults(void) {
     leafless_mesh_write_options options;
-    OK(leafless_mesh_write_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     return options;
 }
 
@@ -246,7 +246,7 @@ static void refusals(void) {
         options = defaults();
         options.struct_size = (uint32_t)size;
         FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_write_options_init(&options, (size_t)size));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_init(&options, (size_t)size));
     }
     FAILS(LEAFLESS_E_IO, leafless_mesh_save(mesh, "no/such/file.ply", 16, NULL));
     FAILS(LEAFLESS_E_UTF8, leafless_mesh_save(mesh, "a\0.ply", 6, NULL));

@@ -92,8 +92,8 @@ static void null_pointers(void) {
     memset(&callbacks, 0, sizeof callbacks);
     callbacks.struct_size = sizeof callbacks;
     callbacks.classify = classify;
-    OK(leafless_mesh_options_init(&mesh_options, sizeof mesh_options));
-    OK(leafless_polyhedron_arrays_init(&polyhedron, sizeof polyhedron));
+    OK(leafless_init(&mesh_options, sizeof mesh_options));
+    OK(leafless_init(&polyhedron, sizeof polyhedron));
     polyhedron.vertices = corners;
     polyhedron.vertex_count = 4;
     polyhedron.corners = faces;
@@ -102,9 +102,10 @@ static void null_pointers(void) {
     polyhedron.loop_count = 4;
     OK(leafless_mesh_to_stl(mesh, stl, sizeof stl, &number));
     check_write("null.stl", stl, sizeof stl);
+    NULL_POINTER(leafless_init, value, leafless_init(NULL, sizeof(leafless_options)));
+    MISALIGNED(leafless_init, value, leafless_init(WRONG(out), sizeof(leafless_options)));
+    BAD_NUMBER(leafless_init, struct_size, leafless_init(out, 3));
 
-    NULL_POINTER(leafless_options_init, options, leafless_options_init(NULL, sizeof(leafless_options)));
-    NULL_POINTER(leafless_callbacks_init, callbacks, leafless_callbacks_init(NULL, sizeof(leafless_callbacks)));
     NULL_POINTER(leafless_control_new, control, leafless_control_new(NULL));
     NULL_POINTER(leafless_control_cancel, control, leafless_control_cancel(NULL));
     NULL_POINTER(leafless_control_reset, control, leafless_control_reset(NULL));
@@ -133,17 +134,12 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_frame_plane, frame, leafless_frame_plane(NULL, 0, 0, (leafless_interval *)out));
     NULL_POINTER(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, NULL));
 
-    NULL_POINTER(leafless_mesh_arrays_init, arrays, leafless_mesh_arrays_init(NULL, sizeof(leafless_mesh_arrays)));
     NULL_POINTER(leafless_mesh_new, arrays, leafless_mesh_new(NULL, mesh_result));
     NULL_POINTER(leafless_mesh_new, mesh, leafless_mesh_new(&arrays, NULL));
-    NULL_POINTER(leafless_polyhedron_arrays_init, arrays,
-                 leafless_polyhedron_arrays_init(NULL, sizeof(leafless_polyhedron_arrays)));
     NULL_POINTER(leafless_mesh_from_polyhedron, arrays,
                  leafless_mesh_from_polyhedron(NULL, (double *)out, mesh_result));
     NULL_POINTER(leafless_mesh_from_polyhedron, mesh,
                  leafless_mesh_from_polyhedron(&polyhedron, (double *)out, NULL));
-    NULL_POINTER(leafless_mesh_options_init, options,
-                 leafless_mesh_options_init(NULL, sizeof(leafless_mesh_options)));
     NULL_POINTER(leafless_mesh_open, path, leafless_mesh_open(NULL, 3, &mesh_options, source, mesh_result));
     NULL_POINTER(leafless_mesh_open, path, leafless_mesh_open(NULL, 0, &mesh_options, source, mesh_result));
     NULL_POINTER(leafless_mesh_open, mesh, leafless_mesh_open("null.stl", 8, &mesh_options, source, NULL));
@@ -285,7 +281,6 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_new_prism, solid, leafless_solid_new_prism(triangle, 3, 0, 1, NULL));
     NULL_POINTER(leafless_solid_new_convex, planes, leafless_solid_new_convex(NULL, 3, solid_result));
     NULL_POINTER(leafless_solid_new_convex, solid, leafless_solid_new_convex(matrix, 3, NULL));
-    NULL_POINTER(leafless_function_init, function, leafless_function_init(NULL, sizeof(leafless_function)));
     NULL_POINTER(leafless_solid_new_function, function, leafless_solid_new_function(NULL, solid_result));
     memset(&function, 0, sizeof function);
     function.struct_size = sizeof function;
@@ -372,8 +367,6 @@ static void null_pointers(void) {
                 leafless_scene_from_bytes((const uint8_t *)"cube();", 7, NULL, 0, &scene));
     NULL_POINTER(leafless_scene_from_bytes, scene,
                  leafless_scene_from_bytes((const uint8_t *)"cube();", 7, NULL, 0, NULL));
-    NULL_POINTER(leafless_scene_options_init, options,
-                 leafless_scene_options_init(NULL, sizeof(leafless_scene_options)));
     NULL_POINTER(leafless_scene_open_with, path, leafless_scene_open_with(NULL, 3, NULL, scene_result));
     NULL_POINTER(leafless_scene_open_with, scene, leafless_scene_open_with("null.csg", 8, NULL, NULL));
     NULL_POINTER(leafless_scene_from_bytes_with, bytes,
@@ -743,12 +736,10 @@ static void misaligned(void) {
     CHECK(beside != NULL);
     memcpy(beside + 1, bytes, (size_t)length);
 
-    MISALIGNED(leafless_options_init, options, leafless_options_init((leafless_options *)WRONG(out), sizeof(leafless_options)));
     MISALIGNED(leafless_control_new, control, leafless_control_new((leafless_control **)WRONG(out)));
     MISALIGNED(leafless_control_cancel, control, leafless_control_cancel((leafless_control *)WRONG(control)));
     MISALIGNED(leafless_control_state, fraction, leafless_control_state(control, (bool *)out, (double *)WRONG(out)));
     MISALIGNED(leafless_frame_check, frame, leafless_frame_check(bad_frame));
-    MISALIGNED(leafless_callbacks_init, callbacks, leafless_callbacks_init((leafless_callbacks *)WRONG(out), sizeof(leafless_callbacks)));
     MISALIGNED(leafless_frame_around, min_model, leafless_frame_around(numbers, above, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_around, max_model, leafless_frame_around(point, numbers, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_around, frame, leafless_frame_around(point, above, 4, (leafless_frame *)WRONG(out)));
@@ -764,14 +755,8 @@ static void misaligned(void) {
     MISALIGNED(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, (double *)WRONG(out)));
     MISALIGNED(leafless_frame_cell_of, cell, leafless_frame_cell_of(&frame, point, (uint32_t *)WRONG(out)));
     MISALIGNED(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, (leafless_interval *)WRONG(out)));
-    MISALIGNED(leafless_mesh_arrays_init, arrays,
-               leafless_mesh_arrays_init((leafless_mesh_arrays *)WRONG(out), sizeof(leafless_mesh_arrays)));
-    MISALIGNED(leafless_polyhedron_arrays_init, arrays,
-               leafless_polyhedron_arrays_init((leafless_polyhedron_arrays *)WRONG(out), sizeof(leafless_polyhedron_arrays)));
     MISALIGNED(leafless_mesh_from_polyhedron, arrays,
                leafless_mesh_from_polyhedron((const leafless_polyhedron_arrays *)WRONG(out), NULL, mesh_result));
-    MISALIGNED(leafless_mesh_options_init, options,
-               leafless_mesh_options_init((leafless_mesh_options *)WRONG(out), sizeof(leafless_mesh_options)));
     MISALIGNED(leafless_mesh_from_bytes, options,
                leafless_mesh_from_bytes(bytes, length, (const leafless_mesh_options *)WRONG(out), NULL, mesh_result));
     MISALIGNED(leafless_mesh_from_bytes, source,
@@ -1208,13 +1193,11 @@ static void volumes_and_surfaces(void) {
     leafless_interval range;
     double real;
 
-    OK(leafless_volume_layout_init(&layout, sizeof layout));
-    OK(leafless_mesh_write_options_init(&write, sizeof write));
-    OK(leafless_surface_options_init(&surface, sizeof surface));
+    OK(leafless_init(&layout, sizeof layout));
+    OK(leafless_init(&write, sizeof write));
+    OK(leafless_init(&surface, sizeof surface));
     write.format = LEAFLESS_MESH_FORMAT_PLY;
     layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
-    NULL_POINTER(leafless_volume_layout_init, layout,
-                 leafless_volume_layout_init(NULL, sizeof(leafless_volume_layout)));
     NULL_POINTER(leafless_volume_new, layout, leafless_volume_new(NULL, samples, 8, made));
     NULL_POINTER(leafless_volume_new, samples, leafless_volume_new(&layout, NULL, 8, made));
     NULL_POINTER(leafless_volume_new, volume, leafless_volume_new(&layout, samples, 8, NULL));
@@ -1270,8 +1253,6 @@ static void volumes_and_surfaces(void) {
                  leafless_octree_bitmap(octree, 4, low, high, NULL, NULL, count + 4, 4, count));
     NULL_POINTER(leafless_octree_bitmap, count,
                  leafless_octree_bitmap(octree, 4, low, high, NULL, count, NULL, 4, NULL));
-    NULL_POINTER(leafless_surface_options_init, surface,
-                 leafless_surface_options_init(NULL, sizeof(leafless_surface_options)));
     NULL_POINTER(leafless_octree_surface, octree, leafless_octree_surface(NULL, &surface, NULL, mesh_result));
     NULL_POINTER(leafless_octree_surface, mesh, leafless_octree_surface(octree, &surface, NULL, NULL));
     NULL_POINTER(leafless_volume_surface, volume, leafless_volume_surface(NULL, band, NULL, mesh_result));
@@ -1285,8 +1266,6 @@ static void volumes_and_surfaces(void) {
     MISALIGNED(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, (double *)WRONG(out), 8, count));
     NULL_POINTER(leafless_mesh_area, mesh, leafless_mesh_area(NULL, (double *)out));
     NULL_POINTER(leafless_mesh_area, area_model, leafless_mesh_area(mesh, NULL));
-    NULL_POINTER(leafless_mesh_write_options_init, options,
-                 leafless_mesh_write_options_init(NULL, sizeof(leafless_mesh_write_options)));
     NULL_POINTER(leafless_mesh_save, mesh, leafless_mesh_save(NULL, "x.ply", 5, &write));
     NULL_POINTER(leafless_mesh_save, path, leafless_mesh_save(mesh, NULL, 5, &write));
     NULL_POINTER(leafless_mesh_to_bytes, mesh, leafless_mesh_to_bytes(NULL, &write, NULL, 0, count));
@@ -1297,8 +1276,6 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_mesh_written_form, options, leafless_mesh_written_form(mesh, NULL, mesh_result));
     NULL_POINTER(leafless_mesh_written_form, kept, leafless_mesh_written_form(mesh, &write, NULL));
 
-    MISALIGNED(leafless_volume_layout_init, layout,
-               leafless_volume_layout_init((leafless_volume_layout *)WRONG(out), sizeof(leafless_volume_layout)));
     MISALIGNED(leafless_volume_new, layout,
                leafless_volume_new((leafless_volume_layout *)WRONG(&layout), samples, 8, made));
     MISALIGNED(leafless_volume_new, volume, leafless_volume_new(&layout, samples, 8, (leafless_volume **)WRONG(out)));
@@ -1669,13 +1646,8 @@ static void voxels(void) {
     leafless_mesh *cube = NULL;
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
     uint64_t *count = (uint64_t *)out, number, other;
-    leafless_voxel_options options;
 
     OK(leafless_mesh_new(&arrays, &cube));
-    NULL_POINTER(leafless_voxel_options_init, voxel_options, leafless_voxel_options_init(NULL, sizeof options));
-    MISALIGNED(leafless_voxel_options_init, voxel_options,
-               leafless_voxel_options_init((leafless_voxel_options *)WRONG(out), sizeof options));
-    BAD_NUMBER(leafless_voxel_options_init, struct_size, leafless_voxel_options_init((leafless_voxel_options *)out, 3));
     NULL_POINTER(leafless_octree_voxels, octree,
                  leafless_octree_voxels(NULL, NULL, NULL, (leafless_frame *)out, NULL, NULL, NULL, NULL, NULL, 0, count));
     NULL_POINTER(leafless_octree_voxels, lattice,
@@ -2037,7 +2009,7 @@ static void summaries(const leafless_channel *channel) {
     const double low[3] = {0, 0, 0}, high[3] = {9, 9, 9}, bad[3] = {0, NAN, 0};
     uint64_t *count = (uint64_t *)out, number;
 
-    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    OK(leafless_init(&layout, sizeof layout));
     layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
     OK(leafless_volume_new(&layout, samples, sizeof samples, &volume));
     NULL_POINTER(leafless_channel_summarise, channel, leafless_channel_summarise(NULL, octree, point, above, NULL, summary));
@@ -2105,10 +2077,9 @@ static void attributes_and_channels(void) {
     leafless_channel_fill_options fill;
     leafless_carry_rule rules[2] = {{"a", 1, 0}, {"b", 1, 0}};
 
-    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
-    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+    OK(leafless_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&fill, sizeof fill));
     callbacks.components = 1;
-    NULL_POINTER(leafless_attribute_callbacks_init, callbacks, leafless_attribute_callbacks_init(NULL, sizeof callbacks));
     NULL_POINTER(leafless_attribute_new_callbacks, callbacks, leafless_attribute_new_callbacks(NULL, made));
     refused(LEAFLESS_E_NULL, "leafless_attribute_new_callbacks", "callbacks.value",
             leafless_attribute_new_callbacks(&callbacks, made));
@@ -2142,7 +2113,6 @@ static void attributes_and_channels(void) {
     NULL_POINTER(leafless_attribute_ref, attribute, leafless_attribute_ref(NULL, made));
     NULL_POINTER(leafless_attribute_ref, reference, leafless_attribute_ref(attribute, NULL));
 
-    NULL_POINTER(leafless_channel_fill_options_init, fill, leafless_channel_fill_options_init(NULL, sizeof fill));
     NULL_POINTER(leafless_channel_fill, attribute, leafless_channel_fill(NULL, &frame, &fill, NULL, channel_result));
     NULL_POINTER(leafless_channel_fill, frame, leafless_channel_fill(attribute, NULL, &fill, NULL, channel_result));
     NULL_POINTER(leafless_channel_fill, channel, leafless_channel_fill(attribute, &frame, &fill, NULL, NULL));
@@ -2169,7 +2139,7 @@ static void attributes_and_channels(void) {
     fill.coarse_model = 0.5;
     BAD_NUMBER(leafless_channel_fill, fine, (fill.fine_model = 1, leafless_channel_fill(attribute, &frame, &fill, NULL,
                                                                                        channel_result)));
-    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+    OK(leafless_init(&fill, sizeof fill));
 #undef FILL
     MAY_BE_NULL(leafless_channel_fill, fill, leafless_channel_fill(attribute, &frame, NULL, NULL, &other));
     leafless_channel_free(other);
@@ -2333,7 +2303,7 @@ int main(void) {
     OK(leafless_cursor_new(octree, &cursor));
     OK(leafless_point_cursor_new(octree, &point_cursor));
     OK(leafless_point_table_new(octree, 4, &point_table, (uint8_t *)fresh()));
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     null_pointers();
     misaligned();
     numbers();

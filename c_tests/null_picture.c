@@ -33,17 +33,6 @@ static void cameras(void) {
 }
 
 static void structs(void) {
-    void *out = fresh();
-    NULL_POINTER(leafless_transfer_init, transfer, leafless_transfer_init(NULL, sizeof(leafless_transfer)));
-    BAD_NUMBER(leafless_transfer_init, struct_size, leafless_transfer_init((leafless_transfer *)out, 3));
-    NULL_POINTER(leafless_look_init, look, leafless_look_init(NULL, sizeof(leafless_look)));
-    BAD_NUMBER(leafless_look_init, struct_size, leafless_look_init((leafless_look *)out, 3));
-    NULL_POINTER(leafless_slice_look_init, look, leafless_slice_look_init(NULL, sizeof(leafless_slice_look)));
-    BAD_NUMBER(leafless_slice_look_init, struct_size, leafless_slice_look_init((leafless_slice_look *)out, 3));
-    NULL_POINTER(leafless_voxel_arrays_init, voxels, leafless_voxel_arrays_init(NULL, sizeof(leafless_voxel_arrays)));
-    BAD_NUMBER(leafless_voxel_arrays_init, struct_size, leafless_voxel_arrays_init((leafless_voxel_arrays *)out, 3));
-    NULL_POINTER(leafless_shot_init, shot, leafless_shot_init(NULL, sizeof(leafless_shot)));
-    BAD_NUMBER(leafless_shot_init, struct_size, leafless_shot_init((leafless_shot *)out, 3));
     untouched();
 }
 
@@ -86,7 +75,7 @@ static void layers(void) {
     MAY_BE_NULL(leafless_layer_new_mesh, look, leafless_layer_new_mesh(mesh, NULL, &made));
     drop();
     NULL_POINTER(leafless_layer_new_mesh, layer, leafless_layer_new_mesh(mesh, NULL, NULL));
-    OK(leafless_look_init(&look, sizeof look));
+    OK(leafless_init(&look, sizeof look));
     look.faces = 2;
     BAD_NUMBER(leafless_layer_new_octree, faces, leafless_layer_new_octree(octree, &look, result));
     BAD_NUMBER(leafless_layer_new_mesh, faces, leafless_layer_new_mesh(mesh, &look, result));
@@ -119,7 +108,7 @@ static void layers(void) {
     drop();
     NULL_POINTER(leafless_layer_new_slice, layer, leafless_layer_new_slice(octree, plane, NULL, NULL));
     BAD_NUMBER(leafless_layer_new_slice, normal, leafless_layer_new_slice(octree, flat, NULL, result));
-    OK(leafless_slice_look_init(&slice_look, sizeof slice_look));
+    OK(leafless_init(&slice_look, sizeof slice_look));
     slice_look.is_plain = 2;
     BAD_NUMBER(leafless_layer_new_slice, is_plain, leafless_layer_new_slice(octree, plane, &slice_look, result));
     NULL_POINTER(leafless_layer_new_slice_of_solid, solid,
@@ -159,8 +148,8 @@ static void voxels(void) {
                 leafless_voxels_solid_parts(&frame, &code, &level, &kind, 1, solid, NULL, &part));
     NULL_POINTER(leafless_voxels_solid_parts, parts,
                  leafless_voxels_solid_parts(&frame, &code, &level, &kind, 1, solid, NULL, NULL));
-    OK(leafless_voxel_arrays_init(&arrays, sizeof arrays));
-    OK(leafless_transfer_init(&transfer, sizeof transfer));
+    OK(leafless_init(&arrays, sizeof arrays));
+    OK(leafless_init(&transfer, sizeof transfer));
     transfer.range_upper = 1;
     arrays.lattice = frame;
     arrays.count = 1;
@@ -199,7 +188,7 @@ static void pictures(void) {
     leafless_legend_name name = {"x", 1, {0, 0, 0, 0}, 0};
     leafless_legend_box *box = (leafless_legend_box *)out, found;
     all[0] = layer;
-    OK(leafless_shot_init(&shot, sizeof shot));
+    OK(leafless_init(&shot, sizeof shot));
     OK(leafless_camera_fitted(points, 2, 0, 0, 0, 1, &shot.camera));
     shot.width = shot.height = 1;
     NULL_POINTER(leafless_picture_render, shot, leafless_picture_render(NULL, all, 1, NULL, (uint8_t *)out, 4, (float *)out, 1));
@@ -229,7 +218,7 @@ static void pictures(void) {
     NULL_POINTER(leafless_picture_to_bytes, colours, leafless_picture_to_bytes(NULL, 16, 16, NULL, 0, (uint64_t *)out));
     NULL_POINTER(leafless_picture_to_bytes, bytes, leafless_picture_to_bytes(colours, 16, 16, NULL, 5, (uint64_t *)out));
     NULL_POINTER(leafless_picture_to_bytes, length, leafless_picture_to_bytes(colours, 16, 16, NULL, 0, NULL));
-    OK(leafless_transfer_init(&transfer, sizeof transfer));
+    OK(leafless_init(&transfer, sizeof transfer));
     BAD_NUMBER(leafless_picture_draw_bar, range,
                leafless_picture_draw_bar(colours, 16, 16, "x", 1, &transfer, 0, box));
     BAD_NUMBER(leafless_transfer_colour, range, leafless_transfer_colour(&transfer, points, 1, (uint8_t *)out));

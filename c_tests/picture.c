@@ -27,7 +27,7 @@ static void look_from_front(void) {
 
 static leafless_shot shot_of(uint32_t samples) {
     leafless_shot shot;
-    OK(leafless_shot_init(&shot, sizeof shot));
+    OK(leafless_init(&shot, sizeof shot));
     shot.width = shot.height = SIDE;
     shot.samples = samples;
     shot.camera = front;
@@ -108,7 +108,7 @@ static void surfaces(void) {
     leafless_layer_free(clipped);
     leafless_layer_free(layer);
     /* A layer keeps its octree. */
-    OK(leafless_look_init(&look, sizeof look));
+    OK(leafless_init(&look, sizeof look));
     look.colour[1] = look.colour[3] = 255;
     OK(leafless_layer_new_octree(octree, &look, &layer));
     leafless_octree_free(octree);
@@ -161,7 +161,7 @@ static void surfaces(void) {
                 triangle_colours[i][k] = (uint8_t)(k == 3 || k == (is_front ? 2 : 0) ? 255 : 0);
             }
         }
-        OK(leafless_look_init(&look, sizeof look));
+        OK(leafless_init(&look, sizeof look));
         look.triangle_colours = &triangle_colours[0][0];
         look.triangle_count = 11;
         FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_new_mesh(mesh, &look, &layer));
@@ -233,7 +233,7 @@ static void sections(void) {
     leafless_shot shot = shot_of(1);
     uint8_t first[sizeof colours];
     int x, y;
-    OK(leafless_slice_look_init(&look, sizeof look));
+    OK(leafless_init(&look, sizeof look));
     look.is_plain = 1;
     memcpy(look.full_colour, FULL, 4);
     OK(leafless_layer_new_slice(octree, plane, &look, &layer));
@@ -258,7 +258,7 @@ static void sections(void) {
     CHECK(memcmp(first, colours, sizeof colours) == 0);
     leafless_layer_free(layer);
     OK(leafless_attribute_new_constant(&value, 1, &attribute));
-    OK(leafless_transfer_init(&transfer, sizeof transfer));
+    OK(leafless_init(&transfer, sizeof transfer));
     look.attribute = attribute;
     FAILS(LEAFLESS_E_NULL, leafless_layer_new_slice(octree, plane, &look, &layer));
     look.transfer = &transfer;
@@ -281,7 +281,7 @@ static void sections(void) {
     }
     /* The same on the surface, shaded: the ratio of red to blue light stays. */
     OK(leafless_attribute_new_constant(&value, 1, &attribute));
-    OK(leafless_look_init(&surface, sizeof surface));
+    OK(leafless_init(&surface, sizeof surface));
     surface.attribute = attribute;
     surface.transfer = &transfer;
     for (x = 0; x < 2; x++) {
@@ -314,11 +314,11 @@ static void volumes(void) {
     double *parts, volume = 0, weight;
     leafless_frame lattice;
     const uint8_t *middle = pixel(SIDE / 2, SIDE / 2);
-    OK(leafless_transfer_init(&transfer, sizeof transfer));
+    OK(leafless_init(&transfer, sizeof transfer));
     transfer.range_upper = 1;
     transfer.alpha_lower = transfer.alpha_upper = 0.5;
     transfer.length_model = 1;
-    OK(leafless_voxel_arrays_init(&voxels, sizeof voxels));
+    OK(leafless_init(&voxels, sizeof voxels));
     voxels.lattice = frame;
     voxels.count = 1;
     voxels.codes = &code;
@@ -382,7 +382,7 @@ static void buffers(void) {
     take(&shot, layer);
     memcpy(first, colours, sizeof colours);
     /* The same for any number of threads; with and without buffers. */
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     for (options.threads = 1; options.threads < 5; options.threads += 3) {
         const leafless_layer *layers[1];
         layers[0] = layer;
@@ -455,7 +455,7 @@ static void files(void) {
     uint32_t x, y;
     FILE *file;
     memset(large, 255, sizeof large);
-    OK(leafless_transfer_init(&transfer, sizeof transfer));
+    OK(leafless_init(&transfer, sizeof transfer));
     transfer.range_upper = 100;
     OK(leafless_picture_draw_bar(large, WIDE, HIGH, "heat", 4, &transfer, LEAFLESS_LEGEND_RIGHT, &box));
     CHECK(box.width > 0 && box.left + box.width == WIDE && box.top + box.height <= HIGH);

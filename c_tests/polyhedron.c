@@ -16,7 +16,7 @@ static const uint32_t BLOCK_SOLIDS[2] = {0, 1};
 
 static leafless_polyhedron_arrays nothing(void) {
     leafless_polyhedron_arrays arrays;
-    OK(leafless_polyhedron_arrays_init(&arrays, sizeof arrays));
+    OK(leafless_init(&arrays, sizeof arrays));
     return arrays;
 }
 

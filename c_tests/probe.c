@@ -7,7 +7,7 @@ static double points[POINTS][3];
 
 static leafless_options threads(uint32_t count) {
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = count;
     return options;
 }
@@ -191,7 +191,7 @@ static void own_points(void) {
     leafless_solid *solid = NULL;
     uint64_t i;
     bool in_universe = false;
-    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = half;
     callbacks.ctx = &h;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));

@@ -138,7 +138,7 @@ static void sight(void) {
     OK(leafless_solid_line_of_sight(solid, &frame, left, near, NULL, &found));
     CHECK(found == LEAFLESS_SIGHT_CLEAR);
     /* It touches the ball, which nobody can see in cells. */
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.max_splits = 1000;
     OK(leafless_solid_line_of_sight(solid, &frame, tangent[0], tangent[1], &options, &found));
     CHECK(found == LEAFLESS_SIGHT_UNDECIDED);

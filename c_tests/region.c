@@ -29,7 +29,7 @@ static void contents(const leafless_octree *octree, const leafless_solid *solid,
     } else {
         CHECK(volume.lower == 0 && cells.full_least == 0 && of_solid.full_least == 0);
     }
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.max_splits = 1;
     OK(leafless_octree_cells_in(octree, ball, &options, &of_solid));
     CHECK(of_solid.full_least <= cells.full_least && cells.upper_most <= of_solid.upper_most);

@@ -50,7 +50,7 @@ static void reports(void) {
     uint64_t length = 7;
     size_t i;
     uint8_t name[8];
-    OK(leafless_scene_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     CHECK(options.struct_size == sizeof options && options.facets == LEAFLESS_FACETS_AUTO);
     for (i = 0; i < 3; i++) {
         options.facets = facets[i];

@@ -14,7 +14,7 @@ static leafless_channel *uniform(const leafless_octree *solid, const leafless_fr
     leafless_channel_fill_options fill;
     leafless_attribute *attribute = NULL;
     leafless_channel *channel = NULL;
-    OK(leafless_channel_fill_options_init(&fill, sizeof fill));
+    OK(leafless_init(&fill, sizeof fill));
     fill.solid = solid;
     OK(leafless_attribute_new_constant(&value, 1, &attribute));
     OK(leafless_channel_fill(attribute, frame, &fill, NULL, &channel));
@@ -127,7 +127,7 @@ static void volumes(void) {
     for (i = 0; i < 16; i++) {
         samples[i] = (uint8_t)(10 * (i % 4));
     }
-    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    OK(leafless_init(&layout, sizeof layout));
     layout.sample_type = LEAFLESS_SAMPLE_U8;
     layout.extents[0] = 4;
     layout.extents[1] = layout.extents[2] = 2;

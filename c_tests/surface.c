@@ -108,7 +108,7 @@ static bool same(const leafless_mesh *a, const leafless_mesh *b) {
 
 static leafless_surface_options defaults(void) {
     leafless_surface_options surface;
-    OK(leafless_surface_options_init(&surface, sizeof surface));
+    OK(leafless_init(&surface, sizeof surface));
     return surface;
 }
 
@@ -173,7 +173,7 @@ static void octrees(void) {
     CHECK(area > 4 * PI * 0.5625 && area < 1.3 * 4 * PI * 0.5625);
     on_lattice(mesh, 1.0 / 64, 0);
     /* The same for any number of threads. */
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     for (options.threads = 1; options.threads < 4; options.threads++) {
         OK(leafless_octree_surface(sampled, &surface, &options, &other));
         CHECK(same(mesh, other));
@@ -256,7 +256,7 @@ static void solids(void) {
         }
         drop(&s);
     }
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     for (options.threads = 1; options.threads < 3; options.threads++) {
         OK(leafless_solid_surface(solid, &frame, &surface, &options, &other));
         CHECK(same(mesh, other));
@@ -302,7 +302,7 @@ static void shrink(void) {
     leafless_mesh *all = NULL, *few = NULL, *again = NULL, *published = NULL;
     leafless_options options;
     uint32_t i, snap;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     for (i = 0; i < 2; i++) {
         for (snap = LEAFLESS_SNAP_FAT; snap <= LEAFLESS_SNAP_THIN; snap++) {
@@ -385,7 +385,7 @@ static void volumes(void) {
     samples[0] = 200;
     samples[2 + 4 * (1 + 5 * 1)] = 255;
     samples[3 + 4 * (2 + 5 * 1)] = 128;
-    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    OK(leafless_init(&layout, sizeof layout));
     layout.extents[0] = 4;
     layout.extents[1] = 5;
     layout.extents[2] = 6;
@@ -470,7 +470,7 @@ static void refusals(void) {
     /* Older programs have shorter structs. */
     for (size = 8; size <= sizeof surface; size += 8) {
         memset(&surface, 0xee, sizeof surface);
-        OK(leafless_surface_options_init(&surface, size));
+        OK(leafless_init(&surface, size));
         OK(leafless_octree_surface(octree, &surface, NULL, &mesh));
         leafless_mesh_free(mesh);
         OK(leafless_solid_surface(solid, &frame, &surface, NULL, &mesh));
@@ -484,11 +484,11 @@ static void refusals(void) {
     }
     OK(leafless_control_new(&control));
     OK(leafless_control_cancel(control));
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.control = control;
     FAILS(LEAFLESS_E_CANCELLED, leafless_octree_surface(octree, NULL, &options, &mesh));
     FAILS(LEAFLESS_E_CANCELLED, leafless_solid_surface(solid, &frame, NULL, &options, &mesh));
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.max_nodes = 1;
     FAILS(LEAFLESS_E_LIMIT, leafless_solid_surface(solid, &frame, NULL, &options, &mesh));
     CHECK(mesh == NULL);

@@ -111,7 +111,7 @@ void reads(const leafless_octree *octree) {
 
         // Booleans of it, each with threads of its own.
         leafless_options options;
-        OK(leafless_options_init(&options, sizeof options));
+        OK(leafless_init(&options, sizeof options));
         options.threads = 1 + number % 2;
         leafless_octree *complement = nullptr, *nothing = nullptr;
         OK(leafless_octree_complement(octree, &options, &complement));
@@ -174,7 +174,7 @@ void solids() {
     in_all_threads([&](int number) {
         const leafless_frame frame = check_frame(4);
         leafless_options options;
-        OK(leafless_options_init(&options, sizeof options));
+        OK(leafless_init(&options, sizeof options));
         options.threads = 1 + number % 3;
         OK(leafless_octree_build(own[number], &frame, LEAFLESS_RULE_CERTIFIED, &options, &built[number]));
         leafless_mesh_report report;
@@ -266,7 +266,7 @@ void numbers_of_threads(const std::vector<uint32_t> &numbers) {
     OK(leafless_control_new(&control));
     for (const uint32_t threads : numbers) {
         leafless_options options;
-        OK(leafless_options_init(&options, sizeof options));
+        OK(leafless_init(&options, sizeof options));
         options.threads = threads;
         options.control = control;
         options.progress = asks_back;
@@ -306,7 +306,7 @@ void open_mesh() {
         leafless_solid *solid = nullptr;
         OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
         leafless_options options;
-        OK(leafless_options_init(&options, sizeof options));
+        OK(leafless_init(&options, sizeof options));
         options.threads = uint32_t(number) % 4 + 1;
         OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octrees[number]));
         leafless_solid_free(solid);
@@ -342,7 +342,7 @@ Answers ask(const leafless_solid *solid, const leafless_frame &frame, uint32_t t
     static const std::vector<double> numbers = points();
     Answers answers;
     leafless_options options;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = threads;
     OK(leafless_solid_contains(solid, &frame, numbers.data(), POINTS, &options, answers.memberships.data()));
     for (int i = 0; i < POINTS; i += 50) {
@@ -517,7 +517,7 @@ void lazy_at_once() {
     Asking asking{nullptr, {0}};
     leafless_callbacks callbacks;
     leafless_solid *host = nullptr;
-    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = asks_back;
     callbacks.ctx = &asking;
     OK(leafless_solid_new_callbacks(&callbacks, &host));

@@ -5,7 +5,7 @@ static const double PI = 3.14159265358979323846, RADIUS = 0.75;
 
 static leafless_tridexel_format format_of(uint32_t ends, uint32_t normals, uint32_t surfaces, uint32_t materials) {
     leafless_tridexel_format format;
-    OK(leafless_tridexel_format_init(&format, sizeof format));
+    OK(leafless_init(&format, sizeof format));
     format.ends = ends;
     format.normals = normals;
     format.has_surfaces = surfaces;
@@ -396,7 +396,7 @@ static void sources(void) {
 
     OK(leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_INNER, NULL, NULL, &inner));
     OK(leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_OUTER, NULL, NULL, &outer));
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 3;
     OK(leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &threads));
     model = made(ball, DEPTH, NULL);
@@ -692,12 +692,12 @@ static void refused(void) {
     along_z.directions = LEAFLESS_AXES_Z;
     columns = made(ball, 5, &along_z);
     OK(leafless_tridexel_editor_new(model, &editor));
-    OK(leafless_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = meddles;
     callbacks.ctx = &editor;
     OK(leafless_solid_new_callbacks(&callbacks, &busy));
     OK(leafless_control_new(&control));
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
     FAILS(LEAFLESS_E_CALLBACK, leafless_tridexel_editor_subtract_solid(editor, busy, NULL));
     FAILS(LEAFLESS_E_FRAME, check_tridexels(LEAFLESS_OPERATION_UNION, model, finer, NULL, &result));

@@ -11,7 +11,7 @@ static leafless_tridexel *made(leafless_solid *solid, uint32_t normals) {
     const leafless_frame frame = check_frame(DEPTH);
     leafless_tridexel_format format;
     leafless_tridexel *model = NULL;
-    OK(leafless_tridexel_format_init(&format, sizeof format));
+    OK(leafless_init(&format, sizeof format));
     format.normals = normals;
     format.has_surfaces = format.has_materials = normals != 0;
     OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, &format, NULL, &model));
@@ -215,7 +215,7 @@ static void arrays(void) {
     static double ends[3][SIDE * SIDE][2], normals[3][SIDE * SIDE][6];
     static uint32_t surfaces_of[3][SIDE * SIDE][2], materials[3][SIDE * SIDE];
     uint32_t axis;
-    OK(leafless_tridexel_format_init(&format, sizeof format));
+    OK(leafless_init(&format, sizeof format));
     OK(leafless_tridexel_with_material(plain, 3, NULL, &model));
     format.normals = LEAFLESS_DEXEL_NORMALS_32;
     format.has_surfaces = format.has_materials = 1;

@@ -25,7 +25,7 @@ static bool inside(const leafless_interval *band, int x, int y, int z) {
 
 static leafless_volume_layout layout_of(uint32_t type) {
     leafless_volume_layout layout;
-    OK(leafless_volume_layout_init(&layout, sizeof layout));
+    OK(leafless_init(&layout, sizeof layout));
     layout.sample_type = type;
     layout.extents[0] = NX;
     layout.extents[1] = NY;
@@ -270,7 +270,7 @@ static void bitmaps(void) {
     leafless_cursor *cursor = NULL;
     leafless_options options;
     uint32_t level, box;
-    OK(leafless_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.threads = 2;
     OK(leafless_cursor_new(octree, &cursor));
     for (level = 0; level <= 5; level++) {
@@ -600,7 +600,7 @@ static void refused_layouts(void) {
     layout = layout_of(LEAFLESS_SAMPLE_U16);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_view(&layout, samples, 2 * COUNT_ALL - 1, &volume));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_view(&layout, (char *)samples + 1, 2 * COUNT_ALL, &volume));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_layout_init(&layout, 3));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_init(&layout, 3));
     CHECK(volume == NULL);
 }
 

@@ -92,7 +92,7 @@ static void attributes(void) {
     leafless_attribute *attribute, *failing;
     leafless_voxel_options options;
     uint64_t calls = 0, i, few;
-    OK(leafless_attribute_callbacks_init(&callbacks, sizeof callbacks));
+    OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.components = 2;
     callbacks.values = values_at;
     callbacks.range = range_in;
@@ -100,7 +100,7 @@ static void attributes(void) {
     OK(leafless_attribute_new_callbacks(&callbacks, &attribute));
     callbacks.values = fails;
     OK(leafless_attribute_new_callbacks(&callbacks, &failing));
-    OK(leafless_voxel_options_init(&options, sizeof options));
+    OK(leafless_init(&options, sizeof options));
     options.coarse_model = 0.5;
     options.fine_model = 1.0 / 32;
     options.tolerance = 0.4;

@@ -1,48 +1,128 @@
 /*
- * Leafless: a solid-modelling kernel on leaf-free octrees.
+ * Leafless: a solid-modelling kernel on octrees without leaves. Every answer is proven.
  *
- * Generated from the sources by cbindgen; do not edit. SPDX-License-Identifier: MIT OR Apache-2.0
+ * Generated from the sources; do not edit. SPDX-License-Identifier: MIT OR Apache-2.0
  *
- * What holds for all functions:
+ * OBJECTS, and how they become each other:
  *
- * - A function that can fail returns a leafless_status. LEAFLESS_OK is 0. leafless_last_error has the message of
- *   the last failure in the calling thread.
- * - Results are written to the last parameters, and only on success: after a failure they are as they were, but for
- *   the contents of buffers. No parameter is both read and written.
- * - General errors, which the functions do not list again: LEAFLESS_E_NULL if a pointer is NULL that the function
- *   does not say may be; LEAFLESS_E_ARGUMENT if one is misaligned for what it points to, if a count is more than
- *   memory can hold, a number none of its enum, a path empty, or a struct_size not sensible or with fields set that
- *   this library does not know; LEAFLESS_E_PANIC if the library has a defect. That never ends the host program and
- *   leaves all objects usable, but a leafless_tridexel_editor that it was changing; Rust's message about it also goes to
- *   stderr.
- * - Memory whose size depends on an input or a result can be refused, and is then LEAFLESS_E_NO_MEMORY. What remains
- *   is at most 2 KiB a piece, what threads cost, and what polygons with holes or dents are triangulated with, for which
- *   as much was asked for, and given back, before; if even that cannot be had, the process ends.
- * - Objects are opaque handles. What _new, _open and the like return is a reference; _ref gives one more; _free
- *   gives one back, and takes NULL. References may be given back in any order: what an object needs of another it
- *   shares. Pointers from _peek functions belong to the object.
- * - Threads: calls whose handle parameters are pointers to const may run at once, on the same object too. Other
- *   calls need the object for themselves; but _free needs only its own reference, others may be in use meanwhile.
- *   A leafless_lazy or a leafless_tridexel_editor that is in use says so itself: LEAFLESS_E_BUSY.
- *   Different objects never interfere. Nothing global is changed. No thread of the library outlives the call that
- *   started it.
- * - Structs with a field struct_size begin with sizeof of themselves, and all their other fields may be zero.
- *   Programs that were compiled with an older, shorter struct go on working.
- *   Other structs are fixed for one LEAFLESS_ABI.
- * - Numbers for which there is an enum come in as uint32_t and are checked. As types of your own variables write
- *   leafless_tag, not enum leafless_tag: in C only the former has the size that the library writes.
- * - Lengths of texts and structs are size_t, all other lengths and counts uint64_t.
- * - Texts are UTF-8 of a given length in bytes, and may be NULL if it is 0; paths are, too, on every platform, but
- *   never empty.
- * - Coordinates whose names end in _model are in model units, those in _cells in finest cells. "3 numbers" are x, y
- *   and z.
- * - Buffers that are not known to be large enough are filled in two steps: with a NULL buffer and the capacity 0 the
- *   function tells the number of elements, then it fills. Capacities count elements.
- * - Buffers and results of one call must not overlap.
- * - Functions of the host get their context first, return 0 to go on, and must not throw or longjmp through the
- *   library.
+ *   primitives, your own functions, ------.
+ *   leafless_mesh, leafless_volume,        >---> leafless_solid ---> leafless_octree, leafless_tridexel,
+ *   leafless_scene -----------------------'        ^                 leafless_lazy, leafless_mesh
+ *                                                  |                   |
+ *                                                  '-------------------' each is a solid again
  *
- * The doc block of a function says, in this order: what it is for, which buffers it needs, what it results in, its
- * errors, who owns what, in which threads it may run, what it makes of untrusted input, and since which version of
- * the library it exists. Before version 0.1 all of it may still change.
+ *   A leafless_solid is a shape: it can be asked about points, rays, boxes, volumes and other solids, and
+ *   it can be built. A leafless_octree stores a shape in the cells of a leafless_frame; set operations on
+ *   one frame are exact. A leafless_tridexel stores a shape as intervals of rays. Octrees and tri-dexel
+ *   models are saved to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or PARTIAL,
+ *   which is undecided. A volume is an interval that contains the true volume.
+ *
+ * EXAMPLE: a bored ball, its volume, a file. (Check each status; see RULES.)
+ *
+ *   const double centre[3] = {0, 0, 0};
+ *   const leafless_frame frame = {{-1, -1, -1}, 2, 8};
+ *   leafless_solid *parts[2] = {NULL, NULL}, *bored = NULL;
+ *   leafless_octree *octree = NULL;
+ *   leafless_statistics all;
+ *   leafless_solid_new_ball(centre, 0.75, &parts[0]);
+ *   leafless_solid_new_cylinder(0.25, -1, 1, &parts[1]);
+ *   leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, (const leafless_solid *const *)parts, 2, &bored);
+ *   leafless_octree_build(bored, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree);
+ *   leafless_octree_statistics(octree, &all);
+ *   printf("%f to %f\n", all.volume_model.lower, all.volume_model.upper);
+ *   leafless_octree_save(octree, "bored.lfl", strlen("bored.lfl"));
+ *
+ * CONTENTS
+ *
+@CONTENTS@
+ *
+ * RULES that hold for all functions
+ *
+ * Results. A function that can fail returns a leafless_status; LEAFLESS_OK is 0. leafless_last_error gives
+ * the message of the last failure in the calling thread. Results are written to the last parameters, and only
+ * on success. After a failure the results are as they were before the call; the contents of buffers may have
+ * changed. No parameter is both read and written.
+ *
+ * General errors. Every function may return these, and its comment does not repeat them:
+ * - LEAFLESS_E_NULL: a pointer is NULL, and the function does not say that it may be.
+ * - LEAFLESS_E_ARGUMENT: a pointer is misaligned; a count is more than memory can hold; a number is not in
+ *   its enumeration; a path is empty; a struct_size is not sensible, or fields are set that this library does
+ *   not know.
+ * - LEAFLESS_E_PANIC: the library has a defect. The host program goes on, and all objects stay usable, except
+ *   a leafless_tridexel_editor that the call was changing. Rust prints a message to stderr.
+ *
+ * Memory. The library returns LEAFLESS_E_NO_MEMORY if the system refuses memory whose size depends on an
+ * input or a result. The process ends only if the system refuses one of the remaining small pieces (2 KiB at
+ * most), or the memory of a new thread. Triangulating a polygon with holes or dents needs 320 bytes a corner:
+ * the library reserves and releases that amount first, so that a shortage is an error.
+ *
+ * Objects. Objects are opaque handles. _new, _open and the like return a reference; _ref returns one more;
+ * _free gives one back, and accepts NULL. References may be given back in any order: an object shares what it
+ * needs of another one. A pointer from a _peek function belongs to the object.
+ *
+ * Threads. Calls that take only pointers to const handles may run at once, on the same object too. Other
+ * calls need the object for themselves. A _free needs only its own reference; other references may be in use
+ * meanwhile. A leafless_lazy and a leafless_tridexel_editor return LEAFLESS_E_BUSY while they are in use.
+ * Different objects never interfere. The library has no global state. No thread of the library outlives the
+ * call that started it.
+ *
+ * Structs. A struct with a field struct_size begins with its own sizeof. All other fields may be zero, and
+ * zero is the default: LEAFLESS_INIT(type) makes it. Programs that were compiled with an older, shorter
+ * struct go on working. Other structs are fixed for one LEAFLESS_ABI.
+ *
+ * Numbers. An enumeration comes in as a number of its type, and is checked. In C, write leafless_tag for a
+ * variable, not enum leafless_tag: only the former has the size that the library writes. Lengths of texts and
+ * structs are size_t; all other lengths and counts are uint64_t.
+ *
+ * Texts. A text is UTF-8 of a given length in bytes, and may be NULL if the length is 0. A path is UTF-8 on
+ * every platform, and never empty.
+ *
+ * Units. Names that end in _model are in model units; names that end in _cells are in finest cells. "3
+ * numbers" are x, y and z.
+ *
+ * Buffers. A buffer whose size the caller cannot know is filled in two steps. With a NULL buffer and the
+ * capacity 0 the function returns the number of elements; the second call fills the buffer. Capacities count
+ * elements. Buffers and results of one call must not overlap.
+ *
+ * Functions of the host get their context first, return 0 to go on, and must not throw or longjmp through the
+ * library.
+ *
+ * Comments of functions have entries in a fixed order. An entry is left out where it says just this:
+ * - Buffers: none.
+ * - Result: the status alone.
+ * - Errors: only the general ones.
+ * - Ownership: nothing changes hands; the library keeps nothing that it was given.
+ * - Threads: any thread may call, and the work is done in the calling thread.
+ * - Untrusted input: the function takes none.
+ * - Since: 0.1. Before version 0.1 everything may still change.
  */
+
+#ifndef LEAFLESS_H
+#define LEAFLESS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* LEAFLESS_ENUM: an enumeration of a fixed size. C has no such thing; there the name is the integer's.
+ * LEAFLESS_INIT: the default of a struct with a struct_size, as in
+ *     leafless_options options = LEAFLESS_INIT(leafless_options); */
+#ifdef __cplusplus
+#define LEAFLESS_ENUM(name, integer) enum name : integer
+#define LEAFLESS_INIT(type) \
+    ([]() { type made_ = type(); made_.struct_size = static_cast<uint32_t>(sizeof(type)); return made_; }())
+extern "C" {
+#else
+#define LEAFLESS_ENUM(name, integer) typedef integer name; enum name
+#define LEAFLESS_INIT(type) ((type){.struct_size = sizeof(type)})
+#endif
+
+/// Version of the library that this header belongs to: major * 1000000 + minor * 1000 + patch.
+#define LEAFLESS_VERSION \
+    (LEAFLESS_VERSION_MAJOR * 1000000 + LEAFLESS_VERSION_MINOR * 1000 + LEAFLESS_VERSION_PATCH)
+
+/// Whether the library that is linked fits this header: it has the same binary interface, and is not older.
+/// Before 0.1, where nothing is promised, it must have the same version.
+#define LEAFLESS_COMPATIBLE() \
+    (leafless_abi() == LEAFLESS_ABI && \
+     (LEAFLESS_ABI > 0 ? leafless_version() >= LEAFLESS_VERSION : leafless_version() == LEAFLESS_VERSION))

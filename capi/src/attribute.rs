@@ -151,9 +151,7 @@ pub(super) unsafe fn sample(
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and no number NaN.
 /// - Ownership: give `*attribute` back with leafless_attribute_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_new_constant(
     value: *const f64,
@@ -188,9 +186,7 @@ pub(super) fn components(components: u32, name: &'static str) -> Result<usize, F
 /// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is
 ///   singular, or an entry of the inverse is beyond 2^64.
 /// - Ownership: the operand is shared and may be freed; give `*attribute` back with leafless_attribute_free.
-/// - Threads: any.
 /// - Untrusted input: any attribute and numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
 #[unsafe(no_mangle)]
@@ -211,11 +207,7 @@ pub unsafe extern "C" fn leafless_attribute_placed(
 ///
 /// - Buffers: `components`, one number.
 /// - Result: `*components`, 1 to 4.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any attribute.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_components(
     attribute: *const leafless_attribute,
@@ -233,10 +225,7 @@ pub unsafe extern "C" fn leafless_attribute_components(
 ///   as leafless_attribute_components says. Both may be NULL if `count` is 0.
 /// - Result: the value at point i from `values[components * i]` on; NaN where there is none.
 /// - Errors: LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any attribute, any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_values(
     attribute: *const leafless_attribute,
@@ -256,10 +245,7 @@ pub unsafe extern "C" fn leafless_attribute_values(
 /// - Result: `*range`.
 /// - Errors: LEAFLESS_E_ARGUMENT unless min <= max on every axis, and all coordinates are finite;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any attribute, any numbers; the work is bounded.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -283,11 +269,7 @@ pub unsafe extern "C" fn leafless_attribute_range(
 ///
 /// - Buffers: `attribute`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `attribute`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_attribute_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_ref(
     attribute: *const leafless_attribute,
@@ -300,12 +282,8 @@ pub unsafe extern "C" fn leafless_attribute_ref(
 /// from it stay.
 ///
 /// - Buffers: `attribute`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_free(attribute: *mut leafless_attribute) {
     // SAFETY: the caller's promise.

@@ -1,7 +1,7 @@
 //! Attributes of the host program.
 
 use super::attribute::{components, give, leafless_attribute, leafless_value_range};
-use super::boundary::{Failure, Sized32, guard, initialise, out, sized};
+use super::boundary::{Failure, Sized32, guard, out, sized};
 use super::host::{done, leafless_destroy_fn};
 use super::status::leafless_status;
 use core::ffi::c_void;
@@ -134,24 +134,6 @@ impl Attribute for HostAttribute {
     }
 }
 
-/// Sets callbacks to their defaults; `components` and one of `value` and `values` must then be set.
-///
-/// - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_attribute_callbacks); need
-///   not be initialised.
-/// - Result: `*callbacks`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_attribute_callbacks_init(
-    callbacks: *mut leafless_attribute_callbacks,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(callbacks, struct_size, "callbacks") })
-}
-
 /// The host's own attribute.
 ///
 /// - Buffers: `callbacks`, one struct, which is copied; `attribute`, one pointer.
@@ -162,7 +144,6 @@ pub unsafe extern "C" fn leafless_attribute_callbacks_init(
 ///   leafless_attribute_free.
 /// - Threads: any; in which the functions are called, leafless_attribute_value_fn says.
 /// - Untrusted input: any answers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_attribute_new_callbacks(
     callbacks: *const leafless_attribute_callbacks,

@@ -23,10 +23,8 @@ use super::status::leafless_status;
 /// - Result: `*count`, the words of a bitmap, w ny nz; the words, the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no such level, or the box is none or lies outside of the
 ///   universe; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
 #[unsafe(no_mangle)]

@@ -465,11 +465,13 @@ impl<T: Copy> Buffer<T> {
 /// All-zero bytes are a `T`.
 pub(super) unsafe trait Sized32: Copy {}
 
+/// No struct of any version has more bytes.
+const LARGEST_STRUCT: usize = 4096;
+
 /// Whether a host's struct can have this size. No version's ends within a field: its size is a multiple of
 /// its alignment. So half a pointer is never taken for one.
 fn sensible<T>(size: usize) -> bool {
-    const LARGEST: usize = 4096;
-    (size_of::<u32>()..=LARGEST).contains(&size) && size.is_multiple_of(align_of::<T>())
+    (size_of::<u32>()..=LARGEST_STRUCT).contains(&size) && size.is_multiple_of(align_of::<T>())
 }
 
 /// The host's struct, or the default (all zero) if it is NULL. What an older host does not have yet is zero;
@@ -505,20 +507,16 @@ pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) ->
     Ok(known)
 }
 
-/// Makes the host's struct of `size` bytes its default: its size, and zeros.
+/// Makes a struct of the host its default, of which the first field is its size: that, and zeros.
 ///
 /// # Safety
 /// Unless it is NULL or misaligned, `pointer` points to room for `size` bytes.
-pub(super) unsafe fn initialise<T: Sized32>(
-    pointer: *mut T,
-    size: usize,
-    name: &'static str,
-) -> Result<(), Failure> {
-    checked(pointer, name)?;
-    if !sensible::<T>(size) {
+pub(super) unsafe fn initialise(pointer: *mut c_void, size: usize) -> Result<(), Failure> {
+    checked(pointer.cast::<u32>(), "value")?;
+    if !sensible::<u32>(size) {
         return Err(Failure::Argument { name: "struct_size", problem: "must be sizeof of the struct" });
     }
-    // SAFETY: the caller's promise; all-zero bytes are a `T`, and its first field is its size.
+    // SAFETY: the caller's promise.
     unsafe {
         pointer.cast::<u8>().write_bytes(0, size);
         pointer.cast::<u32>().write(size as u32);
@@ -586,13 +584,7 @@ pub(super) unsafe fn discard<T>(handle: *mut T) {
 
 /// Panics inside, to show what becomes of it: only in libraries that are built for tests.
 ///
-/// - Buffers: none.
 /// - Result: LEAFLESS_E_PANIC.
-/// - Errors: none.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[cfg(feature = "test")]
 #[unsafe(no_mangle)]
 pub extern "C" fn leafless_test_panic() -> leafless_status {

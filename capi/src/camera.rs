@@ -41,12 +41,10 @@ impl leafless_camera {
 ///
 /// - Buffers: `points_model`, 3 · `count` numbers; `camera`, one struct.
 /// - Result: `*camera`. O(count).
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no point, a number is not zero and not between 2^-256 and 2^256 in magnitude, the field of view
-///   neither 0 (parallel lines stay parallel) nor between 0 and 180 degrees, or the aspect not above 0.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no point, a number is not zero and not between 2^-256 and 2^256
+///   in magnitude, the field of view neither 0 (parallel lines stay parallel) nor between 0 and 180 degrees,
+///   or the aspect not above 0.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_camera_fitted(
     points_model: *const f64,

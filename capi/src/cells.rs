@@ -148,10 +148,7 @@ unsafe fn filter(
 /// - Result: `min_model` and `max_model`; the exact corners if these are doubles.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if `level` is greater than the frame's depth, or a
 ///   coordinate of `cell` not below 2^level.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3], [min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -184,10 +181,8 @@ pub unsafe extern "C" fn leafless_frame_cell_bounds(
 /// - Result: `*reached`, whether the cursor stands on the cell itself.
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
 ///   below 2^level; the cursor then stays where it is.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -215,10 +210,8 @@ pub unsafe extern "C" fn leafless_cursor_seek(
 /// - Result: `*neighbour`; `*exists`, whether it lies in the universe. If not, `*neighbour` is the cursor's
 ///   own cell with the exterior's tag.
 /// - Errors: LEAFLESS_E_ARGUMENT if `direction` is none.
-/// - Ownership: nothing changes hands.
 /// - Threads: any, while nobody moves the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[direction; 3]]
 #[unsafe(no_mangle)]
@@ -248,10 +241,8 @@ pub unsafe extern "C" fn leafless_cursor_neighbour(
 ///   structs, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`, 0 if the side lies on the boundary of the universe; the cells.
 /// - Errors: LEAFLESS_E_ARGUMENT if `direction` is none; LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Ownership: nothing changes hands.
 /// - Threads: any, while nobody moves the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[direction; 3]]
 #[unsafe(no_mangle)]
@@ -288,9 +279,7 @@ pub unsafe extern "C" fn leafless_cursor_neighbours(
 /// - Result: `*cells`, which stands before the first such cell.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
 /// - Ownership: `*cells` shares the octree, which may be freed; give it back with leafless_cells_free.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
 #[unsafe(no_mangle)]
@@ -315,12 +304,8 @@ pub unsafe extern "C" fn leafless_cells_new(
 /// Gives back what leafless_cells_new made.
 ///
 /// - Buffers: `cells`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cells_free(cells: *mut leafless_cells) {
     // SAFETY: the caller's promise.
@@ -331,13 +316,10 @@ pub unsafe extern "C" fn leafless_cells_free(cells: *mut leafless_cells) {
 /// wanted one after it in Morton order. O(depth).
 ///
 /// - Buffers: `cell`, 3 numbers.
-/// - Result: none.
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
 ///   below 2^level; nothing then changes.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use `cells`.
 /// - Untrusted input: any octree, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -357,11 +339,8 @@ pub unsafe extern "C" fn leafless_cells_seek(
 ///
 /// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one number.
 /// - Result: the cells; `*count`, how many: fewer than `capacity` only if there are no more.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use `cells`.
 /// - Untrusted input: any octree; damage reads as PARTIAL, and no array element is met twice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cells_next(
     cells: *mut leafless_cells,
@@ -405,9 +384,7 @@ unsafe fn room<T>(buffer: *mut T, capacity: u64) -> Result<usize, Failure> {
 /// - Result: `*faces`, which stands before the first face.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tags` are none.
 /// - Ownership: `*faces` shares the octree, which may be freed; give it back with leafless_faces_free.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
 #[unsafe(no_mangle)]
@@ -433,12 +410,8 @@ pub unsafe extern "C" fn leafless_faces_new(
 /// Gives back what leafless_faces_new made.
 ///
 /// - Buffers: `faces`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_faces_free(faces: *mut leafless_faces) {
     // SAFETY: the caller's promise.
@@ -449,13 +422,10 @@ pub unsafe extern "C" fn leafless_faces_free(faces: *mut leafless_faces) {
 /// one after it in Morton order. O(depth).
 ///
 /// - Buffers: `cell`, 3 numbers.
-/// - Result: none.
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth, or a coordinate of `cell` not
 ///   below 2^level; nothing then changes.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use `faces`.
 /// - Untrusted input: any octree, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -475,12 +445,9 @@ pub unsafe extern "C" fn leafless_faces_seek(
 ///
 /// - Buffers: `buffer`, room for `capacity` structs, which may be NULL if `capacity` is 0; `count`, one number.
 /// - Result: the faces; `*count`, how many: fewer than `capacity` only if there are no more.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use `faces`.
 /// - Untrusted input: any octree; damage reads as PARTIAL. An array element is met once for its own cells, and
 ///   no oftener for those beside them than in a sound octree: six times.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_faces_next(
     faces: *mut leafless_faces,

@@ -73,11 +73,7 @@ pub(super) fn give(channel: Channel) -> *mut leafless_channel {
 ///
 /// - Buffers: `channel`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `channel`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_channel_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_ref(
     channel: *const leafless_channel,
@@ -90,12 +86,8 @@ pub unsafe extern "C" fn leafless_channel_ref(
 /// file, unless an octree, an attribute, or a channel with other metadata still shares it.
 ///
 /// - Buffers: `channel`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_free(channel: *mut leafless_channel) {
     // SAFETY: the caller's promise.
@@ -108,10 +100,7 @@ pub unsafe extern "C" fn leafless_channel_free(channel: *mut leafless_channel) {
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
 /// - Errors: LEAFLESS_E_DAMAGED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any channel.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_describe(
     channel: *const leafless_channel,
@@ -134,13 +123,9 @@ pub unsafe extern "C" fn leafless_channel_describe(
 
 /// Checks that a channel is well-formed: O(n). Those that the library makes, opens or maps verified are.
 ///
-/// - Buffers: none.
 /// - Result: LEAFLESS_OK if it is.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any channel.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_check(channel: *const leafless_channel) -> leafless_status {
     guard(|| unsafe { Ok(shared(channel, "channel")?.channel.view()?.check()?) })
@@ -151,11 +136,7 @@ pub unsafe extern "C" fn leafless_channel_check(channel: *const leafless_channel
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any channels.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_equal(
     a: *const leafless_channel,
@@ -177,9 +158,7 @@ pub unsafe extern "C" fn leafless_channel_equal(
 ///   unverified and its links are damaged.
 /// - Ownership: the attribute shares the channel, which may be freed; give `*attribute` back with
 ///   leafless_attribute_free.
-/// - Threads: any.
 /// - Untrusted input: any channel.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_as_attribute(
     channel: *const leafless_channel,
@@ -203,9 +182,7 @@ pub unsafe extern "C" fn leafless_channel_as_attribute(
 /// - Ownership: the texts are copied. `*named` shares the arrays of `channel`, which may be freed: what must
 ///   outlive `channel`, such as bytes that it views, must outlive `*named` too. Give that back with
 ///   leafless_channel_free.
-/// - Threads: any.
 /// - Untrusted input: any texts.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_with_metadata(
     channel: *const leafless_channel,
@@ -230,9 +207,7 @@ pub unsafe extern "C" fn leafless_channel_with_metadata(
 /// - Result: `*unnamed`; a fact that is not there need not be.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_channel_with_metadata.
-/// - Threads: any.
 /// - Untrusted input: any texts.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_without_metadata(
     channel: *const leafless_channel,
@@ -253,9 +228,7 @@ pub unsafe extern "C" fn leafless_channel_without_metadata(
 /// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
 /// - Errors: LEAFLESS_E_UTF8.
 /// - Ownership: the text belongs to the channel and lives as long as the reference `channel`.
-/// - Threads: any.
 /// - Untrusted input: any channel.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_peek_metadata(
     channel: *const leafless_channel,
@@ -278,9 +251,7 @@ pub unsafe extern "C" fn leafless_channel_peek_metadata(
 ///   bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
 /// - Ownership: the texts belong to the channel and live as long as the reference `channel`.
-/// - Threads: any.
 /// - Untrusted input: any channel.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_peek_metadata_at(
     channel: *const leafless_channel,

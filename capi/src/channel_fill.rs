@@ -1,7 +1,7 @@
 //! Channels that are filled from attributes, asked at points, and changed in regions.
 
 use super::attribute::{components, leafless_attribute, sample};
-use super::boundary::{Failure, Sized32, array, guard, initialise, out, shared, sized, slice, text};
+use super::boundary::{Failure, Sized32, array, guard, out, shared, sized, slice, text};
 use super::channel::{give, leafless_channel, leafless_scalar_type};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
@@ -30,7 +30,7 @@ pub enum leafless_criterion {
 }
 
 /// How a channel is filled. NULL means the defaults. All fields but the first may be zero, which is their
-/// default; leafless_channel_fill_options_init sets them so.
+/// default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_fill_options {
@@ -105,24 +105,6 @@ impl leafless_channel_fill_options {
     }
 }
 
-/// Sets options for filling to their defaults.
-///
-/// - Buffers: `fill`, one struct of `struct_size` bytes, which is sizeof(leafless_channel_fill_options); need not be
-///   initialised.
-/// - Result: `*fill`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_channel_fill_options_init(
-    fill: *mut leafless_channel_fill_options,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(fill, struct_size, "fill") })
-}
-
 /// The channel of an attribute: each cell has the attribute's value at its centre, rounded to the type of the
 /// numbers; a cell whose centre has no value has none. Cells are as large as proven ranges and the criterion
 /// allow. The result is the same bit for bit for any number of threads.
@@ -142,7 +124,6 @@ pub unsafe extern "C" fn leafless_channel_fill_options_init(
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your own
 ///   choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_fill(
     attribute: *const leafless_attribute,
@@ -189,10 +170,7 @@ pub unsafe extern "C" fn leafless_channel_fill(
 /// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of the
 ///   channel's cube.
 /// - Errors: LEAFLESS_E_DAMAGED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_values(
     channel: *const leafless_channel,
@@ -216,10 +194,7 @@ fn four(value: Option<[f64; 4]>) -> [f64; 4] {
 /// - Buffers: `point_model`, 3 numbers; `value`, room for 4 numbers.
 /// - Result: `value`: as many numbers as the channel's values have, and 0 beyond them; four NaN if there is none.
 /// - Errors: LEAFLESS_E_DAMAGED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3], [value; 4]]
 #[unsafe(no_mangle)]
@@ -241,10 +216,7 @@ pub unsafe extern "C" fn leafless_channel_value(
 /// - Buffers: `cell`, 3 numbers; `value`, room for 4 numbers.
 /// - Result: `value`, as leafless_channel_value; four NaN if a coordinate is not below 2^depth.
 /// - Errors: LEAFLESS_E_DAMAGED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3], [value; 4]]
 #[unsafe(no_mangle)]
@@ -272,7 +244,6 @@ pub unsafe extern "C" fn leafless_channel_value_of_cell(
 /// - Ownership: `channel` stays as it is; give `*changed` back with leafless_channel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any channel, any octree, any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_with_value_in(
     channel: *const leafless_channel,

@@ -98,10 +98,7 @@ impl From<&MaterialProperties> for leafless_material {
 /// - Result: `*summary`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid lies in
 ///   another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any channel, any octree, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -143,7 +140,6 @@ pub unsafe extern "C" fn leafless_channel_summarise(
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any channel, any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_channel_region(
     channel: *const leafless_channel,
@@ -177,10 +173,8 @@ pub unsafe extern "C" fn leafless_channel_region(
 /// - Result: `*count`; the materials.
 /// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless `frame` is of
 ///   the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as leafless_solid_measure.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any channel; the default of `max_splits` bounds the work for each value.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_materials(
     solid: *const leafless_solid,
@@ -220,7 +214,6 @@ pub unsafe extern "C" fn leafless_solid_materials(
 ///   leafless_attribute_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_as_attribute(
     volume: *const leafless_volume,

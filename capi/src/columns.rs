@@ -79,9 +79,7 @@ fn side(side: u32) -> Result<Side, Failure> {
 /// - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach beyond
 ///   the universe; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*columns` back with leafless_columns_free.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
@@ -111,7 +109,6 @@ pub unsafe extern "C" fn leafless_octree_columns(
 /// - Ownership: give `*columns` back with leafless_columns_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
@@ -144,10 +141,6 @@ pub unsafe extern "C" fn leafless_solid_columns(
 /// - Result: `offsets`, one more than columns; `runs`; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written
 ///   then.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_columns_read(
     columns: *const leafless_columns,
@@ -180,12 +173,8 @@ pub unsafe extern "C" fn leafless_columns_read(
 /// Gives back what leafless_octree_columns or leafless_solid_columns made.
 ///
 /// - Buffers: `columns`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_columns_free(columns: *mut leafless_columns) {
     // SAFETY: the caller's promise.
@@ -231,10 +220,7 @@ unsafe fn write_heights(
 ///   the column is empty.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns, or if `side` is none; LEAFLESS_E_BUFFER if the capacity
 ///   is too small; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
@@ -265,10 +251,8 @@ pub unsafe extern "C" fn leafless_octree_heights(
 /// - Result: as leafless_octree_heights; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_heights; LEAFLESS_E_BUFFER if the capacity is too small;
 ///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]

@@ -89,11 +89,7 @@ impl From<Region> for leafless_region {
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers; damage reads as undecided.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3]]
 #[unsafe(no_mangle)]
@@ -115,11 +111,7 @@ pub unsafe extern "C" fn leafless_octree_contains(
 /// - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL
 ///   if `count` is 0.
 /// - Result: `memberships[i]` for point i.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any octree, any numbers; damage reads as undecided.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_contains_many(
     octree: *const leafless_octree,
@@ -142,11 +134,7 @@ pub unsafe extern "C" fn leafless_octree_contains_many(
 ///
 /// - Buffers: `cell`, 3 numbers; `tag`, one.
 /// - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -167,10 +155,7 @@ pub unsafe extern "C" fn leafless_octree_tag_at(
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `region`, one.
 /// - Result: `*region`.
 /// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers; no array element is read twice; damage reads as undecided.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -200,10 +185,8 @@ pub unsafe extern "C" fn leafless_octree_classify_box(
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_contains(
     solid: *const leafless_solid,
@@ -234,11 +217,8 @@ pub unsafe extern "C" fn leafless_solid_contains(
 /// - Result: `*region`.
 /// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
 ///   leafless_solid_contains.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]

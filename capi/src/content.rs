@@ -39,10 +39,7 @@ impl From<CellsIn> for leafless_cells_in {
 ///   axis; `least` and `most`, one number each.
 /// - Result: `*least` and `*most`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the box is none, or lies outside of the universe.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers; no array element is read twice; damage reads as PARTIAL.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
 #[unsafe(no_mangle)]
@@ -70,10 +67,7 @@ pub unsafe extern "C" fn leafless_octree_cells_in_box(
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `volume_model`, one struct.
 /// - Result: `*volume_model`, in cubic model units.
 /// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers; no array element is read more than 27 times; damage reads as PARTIAL.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -100,10 +94,7 @@ pub unsafe extern "C" fn leafless_octree_volume_in_box(
 /// - Result: `*relation`.
 /// - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_classify_in(
     solid: *const leafless_solid,
@@ -133,11 +124,8 @@ pub unsafe extern "C" fn leafless_solid_classify_in(
 /// - Result: `*cells`.
 /// - Errors: LEAFLESS_E_FRAME if the region belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED if the region
 ///   is; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any octree, any region; no array element is read twice; damage reads as PARTIAL; set `max_splits`
 ///   where the depth or the region are not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_cells_in(
     octree: *const leafless_octree,
@@ -161,10 +149,7 @@ pub unsafe extern "C" fn leafless_octree_cells_in(
 /// - Buffers: `options`, one struct or NULL; `volume_model`, one struct.
 /// - Result: `*volume_model`, in cubic model units.
 /// - Errors: as leafless_octree_cells_in.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: as leafless_octree_cells_in.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_volume_in(
     octree: *const leafless_octree,
@@ -189,10 +174,7 @@ pub unsafe extern "C" fn leafless_octree_volume_in(
 /// - Result: `*cells`.
 /// - Errors: LEAFLESS_E_FRAME if solid or region belong to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_cells_in(
     solid: *const leafless_solid,
@@ -217,10 +199,7 @@ pub unsafe extern "C" fn leafless_solid_cells_in(
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `volume_model`, one struct.
 /// - Result: `*volume_model`, in cubic model units.
 /// - Errors: as leafless_solid_cells_in.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: as leafless_solid_cells_in.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_volume_in(
     solid: *const leafless_solid,

@@ -26,7 +26,7 @@ pub struct leafless_control {
 pub type leafless_progress_fn = Option<unsafe extern "C" fn(ctx: *mut c_void, fraction: f64) -> i32>;
 
 /// How a long operation may proceed. Where a function takes options, NULL means the defaults. All fields but
-/// the first may be zero, which is their default; leafless_options_init sets them so. No option but
+/// the first may be zero, which is their default. No option but
 /// `max_splits` changes a result.
 #[derive(Clone, Copy)]
 #[repr(C)]
@@ -44,8 +44,9 @@ pub struct leafless_options {
     /// has 2^43 triangles. Interference, clearance and bounding boxes end with what they know, as with max_splits spent,
     /// before what they remember of a solid's parts takes so much.
     pub max_bytes: u64,
-    /// Split at most this many cells; 0 means no limit, or the one that the function names. Only functions that split on demand heed it, and say
-    /// so: with it spent they stop, and keep or return what they have; it is no error.
+    /// Split at most this many cells; 0 means no limit, or the one that the function names. Only functions
+    /// that split on demand heed it, and say so: with it spent they stop, and keep or return what they have;
+    /// it is no error.
     pub max_splits: u64,
     /// Hears of the progress; optional.
     pub progress: leafless_progress_fn,
@@ -114,34 +115,23 @@ pub(super) unsafe fn controlled<R>(
     })?)
 }
 
-/// Sets options to their defaults.
+/// Makes any struct that begins with `struct_size` its default: its size, and zeros. In C and C++ the macro LEAFLESS_INIT
+/// does the same; this function is for other languages.
 ///
-/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_options); need not be
-///   initialised.
-/// - Result: `*options`.
+/// - Buffers: `value`, one struct of `struct_size` bytes, which need not be initialised.
+/// - Result: `*value`.
 /// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_options_init(
-    options: *mut leafless_options,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(options, struct_size, "options") })
+pub unsafe extern "C" fn leafless_init(value: *mut c_void, struct_size: usize) -> leafless_status {
+    guard(|| unsafe { initialise(value, struct_size) })
 }
 
 /// Makes a control.
 ///
 /// - Buffers: `control`, one pointer.
 /// - Result: `*control`, not cancelled.
-/// - Errors: only the general ones.
 /// - Ownership: give `*control` back with leafless_control_free, not before the operations that use it are
 ///   done.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_new(control: *mut *mut leafless_control) -> leafless_status {
     guard(|| unsafe {
@@ -154,12 +144,8 @@ pub unsafe extern "C" fn leafless_control_new(control: *mut *mut leafless_contro
 /// Gives back a control.
 ///
 /// - Buffers: `control`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_free(control: *mut leafless_control) {
     // SAFETY: the caller's promise.
@@ -171,11 +157,6 @@ pub unsafe extern "C" fn leafless_control_free(control: *mut leafless_control) {
 ///
 /// - Buffers: `control`, a handle.
 /// - Result: none; returns at once.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_cancel(control: *const leafless_control) -> leafless_status {
     guard(|| unsafe {
@@ -187,12 +168,7 @@ pub unsafe extern "C" fn leafless_control_cancel(control: *const leafless_contro
 /// Makes a cancelled control usable again.
 ///
 /// - Buffers: `control`, a handle.
-/// - Result: none.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: any, but operations that have not noticed the cancelling yet may go on.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_reset(control: *const leafless_control) -> leafless_status {
     guard(|| unsafe {
@@ -207,11 +183,6 @@ pub unsafe extern "C" fn leafless_control_reset(control: *const leafless_control
 ///
 /// - Buffers: `control`, a handle; `cancelled` and `fraction`, one each, each may be NULL.
 /// - Result: `*cancelled`; `*fraction`, 0 to 1.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_control_state(
     control: *const leafless_control,

@@ -53,9 +53,7 @@ pub(super) unsafe fn placement(matrix: *const f64) -> Result<Affine, Failure> {
 /// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
 ///   of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[centre_model; 3]]
 #[unsafe(no_mangle)]
@@ -79,9 +77,7 @@ pub unsafe extern "C" fn leafless_solid_new_ball(
 /// - Errors: LEAFLESS_E_ARGUMENT if min ≥ max on an axis, or a coordinate is neither 0 nor of a magnitude
 ///   between 2^-256 and 2^256.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -104,9 +100,7 @@ pub unsafe extern "C" fn leafless_solid_new_box(
 /// - Errors: LEAFLESS_E_ARGUMENT if the normal is zero, or a coefficient neither 0 nor of a magnitude between
 ///   2^-256 and 2^256.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[normal; 3]]
 #[unsafe(no_mangle)]
@@ -130,9 +124,7 @@ pub unsafe extern "C" fn leafless_solid_new_halfspace(
 /// - Errors: LEAFLESS_E_ARGUMENT if all coefficients but the last are 0, or one is neither 0 nor of a
 ///   magnitude between 2^-256 and 2^256.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[coefficients; 10]]
 #[unsafe(no_mangle)]
@@ -154,9 +146,7 @@ pub unsafe extern "C" fn leafless_solid_new_quadric(
 /// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
 ///   of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[centre_model; 3], [radii_model; 3]]
 #[unsafe(no_mangle)]
@@ -179,9 +169,7 @@ pub unsafe extern "C" fn leafless_solid_new_ellipsoid(
 /// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of
 ///   such a magnitude, or `low` not less than `high`.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_cylinder(
     radius_model: f64,
@@ -203,9 +191,7 @@ pub unsafe extern "C" fn leafless_solid_new_cylinder(
 /// - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate
 ///   neither 0 nor of such a magnitude, or `low` not less than `high`.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_frustum(
     bottom_model: f64,
@@ -228,9 +214,7 @@ pub unsafe extern "C" fn leafless_solid_new_frustum(
 /// - Errors: LEAFLESS_E_ARGUMENT if all coefficients are 0, an exponent is not 1 to 64, or a number neither 0
 ///   nor of a magnitude between 2^-256 and 2^256.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[coefficients; 3], [centre_model; 3], [exponents; 3]]
 #[unsafe(no_mangle)]
@@ -259,9 +243,7 @@ pub unsafe extern "C" fn leafless_solid_new_power(
 /// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a
 ///   ball.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_torus(
     major_model: f64,
@@ -281,9 +263,7 @@ pub unsafe extern "C" fn leafless_solid_new_torus(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[size_model; 3]]
 #[unsafe(no_mangle)]
@@ -309,9 +289,7 @@ pub unsafe extern "C" fn leafless_solid_new_wedge(
 ///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_prism(
     polygon_model: *const f64,
@@ -336,9 +314,7 @@ pub unsafe extern "C" fn leafless_solid_new_prism(
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no plane, a normal is zero, or a number neither 0 nor of a
 ///   magnitude between 2^-256 and 2^256; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_convex(
     planes: *const f64,
@@ -363,9 +339,7 @@ pub unsafe extern "C" fn leafless_solid_new_convex(
 /// - Errors: LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT, also if `count` is 0 for a difference;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operands are shared and may be freed; give `*result` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any solids.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_combine(
     operation: u32,
@@ -396,9 +370,7 @@ pub unsafe extern "C" fn leafless_solid_combine(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any solids.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_complement(
     operand: *const leafless_solid,
@@ -447,9 +419,7 @@ impl From<Motion> for leafless_motion {
 ///   singular; LEAFLESS_E_MESH if a mesh is moved beyond the numbers that meshes may have;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any solids and numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
 #[unsafe(no_mangle)]
@@ -476,13 +446,10 @@ pub unsafe extern "C" fn leafless_solid_placed(
 /// an octree of it stays coarse where the surface is flat. Such cells stay PARTIAL. Half-spaces know such layers;
 /// a solid that knows none is split as ever.
 ///
-/// - Buffers: none.
 /// - Result: `*solid`, a new solid.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is negative or not a number; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the caller's, to be given to leafless_solid_free; `operand` stays the caller's.
-/// - Threads: any.
 /// - Untrusted input: any solid.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_adaptive(
     operand: *const leafless_solid,
@@ -507,9 +474,7 @@ pub unsafe extern "C" fn leafless_solid_adaptive(
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is no leafless_touch.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any solids.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_with_touch(
     operand: *const leafless_solid,

@@ -32,12 +32,9 @@ pub struct leafless_cursor_state {
 ///
 /// - Buffers: `cursor`, one pointer.
 /// - Result: `*cursor`.
-/// - Errors: only the general ones.
 /// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
 ///   leafless_cursor_free.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_new(
     octree: *const leafless_octree,
@@ -54,12 +51,8 @@ pub unsafe extern "C" fn leafless_cursor_new(
 /// Gives back a cursor.
 ///
 /// - Buffers: `cursor`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {
     // SAFETY: the caller's promise.
@@ -70,11 +63,8 @@ pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {
 ///
 /// - Buffers: `state`, one struct.
 /// - Result: `*state`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: any, while nobody moves the cursor.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_read(
     cursor: *const leafless_cursor,
@@ -98,10 +88,8 @@ pub unsafe extern "C" fn leafless_cursor_read(
 /// - Buffers: `moved`, one truth value, or NULL. `octant` is 0 to 7.
 /// - Result: `*moved`, whether the cell is a BRANCH.
 /// - Errors: LEAFLESS_E_ARGUMENT if `octant` is not 0 to 7.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the cursor.
 /// - Untrusted input: any octree; damage reads as PARTIAL, so that a walk visits every cell at most once.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_descend(
     cursor: *mut leafless_cursor,
@@ -124,11 +112,8 @@ pub unsafe extern "C" fn leafless_cursor_descend(
 ///
 /// - Buffers: `moved`, one truth value, or NULL.
 /// - Result: `*moved`, whether there is a parent.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the cursor.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_cursor_ascend(
     cursor: *mut leafless_cursor,

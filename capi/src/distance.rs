@@ -88,11 +88,9 @@ impl From<&NearCell> for leafless_near_cell {
 /// - Result: `distances_model[i]` for point i, the same for any number of threads: 0 to infinity if a coordinate is not a
 ///   finite number, and all numbers for LEAFLESS_DISTANCE_TO_BOUNDARY.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and for each point no more array elements are
 ///   read than twice those that there are.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_distances(
     octree: *const leafless_octree,
@@ -132,10 +130,8 @@ pub unsafe extern "C" fn leafless_octree_distances(
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_ARGUMENT as leafless_frame_check, or if
 ///   the tolerance is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_distances(
     solid: *const leafless_solid,
@@ -173,11 +169,8 @@ pub unsafe extern "C" fn leafless_solid_distances(
 ///   `count`, one number. `tags` is one or several leafless_tags.
 /// - Result: `*count`, which is `capacity` unless the octree has fewer such cells; the cells.
 /// - Errors: LEAFLESS_E_ARGUMENT if `tags` is none, or a coordinate is not a finite number; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no more array elements are read than there
 ///   are.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3]]
 #[unsafe(no_mangle)]
@@ -222,10 +215,8 @@ pub unsafe extern "C" fn leafless_octree_nearest_cells(
 /// - Result: the field, the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT if the box is none or lies outside of the universe, or if `capacity` is not twice the
 ///   number of its cells; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_cell; 3], [max_cell; 3]]
 #[unsafe(no_mangle)]

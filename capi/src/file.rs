@@ -21,6 +21,28 @@ const _: () = {
     assert!(LEAFLESS_FORMAT_MINOR == file::MINOR as u32);
 };
 
+/// What header and section table of a tri-dexel model's file say of it.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_tridexel_probe {
+    /// The axes that rays run along, a sum of leafless_axes; 0 if the file holds an octree.
+    pub directions: u32,
+    /// How the ends of intervals are stored.
+    pub ends: leafless_dexel_ends,
+    /// How unit normals are stored.
+    pub normals: leafless_dexel_normals,
+    /// 1 if it is stored on which surfaces the ends lie, else 0.
+    pub has_surfaces: u32,
+    /// 1 if it is stored what intervals are made of, else 0.
+    pub has_materials: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// Rays in the window along each axis, empty ones among them.
+    pub rays: [u64; 3],
+    /// Intervals along each axis.
+    pub intervals: [u64; 3],
+}
+
 /// What header and section table of a file say.
 #[derive(Clone, Copy)]
 #[repr(C)]
@@ -49,28 +71,6 @@ pub struct leafless_probe {
     pub is_binary: bool,
     /// What is stored of a tri-dexel model; all zeros for an octree.
     pub tridexel: leafless_tridexel_probe,
-}
-
-/// What header and section table of a tri-dexel model's file say of it.
-#[derive(Clone, Copy)]
-#[repr(C)]
-pub struct leafless_tridexel_probe {
-    /// The axes that rays run along, a sum of leafless_axes; 0 if the file holds an octree.
-    pub directions: u32,
-    /// How the ends of intervals are stored.
-    pub ends: leafless_dexel_ends,
-    /// How unit normals are stored.
-    pub normals: leafless_dexel_normals,
-    /// 1 if it is stored on which surfaces the ends lie, else 0.
-    pub has_surfaces: u32,
-    /// 1 if it is stored what intervals are made of, else 0.
-    pub has_materials: u32,
-    /// Zero.
-    pub reserved: u32,
-    /// Rays in the window along each axis, empty ones among them.
-    pub rays: [u64; 3],
-    /// Intervals along each axis.
-    pub intervals: [u64; 3],
 }
 
 impl From<Option<&DexelProbe>> for leafless_tridexel_probe {
@@ -174,10 +174,7 @@ unsafe fn hand_out(
 /// - Result: `*probe`; as many sections as it says.
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any file.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_file_probe(
     path: *const c_char,
@@ -201,10 +198,7 @@ pub unsafe extern "C" fn leafless_file_probe(
 /// - Result: `*probe`; as many sections as it says.
 /// - Errors: LEAFLESS_E_FORMAT, also if the bytes end before the section table does; LEAFLESS_E_VERSION;
 ///   LEAFLESS_E_BUFFER; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_bytes_probe(
     bytes: *const u8,
@@ -225,10 +219,7 @@ pub unsafe extern "C" fn leafless_bytes_probe(
 /// - Result: LEAFLESS_OK if the file is good.
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the bytes are
 ///   misaligned; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_bytes_verify(bytes: *const u8, length: u64) -> leafless_status {
     guard(|| unsafe { Ok(file::verify(slice(bytes, length, "bytes")?)?) })
@@ -276,9 +267,7 @@ unsafe fn found_in<'a>(
 /// - Errors: LEAFLESS_E_FORMAT, also if the file holds a tri-dexel model; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
 ///   LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any file; memory is at most a small multiple of its length.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_open(
     path: *const c_char,
@@ -304,10 +293,8 @@ pub unsafe extern "C" fn leafless_octree_open(
 ///   header; LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any contents, but only where nobody else can change the file; else
 ///   leafless_octree_open.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_map(
     path: *const c_char,
@@ -325,10 +312,8 @@ pub unsafe extern "C" fn leafless_octree_map(
 /// - Result: `*octree`.
 /// - Errors: as leafless_octree_open, and LEAFLESS_E_ARGUMENT if there is no regular file.
 /// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any contents, but only where nobody else can change the file; else
 ///   leafless_octree_open.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_map_verified(
     path: *const c_char,
@@ -345,9 +330,7 @@ pub unsafe extern "C" fn leafless_octree_map_verified(
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the bytes are not kept; give `*octree` back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any bytes; memory is at most a small multiple of their number.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_from_bytes(
     bytes: *const u8,
@@ -369,9 +352,7 @@ pub unsafe extern "C" fn leafless_octree_from_bytes(
 /// - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back
 ///   to the octree, to every octree that leafless_octree_with_metadata or leafless_octree_without_metadata
 ///   made of it, and to every cursor and solid of these. Give `*octree` back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any bytes, as leafless_octree_map.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_view_bytes(
     bytes: *const u8,
@@ -399,10 +380,7 @@ pub unsafe extern "C" fn leafless_octree_view_bytes(
 /// - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged;
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails,
 ///   synchronising the directory, the new one is in place.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_save(
     octree: *const leafless_octree,
@@ -421,10 +399,7 @@ pub unsafe extern "C" fn leafless_octree_save(
 /// - Result: `*length`, the length of the file; the file in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped
 ///   unverified and is damaged; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_to_bytes(
     octree: *const leafless_octree,
@@ -487,15 +462,11 @@ pub(super) unsafe fn written(
 /// Writes an octree's file through a function of the host, in a few large pieces; the file is never in memory
 /// as a whole.
 ///
-/// - Buffers: none.
 /// - Result: LEAFLESS_OK once `write` has taken all bytes.
 /// - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
 ///   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last
 ///   two come before anything is written.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_write(
     octree: *const leafless_octree,

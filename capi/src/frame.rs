@@ -85,10 +85,7 @@ impl From<&Interval> for leafless_interval {
 /// - Buffers: `frame`, one struct.
 /// - Result: LEAFLESS_OK if the frame can be used.
 /// - Errors: LEAFLESS_E_ARGUMENT, with the field that is out of range in the message.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_frame_check(frame: *const leafless_frame) -> leafless_status {
     guard(|| unsafe { self::frame(frame).map(|_| ()) })
@@ -119,10 +116,7 @@ unsafe fn around(
 /// - Errors: LEAFLESS_E_MESH if the longest extent is 0; LEAFLESS_E_ARGUMENT if min > max on an axis, if
 ///   `depth` is not 1 to 20, or if a bound is not a finite number in range, or so far from the origin that
 ///   doubles cannot resolve the cube.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -145,10 +139,7 @@ pub unsafe extern "C" fn leafless_frame_around(
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
 /// - Errors: as leafless_frame_around.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -170,10 +161,7 @@ pub unsafe extern "C" fn leafless_frame_aligned(
 /// - Result: `*frame`.
 /// - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT also if `cell_size_model` is not 2^-256 to 2^256, or
 ///   if the bounds take more than 2^20 cells on an axis.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -194,10 +182,7 @@ pub unsafe extern "C" fn leafless_frame_with_cells(
 /// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
 /// - Result: `*frame`.
 /// - Errors: as leafless_frame_around.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -217,10 +202,7 @@ pub unsafe extern "C" fn leafless_frame_fitted(
 /// - Buffers: `frame`, one struct; `cell_size_model`, one number.
 /// - Result: `*cell_size_model`, in model units.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_frame_cell_size(
     frame: *const leafless_frame,
@@ -239,10 +221,7 @@ pub unsafe extern "C" fn leafless_frame_cell_size(
 /// - Result: `cell`, each below 2^depth.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not
 ///   a number.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3], [cell; 3]]
 #[unsafe(no_mangle)]
@@ -265,10 +244,7 @@ pub unsafe extern "C" fn leafless_frame_cell_of(
 /// - Buffers: `frame`, one struct; `plane_model`, one struct.
 /// - Result: `*plane_model`; lower = upper if the plane is a double.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if `axis` is not 0 to 2, or `index` beyond 2^depth.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any values.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_frame_plane(
     frame: *const leafless_frame,

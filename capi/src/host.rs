@@ -1,6 +1,6 @@
 //! Shapes and half-spaces of the host program.
 
-use super::boundary::{Failure, Sized32, guard, initialise, out, sized};
+use super::boundary::{Failure, Sized32, guard, out, sized};
 use super::frame::leafless_interval;
 use super::octree::settled_tag;
 use super::solid::{give, leafless_solid};
@@ -160,9 +160,9 @@ pub struct leafless_callbacks {
     /// Tells of the surface next to the middle of a box; optional. It is asked for the same as `gradient`; if
     /// both are set, where that one proves nothing.
     pub tangent: leafless_tangent_fn,
-    /// A box that the shape lies in: its lower and its upper corner (model units). All zero: none is known. In a universe that
-    /// holds the box the shape ends inside, whatever `exterior` says. The box moves along with the shape; of a moved shape
-    /// `exterior` says nothing.
+    /// A box that the shape lies in: its lower and its upper corner (model units). All zero: none is known.
+    /// In a universe that holds the box the shape ends inside, whatever `exterior` says. The box moves along
+    /// with the shape; of a moved shape `exterior` says nothing.
     pub bounds: [f64; 6],
 }
 
@@ -295,24 +295,6 @@ fn fingerprint(given: [u64; 2]) -> Option<Fingerprint> {
     (given != [0; 2]).then(|| Fingerprint::of_bytes(bytemuck::bytes_of(&given.map(u64::to_le))))
 }
 
-/// Sets callbacks to their defaults; `classify` must then be set.
-///
-/// - Buffers: `callbacks`, one struct of `struct_size` bytes, which is sizeof(leafless_callbacks); need not
-///   be initialised.
-/// - Result: `*callbacks`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_callbacks_init(
-    callbacks: *mut leafless_callbacks,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(callbacks, struct_size, "callbacks") })
-}
-
 /// The host's own shape.
 ///
 /// - Buffers: `callbacks`, one struct, which is copied; `solid`, one pointer.
@@ -324,7 +306,6 @@ pub unsafe extern "C" fn leafless_callbacks_init(
 ///   leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_callbacks(
     callbacks: *const leafless_callbacks,
@@ -483,24 +464,6 @@ impl HostFunction {
     }
 }
 
-/// Sets a function to its defaults; `value` and `range` must then be set.
-///
-/// - Buffers: `function`, one struct of `struct_size` bytes, which is sizeof(leafless_function); need not be
-///   initialised.
-/// - Result: `*function`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_function_init(
-    function: *mut leafless_function,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(function, struct_size, "function") })
-}
-
 /// A half-space of the host. It joins others, and may be placed: then its functions are asked in its own
 /// space, about the box around a cell's inverse image and about the rounded inverse image of a point.
 ///
@@ -512,7 +475,6 @@ pub unsafe extern "C" fn leafless_function_init(
 ///   leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_function(
     function: *const leafless_function,

@@ -153,9 +153,7 @@ impl From<&Clearance> for leafless_clearance {
 ///   between 2^-64 and 2^64, or M is singular; LEAFLESS_E_LIMIT if too many transforms lie within each other.
 ///   Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than `own`.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any solid and numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
 #[unsafe(no_mangle)]
@@ -193,10 +191,7 @@ pub unsafe extern "C" fn leafless_solid_new_transform(
 /// - Errors: LEAFLESS_E_FRAME if a solid belongs to another frame; LEAFLESS_E_ARGUMENT as
 ///   leafless_frame_check, or if the tolerance is negative or not a number; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solids; set `max_splits` where the depth or the solids are not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_interfere(
     a: *const leafless_solid,
@@ -225,10 +220,8 @@ pub unsafe extern "C" fn leafless_solid_interfere(
 ///   `interferences` may be NULL if `count` is 0.
 /// - Result: `interferences[i]` for map i.
 /// - Errors: as leafless_solid_interfere and leafless_solid_new_transform; nothing is then written.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: as leafless_solid_interfere, and any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_interfere_many(
     a: *const leafless_solid,
@@ -277,10 +270,7 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
 /// - Result: `*clearance`.
 /// - Errors: as leafless_solid_interfere.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solids; the default of `max_splits` bounds the work.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_clearance(
     a: *const leafless_solid,

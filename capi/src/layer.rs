@@ -1,9 +1,7 @@
 //! Layers: what a picture is made of.
 
 use super::attribute::{AnyAttribute, components, leafless_attribute};
-use super::boundary::{
-    Failure, Sized32, guard, handle, initialise, out, refer, release, shared, sized, slice,
-};
+use super::boundary::{Failure, Sized32, guard, handle, out, refer, release, shared, sized, slice};
 use super::status::leafless_status;
 use leafless::Bounds;
 use leafless::attribute::Attribute;
@@ -80,7 +78,7 @@ fn colour_map(map: u32) -> Result<ColourMap, Failure> {
 /// scales `alpha_upper`. Of a value of two numbers the first counts. Where there is no value the colour is grey.
 ///
 /// The range must be set, and for volumes the opacity. All other fields but the first may be zero, which is their
-/// default; leafless_transfer_init sets them so.
+/// default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_transfer {
@@ -114,33 +112,12 @@ impl leafless_transfer {
     }
 }
 
-/// Sets all fields of leafless_transfer to their defaults.
-///
-/// - Buffers: `transfer`, one struct of `struct_size` bytes, which is sizeof(leafless_transfer); need not be
-///   initialised.
-/// - Result: `*transfer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_transfer_init(
-    transfer: *mut leafless_transfer,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(transfer, struct_size, "transfer") })
-}
-
 /// The colour of a value under a transfer function, as surfaces show it in full light: for a legend of the host's own.
 ///
 /// - Buffers: `transfer`, one struct; `value`, `components` numbers; `colour`, 4 bytes.
 /// - Result: `colour`: red, green and blue (sRGB), and 255. Grey if a number is NaN.
 /// - Errors: LEAFLESS_E_ARGUMENT if the transfer function is not as it must be, or `components` not 1 to 4.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[colour; 4]]
 #[unsafe(no_mangle)]
@@ -236,12 +213,10 @@ pub(super) unsafe fn clip(
 ///   a x + b y + c z + d ≥ 0; `box_model`, 6 numbers, the least and the greatest corner of the box, or NULL for none;
 ///   `clipped`, one pointer.
 /// - Result: `*clipped`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b and c are zero, or the box is none;
-///   LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if a number is not zero and not between 2^-256 and 2^256 in magnitude, a, b
+///   and c are zero, or the box is none; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the layer is shared and may be freed; give `*clipped` back with leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_clipped(
     layer: *const leafless_layer,
@@ -263,11 +238,7 @@ pub unsafe extern "C" fn leafless_layer_clipped(
 ///
 /// - Buffers: `layer`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `layer`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_layer_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_ref(
     layer: *const leafless_layer,
@@ -280,12 +251,8 @@ pub unsafe extern "C" fn leafless_layer_ref(
 /// have references to it.
 ///
 /// - Buffers: `layer`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_free(layer: *mut leafless_layer) {
     // SAFETY: the caller's promise.

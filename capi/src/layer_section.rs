@@ -1,7 +1,7 @@
 //! Layers of what is inside: plane sections, and voxels as a translucent volume.
 
 use super::attribute::leafless_attribute;
-use super::boundary::{Failure, Sized32, array, buffer, guard, initialise, out, share, shared, sized, slice};
+use super::boundary::{Failure, Sized32, array, buffer, guard, out, share, shared, sized, slice};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::layer::{Shown, Values, chosen, give, leafless_layer, leafless_transfer, values};
@@ -16,7 +16,7 @@ use leafless::voxel::VoxelRecords;
 use std::sync::Arc;
 
 /// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their
-/// default; leafless_slice_look_init sets them so. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is
+/// default. Colours are red, green and blue (sRGB) and opacity, 0 to 255; what is
 /// to be invisible is {255, 255, 255, 0}.
 #[derive(Clone, Copy)]
 #[repr(C)]
@@ -41,23 +41,6 @@ pub struct leafless_slice_look {
 
 // SAFETY: numbers and pointers.
 unsafe impl Sized32 for leafless_slice_look {}
-
-/// Sets all fields of leafless_slice_look to their defaults.
-///
-/// - Buffers: `look`, one struct of `struct_size` bytes, which is sizeof(leafless_slice_look); need not be initialised.
-/// - Result: `*look`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_slice_look_init(
-    look: *mut leafless_slice_look,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(look, struct_size, "look") })
-}
 
 struct OfSlice {
     cut: Cut,
@@ -121,9 +104,7 @@ unsafe fn section(
 ///   zero, or the look is not as it must be.
 /// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[plane; 4]]
 #[unsafe(no_mangle)]
@@ -144,9 +125,7 @@ pub unsafe extern "C" fn leafless_layer_new_slice(
 ///   what leafless_octree_build does.
 /// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any solid, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[plane; 4]]
 #[unsafe(no_mangle)]
@@ -172,10 +151,7 @@ pub unsafe extern "C" fn leafless_layer_new_slice_of_solid(
 /// - Result: `parts`. O(count · levels).
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; the solid's own; LEAFLESS_E_NO_MEMORY;
 ///   LEAFLESS_E_CANCELLED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any numbers, any solid.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_voxels_solid_parts(
     lattice: *const leafless_frame,
@@ -225,24 +201,6 @@ pub struct leafless_voxel_arrays {
 // SAFETY: numbers and pointers.
 unsafe impl Sized32 for leafless_voxel_arrays {}
 
-/// Sets all fields of leafless_voxel_arrays but the first to zero.
-///
-/// - Buffers: `voxels`, one struct of `struct_size` bytes, which is sizeof(leafless_voxel_arrays); need not be
-///   initialised.
-/// - Result: `*voxels`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_voxel_arrays_init(
-    voxels: *mut leafless_voxel_arrays,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(voxels, struct_size, "voxels") })
-}
-
 struct OfVoxels {
     records: VoxelRecords,
     weights: Option<Vec<f64>>,
@@ -271,9 +229,7 @@ impl Shown for OfVoxels {
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, a weight is not 0 to 1, the transfer function not as it
 ///   must be, or the unit below 0 or not finite; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the layer copies the arrays; give `*layer` back with leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_voxels(
     voxels: *const leafless_voxel_arrays,

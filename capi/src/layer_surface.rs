@@ -1,7 +1,7 @@
 //! Layers of surfaces: of octrees, solids and meshes; lines.
 
 use super::attribute::leafless_attribute;
-use super::boundary::{Failure, Sized32, guard, initialise, out, share, shared, sized, slice};
+use super::boundary::{Failure, Sized32, guard, out, share, shared, sized, slice};
 use super::cells::leafless_cell;
 use super::frame::{frame, leafless_frame};
 use super::layer::{Shown, Values, chosen, give, leafless_layer, leafless_transfer, values};
@@ -30,9 +30,9 @@ pub enum leafless_edges {
     LEAFLESS_EDGES_ALL = 2,
 }
 
-/// What a surface looks like. NULL means the defaults. All fields but the first may be zero, which is their default;
-/// leafless_look_init sets them so. A field that a shape does not use must be zero. Colours are red, green and blue
-/// (sRGB) and opacity, 0 to 255.
+/// What a surface looks like. NULL means the defaults. All fields but the first may be zero, which is their
+/// default. A field that a shape does not use must be zero. Colours are red, green and blue (sRGB) and
+/// opacity, 0 to 255.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_look {
@@ -125,20 +125,6 @@ impl leafless_look {
     }
 }
 
-/// Sets all fields of leafless_look to their defaults.
-///
-/// - Buffers: `look`, one struct of `struct_size` bytes, which is sizeof(leafless_look); need not be initialised.
-/// - Result: `*look`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_look_init(look: *mut leafless_look, struct_size: usize) -> leafless_status {
-    guard(|| unsafe { initialise(look, struct_size, "look") })
-}
-
 struct OfOctree {
     octree: Arc<leafless_octree>,
     finish: Finish,
@@ -163,9 +149,7 @@ impl Shown for OfOctree {
 /// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be.
 /// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_octree(
     octree: *const leafless_octree,
@@ -208,9 +192,7 @@ impl Shown for OfSolid {
 ///   leafless_octree_build does.
 /// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any solid.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_solid(
     solid: *const leafless_solid,
@@ -274,9 +256,7 @@ impl Shown for OfMesh {
 ///   of range.
 /// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; give `*layer` back with
 ///   leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_mesh(
     mesh: *const leafless_mesh,
@@ -348,9 +328,7 @@ unsafe fn colour_at(colour: *const u8) -> Result<Option<[u8; 4]>, Failure> {
 /// - Errors: LEAFLESS_E_NO_MEMORY. Taking a picture returns LEAFLESS_E_ARGUMENT if the width is out of range, or a
 ///   coordinate not zero and not between 2^-256 and 2^256 in magnitude.
 /// - Ownership: the layer copies the lines; give `*layer` back with leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_lines(
     points_model: *const f64,
@@ -384,9 +362,7 @@ const _: () = assert!(size_of::<Untagged>() == size_of::<leafless_cell>());
 /// - Result: `*layer`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and as leafless_layer_new_lines; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*layer` back with leafless_layer_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_layer_new_cells(
     frame: *const leafless_frame,

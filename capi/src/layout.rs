@@ -276,11 +276,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
 /// - Buffers: `text`, `capacity` bytes; may be NULL if `capacity` is 0.
 /// - Result: the text's length in bytes, without the terminating NUL, also if not all of it was written. What
 ///   is written is NUL-terminated.
-/// - Errors: none.
 /// - Ownership: the text is copied.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[cfg(feature = "test")]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_test_layout(text: *mut c_char, capacity: usize) -> usize {

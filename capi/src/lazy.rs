@@ -90,9 +90,7 @@ fn new(lazy: LazyOctree<Prepared>) -> *mut leafless_lazy {
 /// - Errors: LEAFLESS_E_FRAME if the solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
 ///   LEAFLESS_E_ARGUMENT; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the octree shares the solid, which may be freed; give `*lazy` back with leafless_lazy_free.
-/// - Threads: any.
 /// - Untrusted input: any solid.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_new(
     solid: *const leafless_solid,
@@ -119,9 +117,7 @@ pub unsafe extern "C" fn leafless_lazy_new(
 ///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `octree` stays as it is; `*lazy` shares the solid, which may be freed; give it back with
 ///   leafless_lazy_free.
-/// - Threads: any.
 /// - Untrusted input: any octree; set `max_bytes` where it is not your own.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_resume(
     octree: *const leafless_octree,
@@ -142,12 +138,8 @@ pub unsafe extern "C" fn leafless_lazy_resume(
 /// Gives back a lazy octree.
 ///
 /// - Buffers: `lazy`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
     // SAFETY: the caller's promise.
@@ -162,10 +154,8 @@ pub unsafe extern "C" fn leafless_lazy_free(lazy: *mut leafless_lazy) {
 /// - Errors: LEAFLESS_E_ARGUMENT if the cell is none of the frame's, lies at its depth, or in a cell that is
 ///   still to be split; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle.
 /// - Untrusted input: any solid, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3], [tags; 8]]
 #[unsafe(no_mangle)]
@@ -211,10 +201,8 @@ unsafe fn refine(
 /// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid
 ///   contradicts what the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What
 ///   was split before stays so.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_refine(
     lazy: *mut leafless_lazy,
@@ -234,10 +222,8 @@ pub unsafe extern "C" fn leafless_lazy_refine(
 /// - Result: `*done`, whether no limit was reached first.
 /// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is
 ///   not a number.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -262,10 +248,8 @@ pub unsafe extern "C" fn leafless_lazy_refine_box(
 /// - Buffers: `point_model`, 3 numbers; `options`, one struct or NULL; `done`, one truth value, or NULL.
 /// - Result: `*done`, whether no limit was reached first.
 /// - Errors: as leafless_lazy_refine.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3]]
 #[unsafe(no_mangle)]
@@ -288,10 +272,8 @@ pub unsafe extern "C" fn leafless_lazy_refine_point(
 /// - Result: `*done`, whether no limit was reached first.
 /// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a
 ///   magnitude between 2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[origin_model; 3], [direction_model; 3]]
 #[unsafe(no_mangle)]
@@ -322,11 +304,8 @@ pub unsafe extern "C" fn leafless_lazy_refine_ray(
 /// - Result: `*tag`; BRANCH if the cell was split and its children differ; PARTIAL if it is none of the
 ///   frame's. `*can_split`, whether leafless_lazy_split would ask the solid: the cell is PARTIAL, its parent
 ///   was split, it is above the frame's depth, and the solid did not say that splitting does not help.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -352,11 +331,8 @@ pub unsafe extern "C" fn leafless_lazy_tag(
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3]]
 #[unsafe(no_mangle)]
@@ -376,11 +352,7 @@ pub unsafe extern "C" fn leafless_lazy_contains(
 ///
 /// - Buffers: `statistics`, one struct.
 /// - Result: `*statistics`. A cell counts as a node also if its eight children are PARTIAL.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_statistics(
     lazy: *const leafless_lazy,
@@ -396,11 +368,7 @@ pub unsafe extern "C" fn leafless_lazy_statistics(
 ///
 /// - Buffers: `counts`, one struct.
 /// - Result: `*counts`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_count(
     lazy: *const leafless_lazy,
@@ -422,10 +390,7 @@ pub unsafe extern "C" fn leafless_lazy_count(
 /// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`, depth + 1; the levels.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_levels(
     lazy: *const leafless_lazy,
@@ -448,10 +413,7 @@ pub unsafe extern "C" fn leafless_lazy_levels(
 /// - Buffers: `splits`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`, the frame's depth; the numbers.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_splits(
     lazy: *const leafless_lazy,
@@ -477,8 +439,6 @@ pub unsafe extern "C" fn leafless_lazy_splits(
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree; uses as many as `options` says.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_lazy_freeze(
     lazy: *const leafless_lazy,

@@ -166,10 +166,8 @@ impl From<Extent> for leafless_extent {
 /// - Errors: LEAFLESS_E_ARGUMENT, also if a tolerance is negative or not a number; LEAFLESS_E_FRAME if the
 ///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_splits` where the depth or the solid is not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_measure(
     solid: *const leafless_solid,
@@ -197,10 +195,8 @@ pub unsafe extern "C" fn leafless_solid_measure(
 /// - Buffers: as leafless_solid_measure; `surface`, one struct.
 /// - Result: `*surface`.
 /// - Errors: as leafless_solid_measure.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; the default of `max_splits` bounds the work.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_surface_area(
     solid: *const leafless_solid,
@@ -221,9 +217,10 @@ pub unsafe extern "C" fn leafless_solid_surface_area(
 
 /// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search splits
 /// only cells that may reach beyond what is proven solid. It ends with LEAFLESS_MEASURED_TOLERANCE if no interval
-/// is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_MEASURED_EXHAUSTED if the outermost undecided cells cannot be
-/// split, and either the interval is no wider than one of the frame's finest cells, or nothing else is left to
-/// split; with LEAFLESS_MEASURED_BUDGET after `max_splits` of the options, or 2^20 splits if that is 0.
+/// is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_MEASURED_EXHAUSTED if
+/// the outermost undecided cells cannot be split, and either the interval is no wider than one of the frame's
+/// finest cells, or nothing else is left to split; with LEAFLESS_MEASURED_BUDGET after `max_splits` of the
+/// options, or 2^20 splits if that is 0.
 ///
 /// Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved side
 /// to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side that a cylinder touches
@@ -233,10 +230,7 @@ pub unsafe extern "C" fn leafless_solid_surface_area(
 /// - Buffers: as leafless_solid_measure; `extent`, one struct.
 /// - Result: `*extent`.
 /// - Errors: as leafless_solid_measure, with `tolerance_model` for its tolerances.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solid; the default of `max_splits` bounds the work.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_bounding_box(
     solid: *const leafless_solid,

@@ -210,11 +210,7 @@ pub(super) fn give(mesh: TriangleMesh) -> *mut leafless_mesh {
 ///
 /// - Buffers: `mesh`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `mesh`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_mesh_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_ref(
     mesh: *const leafless_mesh,
@@ -226,12 +222,8 @@ pub unsafe extern "C" fn leafless_mesh_ref(
 /// Gives back a reference to a mesh; with the last one the mesh is gone. Solids made of it stay.
 ///
 /// - Buffers: `mesh`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
     // SAFETY: the caller's promise.
@@ -242,11 +234,6 @@ pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
 ///
 /// - Buffers: `vertex_count` and `triangle_count`, one number each.
 /// - Result: both.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_counts(
     mesh: *const leafless_mesh,
@@ -268,10 +255,6 @@ pub unsafe extern "C" fn leafless_mesh_counts(
 ///   `triangle_capacity` triangles of 3 indices. Each may be NULL if it is not wanted.
 /// - Result: both arrays.
 /// - Errors: LEAFLESS_E_BUFFER if a capacity is too small; then neither is written.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_copy(
     mesh: *const leafless_mesh,
@@ -299,10 +282,8 @@ pub unsafe extern "C" fn leafless_mesh_copy(
 ///   one number.
 /// - Result: `*count`, that of the vertices; the normals, in the order of the vertices.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any. Each call computes them.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_normals(
     mesh: *const leafless_mesh,
@@ -327,10 +308,6 @@ pub unsafe extern "C" fn leafless_mesh_normals(
 /// - Buffers: `min_model` and `max_model`, room for 3 numbers each.
 /// - Result: both corners.
 /// - Errors: LEAFLESS_E_MESH if the mesh has no triangle.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -357,11 +334,6 @@ pub unsafe extern "C" fn leafless_mesh_bounds(
 ///
 /// - Buffers: `volume_model`, one number.
 /// - Result: `*volume_model`, in cubic model units.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_volume(
     mesh: *const leafless_mesh,
@@ -378,11 +350,7 @@ pub unsafe extern "C" fn leafless_mesh_volume(
 ///
 /// - Buffers: `area_model`, one number.
 /// - Result: `*area_model`, in square model units.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_area(
     mesh: *const leafless_mesh,
@@ -400,10 +368,6 @@ pub unsafe extern "C" fn leafless_mesh_area(
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_describe(
     mesh: *const leafless_mesh,
@@ -422,10 +386,8 @@ pub unsafe extern "C" fn leafless_mesh_describe(
 /// - Buffers: `defects`, room for `capacity` of them, or NULL to ask for their number only.
 /// - Result: `*count`, how many there are, but not more than `limit`; the worst ones in `defects`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any. Each call analyses the mesh.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_defects(
     mesh: *const leafless_mesh,
@@ -453,10 +415,7 @@ pub unsafe extern "C" fn leafless_mesh_defects(
 /// - Result: LEAFLESS_OK if it is so.
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not
 ///   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_check_closed(
     mesh: *const leafless_mesh,
@@ -476,9 +435,7 @@ pub unsafe extern "C" fn leafless_mesh_check_closed(
 /// - Result: `*sewn`; leafless_mesh_describe tells how many vertices moved and how far.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*sewn` back with leafless_mesh_free.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_sewn(
     mesh: *const leafless_mesh,
@@ -499,9 +456,7 @@ pub unsafe extern "C" fn leafless_mesh_sewn(
 /// - Errors: LEAFLESS_E_ARGUMENT if a number of the matrix is not finite; LEAFLESS_E_MESH if a vertex leaves
 ///   ±2^256; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
 #[unsafe(no_mangle)]
@@ -527,9 +482,7 @@ pub unsafe extern "C" fn leafless_mesh_transformed(
 /// - Errors: LEAFLESS_E_ARGUMENT if a number of the offset is not finite; LEAFLESS_E_MESH if a vertex leaves
 ///   ±2^256; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*moved` back with leafless_mesh_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[offset_model; 3]]
 #[unsafe(no_mangle)]

@@ -1,6 +1,6 @@
 //! Triangle meshes from arrays as host programs have them.
 
-use super::boundary::{Failure, Sized32, Strided, guard, initialise, out, sized, strided};
+use super::boundary::{Failure, Sized32, Strided, guard, out, sized, strided};
 use super::mesh::{give, leafless_mesh};
 use super::status::leafless_status;
 use core::ffi::c_void;
@@ -36,7 +36,7 @@ pub enum leafless_index_type {
 
 /// The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They
 /// need not be aligned, and may lie among other data, such as normals, which are not read. All fields but the
-/// first may be zero, which is their default; leafless_mesh_arrays_init sets them so.
+/// first may be zero, which is their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_arrays {
@@ -262,24 +262,6 @@ impl leafless_mesh_arrays {
     }
 }
 
-/// Sets arrays to their defaults: none.
-///
-/// - Buffers: `arrays`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_arrays); need not be
-///   initialised.
-/// - Result: `*arrays`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_arrays_init(
-    arrays: *mut leafless_mesh_arrays,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(arrays, struct_size, "arrays") })
-}
-
 /// Makes a mesh of arrays. Equal vertices are welded, triangles with two corners at one place dropped and
 /// counted; coordinates below 2^-256 count as zero. Seen from outside of the solid the corners turn
 /// counter-clockwise.
@@ -293,9 +275,7 @@ pub unsafe extern "C" fn leafless_mesh_arrays_init(
 ///   though there are triangles and not three vertices for each; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are only read during the call, once and in their order, and may be freed after it:
 ///   the mesh has its own. Give `*mesh` back with leafless_mesh_free.
-/// - Threads: any.
 /// - Untrusted input: any values in the arrays.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_new(
     arrays: *const leafless_mesh_arrays,

@@ -27,9 +27,7 @@ fn at(mesh: &TriangleMesh, index: u64) -> Result<&MeshAttribute, Failure> {
 ///   or each triangle one.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is asked for.
 /// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_peek_attribute_at(
     mesh: *const leafless_mesh,
@@ -66,9 +64,7 @@ pub unsafe extern "C" fn leafless_mesh_peek_attribute_at(
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the count is
 ///   asked for.
 /// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_peek_attribute_name_at(
     mesh: *const leafless_mesh,
@@ -100,10 +96,7 @@ pub unsafe extern "C" fn leafless_mesh_peek_attribute_name_at(
 /// - Result: `*count`, 3 · components · triangles; in `values` the numbers at the three corners of the first triangle,
 ///   then of the second: NaN where there is no value.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`; LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_attribute_values(
     mesh: *const leafless_mesh,
@@ -135,10 +128,7 @@ pub unsafe extern "C" fn leafless_mesh_attribute_values(
 /// - Buffers: `bodies`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`, the number of triangles; in `bodies` one number for each.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_bodies(
     mesh: *const leafless_mesh,
@@ -165,9 +155,7 @@ pub unsafe extern "C" fn leafless_mesh_bodies(
 /// - Result: `*attribute`.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if the mesh has no such attribute; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
-/// - Threads: any.
 /// - Untrusted input: any mesh, any text.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_as_attribute(
     mesh: *const leafless_mesh,
@@ -192,9 +180,7 @@ pub unsafe extern "C" fn leafless_mesh_as_attribute(
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the values are copied, the mesh is shared and may be freed; give `*attribute` back with
 ///   leafless_attribute_free.
-/// - Threads: any.
 /// - Untrusted input: any mesh, any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_values_as_attribute(
     mesh: *const leafless_mesh,

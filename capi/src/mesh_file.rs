@@ -1,8 +1,6 @@
 //! Mesh files.
 
-use super::boundary::{
-    Failure, Out, Sized32, buffer, guard, handle, initialise, out, path, shared, sized, slice,
-};
+use super::boundary::{Failure, Out, Sized32, buffer, guard, handle, out, path, shared, sized, slice};
 use super::mesh::leafless_mesh;
 use super::status::leafless_status;
 use core::ffi::c_char;
@@ -54,7 +52,7 @@ pub enum leafless_unit {
 }
 
 /// How a mesh file is to be taken. NULL means the defaults. All fields but the first may be zero, which is
-/// their default; leafless_mesh_options_init sets them so.
+/// their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_options {
@@ -187,24 +185,6 @@ impl Results {
     }
 }
 
-/// Sets options for mesh files to their defaults.
-///
-/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_options); need not
-///   be initialised.
-/// - Result: `*options`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_options_init(
-    options: *mut leafless_mesh_options,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(options, struct_size, "options") })
-}
-
 /// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
 /// triangles.
 ///
@@ -218,11 +198,9 @@ pub unsafe extern "C" fn leafless_mesh_options_init(
 ///   LEAFLESS_E_ARGUMENT if the format or a unit is none, or the scale out of range; LEAFLESS_E_IO;
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*mesh` back with leafless_mesh_free.
-/// - Threads: any.
 /// - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is
 ///   compressed, of 64 times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25
 ///   triangles, or to as many as the file has.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_open(
     path: *const c_char,
@@ -246,9 +224,7 @@ pub unsafe extern "C" fn leafless_mesh_open(
 /// - Result: `*mesh`, not checked to be closed; `*source`.
 /// - Errors: as leafless_mesh_open, but those of paths.
 /// - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
-/// - Threads: any.
 /// - Untrusted input: any bytes; memory as for leafless_mesh_open.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_from_bytes(
     bytes: *const u8,
@@ -273,9 +249,6 @@ pub unsafe extern "C" fn leafless_mesh_from_bytes(
 /// - Result: `*count`, the number of all warnings; the text, not NUL-terminated, with its length in bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no warning `index`, unless only the count is asked for.
 /// - Ownership: the text belongs to the mesh and lives as long as the reference `mesh`.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_peek_warning_at(
     mesh: *const leafless_mesh,
@@ -306,10 +279,6 @@ pub unsafe extern "C" fn leafless_mesh_peek_warning_at(
 /// - Result: `*length`, the length of the file; the file in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond
 ///   the range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_to_stl(
     mesh: *const leafless_mesh,

@@ -102,10 +102,8 @@ impl From<&IntersectingPair> for leafless_intersecting_pair {
 ///   a leafless_fill.
 /// - Result: `*moments`, whether they are known or not.
 /// - Errors: LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
 /// - Untrusted input: any mesh; the work is limited.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_measure(
     mesh: *const leafless_mesh,
@@ -130,10 +128,8 @@ pub unsafe extern "C" fn leafless_mesh_measure(
 ///   `*is_complete`, whether these are all: else the search was ended, because too many triangles lie close to each
 ///   other.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. A `capacity` that is too small is none.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
 /// - Untrusted input: any mesh; the work is limited.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_intersecting_pairs(
     mesh: *const leafless_mesh,

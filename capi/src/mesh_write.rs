@@ -1,6 +1,6 @@
 //! Mesh files, written.
 
-use super::boundary::{Failure, Sized32, buffer, guard, initialise, out, path, shared, sized};
+use super::boundary::{Failure, Sized32, buffer, guard, out, path, shared, sized};
 use super::mesh::{give, leafless_mesh};
 use super::mesh_file::{format, unit};
 use super::status::leafless_status;
@@ -12,7 +12,7 @@ use std::io::Write;
 use std::path::Path;
 
 /// How a mesh file is written. NULL means the defaults. All fields but the first may be zero, which is their
-/// default; leafless_mesh_write_options_init sets them so.
+/// default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_write_options {
@@ -68,24 +68,6 @@ unsafe fn in_memory(
     Ok((format.ok_or(Failure::Argument { name: "options.format", problem })?, options))
 }
 
-/// Sets options for writing mesh files to their defaults.
-///
-/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_mesh_write_options);
-///   need not be initialised.
-/// - Result: `*options`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_write_options_init(
-    options: *mut leafless_mesh_write_options,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(options, struct_size, "options") })
-}
-
 /// Saves a mesh in a file: STL, PLY, OBJ, OFF or 3MF. At any moment there is the old file or the new one,
 /// each complete, as leafless_octree_save tells.
 ///
@@ -100,10 +82,7 @@ pub unsafe extern "C" fn leafless_mesh_write_options_init(
 ///   and the path has none of the extensions, for an STL of coordinates beyond the range of float, or for an
 ///   OBJ without vertices; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file is then as it
 ///   was; only if the very last step fails, synchronising the directory, the new one is in place.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_save(
     mesh: *const leafless_mesh,
@@ -132,10 +111,7 @@ pub unsafe extern "C" fn leafless_mesh_save(
 /// - Result: `*length`, the length of the file; the file in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT as leafless_mesh_save, and
 ///   if the format is LEAFLESS_MESH_FORMAT_ANY; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_to_bytes(
     mesh: *const leafless_mesh,
@@ -164,9 +140,7 @@ pub unsafe extern "C" fn leafless_mesh_to_bytes(
 /// - Result: `*kept`.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_mesh_to_bytes; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*kept` back with leafless_mesh_free.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_written_form(
     mesh: *const leafless_mesh,

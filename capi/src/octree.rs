@@ -169,9 +169,7 @@ pub(super) fn give(octree: Octree) -> *mut leafless_octree {
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_ARGUMENT.
 /// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_uniform(
     frame: *const leafless_frame,
@@ -192,11 +190,7 @@ pub unsafe extern "C" fn leafless_octree_uniform(
 ///
 /// - Buffers: `octree`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `octree`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_octree_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_ref(
     octree: *const leafless_octree,
@@ -209,12 +203,8 @@ pub unsafe extern "C" fn leafless_octree_ref(
 /// file, unless a cursor, a solid, or an octree with other metadata still shares it.
 ///
 /// - Buffers: `octree`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_free(octree: *mut leafless_octree) {
     // SAFETY: the caller's promise.
@@ -225,11 +215,7 @@ pub unsafe extern "C" fn leafless_octree_free(octree: *mut leafless_octree) {
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_describe(
     octree: *const leafless_octree,
@@ -259,9 +245,7 @@ pub unsafe extern "C" fn leafless_octree_describe(
 /// - Result: `*result`.
 /// - Errors: LEAFLESS_E_ARGUMENT unless `proven` is one, and the displacement finite and not negative.
 /// - Ownership: give `*result` back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_proof(
     octree: *const leafless_octree,
@@ -289,11 +273,7 @@ pub unsafe extern "C" fn leafless_octree_with_proof(
 ///
 /// - Buffers: `statistics`, one struct.
 /// - Result: `*statistics`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_statistics(
     octree: *const leafless_octree,
@@ -311,10 +291,7 @@ pub unsafe extern "C" fn leafless_octree_statistics(
 /// - Buffers: `levels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`, depth + 1; the levels.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_levels(
     octree: *const leafless_octree,
@@ -336,13 +313,9 @@ pub unsafe extern "C" fn leafless_octree_levels(
 /// leafless_channel_check. Those that the library makes, opens or maps
 /// verified are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
 ///
-/// - Buffers: none.
 /// - Result: LEAFLESS_OK if it is.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -> leafless_status {
     guard(|| unsafe { Ok(shared(octree, "octree")?.octree.view().check()?) })
@@ -354,11 +327,7 @@ pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octrees.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_equal(
     a: *const leafless_octree,
@@ -381,9 +350,7 @@ pub unsafe extern "C" fn leafless_octree_equal(
 /// - Ownership: the texts are copied. `*named` shares the arrays of `octree`, which may be freed: what must
 ///   outlive `octree`, such as bytes that it views, must outlive `*named` too. Give that back with
 ///   leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any texts.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_metadata(
     octree: *const leafless_octree,
@@ -408,9 +375,7 @@ pub unsafe extern "C" fn leafless_octree_with_metadata(
 /// - Result: `*unnamed`; a fact that is not there need not be.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_with_metadata.
-/// - Threads: any.
 /// - Untrusted input: any texts.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_without_metadata(
     octree: *const leafless_octree,
@@ -431,9 +396,7 @@ pub unsafe extern "C" fn leafless_octree_without_metadata(
 /// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
 /// - Errors: LEAFLESS_E_UTF8.
 /// - Ownership: the text belongs to the octree and lives as long as the reference `octree`.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_peek_metadata(
     octree: *const leafless_octree,
@@ -456,9 +419,7 @@ pub unsafe extern "C" fn leafless_octree_peek_metadata(
 ///   bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
 /// - Ownership: the texts belong to the octree and live as long as the reference `octree`.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_peek_metadata_at(
     octree: *const leafless_octree,

@@ -56,9 +56,7 @@ pub struct leafless_carry_rule {
 ///   256 channels already; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive these,
 ///   such as bytes that they view, must outlive `*result` too. Give that back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any octree, any channel.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_channel(
     octree: *const leafless_octree,
@@ -79,9 +77,7 @@ pub unsafe extern "C" fn leafless_octree_with_channel(
 /// - Result: `*result`, with the metadata of `octree`; a channel that is not there need not be.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_octree_with_channel.
-/// - Threads: any.
 /// - Untrusted input: any octree, any text.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_without_channel(
     octree: *const leafless_octree,
@@ -103,11 +99,7 @@ pub unsafe extern "C" fn leafless_octree_without_channel(
 ///
 /// - Buffers: `count`, one number.
 /// - Result: `*count`, 0 to 256.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_channel_count(
     octree: *const leafless_octree,
@@ -126,9 +118,7 @@ pub unsafe extern "C" fn leafless_octree_channel_count(
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
 /// - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`, such as
 ///   bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_channel_at(
     octree: *const leafless_octree,
@@ -150,9 +140,7 @@ pub unsafe extern "C" fn leafless_octree_channel_at(
 /// - Result: `*channel`; NULL if there is no such channel.
 /// - Errors: LEAFLESS_E_UTF8.
 /// - Ownership: as leafless_octree_channel_at.
-/// - Threads: any.
 /// - Untrusted input: any octree, any text.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_channel(
     octree: *const leafless_octree,
@@ -184,7 +172,6 @@ pub unsafe extern "C" fn leafless_octree_channel(
 /// - Ownership: as leafless_octree_with_channel.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octrees, any texts.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_carry_channels(
     octree: *const leafless_octree,

@@ -47,7 +47,6 @@ pub(super) fn rule(rule: u32) -> Result<Rule, Failure> {
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_build(
     solid: *const leafless_solid,
@@ -76,7 +75,6 @@ pub unsafe extern "C" fn leafless_octree_build(
 /// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_resolve(
     octree: *const leafless_octree,
@@ -101,9 +99,7 @@ pub unsafe extern "C" fn leafless_octree_resolve(
 /// - Result: `*compacted`, with the same metadata and channels.
 /// - Errors: LEAFLESS_E_DAMAGED if a brick cannot be read; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `octree` stays as it is; give `*compacted` back with leafless_octree_free.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_compact(
     octree: *const leafless_octree,
@@ -131,7 +127,6 @@ pub unsafe extern "C" fn leafless_octree_compact(
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
 ///   PARTIAL.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_combine(
     operation: u32,
@@ -167,7 +162,6 @@ pub unsafe extern "C" fn leafless_octree_combine(
 /// - Ownership: as leafless_octree_combine.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: as leafless_octree_combine.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_complement(
     octree: *const leafless_octree,

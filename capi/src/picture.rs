@@ -1,8 +1,6 @@
 //! Pictures: taken of layers into the host's buffers, written as PNG, with legends.
 
-use super::boundary::{
-    Failure, Out, Sized32, buffer, guard, initialise, out, path, shared, sized, slice, text,
-};
+use super::boundary::{Failure, Out, Sized32, buffer, guard, out, path, shared, sized, slice, text};
 use super::camera::leafless_camera;
 use super::control::{controlled, leafless_options};
 use super::layer::{clip, leafless_layer, leafless_transfer};
@@ -19,7 +17,7 @@ use std::io::Write;
 use std::path::Path;
 
 /// How a picture is taken. The size and the camera must be set; all other fields but the first may be zero, which is
-/// their default. leafless_shot_init sets them so.
+/// their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_shot {
@@ -71,30 +69,13 @@ impl leafless_shot {
     }
 }
 
-/// Sets all fields of leafless_shot but the first to zero.
-///
-/// - Buffers: `shot`, one struct of `struct_size` bytes, which is sizeof(leafless_shot); need not be initialised.
-/// - Result: `*shot`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_shot_init(shot: *mut leafless_shot, struct_size: usize) -> leafless_status {
-    guard(|| unsafe { initialise(shot, struct_size, "shot") })
-}
-
-/// The line of sight of a place in a picture, in pixels from its upper left corner: the middle of the first pixel is 0.5, 0.5.
-/// What is seen there at the depth d is at `from_model` + d · `direction`.
+/// The line of sight of a place in a picture, in pixels from its upper left corner: the middle of the first
+/// pixel is 0.5, 0.5. What is seen there at the depth d is at `from_model` + d · `direction`.
 ///
 /// - Buffers: `shot`, one struct; `from_model` and `direction`, 3 numbers each.
 /// - Result: `from_model`, the point from which one looks there; `direction`, one long along the view.
 /// - Errors: LEAFLESS_E_ARGUMENT if the camera is not as it must be, or the size is none.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [direction; 3]]
 #[unsafe(no_mangle)]
@@ -130,10 +111,8 @@ pub unsafe extern "C" fn leafless_shot_line_of_sight(
 ///   a float tells.
 /// - Errors: LEAFLESS_E_ARGUMENT if the shot is not as it must be; LEAFLESS_E_BUFFER if a capacity is too small: nothing
 ///   is written then; what solids and attributes of layers return; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any layers, any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_render(
     shot: *const leafless_shot,
@@ -189,16 +168,13 @@ unsafe fn picture(colours: *const u8, width: u32, height: u32) -> Result<Picture
 /// Saves a picture as a PNG file: without opacity if all pixels are opaque. At any moment there is the old file or the
 /// new one, each complete, as leafless_octree_save tells. The same picture makes the same bytes.
 ///
-/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `path`, `path_length` bytes of
-///   UTF-8.
+/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `path`,
+///   `path_length` bytes of UTF-8.
 /// - Result: LEAFLESS_OK once the file is on the disk.
 /// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails, synchronising the directory,
 ///   the new one is in place.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_save(
     colours: *const u8,
@@ -223,10 +199,7 @@ pub unsafe extern "C" fn leafless_picture_save(
 /// - Result: `*length`, the length of the file; the file in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_to_bytes(
     colours: *const u8,
@@ -300,16 +273,14 @@ unsafe fn drawn(
 /// Draws a bar of the colours of values over a transfer function's range into a picture, with a title and numbers, on a
 /// light panel. Longer titles than find room are cut.
 ///
-/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `title`, `title_length` bytes of
-///   UTF-8; `transfer`, one struct; `covered`, one struct. `side` is a leafless_legend_side.
+/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `title`,
+///   `title_length` bytes of UTF-8; `transfer`, one struct; `covered`, one struct. `side` is a
+///   leafless_legend_side.
 /// - Result: the picture with the legend; in `*covered` the box that it covers, all zero if the picture is smaller than
 ///   160 x 120 pixels, which has no legend.
 /// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels, or if the transfer function is not as it must
 ///   be; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The picture is then as it was.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_draw_bar(
     colours: *mut u8,
@@ -354,10 +325,7 @@ pub struct leafless_legend_name {
 /// - Buffers: `colours`, `title`, `side` and `covered` as leafless_picture_draw_bar; `names`, `name_count` structs.
 /// - Result: as leafless_picture_draw_bar; no legend either if there is neither a title nor a name.
 /// - Errors: as leafless_picture_draw_bar.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_picture_draw_names(
     colours: *mut u8,

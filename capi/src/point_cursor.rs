@@ -18,12 +18,9 @@ pub struct leafless_point_cursor(Yoke<PointCursor<'static>, Arc<leafless_octree>
 ///
 /// - Buffers: `cursor`, one pointer.
 /// - Result: `*cursor`.
-/// - Errors: only the general ones.
 /// - Ownership: the cursor shares the octree, which may be freed; give `*cursor` back with
 ///   leafless_point_cursor_free.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_cursor_new(
     octree: *const leafless_octree,
@@ -40,12 +37,8 @@ pub unsafe extern "C" fn leafless_point_cursor_new(
 /// Gives back a point cursor.
 ///
 /// - Buffers: `cursor`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_cursor_free(cursor: *mut leafless_point_cursor) {
     // SAFETY: the caller's promise.
@@ -56,11 +49,8 @@ pub unsafe extern "C" fn leafless_point_cursor_free(cursor: *mut leafless_point_
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as undecided.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3]]
 #[unsafe(no_mangle)]
@@ -81,11 +71,8 @@ pub unsafe extern "C" fn leafless_point_cursor_contains(
 ///
 /// - Buffers: `cell`, 3 numbers; `tag`, one.
 /// - Result: `*tag`: EMPTY, FULL or PARTIAL; PARTIAL if a coordinate is not below 2^depth.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
 /// - Threads: no other call may use the cursor.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -115,9 +102,7 @@ pub struct leafless_point_table(Yoke<PointTable<'static>, Arc<leafless_octree>>)
 /// - Errors: LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the table shares the octree, which may be freed; give `*table` back with
 ///   leafless_point_table_free.
-/// - Threads: any.
 /// - Untrusted input: any octree; work is bounded by 8^level.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_table_new(
     octree: *const leafless_octree,
@@ -138,12 +123,8 @@ pub unsafe extern "C" fn leafless_point_table_new(
 /// Gives back a point table.
 ///
 /// - Buffers: `table`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_table_free(table: *mut leafless_point_table) {
     // SAFETY: the caller's promise.
@@ -154,11 +135,7 @@ pub unsafe extern "C" fn leafless_point_table_free(table: *mut leafless_point_ta
 ///
 /// - Buffers: `point_model`, 3 numbers; `membership`, one.
 /// - Result: `*membership`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers; damage reads as undecided.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3]]
 #[unsafe(no_mangle)]
@@ -179,11 +156,7 @@ pub unsafe extern "C" fn leafless_point_table_contains(
 /// - Buffers: `points_model`, `count` points of 3 numbers; `memberships`, room for `count`. Both may be NULL
 ///   if `count` is 0.
 /// - Result: `memberships[i]` for point i.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any octree, any numbers; damage reads as undecided.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_point_table_contains_many(
     table: *const leafless_point_table,

@@ -1,6 +1,6 @@
 //! Triangle meshes from the faces of boundary representations.
 
-use super::boundary::{Failure, Out, Sized32, guard, initialise, out, sized};
+use super::boundary::{Failure, Out, Sized32, guard, out, sized};
 use super::mesh::{give, leafless_mesh};
 use super::mesh_arrays::{GivenVertices, Indices, Vertices};
 use super::status::leafless_status;
@@ -17,8 +17,7 @@ use std::borrow::Cow;
 /// offset k up to, but not including, offset k + 1. So each array begins with 0, rises, and ends at the
 /// number of parts below. Loops turn counter-clockwise as seen from outside of the solid's material, and
 /// holes of a face against its outer loop. Corners and offsets are of one type, without gaps, and need not be
-/// aligned. All fields but the first may be zero, which is their default; leafless_polyhedron_arrays_init
-/// sets them so.
+/// aligned. All fields but the first may be zero, which is their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_polyhedron_arrays {
@@ -184,24 +183,6 @@ impl leafless_polyhedron_arrays {
     }
 }
 
-/// Sets arrays to their defaults: none.
-///
-/// - Buffers: `arrays`, one struct of `struct_size` bytes, which is sizeof(leafless_polyhedron_arrays); need
-///   not be initialised.
-/// - Result: `*arrays`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_polyhedron_arrays_init(
-    arrays: *mut leafless_polyhedron_arrays,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(arrays, struct_size, "arrays") })
-}
-
 /// Checks solids of plane faces and makes a closed, consistently oriented mesh of them. Where a face is not
 /// plane to the last digit, its triangles say from then on where the surface is.
 ///
@@ -221,9 +202,7 @@ pub unsafe extern "C" fn leafless_polyhedron_arrays_init(
 ///   the tolerance is none; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are only read during the call, and may be freed after it; give `*mesh` back with
 ///   leafless_mesh_free.
-/// - Threads: any.
 /// - Untrusted input: any values in the arrays.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_from_polyhedron(
     arrays: *const leafless_polyhedron_arrays,

@@ -124,10 +124,7 @@ fn ray(index: usize, ray: &leafless_ray) -> Result<Ray, Failure> {
 ///   leafless_obstacle.
 /// - Result: `hits[i]` for ray i.
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_cast_rays(
     octree: *const leafless_octree,
@@ -179,11 +176,9 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
 /// - Result: `hits[i]` for ray i; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says; else as
 ///   leafless_solid_contains.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_cast_rays(
     solid: *const leafless_solid,
@@ -249,10 +244,7 @@ unsafe fn write_spans(
 ///   cells, rounded outward; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
 ///   small: nothing is written then; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_ray_spans(
     octree: *const leafless_octree,
@@ -283,11 +275,8 @@ pub unsafe extern "C" fn leafless_octree_ray_spans(
 ///   rounded outward; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
 ///   small: nothing is written then; else as leafless_solid_contains.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_ray_spans(
     solid: *const leafless_solid,
@@ -319,11 +308,8 @@ pub unsafe extern "C" fn leafless_solid_ray_spans(
 /// - Result: `*sight`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
 ///   between 2^-256 and 2^256; else as leafless_solid_contains.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
 #[unsafe(no_mangle)]

@@ -1,8 +1,7 @@
 //! Scenes in the language of OpenSCAD's CSG dumps.
 
 use super::boundary::{
-    Failure, Sized32, buffer, guard, handle, initialise, out, path, refer, release, shared, sized, slice,
-    text,
+    Failure, Sized32, buffer, guard, handle, out, path, refer, release, shared, sized, slice, text,
 };
 use super::frame::{frame, leafless_frame};
 use super::mesh::leafless_mesh_report;
@@ -36,11 +35,9 @@ pub struct leafless_scene {
 ///   file that it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*scene` back with leafless_scene_free.
-/// - Threads: any.
 /// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
 ///   files that it names. It may name any file, by absolute paths too, which is then read as a mesh or an
 ///   octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_open(
     path: *const c_char,
@@ -62,9 +59,7 @@ pub unsafe extern "C" fn leafless_scene_open(
 /// - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder,
 ///   LEAFLESS_E_SCENE.
 /// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
-/// - Threads: any.
 /// - Untrusted input: any bytes, as for leafless_scene_open.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_from_bytes(
     bytes: *const u8,
@@ -96,7 +91,7 @@ pub enum leafless_facets {
 use leafless_facets::*;
 
 /// How a scene is to be read. NULL means the defaults. All fields but the first may be zero, which is their
-/// default; leafless_scene_options_init sets them so.
+/// default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_scene_options {
@@ -125,34 +120,14 @@ unsafe fn options(options: *const leafless_scene_options) -> Result<SceneOptions
     }
 }
 
-/// Sets options for scenes to their defaults.
-///
-/// - Buffers: `options`, one struct of `struct_size` bytes, which is sizeof(leafless_scene_options); need not
-///   be initialised.
-/// - Result: `*options`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_scene_options_init(
-    options: *mut leafless_scene_options,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(options, struct_size, "options") })
-}
-
 /// As leafless_scene_open, with options.
 ///
 /// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `scene`, one pointer.
 /// - Result: `*scene`.
 /// - Errors: as leafless_scene_open; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
 /// - Ownership: give `*scene` back with leafless_scene_free.
-/// - Threads: any.
 /// - Untrusted input: as for leafless_scene_open; with LEAFLESS_FACETS_POLYGON a ball may take memory for half
 ///   a million half-spaces.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_open_with(
     path: *const c_char,
@@ -175,9 +150,7 @@ pub unsafe extern "C" fn leafless_scene_open_with(
 /// - Result: `*scene`.
 /// - Errors: as leafless_scene_from_bytes; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
 /// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
-/// - Threads: any.
 /// - Untrusted input: any bytes, as for leafless_scene_open_with.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_from_bytes_with(
     bytes: *const u8,
@@ -231,11 +204,6 @@ pub struct leafless_scene_mesh {
 ///
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_describe(
     scene: *const leafless_scene,
@@ -269,10 +237,6 @@ unsafe fn mesh<'a>(scene: *const leafless_scene, index: u64) -> Result<&'a Scene
 /// - Buffers: `mesh`, one struct. `index`, in the order of the text, is less than the report's `meshes`.
 /// - Result: `*mesh`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no such mesh.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_describe_mesh(
     scene: *const leafless_scene,
@@ -299,10 +263,6 @@ pub unsafe extern "C" fn leafless_scene_describe_mesh(
 ///   `index`, in the order of the text, is less than the report's `meshes`.
 /// - Result: `*length`, the length of the name in bytes; the name in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_mesh_file(
     scene: *const leafless_scene,
@@ -324,11 +284,7 @@ pub unsafe extern "C" fn leafless_scene_mesh_file(
 ///
 /// - Buffers: `scene`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `scene`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_scene_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_ref(
     scene: *const leafless_scene,
@@ -340,12 +296,8 @@ pub unsafe extern "C" fn leafless_scene_ref(
 /// Gives back a reference to a scene; with the last one the scene is gone. Solids made of it stay.
 ///
 /// - Buffers: `scene`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_free(scene: *mut leafless_scene) {
     // SAFETY: the caller's promise.
@@ -358,10 +310,6 @@ pub unsafe extern "C" fn leafless_scene_free(scene: *mut leafless_scene) {
 /// - Result: both.
 /// - Errors: LEAFLESS_E_ARGUMENT if none is known: the scene is empty, or may be unbounded;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -391,9 +339,7 @@ pub unsafe extern "C" fn leafless_scene_bounds(
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check; LEAFLESS_E_LIMIT if a mesh or octree is within more
 ///   than 256 matrices; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any scene.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_scene(
     scene: *const leafless_scene,

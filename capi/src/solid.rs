@@ -43,9 +43,7 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, or (LEAFLESS_FILL_EVEN_ODD) an odd number of triangles
 ///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_mesh(
     mesh: *const leafless_mesh,
@@ -68,9 +66,7 @@ pub unsafe extern "C" fn leafless_solid_new_mesh(
 /// - Errors: only the general ones; building it returns LEAFLESS_E_DAMAGED if the octree was mapped
 ///   unverified and its links are damaged.
 /// - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
-/// - Threads: any.
 /// - Untrusted input: any octree.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_as_solid(
     octree: *const leafless_octree,
@@ -90,11 +86,7 @@ pub unsafe extern "C" fn leafless_octree_as_solid(
 ///
 /// - Buffers: `evaluations`, one number.
 /// - Result: `*evaluations`; 0 for solids of other kinds.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any solid.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_evaluations(
     solid: *const leafless_solid,
@@ -110,11 +102,7 @@ pub unsafe extern "C" fn leafless_solid_evaluations(
 ///
 /// - Buffers: `solid`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `solid`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_solid_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_ref(
     solid: *const leafless_solid,
@@ -126,12 +114,8 @@ pub unsafe extern "C" fn leafless_solid_ref(
 /// Gives back a reference to a solid; with the last one the solid is gone. Octrees built from it stay.
 ///
 /// - Buffers: `solid`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_free(solid: *mut leafless_solid) {
     // SAFETY: the caller's promise.

@@ -118,13 +118,9 @@ pub(super) fn keep(status: leafless_status, text: &dyn Display) {
 
 /// The name of a status, such as "LEAFLESS_E_NULL".
 ///
-/// - Buffers: none.
 /// - Result: a NUL-terminated text, never NULL; "LEAFLESS_E_UNKNOWN" for a number that is no status.
-/// - Errors: none.
 /// - Ownership: the text is static; do not free it.
-/// - Threads: any.
 /// - Untrusted input: any number.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub extern "C" fn leafless_status_name(status: i32) -> *const c_char {
     let named = ALL.iter().find(|(known, _)| *known as i32 == status);
@@ -132,16 +128,14 @@ pub extern "C" fn leafless_status_name(status: i32) -> *const c_char {
 }
 
 /// The message of the last failure in the calling thread: a sentence that a user can act on, in UTF-8. If it
-/// is about a file, the message begins with the path, or with the end of a long one. Calls that succeed leave it as it is; before the first failure it is empty.
+/// is about a file, the message begins with the path, or with the end of a long one. Calls that succeed leave
+/// it as it is; before the first failure it is empty.
 ///
 /// - Buffers: `message`, `capacity` bytes; may be NULL if `capacity` is 0.
 /// - Result: the message's length in bytes, without the terminating NUL, also if not all of it was written;
 ///   at most 511. What is written is cut at a character and NUL-terminated.
-/// - Errors: none.
 /// - Ownership: the message is copied.
 /// - Threads: any; every thread has its own message.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_last_error(message: *mut c_char, capacity: usize) -> usize {
     LAST.with_borrow(|last| {
@@ -161,13 +155,8 @@ pub unsafe extern "C" fn leafless_last_error(message: *mut c_char, capacity: usi
 
 /// The status of the last failure in the calling thread, LEAFLESS_OK before the first.
 ///
-/// - Buffers: none.
 /// - Result: the status.
-/// - Errors: none.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; every thread has its own status.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub extern "C" fn leafless_last_status() -> leafless_status {
     LAST.with_borrow(|last| last.status)

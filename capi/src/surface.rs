@@ -1,6 +1,6 @@
 //! Surfaces: closed triangle meshes of octrees and of solids.
 
-use super::boundary::{Failure, Sized32, guard, initialise, out, shared, sized};
+use super::boundary::{Failure, Sized32, guard, out, shared, sized};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::mesh::{give, leafless_mesh};
@@ -78,7 +78,7 @@ pub enum leafless_vertex_placement {
 }
 
 /// How a surface is extracted. NULL means the defaults. All fields but the first may be zero, which is their
-/// default; leafless_surface_options_init sets them so. A field that the method does not use must be zero.
+/// default. A field that the method does not use must be zero.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_surface_options {
@@ -170,24 +170,6 @@ impl leafless_surface_options {
     }
 }
 
-/// Sets options for surfaces to their defaults: marching cubes, vertices half-way.
-///
-/// - Buffers: `surface`, one struct of `struct_size` bytes, which is sizeof(leafless_surface_options); need
-///   not be initialised.
-/// - Result: `*surface`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_surface_options_init(
-    surface: *mut leafless_surface_options,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(surface, struct_size, "surface") })
-}
-
 /// The surface of an octree: a closed mesh between the centres of finest cells that lie inside and those that
 /// lie outside. Everything around the universe counts as outside, so that the mesh is closed there, too.
 ///
@@ -215,7 +197,6 @@ pub unsafe extern "C" fn leafless_surface_options_init(
 /// - Ownership: `octree` stays as it is; give `*mesh` back with leafless_mesh_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octree; damage is LEAFLESS_E_DAMAGED or another surface.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_surface(
     octree: *const leafless_octree,
@@ -260,7 +241,6 @@ pub unsafe extern "C" fn leafless_octree_surface(
 /// - Ownership: give `*mesh` back with leafless_mesh_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_surface(
     solid: *const leafless_solid,
@@ -310,7 +290,6 @@ pub unsafe extern "C" fn leafless_solid_surface(
 /// - Ownership: `volume` stays as it is; give `*mesh` back with leafless_mesh_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_surface(
     volume: *const leafless_volume,

@@ -1,6 +1,6 @@
 //! Tri-dexel models: made of solids, described, and the facts that travel with them.
 
-use super::boundary::{Failure, Sized32, guard, handle, initialise, out, refer, release, shared, sized};
+use super::boundary::{Failure, Sized32, guard, handle, out, refer, release, shared, sized};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::metadata::{self, Fact};
@@ -89,7 +89,7 @@ pub(super) fn axes(directions: [bool; 3]) -> u32 {
 }
 
 /// What a tri-dexel model stores. NULL means the defaults. All fields but the first may be zero, which is their
-/// default; leafless_tridexel_format_init sets them so.
+/// default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tridexel_format {
@@ -171,24 +171,6 @@ pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
     handle(leafless_tridexel { model })
 }
 
-/// Sets what a tri-dexel model stores to the defaults.
-///
-/// - Buffers: `format`, one struct of `struct_size` bytes, which is sizeof(leafless_tridexel_format); need not be
-///   initialised.
-/// - Result: `*format`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_format_init(
-    format: *mut leafless_tridexel_format,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(format, struct_size, "format") })
-}
-
 /// Makes the tri-dexel model of a solid on the lattice of a frame. O(rays + crossings). The result is the same bit for
 /// bit for any number of threads.
 ///
@@ -210,7 +192,6 @@ pub unsafe extern "C" fn leafless_tridexel_format_init(
 /// - Ownership: nothing is kept of the solid; give `*tridexel` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_make(
     solid: *const leafless_solid,
@@ -236,11 +217,7 @@ pub unsafe extern "C" fn leafless_tridexel_make(
 ///
 /// - Buffers: `tridexel`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `tridexel`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_tridexel_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_ref(
     tridexel: *const leafless_tridexel,
@@ -253,12 +230,8 @@ pub unsafe extern "C" fn leafless_tridexel_ref(
 /// unless a model with other metadata still shares its arrays.
 ///
 /// - Buffers: `tridexel`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_free(tridexel: *mut leafless_tridexel) {
     // SAFETY: the caller's promise.
@@ -269,11 +242,7 @@ pub unsafe extern "C" fn leafless_tridexel_free(tridexel: *mut leafless_tridexel
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_describe(
     tridexel: *const leafless_tridexel,
@@ -301,13 +270,9 @@ pub unsafe extern "C" fn leafless_tridexel_describe(
 /// Whether the directions agree is not checked. Models that the library makes,
 /// opens or maps verified are well-formed.
 ///
-/// - Buffers: none.
 /// - Result: LEAFLESS_OK if it is.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_check(tridexel: *const leafless_tridexel) -> leafless_status {
     guard(|| unsafe { Ok(shared(tridexel, "tridexel")?.model.view().check()?) })
@@ -317,11 +282,7 @@ pub unsafe extern "C" fn leafless_tridexel_check(tridexel: *const leafless_tride
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any models.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_equal(
     a: *const leafless_tridexel,
@@ -343,9 +304,7 @@ pub unsafe extern "C" fn leafless_tridexel_equal(
 ///   and the two texts each; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the texts are copied. `*named` shares the arrays of `tridexel`, which may be freed: what must outlive
 ///   `tridexel`, such as bytes that it views, must outlive `*named` too. Give that back with leafless_tridexel_free.
-/// - Threads: any.
 /// - Untrusted input: any texts.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_metadata(
     tridexel: *const leafless_tridexel,
@@ -370,9 +329,7 @@ pub unsafe extern "C" fn leafless_tridexel_with_metadata(
 /// - Result: `*unnamed`; a fact that is not there need not be.
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: as leafless_tridexel_with_metadata.
-/// - Threads: any.
 /// - Untrusted input: any texts.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_without_metadata(
     tridexel: *const leafless_tridexel,
@@ -393,9 +350,7 @@ pub unsafe extern "C" fn leafless_tridexel_without_metadata(
 /// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
 /// - Errors: LEAFLESS_E_UTF8.
 /// - Ownership: the text belongs to the model and lives as long as the reference `tridexel`.
-/// - Threads: any.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_peek_metadata(
     tridexel: *const leafless_tridexel,
@@ -418,9 +373,7 @@ pub unsafe extern "C" fn leafless_tridexel_peek_metadata(
 ///   bytes.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
 /// - Ownership: the texts belong to the model and live as long as the reference `tridexel`.
-/// - Threads: any.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_peek_metadata_at(
     tridexel: *const leafless_tridexel,

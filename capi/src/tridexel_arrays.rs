@@ -39,9 +39,10 @@ pub struct leafless_ray_arrays {
     /// A number for each interval, what it is made of; 0 where nothing is said. NULL if nothing is said at all.
     pub materials: *const u32,
     /// Two numbers for each interval: its start and its end in finest cells from the universe's lower face, as
-    /// leafless_tridexel_read_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by this number if its
-    /// coordinate in `ends_model` is the one that leafless_tridexel_read would hand out for it, else by the coordinate. If
-    /// `ends_model` is NULL it counts always. NULL if coordinates alone count.
+    /// leafless_tridexel_read_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by
+    /// this number if its coordinate in `ends_model` is the one that leafless_tridexel_read would hand out
+    /// for it, else by the coordinate. If `ends_model` is NULL it counts always. NULL if coordinates alone
+    /// count.
     pub ends_cells: *const f64,
 }
 
@@ -144,20 +145,20 @@ impl Arrays<'_> {
 ///
 /// The intervals of a ray ascend and are disjoint. What reaches beyond the universe is cut off; what `format` does not
 /// store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell, which is the real
-/// number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that are empty after rounding are left out; those that touch are joined, unless both have materials and these differ. The
-/// directions are not compared with each other. All that leafless_tridexel_read and leafless_tridexel_read_cells hand out of a
-/// model makes an equal one on the same frame.
+/// number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that are empty after rounding
+/// are left out; those that touch are joined, unless both have materials and these differ. The directions are
+/// not compared with each other. All that leafless_tridexel_read and leafless_tridexel_read_cells hand out of
+/// a model makes an equal one on the same frame.
 ///
 /// - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of `rays`; `rays`,
 ///   `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL; `tridexel`, one pointer.
 /// - Result: `*tridexel`.
 /// - Errors: LEAFLESS_E_ARGUMENT also if offsets do not ascend, if an end of an interval is not a number or not behind its
-///   start, if an end in cells does not lie in the universe, or if an interval begins before the one before it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one
-///   axis, which is a depth of 16; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+///   start, if an end in cells does not lie in the universe, or if an interval begins before the one before
+///   it ends; LEAFLESS_E_LIMIT for 2^32 rays or intervals along one axis, which is a depth of 16;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the arrays are not kept; give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_new(
     frame: *const leafless_frame,

@@ -91,9 +91,7 @@ unsafe fn change_by_solid(
 /// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32 rays along
 ///   one axis, which is a depth of 16; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: nothing is kept of `tridexel`; give `*editor` back with leafless_tridexel_editor_free.
-/// - Threads: any.
 /// - Untrusted input: any model; memory is needed for each ray of its universe.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_new(
     tridexel: *const leafless_tridexel,
@@ -110,12 +108,8 @@ pub unsafe extern "C" fn leafless_tridexel_editor_new(
 /// Gives back an editor. Tri-dexel models that it froze stay.
 ///
 /// - Buffers: `editor`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the handle is gone.
 /// - Threads: no other call may use the handle.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_free(editor: *mut leafless_tridexel_editor) {
     // SAFETY: the caller's promise.
@@ -127,10 +121,7 @@ pub unsafe extern "C" fn leafless_tridexel_editor_free(editor: *mut leafless_tri
 /// - Buffers: `frame`, one struct.
 /// - Result: `*frame`, that of the model which was copied.
 /// - Errors: LEAFLESS_E_BUSY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_frame(
     editor: *const leafless_tridexel_editor,
@@ -147,10 +138,7 @@ pub unsafe extern "C" fn leafless_tridexel_editor_frame(
 /// - Buffers: `bytes`, one number.
 /// - Result: `*bytes`.
 /// - Errors: LEAFLESS_E_BUSY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_bytes(
     editor: *const leafless_tridexel_editor,
@@ -175,7 +163,6 @@ pub unsafe extern "C" fn leafless_tridexel_editor_bytes(
 /// - Ownership: nothing is kept of `tridexel`.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_unite(
     editor: *mut leafless_tridexel_editor,
@@ -194,7 +181,6 @@ pub unsafe extern "C" fn leafless_tridexel_editor_unite(
 /// - Ownership: nothing is kept of `tridexel`.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_subtract(
     editor: *mut leafless_tridexel_editor,
@@ -213,7 +199,6 @@ pub unsafe extern "C" fn leafless_tridexel_editor_subtract(
 /// - Ownership: nothing is kept of `tridexel`.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_intersect(
     editor: *mut leafless_tridexel_editor,
@@ -233,7 +218,6 @@ pub unsafe extern "C" fn leafless_tridexel_editor_intersect(
 /// - Ownership: nothing is kept of the solid.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
 /// - Untrusted input: any solid.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_unite_solid(
     editor: *mut leafless_tridexel_editor,
@@ -253,7 +237,6 @@ pub unsafe extern "C" fn leafless_tridexel_editor_unite_solid(
 /// - Ownership: nothing is kept of the solid.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
 /// - Untrusted input: any solid.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_subtract_solid(
     editor: *mut leafless_tridexel_editor,
@@ -264,9 +247,9 @@ pub unsafe extern "C" fn leafless_tridexel_editor_subtract_solid(
     unsafe { change_by_solid(DexelEditor::subtract_solid, editor, solid, options) }
 }
 
-/// Keeps only the points that lie in a solid, too. Its intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED,
-/// in the directions and with the contents of the editor. O(rays of the universe), and the rays through the solid's
-/// bounding box.
+/// Keeps only the points that lie in a solid, too. Its intervals are those of leafless_tridexel_make under
+/// LEAFLESS_RULE_SAMPLED, in the directions and with the contents of the editor. O(rays of the universe), and
+/// the rays through the solid's bounding box.
 ///
 /// - Buffers: `options`, one struct or NULL.
 /// - Result: the editor is changed.
@@ -274,7 +257,6 @@ pub unsafe extern "C" fn leafless_tridexel_editor_subtract_solid(
 /// - Ownership: nothing is kept of the solid.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
 /// - Untrusted input: any solid.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_intersect_solid(
     editor: *mut leafless_tridexel_editor,
@@ -292,8 +274,6 @@ pub unsafe extern "C" fn leafless_tridexel_editor_intersect_solid(
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
 /// - Ownership: the editor stays as it is; give `*tridexel` back with leafless_tridexel_free.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor; uses the calling thread alone.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_editor_freeze(
     editor: *const leafless_tridexel_editor,

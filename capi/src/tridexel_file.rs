@@ -51,9 +51,7 @@ unsafe fn found_in<'a>(
 /// - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_IO;
 ///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any.
 /// - Untrusted input: any file; memory is at most a small multiple of its length.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_open(
     path: *const c_char,
@@ -77,9 +75,7 @@ pub unsafe extern "C" fn leafless_tridexel_open(
 /// - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
 ///   LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any.
 /// - Untrusted input: any contents, but only where nobody else can change the file; else leafless_tridexel_open.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_map(
     path: *const c_char,
@@ -96,9 +92,7 @@ pub unsafe extern "C" fn leafless_tridexel_map(
 /// - Result: `*tridexel`.
 /// - Errors: as leafless_tridexel_open, and LEAFLESS_E_ARGUMENT if there is no regular file.
 /// - Ownership: give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any.
 /// - Untrusted input: any contents, but only where nobody else can change the file; else leafless_tridexel_open.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_map_verified(
     path: *const c_char,
@@ -116,9 +110,7 @@ pub unsafe extern "C" fn leafless_tridexel_map_verified(
 /// - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the bytes are not kept; give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any.
 /// - Untrusted input: any bytes; memory is at most a small multiple of their number.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_from_bytes(
     bytes: *const u8,
@@ -140,9 +132,7 @@ pub unsafe extern "C" fn leafless_tridexel_from_bytes(
 /// - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back to the
 ///   model, and to every model that leafless_tridexel_with_metadata or leafless_tridexel_without_metadata made of it.
 ///   Give `*tridexel` back with leafless_tridexel_free.
-/// - Threads: any.
 /// - Untrusted input: any bytes, as leafless_tridexel_map.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_view_bytes(
     bytes: *const u8,
@@ -162,10 +152,7 @@ pub unsafe extern "C" fn leafless_tridexel_view_bytes(
 /// - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails, synchronising the directory,
 ///   the new one is in place.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_save(
     tridexel: *const leafless_tridexel,
@@ -184,10 +171,7 @@ pub unsafe extern "C" fn leafless_tridexel_save(
 /// - Result: `*length`, the length of the file; the file in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the model was mapped unverified and is
 ///   damaged; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_to_bytes(
     tridexel: *const leafless_tridexel,
@@ -208,15 +192,11 @@ pub unsafe extern "C" fn leafless_tridexel_to_bytes(
 /// Writes a tri-dexel model's file through a function of the host, in a few large pieces; the file is never in memory as a
 /// whole.
 ///
-/// - Buffers: none.
 /// - Result: LEAFLESS_OK once `write` has taken all bytes.
 /// - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
 ///   LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last two come before
 ///   anything is written.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_write(
     tridexel: *const leafless_tridexel,

@@ -24,7 +24,6 @@ use leafless::{Metadata, TriDexel, memory};
 /// - Ownership: the operands stay as they are; give `*result` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any models.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_combine(
     operation: u32,
@@ -63,7 +62,6 @@ pub unsafe extern "C" fn leafless_tridexel_combine(
 /// - Ownership: as leafless_tridexel_combine.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model; set `max_bytes` where its depth is not your own choice.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_complement(
     tridexel: *const leafless_tridexel,
@@ -88,7 +86,6 @@ pub unsafe extern "C" fn leafless_tridexel_complement(
 /// - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_to_format(
     tridexel: *const leafless_tridexel,
@@ -117,7 +114,6 @@ pub unsafe extern "C" fn leafless_tridexel_to_format(
 /// - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model, any number.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_with_material(
     tridexel: *const leafless_tridexel,

@@ -11,10 +11,11 @@ use leafless::dexel::{Dexel, DexelEnd, DexelRays, DexelStatistics};
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_end {
-    /// The coordinate along the ray. It lies on the side of every centre of a cell that is stored, as far as there is a double
-    /// between two centres.
+    /// The coordinate along the ray. It lies on the side of every centre of a cell that is stored, as far as
+    /// there is a double between two centres.
     pub at_model: f64,
-    /// The same in finest cells from the universe's lower face, exactly as it is stored; the centre of cell k lies at k + 1/2.
+    /// The same in finest cells from the universe's lower face, exactly as it is stored; the centre of cell k
+    /// lies at k + 1/2.
     pub at_cells: f64,
     /// The outward unit normal of the surface there; three zeros if it is not known.
     pub normal: [f64; 3],
@@ -98,10 +99,7 @@ fn rays(model: &TriDexel, axis: u32) -> Result<DexelRays<'_>, Failure> {
 /// - Buffers: `statistics`, one struct. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `*statistics`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model, any number.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_statistics(
     tridexel: *const leafless_tridexel,
@@ -122,11 +120,7 @@ pub unsafe extern "C" fn leafless_tridexel_statistics(
 /// - Buffers: `cell`, 3 numbers; `inside`, one truth value.
 /// - Result: `*inside`; false if a coordinate is not below 2^depth. Where the directions differ, as those of arrays from
 ///   elsewhere may, the highest axis decides.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -150,10 +144,7 @@ pub unsafe extern "C" fn leafless_tridexel_contains_cell(
 ///   x, y, z, and the first beyond the last one's. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `first` and `end`; equal to each other if no ray crosses the solid.
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model, any number.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
@@ -178,10 +169,7 @@ pub unsafe extern "C" fn leafless_tridexel_window(
 ///   for z.
 /// - Result: `*count`; the intervals. A ray outside of the universe has none.
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`; LEAFLESS_E_BUFFER if the capacity is too small.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any model, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[ray; 2]]
 #[unsafe(no_mangle)]
@@ -273,14 +261,12 @@ impl Arrays {
 ///   numbers, `normals` for 6, `surfaces` for 2, `materials` for 1. Each of the five may be NULL, if it is not wanted.
 ///   `offset_count` and `interval_count`, one number each. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `offsets`, one more than rays. For each interval: the coordinates of its start and its end, on the sides of
-///   centres that are stored, as far as there are doubles between two centres; the outward unit normals there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the material, 0
-///   where nothing was said. The counts of offsets and intervals.
+///   centres that are stored, as far as there are doubles between two centres; the outward unit normals
+///   there, three zeros where none is known; the surfaces there, UINT32_MAX where none is known; the
+///   material, 0 where nothing was said. The counts of offsets and intervals.
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the rays reach beyond
 ///   the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any model, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
@@ -338,18 +324,15 @@ pub unsafe extern "C" fn leafless_tridexel_read(
 }
 
 /// Where the intervals of many rays along one axis start and end, exactly as it is stored: in finest cells from the
-/// universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of leafless_tridexel_read, in
-/// the same order. O(rays + intervals).
+/// universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of
+/// leafless_tridexel_read, in the same order. O(rays + intervals).
 ///
 /// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_read has them; `ends_cells`, room for 2
 ///   numbers for each of `interval_capacity` intervals, or NULL to ask for the count only; `interval_count`, one number.
 ///   `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `ends_cells`, 0 to 2^depth; `*interval_count`.
 /// - Errors: as leafless_tridexel_read.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any model, any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]

@@ -119,7 +119,6 @@ impl From<&LongVoxel> for leafless_long_voxel {
 /// - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_surface(
     tridexel: *const leafless_tridexel,
@@ -155,8 +154,8 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes` where its depth is not your own choice.
-/// - Since: 0.1
+/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
+///   where its depth is not your own choice.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_to_octree(
     tridexel: *const leafless_tridexel,
@@ -182,7 +181,6 @@ pub unsafe extern "C" fn leafless_tridexel_to_octree(
 /// - Ownership: nothing is kept of `tridexel`; give `*solid` back with leafless_solid_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_as_solid(
     tridexel: *const leafless_tridexel,
@@ -210,10 +208,7 @@ pub unsafe extern "C" fn leafless_tridexel_as_solid(
 ///   NULL for none; `voxels`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
 /// - Result: `*count`; the rows of voxels by z, then by x, then by y.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_voxels(
     tridexel: *const leafless_tridexel,

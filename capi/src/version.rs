@@ -21,13 +21,7 @@ const TEXT: &CStr = {
 
 /// The version of the library that is linked: major · 1 000 000 + minor · 1000 + patch, as LEAFLESS_VERSION.
 ///
-/// - Buffers: none.
 /// - Result: the number.
-/// - Errors: none.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub extern "C" fn leafless_version() -> u32 {
     LEAFLESS_VERSION_MAJOR * 1_000_000 + LEAFLESS_VERSION_MINOR * 1000 + LEAFLESS_VERSION_PATCH
@@ -35,13 +29,8 @@ pub extern "C" fn leafless_version() -> u32 {
 
 /// The version of the library that is linked, as a text such as "0.1.0".
 ///
-/// - Buffers: none.
 /// - Result: a NUL-terminated text, never NULL.
-/// - Errors: none.
 /// - Ownership: the text is static; do not free it.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub extern "C" fn leafless_version_string() -> *const c_char {
     TEXT.as_ptr()
@@ -50,13 +39,7 @@ pub extern "C" fn leafless_version_string() -> *const c_char {
 /// The number of the binary interface of the library that is linked; compare it with LEAFLESS_ABI, or use
 /// LEAFLESS_COMPATIBLE, which compares the version too.
 ///
-/// - Buffers: none.
 /// - Result: the number.
-/// - Errors: none.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub extern "C" fn leafless_abi() -> u32 {
     LEAFLESS_ABI

@@ -184,11 +184,7 @@ impl leafless_volume {
 ///
 /// - Buffers: `volume`, a handle; `reference`, one pointer.
 /// - Result: `*reference`, equal to `volume`.
-/// - Errors: only the general ones.
 /// - Ownership: give each reference back with leafless_volume_free.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_ref(
     volume: *const leafless_volume,
@@ -201,12 +197,8 @@ pub unsafe extern "C" fn leafless_volume_ref(
 /// its samples.
 ///
 /// - Buffers: `volume`, a handle or NULL, which does nothing.
-/// - Result: none.
-/// - Errors: none.
 /// - Ownership: the reference is gone.
 /// - Threads: any; no other call may use this reference.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_free(volume: *mut leafless_volume) {
     // SAFETY: the caller's promise.
@@ -217,11 +209,6 @@ pub unsafe extern "C" fn leafless_volume_free(volume: *mut leafless_volume) {
 ///
 /// - Buffers: `info`, one struct.
 /// - Result: `*info`.
-/// - Errors: only the general ones.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_describe(
     volume: *const leafless_volume,
@@ -252,12 +239,8 @@ pub unsafe extern "C" fn leafless_volume_describe(
 ///
 /// - Buffers: `samples` and `length`, one each.
 /// - Result: `*samples`, the address of the first one; `*length`, their bytes.
-/// - Errors: only the general ones.
 /// - Ownership: the samples belong to the volume, or to the host that made it by leafless_volume_view, and
 ///   live as long as the reference `volume`.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_peek_samples(
     volume: *const leafless_volume,
@@ -289,10 +272,7 @@ pub unsafe extern "C" fn leafless_volume_peek_samples(
 /// - Result: `*frame`.
 /// - Errors: LEAFLESS_E_ARGUMENT if voxels are no cubes, or their axes not x, y and z: take a frame around
 ///   leafless_volume_bounds.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any volume.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_frame(
     volume: *const leafless_volume,
@@ -314,10 +294,7 @@ pub unsafe extern "C" fn leafless_volume_frame(
 /// - Buffers: `min_model` and `max_model`, room for 3 numbers each.
 /// - Result: both corners.
 /// - Errors: LEAFLESS_E_ARGUMENT if the box is beyond the range of double.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any volume.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
 #[unsafe(no_mangle)]
@@ -346,10 +323,8 @@ pub unsafe extern "C" fn leafless_volume_bounds(
 /// - Buffers: `options`, one struct or NULL, of which limits do not matter; `range`, one struct.
 /// - Result: `*range`: of bits 0 to 1, and all numbers if a sample is not a number.
 /// - Errors: LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_range(
     volume: *const leafless_volume,
@@ -393,7 +368,6 @@ pub unsafe extern "C" fn leafless_volume_range(
 ///   leafless_solid_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_volume(
     volume: *const leafless_volume,

@@ -1,6 +1,6 @@
 //! Volumes from arrays as host programs have them.
 
-use super::boundary::{Failure, Sized32, guard, handle, initialise, out, sized, slice};
+use super::boundary::{Failure, Sized32, guard, handle, out, sized, slice};
 use super::status::leafless_status;
 use super::volume::leafless_sample_type::{self, *};
 use super::volume::leafless_volume_format::LEAFLESS_VOLUME_FORMAT_RAW;
@@ -27,8 +27,7 @@ pub enum leafless_byte_order {
 }
 
 /// How an array of samples is laid out, and where it lies: x varies fastest, then y, then z, without gaps.
-/// All fields but the first and `extents` may be zero, which is their default; leafless_volume_layout_init
-/// sets them so.
+/// All fields but the first and `extents` may be zero, which is their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_volume_layout {
@@ -126,24 +125,6 @@ impl Layout {
     }
 }
 
-/// Sets a layout to its defaults: no samples.
-///
-/// - Buffers: `layout`, one struct of `struct_size` bytes, which is sizeof(leafless_volume_layout); need not
-///   be initialised.
-/// - Result: `*layout`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` cannot be right.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_volume_layout_init(
-    layout: *mut leafless_volume_layout,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(layout, struct_size, "layout") })
-}
-
 /// Makes a volume of an array, which is copied. O(n).
 ///
 /// - Buffers: `layout`, one struct; `samples`, `length` bytes, on any address; `volume`, one pointer.
@@ -151,9 +132,7 @@ pub unsafe extern "C" fn leafless_volume_layout_init(
 /// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none,
 ///   or if `length` is not that of the samples and the bytes to skip; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the samples may be freed after the call; give `*volume` back with leafless_volume_free.
-/// - Threads: any.
 /// - Untrusted input: any layout, any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_new(
     layout: *const leafless_volume_layout,
@@ -190,9 +169,7 @@ fn wrong_length() -> Failure {
 /// - Ownership: the samples stay the host's. They must stay, unchanged, until the last reference is given
 ///   back to the volume, to every solid that is made of it, and to what is made of these, but for octrees and
 ///   meshes, which have all of their own. Give `*volume` back with leafless_volume_free.
-/// - Threads: any.
 /// - Untrusted input: any layout, any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_view(
     layout: *const leafless_volume_layout,

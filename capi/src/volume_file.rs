@@ -68,10 +68,8 @@ impl leafless_volume {
 /// - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
 ///   damaged, or uses something that cannot be read; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*volume` back with leafless_volume_free.
-/// - Threads: any.
 /// - Untrusted input: any file. A header that asks for more samples than its data can hold is refused before
 ///   anything is allocated; compressed samples become at most 1032 times as long as the file.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_open(
     path: *const c_char,
@@ -91,9 +89,7 @@ pub unsafe extern "C" fn leafless_volume_open(
 /// - Result: `*volume`.
 /// - Errors: as leafless_volume_open, but those of paths.
 /// - Ownership: the bytes are not kept; give `*volume` back with leafless_volume_free.
-/// - Threads: any.
 /// - Untrusted input: any bytes; memory as for leafless_volume_open.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_from_bytes(
     bytes: *const u8,
@@ -117,10 +113,7 @@ pub unsafe extern "C" fn leafless_volume_from_bytes(
 /// - Result: `*name_length`, in bytes; 0 if the samples stand behind the header. The name, in UTF-8, not
 ///   NUL-terminated. It may be any text: check it before you open such a file.
 /// - Errors: LEAFLESS_E_VOLUME_FILE; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any bytes.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_data_file(
     bytes: *const u8,
@@ -146,10 +139,8 @@ pub unsafe extern "C" fn leafless_volume_data_file(
 /// - Errors: LEAFLESS_E_VOLUME_FILE if the file is longer or shorter than the layout says;
 ///   LEAFLESS_E_ARGUMENT as leafless_volume_new; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*volume` back with leafless_volume_free.
-/// - Threads: any.
 /// - Untrusted input: any file, any layout; memory is at most the file's length and as much again for the
 ///   samples, twice as much for int8_t.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_open_raw(
     path: *const c_char,
@@ -181,10 +172,7 @@ pub unsafe extern "C" fn leafless_volume_open_raw(
 ///   than x, y and z and shall become a NRRD; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old
 ///   file is then as it was; only if the very last step fails, synchronising the directory, the new one is in
 ///   place.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any volume.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_save(
     volume: *const leafless_volume,
@@ -208,10 +196,7 @@ pub unsafe extern "C" fn leafless_volume_save(
 /// - Result: `*length`, the length of the file; the file in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT as leafless_volume_save;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any volume.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_to_bytes(
     volume: *const leafless_volume,

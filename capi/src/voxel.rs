@@ -1,9 +1,7 @@
 //! Voxel records: the voxels of an octree in arrays of the host, found, put in order, and given triangles.
 
 use super::attribute::leafless_attribute;
-use super::boundary::{
-    Buffer, Failure, Sized32, array, buffer, guard, handle, initialise, out, shared, sized, slice,
-};
+use super::boundary::{Buffer, Failure, Sized32, array, buffer, guard, handle, out, shared, sized, slice};
 use super::channel_fill::leafless_criterion;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame_of, leafless_frame};
@@ -49,7 +47,7 @@ pub enum leafless_voxel_lists {
 }
 
 /// Which voxels of an octree are listed, and how large they are. All fields but the first may be zero, which is
-/// their default; leafless_voxel_options_init sets them so.
+/// their default.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_voxel_options {
@@ -120,24 +118,6 @@ impl leafless_voxel_options {
     }
 }
 
-/// Sets all fields of leafless_voxel_options to their defaults.
-///
-/// - Buffers: `voxel_options`, one struct of `struct_size` bytes, which is sizeof(leafless_voxel_options); need not be
-///   initialised.
-/// - Result: `*voxel_options`.
-/// - Errors: LEAFLESS_E_ARGUMENT if `struct_size` makes no sense.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
-/// - Untrusted input: none.
-/// - Since: 0.1
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_voxel_options_init(
-    voxel_options: *mut leafless_voxel_options,
-    struct_size: usize,
-) -> leafless_status {
-    guard(|| unsafe { initialise(voxel_options, struct_size, "voxel_options") })
-}
-
 /// Lists the voxels of an octree: inside and boundary voxels, and others that `voxel_options` asks for, sorted by
 /// linear octree code, of two with one code the larger one first. The code of a voxel is the Morton code of its
 /// minimum corner on the lattice `*lattice`: an octal digit for each level of it from the root on, of which as many
@@ -153,10 +133,7 @@ pub unsafe extern "C" fn leafless_voxel_options_init(
 /// - Errors: LEAFLESS_E_ARGUMENT if an option is out of its range, or the universe would take more than 20 levels to
 ///   the fine edge; LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_CALLBACK;
 ///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any octree: damage reads as boundary voxels.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_voxels(
     octree: *const leafless_octree,
@@ -251,10 +228,7 @@ pub(super) unsafe fn records<'a>(
 ///   writes them; `cell`, 3 numbers: the cell's place among those of its level; `index`, one number.
 /// - Result: `*index`, the index of the record, or UINT64_MAX if there is none.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
-/// - Ownership: nothing changes hands.
-/// - Threads: any.
 /// - Untrusted input: any numbers; the answer means something if the records are sorted.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
@@ -289,10 +263,7 @@ pub unsafe extern "C" fn leafless_voxels_find(
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, the direction is zero, or a number is not finite (of an
 ///   eye also one beyond ±2^256 or, but zero, below 2^-256); LEAFLESS_E_BUFFER if `capacity` is too small: nothing is
 ///   written then; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 ///
 /// cbindgen:ptrs-as-arrays=[[from; 3]]
 #[unsafe(no_mangle)]
@@ -330,10 +301,7 @@ pub unsafe extern "C" fn leafless_voxels_order(
 /// - Result: `offsets`, one more than records; `triangles`, indices into the mesh; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records; LEAFLESS_E_BUFFER if a capacity is too small: nothing is
 ///   written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
-/// - Ownership: nothing changes hands.
-/// - Threads: any; works in the calling thread.
 /// - Untrusted input: any numbers, any mesh.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_voxels_triangles(
     lattice: *const leafless_frame,
@@ -381,7 +349,6 @@ pub unsafe extern "C" fn leafless_voxels_triangles(
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any numbers.
-/// - Since: 0.1
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_from_voxels(
     lattice: *const leafless_frame,

@@ -48,8 +48,8 @@ int main(void) {
     const leafless_frame frame = {{-128, -128, -128}, 256, DEPTH};
     leafless_solid *fixed = NULL, *moving = NULL;
     leafless_measures measures;
-    leafless_options options;
-    leafless_status s = leafless_options_init(&options, sizeof options);
+    leafless_options options = LEAFLESS_INIT(leafless_options);
+    leafless_status s = LEAFLESS_OK;
     int i;
     options.max_splits = 200000; /* for each question */
     if (!s) s = housing(&fixed);

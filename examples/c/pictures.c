@@ -44,12 +44,13 @@ static int32_t temperature(void *ctx, const double *point, double *value) {
 static leafless_status look_from(double azimuth, double elevation, leafless_shot *shot) {
     double corners[8][3];
     int i;
-    leafless_status s = leafless_shot_init(shot, sizeof *shot);
+    leafless_status s = LEAFLESS_OK;
     for (i = 0; i < 8; i++) {
         corners[i][0] = i & 1 ? 1 : -1;
         corners[i][1] = i & 2 ? 0.6 : -0.6;
         corners[i][2] = i & 4 ? 0.5 : -0.5;
     }
+    *shot = LEAFLESS_INIT(leafless_shot);
     shot->width = WIDTH;
     shot->height = HEIGHT;
     memset(shot->background, 255, 4);

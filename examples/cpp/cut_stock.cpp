@@ -98,8 +98,7 @@ void cut() {
     const leafless_frame frame = {{-1.0, -1.0, -1.0}, 2.0, 7};
     const double low[3] = {-0.75, -0.5, -0.5}, high[3] = {0.75, 0.5, 0.25};
     double done = 0.0;
-    leafless_options options;
-    check(leafless_options_init(&options, sizeof options));
+    leafless_options options = LEAFLESS_INIT(leafless_options);
     options.threads = 1;
     options.progress_ctx = &done;
     options.progress = [](void *ctx, double fraction) -> int32_t {

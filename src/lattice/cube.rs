@@ -41,12 +41,12 @@ impl<'f> Cube<'f> {
     }
 
     /// Half the edge in model units, exactly.
-    pub(crate) fn half_edge(&self) -> f64 {
+    pub fn half_edge(&self) -> f64 {
         0.5 * self.frame.edge() / (1u64 << self.cell.level) as f64
     }
 
     /// The vector from a point (model units) to the cube's centre, rounded outward.
-    pub(crate) fn centre_from(&self, point: [f64; 3]) -> [Interval; 3] {
+    pub fn centre_from(&self, point: [f64; 3]) -> [Interval; 3] {
         let (lower, upper) = self.planes();
         axes(|axis| {
             let middle = lower[axis] as i64 + upper[axis] as i64;

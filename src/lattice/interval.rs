@@ -82,7 +82,16 @@ impl Interval {
 
 /// Arithmetic that rounds outward: the result contains what the operation gives for any numbers in the
 /// operands. A bound that is a double is met exactly. Where a result leaves the range of doubles it is still
-/// true, if as wide as `[1.8e308, ∞]`.
+/// true, if as wide as `[1.8e308, ∞]`. A solid that is written with it proves its verdicts and slabs.
+///
+/// ```
+/// use leafless::Interval;
+/// let (a, b) = (Interval::exactly(0.1), Interval::new(-1.0, 2.0).unwrap());
+/// let sum = a.times(b).plus(b.square());
+/// assert!(sum.lower <= -0.1 && sum.upper >= 4.2);
+/// assert_eq!(Interval::exactly(9.0).root(), Interval::exactly(3.0));
+/// assert_eq!(Interval::exactly(1.0).over(b), Interval::ALL);
+/// ```
 impl Interval {
     /// Of an integer below 2^120 in magnitude.
     pub(crate) fn of_integer(value: i128) -> Interval {
@@ -93,21 +102,29 @@ impl Interval {
         Interval::between(lower, upper)
     }
 
-    pub(crate) fn negated(self) -> Interval {
+    /// The numbers of the other sign.
+    #[must_use]
+    pub fn negated(self) -> Interval {
         Interval::between(-self.upper, -self.lower)
     }
 
-    pub(crate) fn plus(self, other: Interval) -> Interval {
+    /// The sum.
+    #[must_use]
+    pub fn plus(self, other: Interval) -> Interval {
         let lower = rounded(two_sum(self.lower, other.lower), true).lower;
         let upper = rounded(two_sum(self.upper, other.upper), true).upper;
         Interval::between(lower, upper)
     }
 
-    pub(crate) fn minus(self, other: Interval) -> Interval {
+    /// The difference.
+    #[must_use]
+    pub fn minus(self, other: Interval) -> Interval {
         self.plus(other.negated())
     }
 
-    pub(crate) fn times(self, other: Interval) -> Interval {
+    /// The product. A factor of 0 makes it 0, whatever the other one is.
+    #[must_use]
+    pub fn times(self, other: Interval) -> Interval {
         let [a, b] = [self.lower, self.upper];
         let [c, d] = [other.lower, other.upper];
         let [ac, ad, bc, bd] = [product(a, c), product(a, d), product(b, c), product(b, d)];
@@ -117,12 +134,14 @@ impl Interval {
     }
 
     /// The square, which is never negative.
-    pub(crate) fn square(self) -> Interval {
+    #[must_use]
+    pub fn square(self) -> Interval {
         self.times(self).not_negative()
     }
 
     /// Divided by a positive number; all numbers if `divisor` may be 0.
-    pub(crate) fn over(self, divisor: Interval) -> Interval {
+    #[must_use]
+    pub fn over(self, divisor: Interval) -> Interval {
         if divisor.lower <= 0.0 {
             return Interval::ALL;
         }
@@ -132,7 +151,8 @@ impl Interval {
     }
 
     /// The square root of a number that is not negative, whatever its bounds say.
-    pub(crate) fn root(self) -> Interval {
+    #[must_use]
+    pub fn root(self) -> Interval {
         let of = |x: f64| {
             let x = x.max(0.0);
             let root = sqrt(x);
@@ -144,17 +164,19 @@ impl Interval {
 
     /// With what else is known of the same number. `None` if the two have no number in common: then one of
     /// them does not contain the truth, or there is no such number.
-    pub(crate) fn common(self, other: Interval) -> Option<Interval> {
+    pub fn common(self, other: Interval) -> Option<Interval> {
         Interval::new(self.lower.max(other.lower), self.upper.min(other.upper))
     }
 
     /// Of a number that is known not to be negative. (A negative upper bound contradicts that, and counts as 0.)
-    pub(crate) fn not_negative(self) -> Interval {
+    #[must_use]
+    pub fn not_negative(self) -> Interval {
         Interval::between(self.lower.max(0.0), self.upper.max(0.0))
     }
 
     /// The least interval that contains both.
-    pub(crate) fn joined(self, other: Interval) -> Interval {
+    #[must_use]
+    pub fn joined(self, other: Interval) -> Interval {
         Interval::between(self.lower.min(other.lower), self.upper.max(other.upper))
     }
 }

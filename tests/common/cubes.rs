@@ -32,6 +32,11 @@ pub trait Cubes: Clone + Send + Sync {
     fn bounds(&self) -> Option<Bounds> {
         None
     }
+
+    /// Whether no piece of the boundary lies in a plane of any lattice.
+    fn is_off_lattice(&self) -> bool {
+        false
+    }
 }
 
 /// A shape on a frame: handle and worker.
@@ -66,7 +71,10 @@ impl<T: Cubes> Classifier for OnFrame<T> {
         Proof::CERTIFIED
     }
 
-    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+    fn answer_whole(&self, question: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        if let WholeQuestion::OffLattice(known) = question {
+            *known = self.shape.is_off_lattice();
+        }
         Ok(())
     }
 }
@@ -201,6 +209,10 @@ impl Plain {
 }
 
 impl Cubes for Plain {
+    fn is_off_lattice(&self) -> bool {
+        matches!(self.0, Definition::Ball { .. })
+    }
+
     const RECALLS: bool = true;
 
     fn verdict(&self, cube: &Cube<'_>) -> Result<Verdict<()>, Error> {

@@ -1,13 +1,14 @@
 //! The area of a solid's boundary, against formulas and against the areas of smaller cells.
 
+use crate::common::cubes::Plain;
 use crate::common::{Random, Way, alone};
 use crate::random::Maker;
 use leafless::query::{StopReason, SurfaceArea, surface_area};
 #[allow(dead_code)]
 use leafless::solid::{Ask, AskWhole};
 use leafless::{
-    Affine, Cell, Classifier, Control, Csg, Error, Frame, Interval, Rule, Solid, Tolerance, Verdict, Worker,
-    build,
+    Affine, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Rule, Solid,
+    Tolerance, TriangleMesh, Verdict, Worker, build,
 };
 use std::f64::consts::PI;
 
@@ -202,6 +203,47 @@ fn what_is_not_known_is_not_told() {
     );
     let loose = surface_area(&a, &frame(), Tolerance { relative: 0.0, absolute: 1.0 }, &control).unwrap();
     assert!(loose.stop_reason == StopReason::Tolerance && loose.area.width() <= 1.0);
+}
+
+/// Two turned cubes of edge 1 that intersect: a mesh that does not know its area without splits.
+fn intersecting_cubes() -> MeshSolid {
+    let turn = glam::DMat3::from_quat(glam::DQuat::from_scaled_axis(glam::DVec3::new(0.3, 0.7, -0.4)));
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let corner = |k: u32, shift: f64| {
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(k >> axis & 1) + shift);
+        (turn * glam::DVec3::new(x, y, z)).to_array()
+    };
+    let vertices = [0.0, 0.37].iter().flat_map(|&shift| (0..8).map(move |k| corner(k, shift))).collect();
+    let triangles = [0, 8].iter().flat_map(|&first| {
+        quads.iter().flat_map(move |&[a, b, c, d]| [[a, b, c], [a, c, d]].map(|t| t.map(|k| k + first)))
+    });
+    let mesh = TriangleMesh::new(vertices, triangles.collect()).unwrap();
+    MeshSolid::new(mesh, FillRule::NonZero).unwrap()
+}
+
+#[test]
+fn an_area_without_an_upper_bound_meets_no_tolerance() {
+    // It tells which cells are decided, and no area.
+    let solid = Plain::ball([0.1, 0.2, 0.3], 1.5).unwrap();
+    let mut unbounded = 0;
+    for splits in (0..64).chain([100_000]) {
+        let budget = Control { max_splits: Some(splits), ..Control::default() };
+        for tolerance in [0.0, 1e-3, 0.1, 1.0, 10.0] {
+            let found = surface_area(&solid, &frame(), tolerance, &budget).unwrap();
+            let is_met = found.area.width() <= tolerance * (0.5 * (found.area.lower + found.area.upper));
+            let is_bounded = found.area.upper < f64::INFINITY;
+            assert!(found.stop_reason != StopReason::Tolerance || is_bounded && is_met, "{found:?}");
+            unbounded += u32::from(!is_bounded);
+        }
+    }
+    assert!(unbounded > 0);
+}
+
+#[test]
+fn a_mesh_that_intersects_itself_has_the_area_of_what_it_encloses() {
+    let found = surface_area(&intersecting_cubes(), &frame(), 1e-2, &Control::default()).unwrap();
+    // Less two pieces of the faces inside of the other cube, each 0.63².
+    holds(&found, 12.0 - 6.0 * 0.63 * 0.63, "intersecting cubes");
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod csg;
 mod enclosure;
 mod host;
 mod host_enclosure;
+mod metaball;
 mod moments;
 mod transform;
 mod volume;

@@ -238,10 +238,11 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         self.is_close(least + 0.5 * Q::UNIVERSE * doubts, doubt + 0.1 * Q::UNIVERSE * doubts)
     }
 
-    /// Whether `doubt` is little enough beside `least`, both in units of what is found.
+    /// Whether `doubt` is little enough beside `least`, both in units of what is found. Where no upper bound is known, it is
+    /// not, though the middle is infinite too.
     fn is_close(&self, least: f64, doubt: f64) -> bool {
         doubt <= 0.0
-            || doubt <= self.tolerance.relative * (least + 0.5 * doubt)
+            || doubt < f64::INFINITY && doubt <= self.tolerance.relative * (least + 0.5 * doubt)
             || doubt * self.unit() <= self.tolerance.absolute
     }
 
