@@ -151,8 +151,7 @@ fn filled(code: &[String], out: &mut String) {
     let text = code.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ").replace("( ", "(");
     let text = plain(&text);
     let mut line = String::new();
-    let mut words = text.split_inclusive(", ").peekable();
-    while let Some(word) = words.next() {
+    for word in text.split_inclusive(", ") {
         if !line.is_empty() && line.chars().count() + word.trim_end().chars().count() > WIDTH {
             writeln!(out, "{}", line.trim_end()).expect("memory");
             line = "    ".to_string();
@@ -192,7 +191,7 @@ fn defined_at(source: &str, name: &str) -> Option<usize> {
         source.match_indices(&definition).find_map(|(at, _)| {
             let next = source[at + definition.len()..].chars().next()?;
             let is_name = next.is_alphanumeric() || next == '_';
-            (!is_name && source[..at].ends_with("pub ") || kind == &"fn" && !is_name).then_some(at)
+            (!is_name && (*kind == "fn" || source[..at].ends_with("pub "))).then_some(at)
         })
     })
 }
