@@ -3,9 +3,9 @@
 use crate::common::exact::Exact;
 use crate::common::slabs::told;
 use crate::common::{Random, Way};
+use example::{Ball, Metaball, Step, plain_sum, three_balls};
 use leafless::solid::Ask;
 use leafless::{Cell, Classifier, Control, Frame, Interval, Rule, Solid, Verdict, Worker, build, measure};
-use example::{Ball, Metaball, Step, plain_sum, three_balls};
 use std::f64::consts::PI;
 
 #[path = "../../examples/metaball.rs"]
