@@ -260,7 +260,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     });
     operation!("clearance", [a], {
         let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
-        clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(3000), ..CONTROL })
+        clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(300), ..CONTROL })
     });
     let marked = DexelOptions {
         format: DexelFormat {
