@@ -9,6 +9,9 @@ use std::fmt::Write;
 /// Columns of a line.
 const WIDTH: usize = 110;
 
+/// How the types of numbers begin that stand for members of an enumeration. In the header they are the enumeration.
+const NUMBER: &str = "Number_";
+
 /// A part of the header.
 pub struct Section {
     pub title: &'static str,
@@ -44,7 +47,9 @@ fn items(raw: &str) -> Vec<Item> {
         let doc = lines.iter().take_while(is_doc).map(|line| comment_text(line)).collect();
         let code: Vec<String> = lines.iter().skip_while(is_doc).map(|line| line.to_string()).collect();
         assert!(!code.is_empty(), "a comment without a declaration: {block}");
-        items.push(Item { name: name_of(&code), doc, code });
+        if !code[0].starts_with(&format!("typedef uint32_t {NUMBER}")) {
+            items.push(Item { name: name_of(&code), doc, code });
+        }
     }
     items
 }
@@ -137,13 +142,10 @@ fn body(lines: &[String], out: &mut String) {
     }
 }
 
-/// Code in which structs go by the names that their typedefs have.
+/// Code in which structs go by the names that their typedefs have, and numbers by those of their enumerations.
 fn plain(code: &str) -> String {
-    if code.starts_with("typedef struct ") {
-        code.to_string()
-    } else {
-        code.replace("struct leafless_", "leafless_")
-    }
+    let code = code.replace(NUMBER, "");
+    if code.starts_with("typedef struct ") { code } else { code.replace("struct leafless_", "leafless_") }
 }
 
 /// A declaration with its parameters in lines that fit.

@@ -56,8 +56,8 @@ void counts() {
 
     const std::function<leafless_status(uint64_t)> functions[] = {
         [&](uint64_t n) { return leafless_octree_contains_many(octree, points, n, memberships); },
-        [&](uint64_t n) { return leafless_octree_cast_rays(octree, rays, n, LEAFLESS_TAG_FULL, hits); },
-        [&](uint64_t n) { return leafless_octree_distances(octree, points, n, 0, nullptr, intervals); },
+        [&](uint64_t n) { return leafless_octree_cast_rays(octree, rays, n, LEAFLESS_OBSTACLE_FULL, hits); },
+        [&](uint64_t n) { return leafless_octree_distances(octree, points, n, LEAFLESS_DISTANCE_TO_SOLID, nullptr, intervals); },
         [&](uint64_t n) { return leafless_channel_values(channel, points, n, numbers); },
         [&](uint64_t n) { return leafless_attribute_values(attribute, points, n, numbers); },
         [&](uint64_t n) {
@@ -142,7 +142,8 @@ void ask(const leafless_attribute *attribute, uint32_t threads) {
     const leafless_options options = with_threads(threads);
     const leafless_frame frame = check_frame(4);
     leafless_octree *octree = check_ball(4, LEAFLESS_RULE_SAMPLED);
-    for (uint32_t criterion = LEAFLESS_CRITERION_NONE; criterion <= LEAFLESS_CRITERION_RANGE; criterion++) {
+    for (const leafless_criterion criterion :
+         {LEAFLESS_CRITERION_NONE, LEAFLESS_CRITERION_VARIANCE, LEAFLESS_CRITERION_RANGE}) {
         leafless_channel_fill_options fill;
         OK(leafless_init(&fill, sizeof fill));
         fill.solid = octree;

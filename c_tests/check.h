@@ -56,7 +56,7 @@ static inline leafless_solid *check_ball_solid(void) {
     return solid;
 }
 
-static inline leafless_octree *check_ball(uint32_t depth, uint32_t rule) {
+static inline leafless_octree *check_ball(uint32_t depth, leafless_rule rule) {
     const leafless_frame frame = check_frame(depth);
     leafless_solid *solid = check_ball_solid();
     leafless_octree *octree = NULL;
@@ -83,19 +83,19 @@ static inline bool check_same(const leafless_octree *a, const leafless_octree *b
 }
 
 /* What a set operation makes of two operands. */
-static inline leafless_status check_octrees(uint32_t operation, const leafless_octree *a, const leafless_octree *b,
+static inline leafless_status check_octrees(leafless_operation operation, const leafless_octree *a, const leafless_octree *b,
                                             const leafless_options *options, leafless_octree **result) {
     const leafless_octree *const both[2] = {a, b};
     return leafless_octree_combine(operation, both, 2, options, result);
 }
 
-static inline leafless_status check_tridexels(uint32_t operation, const leafless_tridexel *a, const leafless_tridexel *b,
+static inline leafless_status check_tridexels(leafless_operation operation, const leafless_tridexel *a, const leafless_tridexel *b,
                                               const leafless_options *options, leafless_tridexel **result) {
     const leafless_tridexel *const both[2] = {a, b};
     return leafless_tridexel_combine(operation, both, 2, options, result);
 }
 
-static inline leafless_status check_solids(uint32_t operation, const leafless_solid *a, const leafless_solid *b,
+static inline leafless_status check_solids(leafless_operation operation, const leafless_solid *a, const leafless_solid *b,
                                            leafless_solid **result) {
     const leafless_solid *const both[2] = {a, b};
     return leafless_solid_combine(operation, both, 2, result);

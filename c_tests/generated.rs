@@ -28,6 +28,8 @@ const SECTIONS: &[Section] = &[
     Section { title: "Volumes, areas, bounding boxes", files: &["content", "measure"] },
     Section { title: "Distance and interference", files: &["distance", "interference"] },
     Section { title: "Octrees that are split on demand", files: &["lazy"] },
+    Section { title: "Attributes", files: &["attribute", "attribute_host", "mesh_attribute"] },
+    Section { title: "Channels", files: &["channel", "channel_fill", "channel_summary", "octree_channels"] },
     Section { title: "Voxel records", files: &["voxel"] },
     Section { title: "Surfaces", files: &["surface"] },
     Section {
@@ -42,8 +44,6 @@ const SECTIONS: &[Section] = &[
         ],
     },
     Section { title: "Files of octrees and tri-dexel models", files: &["file", "tridexel_file"] },
-    Section { title: "Attributes", files: &["attribute", "attribute_host", "mesh_attribute"] },
-    Section { title: "Channels", files: &["channel", "channel_fill", "channel_summary", "octree_channels"] },
     Section { title: "Pictures", files: &["camera", "layer", "layer_surface", "layer_section", "picture"] },
 ];
 
@@ -54,7 +54,7 @@ fn source(file: &str) -> String {
 fn generated() -> String {
     let config = cbindgen::Config::from_file(root().join("include/cbindgen.toml")).unwrap();
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for file in SECTIONS.iter().flat_map(|section| section.files) {
+    for file in SECTIONS.iter().flat_map(|section| section.files).chain(&["number"]) {
         builder = builder.with_src(root().join("capi/src").join(file).with_extension("rs"));
     }
     let mut raw = Vec::new();
@@ -119,8 +119,8 @@ fn every_comment_has_the_fixed_order() {
     // `boundary` has a function for tests.
     assert_eq!(functions.len() + 1, exported);
     let sources = std::fs::read_dir(root().join("capi/src")).unwrap().count();
-    // And `lib.rs`, which exports nothing itself, and `layout.rs`, which is for tests.
-    assert_eq!(sources, files().count() + 2);
+    // And `lib.rs` and `number.rs`, which export nothing themselves, and `layout.rs`, which is for tests.
+    assert_eq!(sources, files().count() + 3);
 }
 
 #[test]

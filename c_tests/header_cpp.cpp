@@ -11,6 +11,13 @@ static_assert(std::is_same<std::underlying_type<leafless_membership>::type, uint
 static_assert(std::is_same<std::underlying_type<leafless_region>::type, uint8_t>::value, "leafless_region");
 static_assert(std::is_same<std::underlying_type<leafless_rule>::type, uint32_t>::value, "leafless_rule");
 static_assert(std::is_same<std::underlying_type<leafless_operation>::type, uint32_t>::value, "leafless_operation");
+// A number of another enumeration, and one of none, is seen by the compiler.
+static_assert(std::is_same<decltype(&leafless_octree_build),
+                           leafless_status (*)(const leafless_solid *, const leafless_frame *, leafless_rule,
+                                               const leafless_options *, leafless_octree **)>::value,
+              "leafless_octree_build");
+static_assert(!std::is_convertible<leafless_facets, leafless_rule>::value, "leafless_rule");
+static_assert(!std::is_convertible<uint32_t, leafless_rule>::value, "leafless_rule");
 static_assert(std::is_standard_layout<leafless_octree_info>::value, "leafless_octree_info");
 static_assert(std::is_trivial<leafless_options>::value, "leafless_options");
 

@@ -209,7 +209,7 @@ void messages() {
             if (number % 2 == 0) {
                 FAILS(LEAFLESS_E_IO, leafless_octree_open(path.data(), path.size(), &result));
             } else {
-                FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_resolve(octree, 99, nullptr, &result));
+                FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_resolve(octree, static_cast<leafless_rule>(99), nullptr, &result));
             }
             const leafless_status expected = number % 2 == 0 ? LEAFLESS_E_IO : LEAFLESS_E_ARGUMENT;
             CHECK(leafless_last_status() == expected);

@@ -52,12 +52,12 @@
  *   16. Volumes, areas, bounding boxes
  *   17. Distance and interference
  *   18. Octrees that are split on demand
- *   19. Voxel records
- *   20. Surfaces
- *   21. Tri-dexel models
- *   22. Files of octrees and tri-dexel models
- *   23. Attributes
- *   24. Channels
+ *   19. Attributes
+ *   20. Channels
+ *   21. Voxel records
+ *   22. Surfaces
+ *   23. Tri-dexel models
+ *   24. Files of octrees and tri-dexel models
  *   25. Pictures
  *
  * RULES that hold for all functions
@@ -94,9 +94,10 @@
  * zero is the default: LEAFLESS_INIT(type) makes it. Programs that were compiled with an older, shorter
  * struct go on working. Other structs are fixed for one LEAFLESS_ABI.
  *
- * Numbers. An enumeration comes in as a number of its type, and is checked. In C, write leafless_tag for a
- * variable, not enum leafless_tag: only the former has the size that the library writes. Lengths of texts and
- * structs are size_t; all other lengths and counts are uint64_t.
+ * Numbers. A number that stands for a member of an enumeration has its type, and is checked: C++ refuses
+ * another type, and the library refuses a number that is no member. In C, write leafless_tag for a variable,
+ * not enum leafless_tag: only the former has the size that the library writes. Lengths of texts and structs
+ * are size_t; all other lengths and counts are uint64_t.
  *
  * Texts. A text is UTF-8 of a given length in bytes, and may be NULL if the length is 0. A path is UTF-8 on
  * every platform, and never empty.
@@ -247,6 +248,22 @@ typedef struct leafless_columns leafless_columns;
 /// of threads.
 typedef struct leafless_lazy leafless_lazy;
 
+/// Something that has a value at every point of model space, or at some: one number, the host's own function,
+/// the values of a channel, any of them in another place. A value has one to four numbers, as many at all
+/// points of an attribute. Where a value is written and there is none, its numbers are NaN.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_attribute_free
+/// needs the reference that it gives back for itself.
+typedef struct leafless_attribute leafless_attribute;
+
+/// Values inside a cube, in a tree of their own: a colour, a temperature, a material at every point, or at
+/// some. leafless_octree_with_channel attaches it to a solid, in whose file it then travels. The tree may be
+/// finer or coarser than the solid's.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_channel_free
+/// needs the reference that it gives back for itself.
+typedef struct leafless_channel leafless_channel;
+
 /// A solid as intervals along the rays of a lattice, in one to three directions: a tri-dexel model.
 ///
 /// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in
@@ -264,22 +281,6 @@ typedef struct leafless_tridexel leafless_tridexel;
 /// host's functions that are asked about a cell. While another call reads it, changing it returns
 /// LEAFLESS_E_BUSY. Calls that read it may be made at once from any number of threads.
 typedef struct leafless_tridexel_editor leafless_tridexel_editor;
-
-/// Something that has a value at every point of model space, or at some: one number, the host's own function,
-/// the values of a channel, any of them in another place. A value has one to four numbers, as many at all
-/// points of an attribute. Where a value is written and there is none, its numbers are NaN.
-///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_attribute_free
-/// needs the reference that it gives back for itself.
-typedef struct leafless_attribute leafless_attribute;
-
-/// Values inside a cube, in a tree of their own: a colour, a temperature, a material at every point, or at
-/// some. leafless_octree_with_channel attaches it to a solid, in whose file it then travels. The tree may be
-/// finer or coarser than the solid's.
-///
-/// Immutable: all its functions may be called at once from any number of threads, but leafless_channel_free
-/// needs the reference that it gives back for itself.
-typedef struct leafless_channel leafless_channel;
 
 /// Something that is seen in a picture: the surface of an octree, a solid or a mesh, lines, a plane section,
 /// voxels.
@@ -757,7 +758,7 @@ leafless_status leafless_mesh_defects(const leafless_mesh *mesh, uint64_t limit,
 /// - Errors: LEAFLESS_E_MESH if the mesh is empty, not closed, or (but for LEAFLESS_FILL_EVEN_ODD) not
 ///   consistently oriented; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any mesh.
-leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh, uint32_t fill);
+leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh, leafless_fill fill);
 
 /// The mesh with hair cracks closed: vertices at open edges become one if they lie no further apart than
 /// 2^-24 of the longest extent of the larger one of their pieces. (A piece is all triangles that hang
@@ -948,7 +949,7 @@ typedef struct leafless_intersecting_pair {
 /// - Errors: LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; works in the calling thread. Each call analyses the mesh.
 /// - Untrusted input: any mesh; the work is limited.
-leafless_status leafless_mesh_measure(const leafless_mesh *mesh, uint32_t fill,
+leafless_status leafless_mesh_measure(const leafless_mesh *mesh, leafless_fill fill,
     const leafless_options *options, leafless_mesh_moments *moments);
 
 /// The pairs of triangles that intersect: they cross, touch, or fold onto each other. Decided exactly.
@@ -1148,7 +1149,8 @@ LEAFLESS_ENUM(leafless_operation, uint32_t) {
 ///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any mesh.
-leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh, uint32_t fill, leafless_solid **solid);
+leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh, leafless_fill fill,
+    leafless_solid **solid);
 
 /// A stored octree as a solid on its own universe. Built to fewer levels it is cut there, built to more its
 /// PARTIAL cells stay undecided.
@@ -1343,7 +1345,7 @@ leafless_status leafless_solid_new_convex(const double *planes, uint64_t count, 
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operands are shared and may be freed; give `*result` back with leafless_solid_free.
 /// - Untrusted input: any solids.
-leafless_status leafless_solid_combine(uint32_t operation, const leafless_solid *const *solids,
+leafless_status leafless_solid_combine(leafless_operation operation, const leafless_solid *const *solids,
     uint64_t count, leafless_solid **result);
 
 /// What `operand` does not contain. A solid and its complement share their boundary.
@@ -1400,7 +1402,7 @@ leafless_status leafless_solid_adaptive(const leafless_solid *operand, double to
 /// - Errors: LEAFLESS_E_NULL; LEAFLESS_E_ARGUMENT if `touch` is no leafless_touch.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any solids.
-leafless_status leafless_solid_with_touch(const leafless_solid *operand, uint32_t touch,
+leafless_status leafless_solid_with_touch(const leafless_solid *operand, leafless_touch touch,
     leafless_solid **solid);
 
 /* ---- 9. Solids by functions of the host --------------------------------------------------------------- */
@@ -2078,7 +2080,7 @@ leafless_status leafless_octree_describe(const leafless_octree *octree, leafless
 /// - Errors: LEAFLESS_E_ARGUMENT unless `proven` is one, and the displacement finite and not negative.
 /// - Ownership: give `*result` back with leafless_octree_free.
 /// - Untrusted input: any octree, any numbers.
-leafless_status leafless_octree_with_proof(const leafless_octree *octree, uint32_t proven,
+leafless_status leafless_octree_with_proof(const leafless_octree *octree, leafless_proven proven,
     double displacement_model, leafless_octree **result);
 
 /// Counts over all levels, and the volume of the cells. O(depth) once the counts are known, which for an
@@ -2182,8 +2184,8 @@ LEAFLESS_ENUM(leafless_rule, uint32_t) {
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
-leafless_status leafless_octree_build(const leafless_solid *solid, const leafless_frame *frame, uint32_t rule,
-    const leafless_options *options, leafless_octree **octree);
+leafless_status leafless_octree_build(const leafless_solid *solid, const leafless_frame *frame,
+    leafless_rule rule, const leafless_options *options, leafless_octree **octree);
 
 /// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under
 /// LEAFLESS_RULE_OUTER.
@@ -2196,7 +2198,7 @@ leafless_status leafless_octree_build(const leafless_solid *solid, const leafles
 /// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octree.
-leafless_status leafless_octree_resolve(const leafless_octree *octree, uint32_t rule,
+leafless_status leafless_octree_resolve(const leafless_octree *octree, leafless_rule rule,
     const leafless_options *options, leafless_octree **resolved);
 
 /// The same octree with its bricks encoded as a file would have them, through a dictionary where that is
@@ -2224,7 +2226,7 @@ leafless_status leafless_octree_compact(const leafless_octree *octree, leafless_
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
 ///   PARTIAL.
-leafless_status leafless_octree_combine(uint32_t operation, const leafless_octree *const *octrees,
+leafless_status leafless_octree_combine(leafless_operation operation, const leafless_octree *const *octrees,
     uint64_t count, const leafless_options *options, leafless_octree **result);
 
 /// Everything but `octree`, inside of its universe and out.
@@ -2682,7 +2684,7 @@ LEAFLESS_ENUM(leafless_sight, uint8_t) {
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL.
 leafless_status leafless_octree_cast_rays(const leafless_octree *octree, const leafless_ray *rays,
-    uint64_t count, uint32_t on, leafless_ray_hit *hits);
+    uint64_t count, leafless_obstacle on, leafless_ray_hit *hits);
 
 /// Where rays first meet a solid, without an octree, as far as cells of the frame tell, and what the solid
 /// knows of the surface in the finest of them. What lies outside of the universe does not count. A ray splits
@@ -2699,7 +2701,7 @@ leafless_status leafless_octree_cast_rays(const leafless_octree *octree, const l
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
 leafless_status leafless_solid_cast_rays(const leafless_solid *solid, const leafless_frame *frame,
-    const leafless_ray *rays, uint64_t count, uint32_t on, const leafless_options *options,
+    const leafless_ray *rays, uint64_t count, leafless_obstacle on, const leafless_options *options,
     leafless_ray_hit *hits);
 
 /// Where a ray is in an octree's cells, whatever they prove of the solid that it was made from: intervals of
@@ -2803,9 +2805,9 @@ leafless_status leafless_solid_columns(const leafless_solid *solid, const leafle
 /// - Result: `offsets`, one more than columns; `runs`; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none; LEAFLESS_E_BUFFER if a capacity is too small: nothing is
 ///   written then.
-leafless_status leafless_columns_read(const leafless_columns *columns, uint32_t on, uint64_t *offsets,
-    uint64_t offset_capacity, uint64_t *offset_count, leafless_run *runs, uint64_t run_capacity,
-    uint64_t *run_count);
+leafless_status leafless_columns_read(const leafless_columns *columns, leafless_obstacle on,
+    uint64_t *offsets, uint64_t offset_capacity, uint64_t *offset_count, leafless_run *runs,
+    uint64_t run_capacity, uint64_t *run_count);
 
 /// Gives back what leafless_octree_columns or leafless_solid_columns made.
 ///
@@ -2827,7 +2829,7 @@ void leafless_columns_free(leafless_columns *columns);
 ///   capacity is too small; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and no array element is met twice.
 leafless_status leafless_octree_heights(const leafless_octree *octree, uint32_t axis, const uint32_t first[2],
-    const uint32_t end[2], uint32_t side, leafless_interval *heights_model, uint64_t capacity,
+    const uint32_t end[2], leafless_side side, leafless_interval *heights_model, uint64_t capacity,
     uint64_t *count);
 
 /// How far a solid reaches in a rectangle of columns, without an octree, as far as cells of the frame tell: a
@@ -2841,7 +2843,7 @@ leafless_status leafless_octree_heights(const leafless_octree *octree, uint32_t 
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
 leafless_status leafless_solid_heights(const leafless_solid *solid, const leafless_frame *frame,
-    uint32_t axis, const uint32_t first[2], const uint32_t end[2], uint32_t side,
+    uint32_t axis, const uint32_t first[2], const uint32_t end[2], leafless_side side,
     const leafless_options *options, leafless_interval *heights_model, uint64_t capacity, uint64_t *count);
 
 /* ---- 16. Volumes, areas, bounding boxes --------------------------------------------------------------- */
@@ -3101,7 +3103,8 @@ typedef struct leafless_near_cell {
 /// - Untrusted input: any octree, any numbers; damage reads as PARTIAL, and for each point no more array
 ///   elements are read than twice those that there are.
 leafless_status leafless_octree_distances(const leafless_octree *octree, const double *points_model,
-    uint64_t count, uint32_t to, const leafless_options *options, leafless_interval *distances_model);
+    uint64_t count, leafless_distance_to to, const leafless_options *options,
+    leafless_interval *distances_model);
 
 /// The distances of points from a solid, its complement or its boundary, without an octree. Points may lie
 /// outside of the universe of the frame. The cells that may be nearest are split first.
@@ -3123,7 +3126,7 @@ leafless_status leafless_octree_distances(const leafless_octree *octree, const d
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
 leafless_status leafless_solid_distances(const leafless_solid *solid, const leafless_frame *frame,
-    const double *points_model, uint64_t count, uint32_t to, double tolerance_model,
+    const double *points_model, uint64_t count, leafless_distance_to to, double tolerance_model,
     const leafless_options *options, leafless_point_distance *distances);
 
 /// The cells of an octree that are nearest to a point, of those whose tag is among `tags`: the nearest first,
@@ -3465,7 +3468,620 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy, uint64_t *splits
 leafless_status leafless_lazy_freeze(const leafless_lazy *lazy, const leafless_options *options,
     leafless_octree **octree);
 
-/* ---- 19. Voxel records -------------------------------------------------------------------------------- */
+/* ---- 19. Attributes ----------------------------------------------------------------------------------- */
+
+/// What is known of the values in the interior of a box.
+LEAFLESS_ENUM(leafless_range_kind, uint32_t) {
+    LEAFLESS_RANGE_UNKNOWN = 0,  ///< Nothing.
+    LEAFLESS_RANGE_NOWHERE = 1,  ///< No point has a value.
+    LEAFLESS_RANGE_WITHIN = 2,  ///< Every point has a value, and each of its numbers lies in its interval.
+};
+
+/// What is known of the values of an attribute in the interior of a box.
+typedef struct leafless_value_range {
+    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_WITHIN. All
+    /// numbers are NaN otherwise, and beyond the numbers that a value has.
+    leafless_interval values[4];
+    uint32_t kind;  ///< A leafless_range_kind.
+} leafless_value_range;
+
+/// The attribute that has one value everywhere.
+///
+/// - Buffers: `value`, `components` numbers; `attribute`, one pointer.
+/// - Result: `*attribute`.
+/// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and no number NaN.
+/// - Ownership: give `*attribute` back with leafless_attribute_free.
+/// - Untrusted input: any numbers.
+leafless_status leafless_attribute_new_constant(const double *value, uint32_t components,
+    leafless_attribute **attribute);
+
+/// An attribute in another place: its value at the image M p + t of a point p is that of `operand` at p. It
+/// carries attributes and channels along with a solid that leafless_solid_placed moves by the same map. The
+/// map is inverted; what is rounded thereby moves the values by about 2^-50 of the coordinates.
+///
+/// - Buffers: `matrix`, 12 numbers, the rows of [M | t]; `attribute`, one pointer.
+/// - Result: `*attribute`.
+/// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is
+///   singular, or an entry of the inverse is beyond 2^64.
+/// - Ownership: the operand is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+/// - Untrusted input: any attribute and numbers.
+leafless_status leafless_attribute_placed(const leafless_attribute *operand, const double matrix[12],
+    leafless_attribute **attribute);
+
+/// How many numbers a value of an attribute has.
+///
+/// - Buffers: `components`, one number.
+/// - Result: `*components`, 1 to 4.
+/// - Untrusted input: any attribute.
+leafless_status leafless_attribute_components(const leafless_attribute *attribute, uint32_t *components);
+
+/// The values of an attribute at points.
+///
+/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many
+///   numbers as leafless_attribute_components says. Both may be NULL if `count` is 0.
+/// - Result: the value at point i from `values[components * i]` on; NaN where there is none.
+/// - Errors: LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any attribute, any numbers.
+leafless_status leafless_attribute_values(const leafless_attribute *attribute, const double *points_model,
+    uint64_t count, double *values);
+
+/// What is known of the values of an attribute in the interior of a box.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `range`, one struct.
+/// - Result: `*range`.
+/// - Errors: LEAFLESS_E_ARGUMENT unless min <= max on every axis, and all coordinates are finite;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED.
+/// - Untrusted input: any attribute, any numbers; the work is bounded.
+leafless_status leafless_attribute_range(const leafless_attribute *attribute, const double min_model[3],
+    const double max_model[3], leafless_value_range *range);
+
+/// One more reference to an attribute.
+///
+/// - Buffers: `attribute`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `attribute`.
+/// - Ownership: give each reference back with leafless_attribute_free.
+leafless_status leafless_attribute_ref(const leafless_attribute *attribute, leafless_attribute **reference);
+
+/// Gives back a reference to an attribute; with the last one the attribute is gone. Channels that were filled
+/// from it stay.
+///
+/// - Buffers: `attribute`, a handle or NULL, which does nothing.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+void leafless_attribute_free(leafless_attribute *attribute);
+
+/// The value of the host's attribute at a point (3 numbers, model units): sets the numbers of `value`, as
+/// many as the attribute has components. All are NaN before; they stay so where there is no value, and a
+/// value whose first number is NaN is none. 0, or the number of the host's own error, which ends the
+/// operation with LEAFLESS_E_CALLBACK and the number in the message.
+///
+/// It is called from several threads at once, which may all be the library's own, unless the operation's
+/// options say `threads` = 1; and it must give the same answer to the same point. It must return: no
+/// exception, no longjmp. It may call this library.
+typedef int32_t (*leafless_attribute_value_fn)(void *ctx, const double *point, double *value);
+
+/// The values at `count` points (3 numbers each) at once, for hosts that do that faster than one by one: the
+/// numbers of the first, then those of the second, and so on. Else as leafless_attribute_value_fn.
+typedef int32_t (*leafless_attribute_values_fn)(void *ctx, const double *points, uint64_t count,
+    double *values);
+
+/// Bounds the values of the host's attribute in the interior of the box [min, max] (3 numbers each, model
+/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_UNKNOWN and all
+/// numbers are NaN before. The answer must be proven: a wrong range hides details that nobody looks for any
+/// more. An interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none ends
+/// the operation with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
+typedef int32_t (*leafless_attribute_range_fn)(void *ctx, const double *min, const double *max,
+    leafless_value_range *range);
+
+/// An attribute of the host. `components` and one of `value` and `values` must be set; all other fields but
+/// the first may be zero.
+typedef struct leafless_attribute_callbacks {
+    uint32_t struct_size;  ///< sizeof(leafless_attribute_callbacks).
+    uint32_t components;  ///< How many numbers a value has: 1 to 4.
+    leafless_attribute_value_fn value;  ///< The value at a point; not called if `values` is set.
+    leafless_attribute_values_fn values;  ///< The values at many points, as many as the work has at hand.
+    /// Bounds the values in a box; optional. With it channels that hardly change are filled without asking at
+    /// every cell, and LEAFLESS_CRITERION_RANGE misses no detail.
+    leafless_attribute_range_fn range;
+    leafless_destroy_fn destroy;  ///< Called when `ctx` is not needed any more; optional.
+    void *ctx;  ///< What the functions are called with.
+} leafless_attribute_callbacks;
+
+/// The host's own attribute.
+///
+/// - Buffers: `callbacks`, one struct, which is copied; `attribute`, one pointer.
+/// - Result: `*attribute`.
+/// - Errors: LEAFLESS_E_NULL if `value` and `values` are NULL; LEAFLESS_E_ARGUMENT unless `components` is 1
+///   to 4. After an error `destroy` is not called.
+/// - Ownership: `ctx` must live until `destroy` is called with it; give `*attribute` back with
+///   leafless_attribute_free.
+/// - Threads: any; in which the functions are called, leafless_attribute_value_fn says.
+/// - Untrusted input: any answers.
+leafless_status leafless_attribute_new_callbacks(const leafless_attribute_callbacks *callbacks,
+    leafless_attribute **attribute);
+
+/// What the triangles of a mesh bear, by its place among all: an array of values with a name. Files in PLY
+/// and 3MF give `colour` (red, green, blue and opacity from 0 to 255), 3MF `material` and `object` (numbers,
+/// which may have names); a mesh from a polyhedron has `face`, `shell` and `solid`, the numbers of the parts
+/// that a triangle belongs to.
+///
+/// - Buffers: `count`, one number; `name`, `name_length`, `components` and `per_corner`, one each, all NULL
+///   to ask for the count only.
+/// - Result: `*count`, the number of all attributes; the name in UTF-8, not NUL-terminated, with its length
+///   in bytes; `*components`, how many numbers a value has, 1 to 4; `*per_corner`, whether each corner of a
+///   triangle has a value, or each triangle one.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is asked for.
+/// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
+/// - Untrusted input: any mesh.
+leafless_status leafless_mesh_peek_attribute_at(const leafless_mesh *mesh, uint64_t index, uint64_t *count,
+    const char **name, size_t *name_length, uint32_t *components, bool *per_corner);
+
+/// What the value `value` of an attribute of a mesh is called: the name of a material or of an object.
+///
+/// - Buffers: `count`, one number; `name` and `name_length`, one each, both NULL to ask for the count only.
+/// - Result: `*count`, how many values from 0 on have names; the name in UTF-8, not NUL-terminated, with its
+///   length in bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the
+///   count is asked for.
+/// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
+/// - Untrusted input: any mesh.
+leafless_status leafless_mesh_peek_attribute_name_at(const leafless_mesh *mesh, uint64_t index,
+    uint64_t value, uint64_t *count, const char **name, size_t *name_length);
+
+/// The values of an attribute of a mesh at the corners of all triangles.
+///
+/// - Buffers: `values`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, 3 · components · triangles; in `values` the numbers at the three corners of the first
+///   triangle, then of the second: NaN where there is no value.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`; LEAFLESS_E_BUFFER if the capacity is too
+///   small.
+/// - Untrusted input: any mesh.
+leafless_status leafless_mesh_attribute_values(const leafless_mesh *mesh, uint64_t index, double *values,
+    uint64_t capacity, uint64_t *count);
+
+/// The body that each triangle of a mesh belongs to: a set of triangles that hang together over edges. Bodies
+/// are numbered from 0 by their first triangles. Shells that touch only in single vertices, or lie within
+/// each other, are different bodies.
+///
+/// - Buffers: `bodies`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, the number of triangles; in `bodies` one number for each.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any mesh.
+leafless_status leafless_mesh_bodies(const leafless_mesh *mesh, uint32_t *bodies, uint64_t capacity,
+    uint64_t *count);
+
+/// The attribute that has at each point what a mesh bears at the point of its surface that is nearest: the
+/// value of the nearest triangle, or, with values for corners, what lies between them. Of triangles that are
+/// equally near the first one counts. Its ranges are proven.
+///
+/// - Buffers: `name`, `name_length` bytes of UTF-8: that of an attribute of the mesh; `attribute`, one
+///   pointer.
+/// - Result: `*attribute`.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if the mesh has no such attribute; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
+/// - Untrusted input: any mesh, any text.
+leafless_status leafless_mesh_as_attribute(const leafless_mesh *mesh, const char *name, size_t name_length,
+    leafless_attribute **attribute);
+
+/// As leafless_mesh_as_attribute, of the host's own values: of bodies, faces, materials, or colours of
+/// corners.
+///
+/// - Buffers: `values`, `count` numbers: `components` for each triangle, or for each of its three corners,
+///   one behind the other; `attribute`, one pointer.
+/// - Result: `*attribute`. A value with a number that is not finite counts as none.
+/// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and there are values for all triangles;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the values are copied, the mesh is shared and may be freed; give `*attribute` back with
+///   leafless_attribute_free.
+/// - Untrusted input: any mesh, any numbers.
+leafless_status leafless_mesh_values_as_attribute(const leafless_mesh *mesh, const double *values,
+    uint64_t count, uint32_t components, bool per_corner, leafless_attribute **attribute);
+
+/* ---- 20. Channels ------------------------------------------------------------------------------------- */
+
+/// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even
+/// integer half-way.
+LEAFLESS_ENUM(leafless_scalar_type, uint32_t) {
+    LEAFLESS_SCALAR_F32 = 0,  ///< Finite numbers of single precision.
+    LEAFLESS_SCALAR_U8 = 1,  ///< Integers from 0 to 255.
+    LEAFLESS_SCALAR_U16 = 2,  ///< Integers from 0 to 65 535.
+    LEAFLESS_SCALAR_U32 = 3,  ///< Integers from 0 to 4 294 967 295.
+};
+
+/// What can be said of a channel at once.
+typedef struct leafless_channel_info {
+    leafless_frame frame;  ///< Where it lies: in the cube of its solid, with a depth of its own.
+    leafless_scalar_type scalar;  ///< The type of the numbers.
+    uint32_t components;  ///< How many numbers a value has: 1 to 4.
+    uint64_t value_count;  ///< Values that are stored: one for each run of equal ones.
+    uint64_t elements;  ///< Array elements and bricks of the tree.
+    uint64_t bytes;  ///< Bytes that the channel takes in memory.
+} leafless_channel_info;
+
+/// One more reference to a channel.
+///
+/// - Buffers: `channel`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `channel`.
+/// - Ownership: give each reference back with leafless_channel_free.
+leafless_status leafless_channel_ref(const leafless_channel *channel, leafless_channel **reference);
+
+/// Gives back a reference to a channel. With the last one the channel is gone, and with it the mapping of its
+/// file, unless an octree, an attribute, or a channel with other metadata still shares it.
+///
+/// - Buffers: `channel`, a handle or NULL, which does nothing.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+void leafless_channel_free(leafless_channel *channel);
+
+/// What can be said of a channel at once. O(1), but for a channel of a file that was mapped unverified: when
+/// such a channel is first read, by whichever function, its links are checked in one pass.
+///
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
+/// - Errors: LEAFLESS_E_DAMAGED.
+/// - Untrusted input: any channel.
+leafless_status leafless_channel_describe(const leafless_channel *channel, leafless_channel_info *info);
+
+/// Checks that a channel is well-formed: O(n). Those that the library makes, opens or maps verified are.
+///
+/// - Result: LEAFLESS_OK if it is.
+/// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any channel.
+leafless_status leafless_channel_check(const leafless_channel *channel);
+
+/// Whether two channels have the same values in the same cells, of one type and on one frame. Metadata does
+/// not count. O(n).
+///
+/// - Buffers: `equal`, one truth value.
+/// - Result: `*equal`.
+/// - Untrusted input: any channels.
+leafless_status leafless_channel_equal(const leafless_channel *a, const leafless_channel *b, bool *equal);
+
+/// The values of a channel as an attribute, which may be placed, or fill a channel on another frame. It has
+/// no values outside of the channel's cube.
+///
+/// - Buffers: `attribute`, one pointer.
+/// - Result: `*attribute`.
+/// - Errors: only the general ones; asking for its values returns LEAFLESS_E_DAMAGED if the channel was
+///   mapped unverified and its links are damaged.
+/// - Ownership: the attribute shares the channel, which may be freed; give `*attribute` back with
+///   leafless_attribute_free.
+/// - Untrusted input: any channel.
+leafless_status leafless_channel_as_attribute(const leafless_channel *channel,
+    leafless_attribute **attribute);
+
+/// The channel with one more fact in its metadata, or with another value of one; the arrays are shared. Names
+/// in use: "name", by which a solid knows the channel, "unit" (of the values), "meaning" (what they are, such
+/// as "colour" or "density").
+///
+/// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
+/// - Result: `*named`.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 64 KiB in a file, 8 bytes
+///   and the two texts each; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the texts are copied. `*named` shares the arrays of `channel`, which may be freed: what must
+///   outlive `channel`, such as bytes that it views, must outlive `*named` too. Give that back with
+///   leafless_channel_free.
+/// - Untrusted input: any texts.
+leafless_status leafless_channel_with_metadata(const leafless_channel *channel, const char *key,
+    size_t key_length, const char *value, size_t value_length, leafless_channel **named);
+
+/// The channel with one fact less in its metadata, or with none; the arrays are shared.
+///
+/// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
+/// - Result: `*unnamed`; a fact that is not there need not be.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_channel_with_metadata.
+/// - Untrusted input: any texts.
+leafless_status leafless_channel_without_metadata(const leafless_channel *channel, const char *key,
+    size_t key_length, leafless_channel **unnamed);
+
+/// The value of a fact in a channel's metadata, such as "name".
+///
+/// - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
+/// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
+/// - Errors: LEAFLESS_E_UTF8.
+/// - Ownership: the text belongs to the channel and lives as long as the reference `channel`.
+/// - Untrusted input: any channel.
+leafless_status leafless_channel_peek_metadata(const leafless_channel *channel, const char *key,
+    size_t key_length, const char **value, size_t *value_length);
+
+/// A fact of a channel's metadata by its place among all, which stand by ascending key.
+///
+/// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
+///   ask for the count only.
+/// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
+///   bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
+/// - Ownership: the texts belong to the channel and live as long as the reference `channel`.
+/// - Untrusted input: any channel.
+leafless_status leafless_channel_peek_metadata_at(const leafless_channel *channel, uint64_t index,
+    uint64_t *count, const char **key, size_t *key_length, const char **value, size_t *value_length);
+
+/// How finely an attribute is followed.
+LEAFLESS_ENUM(leafless_criterion, uint32_t) {
+    /// To the finest cells, wherever it is not proven that all of a cell has one value.
+    LEAFLESS_CRITERION_NONE = 0,
+    /// Until the variance of the values at a cell's corners is at most the square of the tolerance. The
+    /// variance of several numbers is the sum of their variances. A detail between the corners is missed.
+    LEAFLESS_CRITERION_VARIANCE = 1,
+    /// Until the values in a cell are proven to differ by no more than the tolerance, in each of their
+    /// numbers. Nothing is missed. A cell whose range is unknown is split.
+    LEAFLESS_CRITERION_RANGE = 2,
+};
+
+/// How a channel is filled. NULL means the defaults. All fields but the first may be zero, which is their
+/// default.
+typedef struct leafless_channel_fill_options {
+    uint32_t struct_size;  ///< sizeof(leafless_channel_fill_options).
+    leafless_scalar_type scalar;  ///< A leafless_scalar_type: what numbers are rounded to.
+    /// How many numbers a value has, which is as many as those of the attribute; 0 does not ask.
+    uint32_t components;
+    uint32_t depth;  ///< Levels of the channel; 0 means those of the frame.
+    /// The solid inside which values matter; optional. Where it is EMPTY, the channel says whatever takes the
+    /// least memory.
+    const leafless_octree *solid;
+    /// A leafless_criterion. Unless it is LEAFLESS_CRITERION_NONE, a cell is split until its edge is at most
+    /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the
+    /// value at its centre.
+    leafless_criterion criterion;
+    uint32_t reserved;  ///< Zero.
+    double coarse_model;  ///< The longest edge of cells with a criterion; 0 means any.
+    /// The edge below which cells are not split any more, with a criterion, at most `coarse_model`; 0 means
+    /// that of the finest cells.
+    double fine_model;
+    double tolerance;  ///< The tolerance of the criterion, in the attribute's units; may be infinite.
+    const char *name;  ///< The name of the channel, `name_length` bytes of UTF-8; optional.
+    size_t name_length;  ///< The length of the name.
+} leafless_channel_fill_options;
+
+/// The channel of an attribute: each cell has the attribute's value at its centre, rounded to the type of the
+/// numbers; a cell whose centre has no value has none. Cells are as large as proven ranges and the criterion
+/// allow. The result is the same bit for bit for any number of threads.
+///
+/// Without a criterion the result is that of asking at the centre of every finest cell. An attribute without
+/// ranges is asked there: 8^depth times, or as often as the solid has cells that are not EMPTY.
+///
+/// - Buffers: `frame`, one struct, or NULL for the frame of `fill->solid`, which is then needed; `fill`, one
+///   struct or NULL; `options`, one struct or NULL; `channel`, one pointer.
+/// - Result: `*channel`, with the name as its only fact, if there is one.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if a field of `fill` is wrong, or a value beyond
+///   the range of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another cube than
+///   the frame; LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: nothing is kept of the attribute, the solid and the name; give `*channel` back with
+///   leafless_channel_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your
+///   own choice.
+leafless_status leafless_channel_fill(const leafless_attribute *attribute, const leafless_frame *frame,
+    const leafless_channel_fill_options *fill, const leafless_options *options, leafless_channel **channel);
+
+/// The values of a channel at points. A point on a face between cells belongs to the upper one. O(depth)
+/// each.
+///
+/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many
+///   numbers as `components` of leafless_channel_describe. Both may be NULL if `count` is 0.
+/// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of
+///   the channel's cube.
+/// - Errors: LEAFLESS_E_DAMAGED.
+/// - Untrusted input: any channel, any numbers; damage reads as no value.
+leafless_status leafless_channel_values(const leafless_channel *channel, const double *points_model,
+    uint64_t count, double *values);
+
+/// The value of a channel at a point, as leafless_channel_values.
+///
+/// - Buffers: `point_model`, 3 numbers; `value`, room for 4 numbers.
+/// - Result: `value`: as many numbers as the channel's values have, and 0 beyond them; four NaN if there is
+///   none.
+/// - Errors: LEAFLESS_E_DAMAGED.
+/// - Untrusted input: any channel, any numbers; damage reads as no value.
+leafless_status leafless_channel_value(const leafless_channel *channel, const double point_model[3],
+    double value[4]);
+
+/// The value of a finest cell of a channel's own frame. O(depth).
+///
+/// - Buffers: `cell`, 3 numbers; `value`, room for 4 numbers.
+/// - Result: `value`, as leafless_channel_value; four NaN if a coordinate is not below 2^depth.
+/// - Errors: LEAFLESS_E_DAMAGED.
+/// - Untrusted input: any channel, any numbers; damage reads as no value.
+leafless_status leafless_channel_value_of_cell(const leafless_channel *channel, const uint32_t cell[3],
+    double value[4]);
+
+/// The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the
+/// deeper of the two. The same bit for bit for any number of threads.
+///
+/// - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to take
+///   values away; `options`, one struct or NULL; `changed`, one pointer.
+/// - Result: `*changed`, with the metadata of `channel`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME
+///   unless both lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `channel` stays as it is; give `*changed` back with leafless_channel_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any channel, any octree, any numbers.
+leafless_status leafless_channel_with_value_in(const leafless_channel *channel, const leafless_octree *region,
+    const double *value, const leafless_options *options, leafless_channel **changed);
+
+/// What lies between the samples of a volume.
+LEAFLESS_ENUM(leafless_interpolation, uint32_t) {
+    /// The trilinear interpolation of the eight samples around a point.
+    LEAFLESS_INTERPOLATION_TRILINEAR = 0,
+    /// The sample of the voxel that contains the point; on a face between voxels, that of the upper one.
+    LEAFLESS_INTERPOLATION_NEAREST = 1,
+};
+
+/// What the values of a channel amount to in a region, number by number; places beyond the numbers of a value
+/// are 0. All intervals contain the truth, as far as the cells of the solid and of the channel tell it.
+typedef struct leafless_channel_summary {
+    double least[4];  ///< The least value of any cell that may belong to the region.
+    double greatest[4];  ///< The greatest value of any cell that may belong to the region.
+    /// The integral of the value over the region, in the value's units times cubic model units: of a density,
+    /// the mass.
+    leafless_interval integral[4];
+    leafless_interval mean[4];  ///< The mean value.
+    leafless_interval volume_model;  ///< The volume of the region that has values, in cubic model units.
+    leafless_interval volume_without_model;  ///< The volume of the region that has none.
+    bool has_values;  ///< Whether any of the region may have a value. If not, all else is 0.
+} leafless_channel_summary;
+
+/// Volume, centroid and inertia of the part of a solid that has one value.
+typedef struct leafless_material {
+    double value[4];  ///< The value; places beyond its numbers are 0.
+    leafless_measures measures;  ///< Measures of the points of the solid that have the value, of density 1.
+} leafless_material;
+
+/// Least, greatest, mean and integral of a channel's values in the part of a solid that lies in a box, whose
+/// faces may lie anywhere. O(cells that the box meets).
+///
+/// - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which
+///   may be infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL, of which
+///   limits do not matter; `summary`, one struct.
+/// - Result: `*summary`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid
+///   lies in another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
+/// - Untrusted input: any channel, any octree, any numbers.
+leafless_status leafless_channel_summarise(const leafless_channel *channel, const leafless_octree *solid,
+    const double min_model[3], const double max_model[3], const leafless_options *options,
+    leafless_channel_summary *summary);
+
+/// The octree of the cells whose values lie in a band: every number between those of `low` and `high`, both
+/// included. Where there is no value, it is EMPTY. It lies on the channel's frame, and nothing is PARTIAL. A
+/// Boolean makes it that of a part: of a material, of all that is hotter than a limit.
+///
+/// - Buffers: `low` and `high`, as many numbers each as the channel's values have, which may be infinite;
+///   `options`, one struct or NULL; `octree`, one pointer.
+/// - Result: `*octree`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any channel, any numbers.
+leafless_status leafless_channel_region(const leafless_channel *channel, const double *low,
+    const double *high, const leafless_options *options, leafless_octree **octree);
+
+/// Measures the parts of a solid in which a channel has one value, each as leafless_solid_measure: one for
+/// each value of the channel that the solid may have somewhere, in ascending order of the values. The channel
+/// is taken as it is; its cells decide what is which material. To ask for the count alone takes as long.
+///
+/// - Buffers: `frame`, one struct: where the solid is split, in the channel's cube; `options`, one struct or
+///   NULL; `measured`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+///   `relative` and `absolute_model` are those of leafless_solid_measure.
+/// - Result: `*count`; the materials.
+/// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless
+///   `frame` is of the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as
+///   leafless_solid_measure.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any channel; the default of `max_splits` bounds the work for each value.
+leafless_status leafless_solid_materials(const leafless_solid *solid, const leafless_channel *channel,
+    const leafless_frame *frame, double relative, double absolute_model, const leafless_options *options,
+    leafless_material *measured, uint64_t capacity, uint64_t *count);
+
+/// The samples of a volume as an attribute of one number, where the file says that they lie. There is no
+/// value outside of the voxels, nor where a sample that counts is not a number. The first solid, range or
+/// attribute of a volume reads all samples, in O(n).
+///
+/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL, of which limits do
+///   not matter; `attribute`, one pointer.
+/// - Result: `*attribute`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the map that places the volume has no inverse that a map can have;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the attribute shares the samples, and `volume` may be freed; give `*attribute` back with
+///   leafless_attribute_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any volume.
+leafless_status leafless_volume_as_attribute(const leafless_volume *volume,
+    leafless_interpolation interpolation, const leafless_options *options, leafless_attribute **attribute);
+
+/// Whose value a point has that lies in several operands.
+LEAFLESS_ENUM(leafless_carry, uint32_t) {
+    LEAFLESS_CARRY_LEFT = 0,  ///< The first operand's that has one.
+    LEAFLESS_CARRY_RIGHT = 1,  ///< The last operand's that has one.
+    LEAFLESS_CARRY_MAX = 2,  ///< The greatest of all, number by number.
+    LEAFLESS_CARRY_MEAN = 3,  ///< The mean of all, number by number, rounded to the type.
+};
+
+/// How channels of one name are carried.
+typedef struct leafless_carry_rule {
+    const char *name;  ///< The name of the channels, `name_length` bytes of UTF-8.
+    size_t name_length;  ///< The length of the name.
+    leafless_carry carry;  ///< A leafless_carry.
+} leafless_carry_rule;
+
+/// The octree with one more channel, in the place of one of the same name, if there is one; the arrays of
+/// both are shared. A channel without a name has the empty one.
+///
+/// - Buffers: `result`, one pointer.
+/// - Result: `*result`, with the metadata of `octree`.
+/// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if
+///   there are 256 channels already; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive
+///   these, such as bytes that they view, must outlive `*result` too. Give that back with
+///   leafless_octree_free.
+/// - Untrusted input: any octree, any channel.
+leafless_status leafless_octree_with_channel(const leafless_octree *octree, const leafless_channel *channel,
+    leafless_octree **result);
+
+/// The octree without the channel of a name, or without any; the arrays are shared.
+///
+/// - Buffers: `name`, `name_length` bytes of UTF-8, or NULL for all channels; `result`, one pointer.
+/// - Result: `*result`, with the metadata of `octree`; a channel that is not there need not be.
+/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_octree_with_channel.
+/// - Untrusted input: any octree, any text.
+leafless_status leafless_octree_without_channel(const leafless_octree *octree, const char *name,
+    size_t name_length, leafless_octree **result);
+
+/// How many channels an octree has.
+///
+/// - Buffers: `count`, one number.
+/// - Result: `*count`, 0 to 256.
+/// - Untrusted input: any octree.
+leafless_status leafless_octree_channel_count(const leafless_octree *octree, uint64_t *count);
+
+/// A channel of an octree by its place among all, which stand in ascending order of their names.
+///
+/// - Buffers: `channel`, one pointer.
+/// - Result: `*channel`.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
+/// - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`,
+///   such as bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
+/// - Untrusted input: any octree.
+leafless_status leafless_octree_channel_at(const leafless_octree *octree, uint64_t index,
+    leafless_channel **channel);
+
+/// The channel of an octree with a name.
+///
+/// - Buffers: `name`, `name_length` bytes of UTF-8; `channel`, one pointer.
+/// - Result: `*channel`; NULL if there is no such channel.
+/// - Errors: LEAFLESS_E_UTF8.
+/// - Ownership: as leafless_octree_channel_at.
+/// - Untrusted input: any octree, any text.
+leafless_status leafless_octree_channel(const leafless_octree *octree, const char *name, size_t name_length,
+    leafless_channel **channel);
+
+/// An octree that was made of operands in the same cube, whatever the operation, with their channels.
+/// Channels of one name become one, in which at each point the values of those operands count that are not
+/// EMPTY there. A channel that only one operand has is shared as it is. The same bit for bit for any number
+/// of threads.
+///
+/// - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, by which channels
+///   are joined that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first
+///   that names a channel counts. `options`, one struct or NULL, of which limits concern each channel;
+///   `result`, one pointer.
+/// - Result: `*result`: the cells and metadata of `octree`; its own channels, but those of names that
+///   operands have; each channel with the metadata of the first operand that has it.
+/// - Errors: LEAFLESS_E_ARGUMENT if channels of one name have values of two types, or there are more than
+///   256; LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: as leafless_octree_with_channel.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octrees, any texts.
+leafless_status leafless_octree_carry_channels(const leafless_octree *octree,
+    const leafless_octree *const *operands, uint64_t count, leafless_carry carry,
+    const leafless_carry_rule *rules, uint64_t rule_count, const leafless_options *options,
+    leafless_octree **result);
+
+/* ---- 21. Voxel records -------------------------------------------------------------------------------- */
 
 /// What a voxel is: a number in the array `kinds`.
 LEAFLESS_ENUM(leafless_voxel_kind, uint8_t) {
@@ -3494,7 +4110,7 @@ LEAFLESS_ENUM(leafless_voxel_lists, uint32_t) {
 typedef struct leafless_voxel_options {
     uint32_t struct_size;  ///< sizeof(leafless_voxel_options).
     uint32_t boundary_depth;  ///< The level of boundary voxels; 0, and what is beyond, is the octree's depth.
-    uint32_t boundary;  ///< A leafless_voxel_boundary.
+    leafless_voxel_boundary boundary;  ///< A leafless_voxel_boundary.
     uint32_t lists;  ///< 0, or leafless_voxel_lists.
     /// The longest edge of inside voxels, in model units; 0: as long as the octree's cells.
     double coarse_model;
@@ -3506,7 +4122,7 @@ typedef struct leafless_voxel_options {
     const leafless_attribute *attribute;
     /// A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no
     /// longer than the coarse one. Without one, all inside voxels have the coarse edge or less.
-    uint32_t criterion;
+    leafless_criterion criterion;
     uint32_t reserved;  ///< Zero.
 } leafless_voxel_options;
 
@@ -3592,7 +4208,7 @@ leafless_status leafless_octree_from_voxels(const leafless_frame *lattice, const
     const uint8_t *levels, const uint8_t *kinds, uint64_t count, uint32_t boundary,
     const leafless_options *options, leafless_octree **octree);
 
-/* ---- 20. Surfaces ------------------------------------------------------------------------------------- */
+/* ---- 22. Surfaces ------------------------------------------------------------------------------------- */
 
 /// How a surface is made.
 LEAFLESS_ENUM(leafless_surface_method, uint32_t) {
@@ -3645,12 +4261,12 @@ LEAFLESS_ENUM(leafless_vertex_placement, uint32_t) {
 /// default. A field that the method does not use must be zero.
 typedef struct leafless_surface_options {
     uint32_t struct_size;  ///< sizeof(leafless_surface_options).
-    uint32_t method;  ///< A leafless_surface_method.
-    uint32_t snap;  ///< Of all methods but LEAFLESS_SURFACE_MARCHING_CUBES: a leafless_snap.
-    uint32_t resolve;  ///< Of octrees: a leafless_resolve. Solids decide all samples themselves.
+    leafless_surface_method method;  ///< A leafless_surface_method.
+    leafless_snap snap;  ///< Of all methods but LEAFLESS_SURFACE_MARCHING_CUBES: a leafless_snap.
+    leafless_resolve resolve;  ///< Of octrees: a leafless_resolve. Solids decide all samples themselves.
     /// Of LEAFLESS_SURFACE_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
     /// their solid's surface is.
-    uint32_t placement;
+    leafless_vertex_placement placement;
     uint32_t reserved;  ///< 0.
     const leafless_solid *source;  ///< Of LEAFLESS_RESOLVE_SOURCE: the solid that the octree was made from.
 } leafless_surface_options;
@@ -3729,7 +4345,7 @@ leafless_status leafless_solid_surface(const leafless_solid *solid, const leafle
 leafless_status leafless_volume_surface(const leafless_volume *volume, const leafless_interval *band,
     const leafless_options *options, leafless_mesh **mesh);
 
-/* ---- 21. Tri-dexel models ----------------------------------------------------------------------------- */
+/* ---- 23. Tri-dexel models ----------------------------------------------------------------------------- */
 
 /// The axes that rays run along. The numbers may be added.
 LEAFLESS_ENUM(leafless_axes, uint32_t) {
@@ -3804,7 +4420,7 @@ typedef struct leafless_tridexel_info {
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
 leafless_status leafless_tridexel_make(const leafless_solid *solid, const leafless_frame *frame,
-    uint32_t rule, const leafless_tridexel_format *format, const leafless_options *options,
+    leafless_rule rule, const leafless_tridexel_format *format, const leafless_options *options,
     leafless_tridexel **tridexel);
 
 /// One more reference to a tri-dexel model.
@@ -4074,8 +4690,9 @@ leafless_status leafless_tridexel_read_cells(const leafless_tridexel *tridexel, 
 /// - Ownership: the operands stay as they are; give `*result` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any models.
-leafless_status leafless_tridexel_combine(uint32_t operation, const leafless_tridexel *const *tridexels,
-    uint64_t count, const leafless_options *options, leafless_tridexel **result);
+leafless_status leafless_tridexel_combine(leafless_operation operation,
+    const leafless_tridexel *const *tridexels, uint64_t count, const leafless_options *options,
+    leafless_tridexel **result);
 
 /// The points of the universe that do not lie in `tridexel`. O(rays of the universe + intervals).
 ///
@@ -4302,8 +4919,9 @@ typedef struct leafless_long_voxel {
 /// - Ownership: `tridexel` stays as it is; give `*mesh` back with leafless_mesh_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
-leafless_status leafless_tridexel_surface(const leafless_tridexel *tridexel, uint32_t method,
-    const leafless_options *options, leafless_dexel_surface_report *report, leafless_mesh **mesh);
+leafless_status leafless_tridexel_surface(const leafless_tridexel *tridexel,
+    leafless_dexel_surface_method method, const leafless_options *options,
+    leafless_dexel_surface_report *report, leafless_mesh **mesh);
 
 /// The octree of a tri-dexel model: a finest cell is FULL if its centre lies inside, else EMPTY. It proves
 /// nothing.
@@ -4353,7 +4971,7 @@ leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel, cons
     const uint8_t *colours, uint64_t colour_count, leafless_long_voxel *voxels, uint64_t capacity,
     uint64_t *count);
 
-/* ---- 22. Files of octrees and tri-dexel models -------------------------------------------------------- */
+/* ---- 24. Files of octrees and tri-dexel models -------------------------------------------------------- */
 
 /// Major version of the file format that this library writes, and the only one that it reads.
 #define LEAFLESS_FORMAT_MAJOR 0
@@ -4646,618 +5264,6 @@ leafless_status leafless_tridexel_to_bytes(const leafless_tridexel *tridexel, ui
 leafless_status leafless_tridexel_write(const leafless_tridexel *tridexel, leafless_write_fn write,
     void *ctx);
 
-/* ---- 23. Attributes ----------------------------------------------------------------------------------- */
-
-/// What is known of the values in the interior of a box.
-LEAFLESS_ENUM(leafless_range_kind, uint32_t) {
-    LEAFLESS_RANGE_UNKNOWN = 0,  ///< Nothing.
-    LEAFLESS_RANGE_NOWHERE = 1,  ///< No point has a value.
-    LEAFLESS_RANGE_WITHIN = 2,  ///< Every point has a value, and each of its numbers lies in its interval.
-};
-
-/// What is known of the values of an attribute in the interior of a box.
-typedef struct leafless_value_range {
-    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_WITHIN. All
-    /// numbers are NaN otherwise, and beyond the numbers that a value has.
-    leafless_interval values[4];
-    uint32_t kind;  ///< A leafless_range_kind.
-} leafless_value_range;
-
-/// The attribute that has one value everywhere.
-///
-/// - Buffers: `value`, `components` numbers; `attribute`, one pointer.
-/// - Result: `*attribute`.
-/// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and no number NaN.
-/// - Ownership: give `*attribute` back with leafless_attribute_free.
-/// - Untrusted input: any numbers.
-leafless_status leafless_attribute_new_constant(const double *value, uint32_t components,
-    leafless_attribute **attribute);
-
-/// An attribute in another place: its value at the image M p + t of a point p is that of `operand` at p. It
-/// carries attributes and channels along with a solid that leafless_solid_placed moves by the same map. The
-/// map is inverted; what is rounded thereby moves the values by about 2^-50 of the coordinates.
-///
-/// - Buffers: `matrix`, 12 numbers, the rows of [M | t]; `attribute`, one pointer.
-/// - Result: `*attribute`.
-/// - Errors: LEAFLESS_E_ARGUMENT if an entry is neither 0 nor of a magnitude between 2^-64 and 2^64, M is
-///   singular, or an entry of the inverse is beyond 2^64.
-/// - Ownership: the operand is shared and may be freed; give `*attribute` back with leafless_attribute_free.
-/// - Untrusted input: any attribute and numbers.
-leafless_status leafless_attribute_placed(const leafless_attribute *operand, const double matrix[12],
-    leafless_attribute **attribute);
-
-/// How many numbers a value of an attribute has.
-///
-/// - Buffers: `components`, one number.
-/// - Result: `*components`, 1 to 4.
-/// - Untrusted input: any attribute.
-leafless_status leafless_attribute_components(const leafless_attribute *attribute, uint32_t *components);
-
-/// The values of an attribute at points.
-///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many
-///   numbers as leafless_attribute_components says. Both may be NULL if `count` is 0.
-/// - Result: the value at point i from `values[components * i]` on; NaN where there is none.
-/// - Errors: LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any attribute, any numbers.
-leafless_status leafless_attribute_values(const leafless_attribute *attribute, const double *points_model,
-    uint64_t count, double *values);
-
-/// What is known of the values of an attribute in the interior of a box.
-///
-/// - Buffers: `min_model` and `max_model`, 3 numbers each; `range`, one struct.
-/// - Result: `*range`.
-/// - Errors: LEAFLESS_E_ARGUMENT unless min <= max on every axis, and all coordinates are finite;
-///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED.
-/// - Untrusted input: any attribute, any numbers; the work is bounded.
-leafless_status leafless_attribute_range(const leafless_attribute *attribute, const double min_model[3],
-    const double max_model[3], leafless_value_range *range);
-
-/// One more reference to an attribute.
-///
-/// - Buffers: `attribute`, a handle; `reference`, one pointer.
-/// - Result: `*reference`, equal to `attribute`.
-/// - Ownership: give each reference back with leafless_attribute_free.
-leafless_status leafless_attribute_ref(const leafless_attribute *attribute, leafless_attribute **reference);
-
-/// Gives back a reference to an attribute; with the last one the attribute is gone. Channels that were filled
-/// from it stay.
-///
-/// - Buffers: `attribute`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
-/// - Threads: any; no other call may use this reference.
-void leafless_attribute_free(leafless_attribute *attribute);
-
-/// The value of the host's attribute at a point (3 numbers, model units): sets the numbers of `value`, as
-/// many as the attribute has components. All are NaN before; they stay so where there is no value, and a
-/// value whose first number is NaN is none. 0, or the number of the host's own error, which ends the
-/// operation with LEAFLESS_E_CALLBACK and the number in the message.
-///
-/// It is called from several threads at once, which may all be the library's own, unless the operation's
-/// options say `threads` = 1; and it must give the same answer to the same point. It must return: no
-/// exception, no longjmp. It may call this library.
-typedef int32_t (*leafless_attribute_value_fn)(void *ctx, const double *point, double *value);
-
-/// The values at `count` points (3 numbers each) at once, for hosts that do that faster than one by one: the
-/// numbers of the first, then those of the second, and so on. Else as leafless_attribute_value_fn.
-typedef int32_t (*leafless_attribute_values_fn)(void *ctx, const double *points, uint64_t count,
-    double *values);
-
-/// Bounds the values of the host's attribute in the interior of the box [min, max] (3 numbers each, model
-/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_UNKNOWN and all
-/// numbers are NaN before. The answer must be proven: a wrong range hides details that nobody looks for any
-/// more. An interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none ends
-/// the operation with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
-typedef int32_t (*leafless_attribute_range_fn)(void *ctx, const double *min, const double *max,
-    leafless_value_range *range);
-
-/// An attribute of the host. `components` and one of `value` and `values` must be set; all other fields but
-/// the first may be zero.
-typedef struct leafless_attribute_callbacks {
-    uint32_t struct_size;  ///< sizeof(leafless_attribute_callbacks).
-    uint32_t components;  ///< How many numbers a value has: 1 to 4.
-    leafless_attribute_value_fn value;  ///< The value at a point; not called if `values` is set.
-    leafless_attribute_values_fn values;  ///< The values at many points, as many as the work has at hand.
-    /// Bounds the values in a box; optional. With it channels that hardly change are filled without asking at
-    /// every cell, and LEAFLESS_CRITERION_RANGE misses no detail.
-    leafless_attribute_range_fn range;
-    leafless_destroy_fn destroy;  ///< Called when `ctx` is not needed any more; optional.
-    void *ctx;  ///< What the functions are called with.
-} leafless_attribute_callbacks;
-
-/// The host's own attribute.
-///
-/// - Buffers: `callbacks`, one struct, which is copied; `attribute`, one pointer.
-/// - Result: `*attribute`.
-/// - Errors: LEAFLESS_E_NULL if `value` and `values` are NULL; LEAFLESS_E_ARGUMENT unless `components` is 1
-///   to 4. After an error `destroy` is not called.
-/// - Ownership: `ctx` must live until `destroy` is called with it; give `*attribute` back with
-///   leafless_attribute_free.
-/// - Threads: any; in which the functions are called, leafless_attribute_value_fn says.
-/// - Untrusted input: any answers.
-leafless_status leafless_attribute_new_callbacks(const leafless_attribute_callbacks *callbacks,
-    leafless_attribute **attribute);
-
-/// What the triangles of a mesh bear, by its place among all: an array of values with a name. Files in PLY
-/// and 3MF give `colour` (red, green, blue and opacity from 0 to 255), 3MF `material` and `object` (numbers,
-/// which may have names); a mesh from a polyhedron has `face`, `shell` and `solid`, the numbers of the parts
-/// that a triangle belongs to.
-///
-/// - Buffers: `count`, one number; `name`, `name_length`, `components` and `per_corner`, one each, all NULL
-///   to ask for the count only.
-/// - Result: `*count`, the number of all attributes; the name in UTF-8, not NUL-terminated, with its length
-///   in bytes; `*components`, how many numbers a value has, 1 to 4; `*per_corner`, whether each corner of a
-///   triangle has a value, or each triangle one.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, unless only the count is asked for.
-/// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
-/// - Untrusted input: any mesh.
-leafless_status leafless_mesh_peek_attribute_at(const leafless_mesh *mesh, uint64_t index, uint64_t *count,
-    const char **name, size_t *name_length, uint32_t *components, bool *per_corner);
-
-/// What the value `value` of an attribute of a mesh is called: the name of a material or of an object.
-///
-/// - Buffers: `count`, one number; `name` and `name_length`, one each, both NULL to ask for the count only.
-/// - Result: `*count`, how many values from 0 on have names; the name in UTF-8, not NUL-terminated, with its
-///   length in bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`, or the value has no name, unless only the
-///   count is asked for.
-/// - Ownership: the name belongs to the mesh and lives as long as the reference `mesh`.
-/// - Untrusted input: any mesh.
-leafless_status leafless_mesh_peek_attribute_name_at(const leafless_mesh *mesh, uint64_t index,
-    uint64_t value, uint64_t *count, const char **name, size_t *name_length);
-
-/// The values of an attribute of a mesh at the corners of all triangles.
-///
-/// - Buffers: `values`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
-/// - Result: `*count`, 3 · components · triangles; in `values` the numbers at the three corners of the first
-///   triangle, then of the second: NaN where there is no value.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no attribute `index`; LEAFLESS_E_BUFFER if the capacity is too
-///   small.
-/// - Untrusted input: any mesh.
-leafless_status leafless_mesh_attribute_values(const leafless_mesh *mesh, uint64_t index, double *values,
-    uint64_t capacity, uint64_t *count);
-
-/// The body that each triangle of a mesh belongs to: a set of triangles that hang together over edges. Bodies
-/// are numbered from 0 by their first triangles. Shells that touch only in single vertices, or lie within
-/// each other, are different bodies.
-///
-/// - Buffers: `bodies`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
-/// - Result: `*count`, the number of triangles; in `bodies` one number for each.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any mesh.
-leafless_status leafless_mesh_bodies(const leafless_mesh *mesh, uint32_t *bodies, uint64_t capacity,
-    uint64_t *count);
-
-/// The attribute that has at each point what a mesh bears at the point of its surface that is nearest: the
-/// value of the nearest triangle, or, with values for corners, what lies between them. Of triangles that are
-/// equally near the first one counts. Its ranges are proven.
-///
-/// - Buffers: `name`, `name_length` bytes of UTF-8: that of an attribute of the mesh; `attribute`, one
-///   pointer.
-/// - Result: `*attribute`.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if the mesh has no such attribute; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
-/// - Untrusted input: any mesh, any text.
-leafless_status leafless_mesh_as_attribute(const leafless_mesh *mesh, const char *name, size_t name_length,
-    leafless_attribute **attribute);
-
-/// As leafless_mesh_as_attribute, of the host's own values: of bodies, faces, materials, or colours of
-/// corners.
-///
-/// - Buffers: `values`, `count` numbers: `components` for each triangle, or for each of its three corners,
-///   one behind the other; `attribute`, one pointer.
-/// - Result: `*attribute`. A value with a number that is not finite counts as none.
-/// - Errors: LEAFLESS_E_ARGUMENT unless `components` is 1 to 4, and there are values for all triangles;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the values are copied, the mesh is shared and may be freed; give `*attribute` back with
-///   leafless_attribute_free.
-/// - Untrusted input: any mesh, any numbers.
-leafless_status leafless_mesh_values_as_attribute(const leafless_mesh *mesh, const double *values,
-    uint64_t count, uint32_t components, bool per_corner, leafless_attribute **attribute);
-
-/* ---- 24. Channels ------------------------------------------------------------------------------------- */
-
-/// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even
-/// integer half-way.
-LEAFLESS_ENUM(leafless_scalar_type, uint32_t) {
-    LEAFLESS_SCALAR_F32 = 0,  ///< Finite numbers of single precision.
-    LEAFLESS_SCALAR_U8 = 1,  ///< Integers from 0 to 255.
-    LEAFLESS_SCALAR_U16 = 2,  ///< Integers from 0 to 65 535.
-    LEAFLESS_SCALAR_U32 = 3,  ///< Integers from 0 to 4 294 967 295.
-};
-
-/// What can be said of a channel at once.
-typedef struct leafless_channel_info {
-    leafless_frame frame;  ///< Where it lies: in the cube of its solid, with a depth of its own.
-    leafless_scalar_type scalar;  ///< The type of the numbers.
-    uint32_t components;  ///< How many numbers a value has: 1 to 4.
-    uint64_t value_count;  ///< Values that are stored: one for each run of equal ones.
-    uint64_t elements;  ///< Array elements and bricks of the tree.
-    uint64_t bytes;  ///< Bytes that the channel takes in memory.
-} leafless_channel_info;
-
-/// One more reference to a channel.
-///
-/// - Buffers: `channel`, a handle; `reference`, one pointer.
-/// - Result: `*reference`, equal to `channel`.
-/// - Ownership: give each reference back with leafless_channel_free.
-leafless_status leafless_channel_ref(const leafless_channel *channel, leafless_channel **reference);
-
-/// Gives back a reference to a channel. With the last one the channel is gone, and with it the mapping of its
-/// file, unless an octree, an attribute, or a channel with other metadata still shares it.
-///
-/// - Buffers: `channel`, a handle or NULL, which does nothing.
-/// - Ownership: the reference is gone.
-/// - Threads: any; no other call may use this reference.
-void leafless_channel_free(leafless_channel *channel);
-
-/// What can be said of a channel at once. O(1), but for a channel of a file that was mapped unverified: when
-/// such a channel is first read, by whichever function, its links are checked in one pass.
-///
-/// - Buffers: `info`, one struct.
-/// - Result: `*info`.
-/// - Errors: LEAFLESS_E_DAMAGED.
-/// - Untrusted input: any channel.
-leafless_status leafless_channel_describe(const leafless_channel *channel, leafless_channel_info *info);
-
-/// Checks that a channel is well-formed: O(n). Those that the library makes, opens or maps verified are.
-///
-/// - Result: LEAFLESS_OK if it is.
-/// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any channel.
-leafless_status leafless_channel_check(const leafless_channel *channel);
-
-/// Whether two channels have the same values in the same cells, of one type and on one frame. Metadata does
-/// not count. O(n).
-///
-/// - Buffers: `equal`, one truth value.
-/// - Result: `*equal`.
-/// - Untrusted input: any channels.
-leafless_status leafless_channel_equal(const leafless_channel *a, const leafless_channel *b, bool *equal);
-
-/// The values of a channel as an attribute, which may be placed, or fill a channel on another frame. It has
-/// no values outside of the channel's cube.
-///
-/// - Buffers: `attribute`, one pointer.
-/// - Result: `*attribute`.
-/// - Errors: only the general ones; asking for its values returns LEAFLESS_E_DAMAGED if the channel was
-///   mapped unverified and its links are damaged.
-/// - Ownership: the attribute shares the channel, which may be freed; give `*attribute` back with
-///   leafless_attribute_free.
-/// - Untrusted input: any channel.
-leafless_status leafless_channel_as_attribute(const leafless_channel *channel,
-    leafless_attribute **attribute);
-
-/// The channel with one more fact in its metadata, or with another value of one; the arrays are shared. Names
-/// in use: "name", by which a solid knows the channel, "unit" (of the values), "meaning" (what they are, such
-/// as "colour" or "density").
-///
-/// - Buffers: `key` and `value`, `key_length` and `value_length` bytes of UTF-8; `named`, one pointer.
-/// - Result: `*named`.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if all facts would take more than 64 KiB in a file, 8 bytes
-///   and the two texts each; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the texts are copied. `*named` shares the arrays of `channel`, which may be freed: what must
-///   outlive `channel`, such as bytes that it views, must outlive `*named` too. Give that back with
-///   leafless_channel_free.
-/// - Untrusted input: any texts.
-leafless_status leafless_channel_with_metadata(const leafless_channel *channel, const char *key,
-    size_t key_length, const char *value, size_t value_length, leafless_channel **named);
-
-/// The channel with one fact less in its metadata, or with none; the arrays are shared.
-///
-/// - Buffers: `key`, `key_length` bytes of UTF-8, or NULL for all facts; `unnamed`, one pointer.
-/// - Result: `*unnamed`; a fact that is not there need not be.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: as leafless_channel_with_metadata.
-/// - Untrusted input: any texts.
-leafless_status leafless_channel_without_metadata(const leafless_channel *channel, const char *key,
-    size_t key_length, leafless_channel **unnamed);
-
-/// The value of a fact in a channel's metadata, such as "name".
-///
-/// - Buffers: `key`, `key_length` bytes of UTF-8; `value` and `value_length`, one each.
-/// - Result: `*value`, not NUL-terminated; NULL if there is no such fact. `*value_length`, in bytes.
-/// - Errors: LEAFLESS_E_UTF8.
-/// - Ownership: the text belongs to the channel and lives as long as the reference `channel`.
-/// - Untrusted input: any channel.
-leafless_status leafless_channel_peek_metadata(const leafless_channel *channel, const char *key,
-    size_t key_length, const char **value, size_t *value_length);
-
-/// A fact of a channel's metadata by its place among all, which stand by ascending key.
-///
-/// - Buffers: `count`, one number; `key`, `key_length`, `value`, `value_length`, one each, all four NULL to
-///   ask for the count only.
-/// - Result: `*count`, the number of all facts; key and value, not NUL-terminated, with their lengths in
-///   bytes.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no fact `index`, unless only the count is asked for.
-/// - Ownership: the texts belong to the channel and live as long as the reference `channel`.
-/// - Untrusted input: any channel.
-leafless_status leafless_channel_peek_metadata_at(const leafless_channel *channel, uint64_t index,
-    uint64_t *count, const char **key, size_t *key_length, const char **value, size_t *value_length);
-
-/// How finely an attribute is followed.
-LEAFLESS_ENUM(leafless_criterion, uint32_t) {
-    /// To the finest cells, wherever it is not proven that all of a cell has one value.
-    LEAFLESS_CRITERION_NONE = 0,
-    /// Until the variance of the values at a cell's corners is at most the square of the tolerance. The
-    /// variance of several numbers is the sum of their variances. A detail between the corners is missed.
-    LEAFLESS_CRITERION_VARIANCE = 1,
-    /// Until the values in a cell are proven to differ by no more than the tolerance, in each of their
-    /// numbers. Nothing is missed. A cell whose range is unknown is split.
-    LEAFLESS_CRITERION_RANGE = 2,
-};
-
-/// How a channel is filled. NULL means the defaults. All fields but the first may be zero, which is their
-/// default.
-typedef struct leafless_channel_fill_options {
-    uint32_t struct_size;  ///< sizeof(leafless_channel_fill_options).
-    uint32_t scalar;  ///< A leafless_scalar_type: what numbers are rounded to.
-    /// How many numbers a value has, which is as many as those of the attribute; 0 does not ask.
-    uint32_t components;
-    uint32_t depth;  ///< Levels of the channel; 0 means those of the frame.
-    /// The solid inside which values matter; optional. Where it is EMPTY, the channel says whatever takes the
-    /// least memory.
-    const leafless_octree *solid;
-    /// A leafless_criterion. Unless it is LEAFLESS_CRITERION_NONE, a cell is split until its edge is at most
-    /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the
-    /// value at its centre.
-    uint32_t criterion;
-    uint32_t reserved;  ///< Zero.
-    double coarse_model;  ///< The longest edge of cells with a criterion; 0 means any.
-    /// The edge below which cells are not split any more, with a criterion, at most `coarse_model`; 0 means
-    /// that of the finest cells.
-    double fine_model;
-    double tolerance;  ///< The tolerance of the criterion, in the attribute's units; may be infinite.
-    const char *name;  ///< The name of the channel, `name_length` bytes of UTF-8; optional.
-    size_t name_length;  ///< The length of the name.
-} leafless_channel_fill_options;
-
-/// The channel of an attribute: each cell has the attribute's value at its centre, rounded to the type of the
-/// numbers; a cell whose centre has no value has none. Cells are as large as proven ranges and the criterion
-/// allow. The result is the same bit for bit for any number of threads.
-///
-/// Without a criterion the result is that of asking at the centre of every finest cell. An attribute without
-/// ranges is asked there: 8^depth times, or as often as the solid has cells that are not EMPTY.
-///
-/// - Buffers: `frame`, one struct, or NULL for the frame of `fill->solid`, which is then needed; `fill`, one
-///   struct or NULL; `options`, one struct or NULL; `channel`, one pointer.
-/// - Result: `*channel`, with the name as its only fact, if there is one.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, if a field of `fill` is wrong, or a value beyond
-///   the range of the type, infinite, or partly NaN; LEAFLESS_E_FRAME if the solid lies in another cube than
-///   the frame; LEAFLESS_E_NULL if both are missing; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: nothing is kept of the attribute, the solid and the name; give `*channel` back with
-///   leafless_channel_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any attribute, any octree; set `max_bytes` where the depth or the attribute is not your
-///   own choice.
-leafless_status leafless_channel_fill(const leafless_attribute *attribute, const leafless_frame *frame,
-    const leafless_channel_fill_options *fill, const leafless_options *options, leafless_channel **channel);
-
-/// The values of a channel at points. A point on a face between cells belongs to the upper one. O(depth)
-/// each.
-///
-/// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many
-///   numbers as `components` of leafless_channel_describe. Both may be NULL if `count` is 0.
-/// - Result: the value at point i from `values[components * i]` on; NaN where there is none, and outside of
-///   the channel's cube.
-/// - Errors: LEAFLESS_E_DAMAGED.
-/// - Untrusted input: any channel, any numbers; damage reads as no value.
-leafless_status leafless_channel_values(const leafless_channel *channel, const double *points_model,
-    uint64_t count, double *values);
-
-/// The value of a channel at a point, as leafless_channel_values.
-///
-/// - Buffers: `point_model`, 3 numbers; `value`, room for 4 numbers.
-/// - Result: `value`: as many numbers as the channel's values have, and 0 beyond them; four NaN if there is
-///   none.
-/// - Errors: LEAFLESS_E_DAMAGED.
-/// - Untrusted input: any channel, any numbers; damage reads as no value.
-leafless_status leafless_channel_value(const leafless_channel *channel, const double point_model[3],
-    double value[4]);
-
-/// The value of a finest cell of a channel's own frame. O(depth).
-///
-/// - Buffers: `cell`, 3 numbers; `value`, room for 4 numbers.
-/// - Result: `value`, as leafless_channel_value; four NaN if a coordinate is not below 2^depth.
-/// - Errors: LEAFLESS_E_DAMAGED.
-/// - Untrusted input: any channel, any numbers; damage reads as no value.
-leafless_status leafless_channel_value_of_cell(const leafless_channel *channel, const uint32_t cell[3],
-    double value[4]);
-
-/// The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the
-/// deeper of the two. The same bit for bit for any number of threads.
-///
-/// - Buffers: `region`, a handle; `value`, as many numbers as the channel's values have, or NULL to take
-///   values away; `options`, one struct or NULL; `changed`, one pointer.
-/// - Result: `*changed`, with the metadata of `channel`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the value is beyond the type's range, or not finite; LEAFLESS_E_FRAME
-///   unless both lie in one cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `channel` stays as it is; give `*changed` back with leafless_channel_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any channel, any octree, any numbers.
-leafless_status leafless_channel_with_value_in(const leafless_channel *channel, const leafless_octree *region,
-    const double *value, const leafless_options *options, leafless_channel **changed);
-
-/// What lies between the samples of a volume.
-LEAFLESS_ENUM(leafless_interpolation, uint32_t) {
-    /// The trilinear interpolation of the eight samples around a point.
-    LEAFLESS_INTERPOLATION_TRILINEAR = 0,
-    /// The sample of the voxel that contains the point; on a face between voxels, that of the upper one.
-    LEAFLESS_INTERPOLATION_NEAREST = 1,
-};
-
-/// What the values of a channel amount to in a region, number by number; places beyond the numbers of a value
-/// are 0. All intervals contain the truth, as far as the cells of the solid and of the channel tell it.
-typedef struct leafless_channel_summary {
-    double least[4];  ///< The least value of any cell that may belong to the region.
-    double greatest[4];  ///< The greatest value of any cell that may belong to the region.
-    /// The integral of the value over the region, in the value's units times cubic model units: of a density,
-    /// the mass.
-    leafless_interval integral[4];
-    leafless_interval mean[4];  ///< The mean value.
-    leafless_interval volume_model;  ///< The volume of the region that has values, in cubic model units.
-    leafless_interval volume_without_model;  ///< The volume of the region that has none.
-    bool has_values;  ///< Whether any of the region may have a value. If not, all else is 0.
-} leafless_channel_summary;
-
-/// Volume, centroid and inertia of the part of a solid that has one value.
-typedef struct leafless_material {
-    double value[4];  ///< The value; places beyond its numbers are 0.
-    leafless_measures measures;  ///< Measures of the points of the solid that have the value, of density 1.
-} leafless_material;
-
-/// Least, greatest, mean and integral of a channel's values in the part of a solid that lies in a box, whose
-/// faces may lie anywhere. O(cells that the box meets).
-///
-/// - Buffers: `solid`, a handle, or NULL for all space; `min_model` and `max_model`, 3 numbers each, which
-///   may be infinite, or both NULL for all of the channel's cube; `options`, one struct or NULL, of which
-///   limits do not matter; `summary`, one struct.
-/// - Result: `*summary`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a coordinate is not a number, or min > max; LEAFLESS_E_FRAME if the solid
-///   lies in another cube; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED.
-/// - Untrusted input: any channel, any octree, any numbers.
-leafless_status leafless_channel_summarise(const leafless_channel *channel, const leafless_octree *solid,
-    const double min_model[3], const double max_model[3], const leafless_options *options,
-    leafless_channel_summary *summary);
-
-/// The octree of the cells whose values lie in a band: every number between those of `low` and `high`, both
-/// included. Where there is no value, it is EMPTY. It lies on the channel's frame, and nothing is PARTIAL. A
-/// Boolean makes it that of a part: of a material, of all that is hotter than a limit.
-///
-/// - Buffers: `low` and `high`, as many numbers each as the channel's values have, which may be infinite;
-///   `options`, one struct or NULL; `octree`, one pointer.
-/// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a bound is not a number; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any channel, any numbers.
-leafless_status leafless_channel_region(const leafless_channel *channel, const double *low,
-    const double *high, const leafless_options *options, leafless_octree **octree);
-
-/// Measures the parts of a solid in which a channel has one value, each as leafless_solid_measure: one for
-/// each value of the channel that the solid may have somewhere, in ascending order of the values. The channel
-/// is taken as it is; its cells decide what is which material. To ask for the count alone takes as long.
-///
-/// - Buffers: `frame`, one struct: where the solid is split, in the channel's cube; `options`, one struct or
-///   NULL; `measured`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
-///   `relative` and `absolute_model` are those of leafless_solid_measure.
-/// - Result: `*count`; the materials.
-/// - Errors: LEAFLESS_E_LIMIT if the channel has more than 4096 different values; LEAFLESS_E_FRAME unless
-///   `frame` is of the channel's cube; LEAFLESS_E_BUFFER if the capacity is too small; else as
-///   leafless_solid_measure.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any solid, any channel; the default of `max_splits` bounds the work for each value.
-leafless_status leafless_solid_materials(const leafless_solid *solid, const leafless_channel *channel,
-    const leafless_frame *frame, double relative, double absolute_model, const leafless_options *options,
-    leafless_material *measured, uint64_t capacity, uint64_t *count);
-
-/// The samples of a volume as an attribute of one number, where the file says that they lie. There is no
-/// value outside of the voxels, nor where a sample that counts is not a number. The first solid, range or
-/// attribute of a volume reads all samples, in O(n).
-///
-/// - Buffers: `interpolation`, a leafless_interpolation; `options`, one struct or NULL, of which limits do
-///   not matter; `attribute`, one pointer.
-/// - Result: `*attribute`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the map that places the volume has no inverse that a map can have;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the attribute shares the samples, and `volume` may be freed; give `*attribute` back with
-///   leafless_attribute_free.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any volume.
-leafless_status leafless_volume_as_attribute(const leafless_volume *volume, uint32_t interpolation,
-    const leafless_options *options, leafless_attribute **attribute);
-
-/// Whose value a point has that lies in several operands.
-LEAFLESS_ENUM(leafless_carry, uint32_t) {
-    LEAFLESS_CARRY_LEFT = 0,  ///< The first operand's that has one.
-    LEAFLESS_CARRY_RIGHT = 1,  ///< The last operand's that has one.
-    LEAFLESS_CARRY_MAX = 2,  ///< The greatest of all, number by number.
-    LEAFLESS_CARRY_MEAN = 3,  ///< The mean of all, number by number, rounded to the type.
-};
-
-/// How channels of one name are carried.
-typedef struct leafless_carry_rule {
-    const char *name;  ///< The name of the channels, `name_length` bytes of UTF-8.
-    size_t name_length;  ///< The length of the name.
-    uint32_t carry;  ///< A leafless_carry.
-} leafless_carry_rule;
-
-/// The octree with one more channel, in the place of one of the same name, if there is one; the arrays of
-/// both are shared. A channel without a name has the empty one.
-///
-/// - Buffers: `result`, one pointer.
-/// - Result: `*result`, with the metadata of `octree`.
-/// - Errors: LEAFLESS_E_FRAME if the channel lies in another cube than the octree; LEAFLESS_E_ARGUMENT if
-///   there are 256 channels already; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: `*result` shares the arrays of `octree` and `channel`, which may be freed: what must outlive
-///   these, such as bytes that they view, must outlive `*result` too. Give that back with
-///   leafless_octree_free.
-/// - Untrusted input: any octree, any channel.
-leafless_status leafless_octree_with_channel(const leafless_octree *octree, const leafless_channel *channel,
-    leafless_octree **result);
-
-/// The octree without the channel of a name, or without any; the arrays are shared.
-///
-/// - Buffers: `name`, `name_length` bytes of UTF-8, or NULL for all channels; `result`, one pointer.
-/// - Result: `*result`, with the metadata of `octree`; a channel that is not there need not be.
-/// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: as leafless_octree_with_channel.
-/// - Untrusted input: any octree, any text.
-leafless_status leafless_octree_without_channel(const leafless_octree *octree, const char *name,
-    size_t name_length, leafless_octree **result);
-
-/// How many channels an octree has.
-///
-/// - Buffers: `count`, one number.
-/// - Result: `*count`, 0 to 256.
-/// - Untrusted input: any octree.
-leafless_status leafless_octree_channel_count(const leafless_octree *octree, uint64_t *count);
-
-/// A channel of an octree by its place among all, which stand in ascending order of their names.
-///
-/// - Buffers: `channel`, one pointer.
-/// - Result: `*channel`.
-/// - Errors: LEAFLESS_E_ARGUMENT if there is no channel `index`.
-/// - Ownership: `*channel` shares the arrays of `octree`, which may be freed: what must outlive `octree`,
-///   such as bytes that it views, must outlive `*channel` too. Give that back with leafless_channel_free.
-/// - Untrusted input: any octree.
-leafless_status leafless_octree_channel_at(const leafless_octree *octree, uint64_t index,
-    leafless_channel **channel);
-
-/// The channel of an octree with a name.
-///
-/// - Buffers: `name`, `name_length` bytes of UTF-8; `channel`, one pointer.
-/// - Result: `*channel`; NULL if there is no such channel.
-/// - Errors: LEAFLESS_E_UTF8.
-/// - Ownership: as leafless_octree_channel_at.
-/// - Untrusted input: any octree, any text.
-leafless_status leafless_octree_channel(const leafless_octree *octree, const char *name, size_t name_length,
-    leafless_channel **channel);
-
-/// An octree that was made of operands in the same cube, whatever the operation, with their channels.
-/// Channels of one name become one, in which at each point the values of those operands count that are not
-/// EMPTY there. A channel that only one operand has is shared as it is. The same bit for bit for any number
-/// of threads.
-///
-/// - Buffers: `octree`, a handle; `operands`, `count` handles; `carry`, a leafless_carry, by which channels
-///   are joined that none of `rules` names; `rules`, `rule_count` structs, or NULL if that is 0; the first
-///   that names a channel counts. `options`, one struct or NULL, of which limits concern each channel;
-///   `result`, one pointer.
-/// - Result: `*result`: the cells and metadata of `octree`; its own channels, but those of names that
-///   operands have; each channel with the metadata of the first operand that has it.
-/// - Errors: LEAFLESS_E_ARGUMENT if channels of one name have values of two types, or there are more than
-///   256; LEAFLESS_E_FRAME unless all lie in one cube; LEAFLESS_E_UTF8; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT;
-///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: as leafless_octree_with_channel.
-/// - Threads: any; uses as many as `options` says.
-/// - Untrusted input: any octrees, any texts.
-leafless_status leafless_octree_carry_channels(const leafless_octree *octree,
-    const leafless_octree *const *operands, uint64_t count, uint32_t carry, const leafless_carry_rule *rules,
-    uint64_t rule_count, const leafless_options *options, leafless_octree **result);
-
 /* ---- 25. Pictures ------------------------------------------------------------------------------------- */
 
 /// From where a picture is taken. leafless_camera_fitted sets all of it; a host may as well.
@@ -5304,7 +5310,7 @@ LEAFLESS_ENUM(leafless_colour_map, uint32_t) {
 /// their default.
 typedef struct leafless_transfer {
     uint32_t struct_size;  ///< sizeof(leafless_transfer).
-    uint32_t map;  ///< A leafless_colour_map.
+    leafless_colour_map map;  ///< A leafless_colour_map.
     double range_lower;  ///< The value at the map's beginning.
     double range_upper;  ///< The value at its end; greater than `range_lower`.
     /// Of volumes: the opacity, 0 to 1, of a path of `length_model` through the value `range_lower`. Between
@@ -5377,7 +5383,7 @@ typedef struct leafless_look {
     /// The colour of what clip planes cut open, and of a mesh's faces that are seen from behind; all zero:
     /// orange, or of a mesh the face's own colour mixed with orange.
     uint8_t inside[4];
-    uint32_t edges;  ///< A leafless_edges.
+    leafless_edges edges;  ///< A leafless_edges.
     uint8_t edge_colour[4];  ///< The colour of edges; all zero: dark grey.
     /// The width of edges in pixels, at most 256, or of octrees and solids 8; 0: 1, or of octrees and solids
     /// 1.5.
@@ -5649,7 +5655,7 @@ typedef struct leafless_legend_box {
 ///   as it must be; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The picture is then as it was.
 /// - Untrusted input: any bytes.
 leafless_status leafless_picture_draw_bar(uint8_t *colours, uint32_t width, uint32_t height,
-    const char *title, size_t title_length, const leafless_transfer *transfer, uint32_t side,
+    const char *title, size_t title_length, const leafless_transfer *transfer, leafless_legend_side side,
     leafless_legend_box *covered);
 
 /// A colour and what it stands for.
@@ -5670,7 +5676,7 @@ typedef struct leafless_legend_name {
 /// - Untrusted input: any bytes.
 leafless_status leafless_picture_draw_names(uint8_t *colours, uint32_t width, uint32_t height,
     const char *title, size_t title_length, const leafless_legend_name *names, uint64_t name_count,
-    uint32_t side, leafless_legend_box *covered);
+    leafless_legend_side side, leafless_legend_box *covered);
 
 #ifdef __cplusplus
 } /* extern "C" */

@@ -70,9 +70,10 @@
  * zero is the default: LEAFLESS_INIT(type) makes it. Programs that were compiled with an older, shorter
  * struct go on working. Other structs are fixed for one LEAFLESS_ABI.
  *
- * Numbers. An enumeration comes in as a number of its type, and is checked. In C, write leafless_tag for a
- * variable, not enum leafless_tag: only the former has the size that the library writes. Lengths of texts and
- * structs are size_t; all other lengths and counts are uint64_t.
+ * Numbers. A number that stands for a member of an enumeration has its type, and is checked: C++ refuses
+ * another type, and the library refuses a number that is no member. In C, write leafless_tag for a variable,
+ * not enum leafless_tag: only the former has the size that the library writes. Lengths of texts and structs
+ * are size_t; all other lengths and counts are uint64_t.
  *
  * Texts. A text is UTF-8 of a given length in bytes, and may be NULL if the length is 0. A path is UTF-8 on
  * every platform, and never empty.

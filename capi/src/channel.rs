@@ -4,6 +4,7 @@ use super::attribute::{give as give_attribute, leafless_attribute};
 use super::boundary::{guard, handle, out, refer, release, shared};
 use super::frame::leafless_frame;
 use super::metadata::{self, Fact};
+use super::number::enumeration;
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::attribute::{Channel, ScalarType};
@@ -33,6 +34,15 @@ pub enum leafless_scalar_type {
     LEAFLESS_SCALAR_U16 = 2,
     /// Integers from 0 to 4 294 967 295.
     LEAFLESS_SCALAR_U32 = 3,
+}
+
+enumeration! {
+    leafless_scalar_type => ScalarType {
+        LEAFLESS_SCALAR_F32 => ScalarType::F32,
+        LEAFLESS_SCALAR_U8 => ScalarType::U8,
+        LEAFLESS_SCALAR_U16 => ScalarType::U16,
+        LEAFLESS_SCALAR_U32 => ScalarType::U32,
+    }
 }
 
 impl From<ScalarType> for leafless_scalar_type {

@@ -5,15 +5,14 @@ use super::boundary::{Failure, Sized32, array, guard, out, shared, sized, slice,
 use super::channel::{give, leafless_channel, leafless_scalar_type};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
+use super::number::{Number, enumeration};
 use super::octree::leafless_octree;
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::Metadata;
+use leafless::attribute::ValueType;
 use leafless::attribute::{Attribute, Criterion, Detail, FillOptions, fill_channel};
-use leafless::attribute::{ScalarType, ValueType};
 use leafless::octree::MetadataLimit;
-use leafless_criterion::*;
-use leafless_scalar_type::*;
 
 /// How finely an attribute is followed.
 #[derive(Clone, Copy)]
@@ -29,6 +28,14 @@ pub enum leafless_criterion {
     LEAFLESS_CRITERION_RANGE = 2,
 }
 
+enumeration! {
+    leafless_criterion => Option<Criterion> {
+        LEAFLESS_CRITERION_NONE => None,
+        LEAFLESS_CRITERION_VARIANCE => Some(Criterion::Variance),
+        LEAFLESS_CRITERION_RANGE => Some(Criterion::Range),
+    }
+}
+
 /// How a channel is filled. NULL means the defaults. All fields but the first may be zero, which is their
 /// default.
 #[derive(Clone, Copy)]
@@ -37,7 +44,7 @@ pub struct leafless_channel_fill_options {
     /// sizeof(leafless_channel_fill_options).
     pub struct_size: u32,
     /// A leafless_scalar_type: what numbers are rounded to.
-    pub scalar: u32,
+    pub scalar: Number<leafless_scalar_type>,
     /// How many numbers a value has, which is as many as those of the attribute; 0 does not ask.
     pub components: u32,
     /// Levels of the channel; 0 means those of the frame.
@@ -48,7 +55,7 @@ pub struct leafless_channel_fill_options {
     /// A leafless_criterion. Unless it is LEAFLESS_CRITERION_NONE, a cell is split until its edge is at most
     /// `coarse_model` and the criterion holds, or until its edge is at most `fine_model`. It then has the value at its
     /// centre.
-    pub criterion: u32,
+    pub criterion: Number<leafless_criterion>,
     /// Zero.
     pub reserved: u32,
     /// The longest edge of cells with a criterion; 0 means any.
@@ -69,15 +76,7 @@ unsafe impl Sized32 for leafless_channel_fill_options {}
 
 impl leafless_channel_fill_options {
     fn value_type(&self, attribute: &dyn Attribute) -> Result<ValueType, Failure> {
-        let scalar = match self.scalar {
-            given if given == LEAFLESS_SCALAR_F32 as u32 => ScalarType::F32,
-            given if given == LEAFLESS_SCALAR_U8 as u32 => ScalarType::U8,
-            given if given == LEAFLESS_SCALAR_U16 as u32 => ScalarType::U16,
-            given if given == LEAFLESS_SCALAR_U32 as u32 => ScalarType::U32,
-            _ => {
-                return Err(Failure::Argument { name: "fill.scalar", problem: "is no leafless_scalar_type" });
-            }
-        };
+        let scalar = self.scalar.known("fill.scalar")?;
         let components = match self.components {
             0 => attribute.components(),
             given => components(given, "fill.components")?,
@@ -86,17 +85,12 @@ impl leafless_channel_fill_options {
     }
 
     fn detail(&self) -> Result<Option<Detail>, Failure> {
-        let refused = |name, problem| Err(Failure::Argument { name, problem });
-        let criterion = match self.criterion {
-            given if given == LEAFLESS_CRITERION_NONE as u32 => {
-                if self.coarse_model != 0.0 || self.fine_model != 0.0 || self.tolerance != 0.0 {
-                    return refused("fill.criterion", "is needed for edges and a tolerance");
-                }
-                return Ok(None);
+        let Some(criterion) = self.criterion.known("fill.criterion")? else {
+            if self.coarse_model != 0.0 || self.fine_model != 0.0 || self.tolerance != 0.0 {
+                let problem = "is needed for edges and a tolerance";
+                return Err(Failure::Argument { name: "fill.criterion", problem });
             }
-            given if given == LEAFLESS_CRITERION_VARIANCE as u32 => Criterion::Variance,
-            given if given == LEAFLESS_CRITERION_RANGE as u32 => Criterion::Range,
-            _ => return refused("fill.criterion", "is no leafless_criterion"),
+            return Ok(None);
         };
         let coarse = if self.coarse_model == 0.0 { f64::INFINITY } else { self.coarse_model };
         // No cell is that small.

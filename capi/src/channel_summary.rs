@@ -1,11 +1,12 @@
 //! What the values of channels amount to, and where they lie in a band.
 
 use super::attribute::{give as give_attribute, leafless_attribute};
-use super::boundary::{Failure, array, buffer, guard, out, shared, slice};
+use super::boundary::{array, buffer, guard, out, shared, slice};
 use super::channel::leafless_channel;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::measure::leafless_measures;
+use super::number::{Number, enumeration};
 use super::octree::{give as give_octree, leafless_octree};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
@@ -16,7 +17,6 @@ use leafless::attribute::{
 };
 use leafless::solid::Band;
 use leafless::{Bounds, Interval};
-use leafless_interpolation::*;
 
 /// What lies between the samples of a volume.
 #[derive(Clone, Copy)]
@@ -26,6 +26,13 @@ pub enum leafless_interpolation {
     LEAFLESS_INTERPOLATION_TRILINEAR = 0,
     /// The sample of the voxel that contains the point; on a face between voxels, that of the upper one.
     LEAFLESS_INTERPOLATION_NEAREST = 1,
+}
+
+enumeration! {
+    leafless_interpolation => Interpolation {
+        LEAFLESS_INTERPOLATION_TRILINEAR => Interpolation::Trilinear,
+        LEAFLESS_INTERPOLATION_NEAREST => Interpolation::Nearest,
+    }
 }
 
 /// What the values of a channel amount to in a region, number by number; places beyond the numbers of a value
@@ -217,20 +224,13 @@ pub unsafe extern "C" fn leafless_solid_materials(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_as_attribute(
     volume: *const leafless_volume,
-    interpolation: u32,
+    interpolation: Number<leafless_interpolation>,
     options: *const leafless_options,
     attribute: *mut *mut leafless_attribute,
 ) -> leafless_status {
     guard(|| unsafe {
         let volume = shared(volume, "volume")?;
-        let interpolation = match interpolation {
-            given if given == LEAFLESS_INTERPOLATION_TRILINEAR as u32 => Interpolation::Trilinear,
-            given if given == LEAFLESS_INTERPOLATION_NEAREST as u32 => Interpolation::Nearest,
-            _ => {
-                let problem = "is no leafless_interpolation";
-                return Err(Failure::Argument { name: "interpolation", problem });
-            }
-        };
+        let interpolation = interpolation.known("interpolation")?;
         let attribute = out(attribute, "attribute")?;
         // Any band will do.
         let band = Band::between(f64::NEG_INFINITY, f64::INFINITY)?;

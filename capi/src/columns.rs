@@ -3,8 +3,9 @@
 use super::boundary::{Failure, array, buffer, guard, handle, out, release, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
+use super::number::{Number, enumeration};
 use super::octree::leafless_octree;
-use super::rays::obstacle;
+use super::rays::leafless_obstacle;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::query::{ColumnCells, Columns, Heights, Obstacle, Run, Side, columns, heights};
@@ -59,11 +60,10 @@ unsafe fn rectangle(
     unsafe { Ok(Columns::within(axis, array(first, "first")?, array(end, "end")?)?) }
 }
 
-fn side(side: u32) -> Result<Side, Failure> {
-    match side {
-        0 => Ok(Side::Above),
-        1 => Ok(Side::Below),
-        _ => Err(Failure::Argument { name: "side", problem: "must be a leafless_side" }),
+enumeration! {
+    leafless_side => Side {
+        LEAFLESS_SIDE_ABOVE => Side::Above,
+        LEAFLESS_SIDE_BELOW => Side::Below,
     }
 }
 
@@ -144,7 +144,7 @@ pub unsafe extern "C" fn leafless_solid_columns(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_columns_read(
     columns: *const leafless_columns,
-    on: u32,
+    on: Number<leafless_obstacle>,
     offsets: *mut u64,
     offset_capacity: u64,
     offset_count: *mut u64,
@@ -154,7 +154,7 @@ pub unsafe extern "C" fn leafless_columns_read(
 ) -> leafless_status {
     guard(|| unsafe {
         let cells = &shared(columns, "columns")?.0;
-        let found = match obstacle(on)? {
+        let found = match on.known("on")? {
             Obstacle::Full => &cells.full,
             Obstacle::Upper => &cells.upper,
         };
@@ -229,7 +229,7 @@ pub unsafe extern "C" fn leafless_octree_heights(
     axis: u32,
     first: *const u32,
     end: *const u32,
-    side: u32,
+    side: Number<leafless_side>,
     heights_model: *mut leafless_interval,
     capacity: u64,
     count: *mut u64,
@@ -237,7 +237,7 @@ pub unsafe extern "C" fn leafless_octree_heights(
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
         let rectangle = rectangle(octree.frame(), axis, first, end)?;
-        let side = self::side(side)?;
+        let side = side.known("side")?;
         let found = || Ok(octree.heights(&rectangle, side)?);
         write_heights(&rectangle, found, (heights_model, capacity, count))
     })
@@ -262,7 +262,7 @@ pub unsafe extern "C" fn leafless_solid_heights(
     axis: u32,
     first: *const u32,
     end: *const u32,
-    side: u32,
+    side: Number<leafless_side>,
     options: *const leafless_options,
     heights_model: *mut leafless_interval,
     capacity: u64,
@@ -272,7 +272,7 @@ pub unsafe extern "C" fn leafless_solid_heights(
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
         let rectangle = rectangle(&frame, axis, first, end)?;
-        let side = self::side(side)?;
+        let side = side.known("side")?;
         let found = || controlled(options, |control| self::heights(solid, &frame, &rectangle, side, control));
         write_heights(&rectangle, found, (heights_model, capacity, count))
     })

@@ -1,7 +1,8 @@
 //! Constructive solid geometry: half-spaces, primitives, and the set operations that join solids.
 
 use super::boundary::{Failure, array, guard, out, shared, slice};
-use super::operation::{leafless_operation::*, operands, operation};
+use super::number::{Number, enumeration};
+use super::operation::{leafless_operation, leafless_operation::*, operands};
 use super::solid::{give, give_any, leafless_solid};
 use super::status::leafless_status;
 use leafless::Affine;
@@ -21,13 +22,11 @@ pub enum leafless_touch {
     /// outside is PARTIAL. It reproduces published tables and is no better for anything else.
     LEAFLESS_TOUCH_PAPER = 1,
 }
-use leafless_touch::*;
 
-fn touch(touch: u32) -> Result<Touch, Failure> {
-    match touch {
-        _ if touch == LEAFLESS_TOUCH_EXACT as u32 => Ok(Touch::Exact),
-        _ if touch == LEAFLESS_TOUCH_PAPER as u32 => Ok(Touch::Paper),
-        _ => Err(Failure::Argument { name: "touch", problem: "is no leafless_touch" }),
+enumeration! {
+    leafless_touch => Touch {
+        LEAFLESS_TOUCH_EXACT => Touch::Exact,
+        LEAFLESS_TOUCH_PAPER => Touch::Paper,
     }
 }
 
@@ -342,13 +341,13 @@ pub unsafe extern "C" fn leafless_solid_new_convex(
 /// - Untrusted input: any solids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_combine(
-    operation: u32,
+    operation: Number<leafless_operation>,
     solids: *const *const leafless_solid,
     count: u64,
     result: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operation = self::operation(operation)?;
+        let operation = operation.known("operation")?;
         let may_be_none = !matches!(operation, LEAFLESS_OPERATION_DIFFERENCE);
         let solids = operands(solids, count, may_be_none, "solids", expression)?;
         let result = out(result, "result")?;
@@ -478,12 +477,12 @@ pub unsafe extern "C" fn leafless_solid_adaptive(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_with_touch(
     operand: *const leafless_solid,
-    touch: u32,
+    touch: Number<leafless_touch>,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
         let operand = expression(shared(operand, "operand")?);
-        let touch = self::touch(touch)?;
+        let touch = touch.known("touch")?;
         let solid = out(solid, "solid")?;
         solid.write(give(operand.with_touch(touch)))
     })

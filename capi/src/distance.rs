@@ -5,6 +5,7 @@ use super::cells::{leafless_cell, tags};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::measure::leafless_measured;
+use super::number::{Number, enumeration};
 use super::octree::leafless_octree;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
@@ -23,12 +24,11 @@ pub enum leafless_distance_to {
     LEAFLESS_DISTANCE_TO_BOUNDARY = 2,
 }
 
-fn target(to: u32) -> Result<DistanceTo, Failure> {
-    match to {
-        0 => Ok(DistanceTo::Solid),
-        1 => Ok(DistanceTo::Complement),
-        2 => Ok(DistanceTo::Boundary),
-        _ => Err(Failure::Argument { name: "to", problem: "must be a leafless_distance_to" }),
+enumeration! {
+    leafless_distance_to => DistanceTo {
+        LEAFLESS_DISTANCE_TO_SOLID => DistanceTo::Solid,
+        LEAFLESS_DISTANCE_TO_COMPLEMENT => DistanceTo::Complement,
+        LEAFLESS_DISTANCE_TO_BOUNDARY => DistanceTo::Boundary,
     }
 }
 
@@ -96,14 +96,14 @@ pub unsafe extern "C" fn leafless_octree_distances(
     octree: *const leafless_octree,
     points_model: *const f64,
     count: u64,
-    to: u32,
+    to: Number<leafless_distance_to>,
     options: *const leafless_options,
     distances_model: *mut leafless_interval,
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
         let points: &[[f64; 3]] = slice(points_model.cast(), count, "points_model")?;
-        let to = target(to)?;
+        let to = to.known("to")?;
         if count > 0 {
             out(distances_model, "distances_model")?;
         }
@@ -138,7 +138,7 @@ pub unsafe extern "C" fn leafless_solid_distances(
     frame: *const leafless_frame,
     points_model: *const f64,
     count: u64,
-    to: u32,
+    to: Number<leafless_distance_to>,
     tolerance_model: f64,
     options: *const leafless_options,
     distances: *mut leafless_point_distance,
@@ -147,7 +147,7 @@ pub unsafe extern "C" fn leafless_solid_distances(
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
         let points: &[[f64; 3]] = slice(points_model.cast(), count, "points_model")?;
-        let to = target(to)?;
+        let to = to.known("to")?;
         if count > 0 {
             out(distances, "distances")?;
         }

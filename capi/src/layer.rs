@@ -2,11 +2,11 @@
 
 use super::attribute::{AnyAttribute, components, leafless_attribute};
 use super::boundary::{Failure, Sized32, guard, handle, out, refer, release, shared, sized, slice};
+use super::number::{Number, enumeration};
 use super::status::leafless_status;
 use leafless::Bounds;
 use leafless::attribute::Attribute;
 use leafless::render::{Clip, ClippedLayer, ColourMap, Layer, Transfer};
-use leafless_colour_map::*;
 use std::sync::Arc;
 
 /// Something that is seen in a picture: the surface of an octree, a solid or a mesh, lines, a plane section, voxels.
@@ -61,15 +61,14 @@ pub enum leafless_colour_map {
     LEAFLESS_COLOUR_MAP_GREY = 5,
 }
 
-fn colour_map(map: u32) -> Result<ColourMap, Failure> {
-    match map {
-        _ if map == LEAFLESS_COLOUR_MAP_VIRIDIS as u32 => Ok(ColourMap::Viridis),
-        _ if map == LEAFLESS_COLOUR_MAP_CIVIDIS as u32 => Ok(ColourMap::Cividis),
-        _ if map == LEAFLESS_COLOUR_MAP_INFERNO as u32 => Ok(ColourMap::Inferno),
-        _ if map == LEAFLESS_COLOUR_MAP_MAGMA as u32 => Ok(ColourMap::Magma),
-        _ if map == LEAFLESS_COLOUR_MAP_PLASMA as u32 => Ok(ColourMap::Plasma),
-        _ if map == LEAFLESS_COLOUR_MAP_GREY as u32 => Ok(ColourMap::Grey),
-        _ => Err(Failure::Argument { name: "transfer.map", problem: "is no leafless_colour_map" }),
+enumeration! {
+    leafless_colour_map => ColourMap {
+        LEAFLESS_COLOUR_MAP_VIRIDIS => ColourMap::Viridis,
+        LEAFLESS_COLOUR_MAP_CIVIDIS => ColourMap::Cividis,
+        LEAFLESS_COLOUR_MAP_INFERNO => ColourMap::Inferno,
+        LEAFLESS_COLOUR_MAP_MAGMA => ColourMap::Magma,
+        LEAFLESS_COLOUR_MAP_PLASMA => ColourMap::Plasma,
+        LEAFLESS_COLOUR_MAP_GREY => ColourMap::Grey,
     }
 }
 
@@ -85,7 +84,7 @@ pub struct leafless_transfer {
     /// sizeof(leafless_transfer).
     pub struct_size: u32,
     /// A leafless_colour_map.
-    pub map: u32,
+    pub map: Number<leafless_colour_map>,
     /// The value at the map's beginning.
     pub range_lower: f64,
     /// The value at its end; greater than `range_lower`.
@@ -105,7 +104,7 @@ unsafe impl Sized32 for leafless_transfer {}
 
 impl leafless_transfer {
     pub(super) fn check(&self) -> Result<Transfer, Failure> {
-        let map = colour_map(self.map)?;
+        let map = self.map.known("transfer.map")?;
         let length = if self.length_model == 0.0 { 1.0 } else { self.length_model };
         let range = [self.range_lower, self.range_upper];
         Ok(Transfer::new(map, range, self.alpha_upper, length)?.ramp([self.alpha_lower, self.alpha_upper])?)

@@ -6,6 +6,7 @@ use super::cells::leafless_cell;
 use super::frame::{frame, leafless_frame};
 use super::layer::{Shown, Values, chosen, give, leafless_layer, leafless_transfer, values};
 use super::mesh::leafless_mesh;
+use super::number::{Number, enumeration};
 use super::octree::leafless_octree;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
@@ -14,7 +15,6 @@ use leafless::TriangleMesh;
 use leafless::memory;
 use leafless::render::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, SolidLayer};
 use leafless::{Cell, Frame};
-use leafless_edges::*;
 use std::sync::Arc;
 
 /// Which edges are drawn as lines.
@@ -28,6 +28,14 @@ pub enum leafless_edges {
     LEAFLESS_EDGES_FEATURES = 1,
     /// Those of all triangles of a mesh.
     LEAFLESS_EDGES_ALL = 2,
+}
+
+enumeration! {
+    leafless_edges => MeshEdges {
+        LEAFLESS_EDGES_NONE => MeshEdges::None,
+        LEAFLESS_EDGES_FEATURES => MeshEdges::Features,
+        LEAFLESS_EDGES_ALL => MeshEdges::All,
+    }
 }
 
 /// What a surface looks like. NULL means the defaults. All fields but the first may be zero, which is their
@@ -46,7 +54,7 @@ pub struct leafless_look {
     /// of a mesh the face's own colour mixed with orange.
     pub inside: [u8; 4],
     /// A leafless_edges.
-    pub edges: u32,
+    pub edges: Number<leafless_edges>,
     /// The colour of edges; all zero: dark grey.
     pub edge_colour: [u8; 4],
     /// The width of edges in pixels, at most 256, or of octrees and solids 8; 0: 1, or of octrees and solids 1.5.
@@ -85,7 +93,7 @@ impl leafless_look {
         unused(self.faces <= 1, "look.faces", "must be 0 or 1")?;
         let plain = Finish::default();
         let outline = Outline::default();
-        let edges = match self.edges()? {
+        let edges = match self.edges.known("look.edges")? {
             MeshEdges::None => None,
             MeshEdges::Features => Some(Outline {
                 width: chosen_length(self.edge_width).unwrap_or(outline.width),
@@ -113,15 +121,6 @@ impl leafless_look {
     unsafe fn values(&self) -> Result<Option<Values>, Failure> {
         // SAFETY: the caller's promise.
         unsafe { values(self.attribute, self.transfer, ["look.attribute", "look.transfer"]) }
-    }
-
-    fn edges(&self) -> Result<MeshEdges, Failure> {
-        match self.edges {
-            none if none == LEAFLESS_EDGES_NONE as u32 => Ok(MeshEdges::None),
-            features if features == LEAFLESS_EDGES_FEATURES as u32 => Ok(MeshEdges::Features),
-            all if all == LEAFLESS_EDGES_ALL as u32 => Ok(MeshEdges::All),
-            _ => Err(Failure::Argument { name: "look.edges", problem: "is no leafless_edges" }),
-        }
     }
 }
 
@@ -273,7 +272,7 @@ pub unsafe extern "C" fn leafless_layer_new_mesh(
             colour: chosen(given.colour),
             inside: chosen(given.inside),
             crease: chosen_length(given.crease_degrees),
-            edges: given.edges()?,
+            edges: given.edges.known("look.edges")?,
             edge_width: chosen_length(given.edge_width).unwrap_or(1.0),
             edge_colour: chosen(given.edge_colour).unwrap_or(INK),
         };

@@ -16,6 +16,7 @@
 //! | `mesh_write` | mesh files, written |
 //! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
 //! | `metadata` | facts of octrees and channels, for both |
+//! | `number` | numbers that stand for members of enumerations |
 //! | `octree` | octrees: describing, statistics, metadata |
 //! | `operation` | set operations, for operands of every kind |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
@@ -96,6 +97,7 @@ mod mesh_file;
 mod mesh_moments;
 mod mesh_write;
 mod metadata;
+mod number;
 mod octree;
 mod octree_channels;
 mod op;

@@ -1,6 +1,7 @@
 //! Triangle meshes: what they are like, and what becomes of them.
 
 use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
+use super::number::{Number, enumeration};
 use super::status::leafless_status;
 use leafless::mesh::{DefectKind, MeshDefect, MeshReport};
 use leafless::{FillRule, TriangleMesh};
@@ -37,12 +38,11 @@ pub enum leafless_fill {
     LEAFLESS_FILL_POSITIVE = 2,
 }
 
-pub(super) fn fill_rule(fill: u32) -> Result<FillRule, Failure> {
-    match fill {
-        _ if fill == leafless_fill::LEAFLESS_FILL_NON_ZERO as u32 => Ok(FillRule::NonZero),
-        _ if fill == leafless_fill::LEAFLESS_FILL_EVEN_ODD as u32 => Ok(FillRule::EvenOdd),
-        _ if fill == leafless_fill::LEAFLESS_FILL_POSITIVE as u32 => Ok(FillRule::Positive),
-        _ => Err(Failure::Argument { name: "fill", problem: "is no leafless_fill" }),
+enumeration! {
+    leafless_fill => FillRule {
+        LEAFLESS_FILL_NON_ZERO => FillRule::NonZero,
+        LEAFLESS_FILL_EVEN_ODD => FillRule::EvenOdd,
+        LEAFLESS_FILL_POSITIVE => FillRule::Positive,
     }
 }
 
@@ -419,11 +419,11 @@ pub unsafe extern "C" fn leafless_mesh_defects(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_check_closed(
     mesh: *const leafless_mesh,
-    fill: u32,
+    fill: Number<leafless_fill>,
 ) -> leafless_status {
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
-        Ok(mesh.check_closed(fill_rule(fill)?)?)
+        Ok(mesh.check_closed(fill.known("fill")?)?)
     })
 }
 

@@ -4,7 +4,8 @@ use super::boundary::{buffer, guard, out, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::leafless_interval;
 use super::measure::row_by_row;
-use super::mesh::{fill_rule, leafless_mesh};
+use super::mesh::{leafless_fill, leafless_mesh};
+use super::number::Number;
 use super::status::leafless_status;
 use leafless::Interval;
 use leafless::mesh::{IntersectingPair, IntersectingPairs, MeshMoments};
@@ -107,13 +108,13 @@ impl From<&IntersectingPair> for leafless_intersecting_pair {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_mesh_measure(
     mesh: *const leafless_mesh,
-    fill: u32,
+    fill: Number<leafless_fill>,
     options: *const leafless_options,
     moments: *mut leafless_mesh_moments,
 ) -> leafless_status {
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
-        let fill = fill_rule(fill)?;
+        let fill = fill.known("fill")?;
         let moments = out(moments, "moments")?;
         moments.write(controlled(options, |control| mesh.moments(fill, control))?.into())
     })

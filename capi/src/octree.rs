@@ -3,6 +3,7 @@
 use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::metadata::{self, Fact};
+use super::number::{Number, enumeration};
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::octree::MetadataLimit;
@@ -85,6 +86,15 @@ pub enum leafless_proven {
     LEAFLESS_PROVEN_EMPTY = 2,
     /// FULL and EMPTY.
     LEAFLESS_PROVEN_BOTH = 3,
+}
+
+enumeration! {
+    leafless_proven => Proof {
+        LEAFLESS_PROVEN_NOTHING => Proof::new(false, false),
+        LEAFLESS_PROVEN_FULL => Proof::new(true, false),
+        LEAFLESS_PROVEN_EMPTY => Proof::new(false, true),
+        LEAFLESS_PROVEN_BOTH => Proof::new(true, true),
+    }
 }
 
 /// What can be said of an octree at once.
@@ -249,18 +259,14 @@ pub unsafe extern "C" fn leafless_octree_describe(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_with_proof(
     octree: *const leafless_octree,
-    proven: u32,
+    proven: Number<leafless_proven>,
     displacement_model: f64,
     result: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
         let result = out(result, "result")?;
-        if proven > leafless_proven::LEAFLESS_PROVEN_BOTH as u32 {
-            return Err(Failure::Argument { name: "proven", problem: "is no leafless_proven" });
-        }
-        let Ok(proof) = Proof::new(proven & 1 != 0, proven & 2 != 0).with_displacement(displacement_model)
-        else {
+        let Ok(proof) = proven.known("proven")?.with_displacement(displacement_model) else {
             let problem = "must be finite and not negative";
             return Err(Failure::Argument { name: "displacement_model", problem });
         };

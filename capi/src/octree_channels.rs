@@ -3,13 +3,13 @@
 use super::boundary::{Failure, guard, out, shared, slice, text};
 use super::channel::{give as give_channel, leafless_channel};
 use super::control::{controlled, leafless_options};
+use super::number::{Number, enumeration};
 use super::octree::{give, leafless_octree};
 use super::operation::operands;
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::attribute::{CarryRule, carry_channels};
 use leafless::memory;
-use leafless_carry::*;
 
 /// Whose value a point has that lies in several operands.
 #[derive(Clone, Copy)]
@@ -25,13 +25,12 @@ pub enum leafless_carry {
     LEAFLESS_CARRY_MEAN = 3,
 }
 
-fn rule(rule: u32, name: &'static str) -> Result<CarryRule, Failure> {
-    match rule {
-        _ if rule == LEAFLESS_CARRY_LEFT as u32 => Ok(CarryRule::Left),
-        _ if rule == LEAFLESS_CARRY_RIGHT as u32 => Ok(CarryRule::Right),
-        _ if rule == LEAFLESS_CARRY_MAX as u32 => Ok(CarryRule::Max),
-        _ if rule == LEAFLESS_CARRY_MEAN as u32 => Ok(CarryRule::Mean),
-        _ => Err(Failure::Argument { name, problem: "is no leafless_carry" }),
+enumeration! {
+    leafless_carry => CarryRule {
+        LEAFLESS_CARRY_LEFT => CarryRule::Left,
+        LEAFLESS_CARRY_RIGHT => CarryRule::Right,
+        LEAFLESS_CARRY_MAX => CarryRule::Max,
+        LEAFLESS_CARRY_MEAN => CarryRule::Mean,
     }
 }
 
@@ -44,7 +43,7 @@ pub struct leafless_carry_rule {
     /// The length of the name.
     pub name_length: usize,
     /// A leafless_carry.
-    pub carry: u32,
+    pub carry: Number<leafless_carry>,
 }
 
 /// The octree with one more channel, in the place of one of the same name, if there is one; the arrays of both are
@@ -177,7 +176,7 @@ pub unsafe extern "C" fn leafless_octree_carry_channels(
     octree: *const leafless_octree,
     operands: *const *const leafless_octree,
     count: u64,
-    carry: u32,
+    carry: Number<leafless_carry>,
     rules: *const leafless_carry_rule,
     rule_count: u64,
     options: *const leafless_options,
@@ -186,13 +185,13 @@ pub unsafe extern "C" fn leafless_octree_carry_channels(
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
         let octrees = self::operands(operands, count, true, "operands", |handle| &handle.octree)?;
-        let carry = self::rule(carry, "carry")?;
+        let carry = carry.known("carry")?;
         let rules = slice(rules, rule_count, "rules")?;
         let result = out(result, "result")?;
         let mut named = memory::with_capacity(rules.len())?;
         for given in rules {
             let name = text(given.name, given.name_length, "rules.name")?;
-            named.push((name, self::rule(given.carry, "rules.carry")?));
+            named.push((name, given.carry.known("rules.carry")?));
         }
         let of = |name: &str| named.iter().find(|(known, _)| *known == name).map_or(carry, |&(_, rule)| rule);
         let made = controlled(options, |control| carry_channels(octree, &octrees, of, control))?;

@@ -1,10 +1,11 @@
 //! From solids to octrees, and from octrees to others: building, resolving, set algebra.
 
-use super::boundary::{Failure, guard, out, shared};
+use super::boundary::{guard, out, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
+use super::number::{Number, enumeration};
 use super::octree::{give, leafless_octree};
-use super::operation::{leafless_operation::*, operands, operation};
+use super::operation::{leafless_operation, leafless_operation::*, operands};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::op::{intersection_of, resolve, union_of, xor_of};
@@ -23,15 +24,13 @@ pub enum leafless_rule {
     /// FULL: the result covers the solid.
     LEAFLESS_RULE_OUTER = 3,
 }
-use leafless_rule::*;
 
-pub(super) fn rule(rule: u32) -> Result<Rule, Failure> {
-    match rule {
-        _ if rule == LEAFLESS_RULE_CERTIFIED as u32 => Ok(Rule::Certified),
-        _ if rule == LEAFLESS_RULE_SAMPLED as u32 => Ok(Rule::Sampled),
-        _ if rule == LEAFLESS_RULE_INNER as u32 => Ok(Rule::Inner),
-        _ if rule == LEAFLESS_RULE_OUTER as u32 => Ok(Rule::Outer),
-        _ => Err(Failure::Argument { name: "rule", problem: "is no leafless_rule" }),
+enumeration! {
+    leafless_rule => Rule {
+        LEAFLESS_RULE_CERTIFIED => Rule::Certified,
+        LEAFLESS_RULE_SAMPLED => Rule::Sampled,
+        LEAFLESS_RULE_INNER => Rule::Inner,
+        LEAFLESS_RULE_OUTER => Rule::Outer,
     }
 }
 
@@ -51,14 +50,14 @@ pub(super) fn rule(rule: u32) -> Result<Rule, Failure> {
 pub unsafe extern "C" fn leafless_octree_build(
     solid: *const leafless_solid,
     frame: *const leafless_frame,
-    rule: u32,
+    rule: Number<leafless_rule>,
     options: *const leafless_options,
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
-        let rule = self::rule(rule)?;
+        let rule = rule.known("rule")?;
         let octree = out(octree, "octree")?;
         octree.write(give(controlled(options, |control| build(solid, &frame, rule, control))?))
     })
@@ -78,13 +77,13 @@ pub unsafe extern "C" fn leafless_octree_build(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_resolve(
     octree: *const leafless_octree,
-    rule: u32,
+    rule: Number<leafless_rule>,
     options: *const leafless_options,
     resolved: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
-        let rule = self::rule(rule)?;
+        let rule = rule.known("rule")?;
         let resolved = out(resolved, "resolved")?;
         let made = controlled(options, |control| resolve(octree.view(), rule, control))?;
         let made = made.with_metadata(Metadata::common([octree.metadata()])?);
@@ -129,14 +128,14 @@ pub unsafe extern "C" fn leafless_octree_compact(
 ///   PARTIAL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_octree_combine(
-    operation: u32,
+    operation: Number<leafless_operation>,
     octrees: *const *const leafless_octree,
     count: u64,
     options: *const leafless_options,
     result: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operation = self::operation(operation)?;
+        let operation = operation.known("operation")?;
         let octrees = operands(octrees, count, false, "octrees", |handle| &handle.octree)?;
         let result = out(result, "result")?;
         let views = memory::collected(octrees.iter().map(|octree| *octree.view()))?;

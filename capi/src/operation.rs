@@ -1,6 +1,7 @@
 //! The set operations, on operands of every kind.
 
 use super::boundary::{Failure, shared, slice};
+use super::number::enumeration;
 use leafless::memory;
 
 /// What is made of several operands.
@@ -18,13 +19,12 @@ pub enum leafless_operation {
 }
 use leafless_operation::*;
 
-pub(super) fn operation(operation: u32) -> Result<leafless_operation, Failure> {
-    match operation {
-        _ if operation == LEAFLESS_OPERATION_UNION as u32 => Ok(LEAFLESS_OPERATION_UNION),
-        _ if operation == LEAFLESS_OPERATION_INTERSECTION as u32 => Ok(LEAFLESS_OPERATION_INTERSECTION),
-        _ if operation == LEAFLESS_OPERATION_DIFFERENCE as u32 => Ok(LEAFLESS_OPERATION_DIFFERENCE),
-        _ if operation == LEAFLESS_OPERATION_XOR as u32 => Ok(LEAFLESS_OPERATION_XOR),
-        _ => Err(Failure::Argument { name: "operation", problem: "is no leafless_operation" }),
+enumeration! {
+    leafless_operation => leafless_operation {
+        LEAFLESS_OPERATION_UNION => LEAFLESS_OPERATION_UNION,
+        LEAFLESS_OPERATION_INTERSECTION => LEAFLESS_OPERATION_INTERSECTION,
+        LEAFLESS_OPERATION_DIFFERENCE => LEAFLESS_OPERATION_DIFFERENCE,
+        LEAFLESS_OPERATION_XOR => LEAFLESS_OPERATION_XOR,
     }
 }
 

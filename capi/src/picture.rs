@@ -4,6 +4,7 @@ use super::boundary::{Failure, Out, Sized32, buffer, guard, out, path, shared, s
 use super::camera::leafless_camera;
 use super::control::{controlled, leafless_options};
 use super::layer::{clip, leafless_layer, leafless_transfer};
+use super::number::{Number, enumeration};
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::exchange::write_png;
@@ -12,7 +13,6 @@ use leafless::memory;
 use leafless::render::{
     Clip, ClippedLayer, Layer, LegendBox, LegendSide, Picture, Shot, draw_colour_bar, draw_names, render,
 };
-use leafless_legend_side::*;
 use std::io::Write;
 use std::path::Path;
 
@@ -229,11 +229,10 @@ pub enum leafless_legend_side {
     LEAFLESS_LEGEND_BOTTOM = 1,
 }
 
-fn legend_side(side: u32) -> Result<LegendSide, Failure> {
-    match side {
-        _ if side == LEAFLESS_LEGEND_RIGHT as u32 => Ok(LegendSide::Right),
-        _ if side == LEAFLESS_LEGEND_BOTTOM as u32 => Ok(LegendSide::Bottom),
-        _ => Err(Failure::Argument { name: "side", problem: "is no leafless_legend_side" }),
+enumeration! {
+    leafless_legend_side => LegendSide {
+        LEAFLESS_LEGEND_RIGHT => LegendSide::Right,
+        LEAFLESS_LEGEND_BOTTOM => LegendSide::Bottom,
     }
 }
 
@@ -289,14 +288,14 @@ pub unsafe extern "C" fn leafless_picture_draw_bar(
     title: *const c_char,
     title_length: usize,
     transfer: *const leafless_transfer,
-    side: u32,
+    side: Number<leafless_legend_side>,
     covered: *mut leafless_legend_box,
 ) -> leafless_status {
     guard(|| unsafe {
         let title = text(title, title_length, "title")?;
         shared(transfer, "transfer")?;
         let transfer = sized(transfer, "transfer")?.check()?;
-        let side = legend_side(side)?;
+        let side = side.known("side")?;
         let covered = out(covered, "covered")?;
         let colour = |value: f64| transfer.opaque(Some([value, 0.0, 0.0, 0.0]), 1);
         drawn(colours, [width, height], covered, |picture| {
@@ -335,7 +334,7 @@ pub unsafe extern "C" fn leafless_picture_draw_names(
     title_length: usize,
     names: *const leafless_legend_name,
     name_count: u64,
-    side: u32,
+    side: Number<leafless_legend_side>,
     covered: *mut leafless_legend_box,
 ) -> leafless_status {
     guard(|| unsafe {
@@ -348,7 +347,7 @@ pub unsafe extern "C" fn leafless_picture_draw_names(
             }
             names.push((text(given.name, given.name_length, "names.name")?, given.colour));
         }
-        let side = legend_side(side)?;
+        let side = side.known("side")?;
         let covered = out(covered, "covered")?;
         drawn(colours, [width, height], covered, |picture| Ok(draw_names(picture, title, &names, side)))
     })

@@ -3,6 +3,7 @@
 use super::boundary::{Failure, array, buffer, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
+use super::number::{Number, enumeration};
 use super::octree::leafless_octree;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
@@ -104,11 +105,10 @@ impl From<Sight> for leafless_sight {
     }
 }
 
-pub(super) fn obstacle(on: u32) -> Result<Obstacle, Failure> {
-    match on {
-        0 => Ok(Obstacle::Full),
-        1 => Ok(Obstacle::Upper),
-        _ => Err(Failure::Argument { name: "on", problem: "must be a leafless_obstacle" }),
+enumeration! {
+    leafless_obstacle => Obstacle {
+        LEAFLESS_OBSTACLE_FULL => Obstacle::Full,
+        LEAFLESS_OBSTACLE_UPPER => Obstacle::Upper,
     }
 }
 
@@ -130,7 +130,7 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
     octree: *const leafless_octree,
     rays: *const leafless_ray,
     count: u64,
-    on: u32,
+    on: Number<leafless_obstacle>,
     hits: *mut leafless_ray_hit,
 ) -> leafless_status {
     guard(|| unsafe {
@@ -138,7 +138,7 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
         const BATCH: usize = 64;
         let octree = &shared(octree, "octree")?.octree;
         let rays = slice(rays, count, "rays")?;
-        let on = obstacle(on)?;
+        let on = on.known("on")?;
         if rays.is_empty() {
             return Ok(());
         }
@@ -185,7 +185,7 @@ pub unsafe extern "C" fn leafless_solid_cast_rays(
     frame: *const leafless_frame,
     rays: *const leafless_ray,
     count: u64,
-    on: u32,
+    on: Number<leafless_obstacle>,
     options: *const leafless_options,
     hits: *mut leafless_ray_hit,
 ) -> leafless_status {
@@ -193,7 +193,7 @@ pub unsafe extern "C" fn leafless_solid_cast_rays(
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
         let given = slice(rays, count, "rays")?;
-        let on = obstacle(on)?;
+        let on = on.known("on")?;
         if given.is_empty() {
             return Ok(());
         }

@@ -1,7 +1,8 @@
 //! Solids: everything that can split a cell.
 
 use super::boundary::{guard, handle, out, refer, release, shared};
-use super::mesh::{fill_rule, leafless_mesh};
+use super::mesh::{leafless_fill, leafless_mesh};
+use super::number::Number;
 use super::octree::leafless_octree;
 use super::status::leafless_status;
 use leafless::solid::{Erasable, Prepared};
@@ -47,12 +48,12 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_mesh(
     mesh: *const leafless_mesh,
-    fill: u32,
+    fill: Number<leafless_fill>,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
         let mesh = shared(mesh, "mesh")?.mesh.clone();
-        let fill = fill_rule(fill)?;
+        let fill = fill.known("fill")?;
         let solid = out(solid, "solid")?;
         solid.write(give(MeshSolid::new(mesh, fill)?))
     })

@@ -4,6 +4,7 @@ use super::boundary::{Failure, Sized32, guard, out, shared, sized};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::mesh::{give, leafless_mesh};
+use super::number::{Number, enumeration};
 use super::octree::leafless_octree;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
@@ -15,9 +16,7 @@ use leafless::surface::{
     simple_marching_cubes_solid,
 };
 use leafless_resolve::*;
-use leafless_snap::*;
 use leafless_surface_method::*;
-use leafless_vertex_placement::*;
 
 /// How a surface is made.
 #[derive(Clone, Copy)]
@@ -38,6 +37,15 @@ pub enum leafless_surface_method {
     LEAFLESS_SURFACE_SHRINK_PUBLISHED = 3,
 }
 
+enumeration! {
+    leafless_surface_method => leafless_surface_method {
+        LEAFLESS_SURFACE_MARCHING_CUBES => LEAFLESS_SURFACE_MARCHING_CUBES,
+        LEAFLESS_SURFACE_SMC => LEAFLESS_SURFACE_SMC,
+        LEAFLESS_SURFACE_SHRINK => LEAFLESS_SURFACE_SHRINK,
+        LEAFLESS_SURFACE_SHRINK_PUBLISHED => LEAFLESS_SURFACE_SHRINK_PUBLISHED,
+    }
+}
+
 /// To which end of an edge between an inside and an outside sample all methods but marching cubes move the
 /// vertex.
 #[derive(Clone, Copy)]
@@ -47,6 +55,13 @@ pub enum leafless_snap {
     LEAFLESS_SNAP_FAT = 0,
     /// The inner one: inside samples are vertices. What is one cell thick has no thickness then.
     LEAFLESS_SNAP_THIN = 1,
+}
+
+enumeration! {
+    leafless_snap => Snap {
+        LEAFLESS_SNAP_FAT => Snap::Fat,
+        LEAFLESS_SNAP_THIN => Snap::Thin,
+    }
 }
 
 /// On which side of the surface the PARTIAL cells of an octree lie, which have no sign of their own.
@@ -64,6 +79,15 @@ pub enum leafless_resolve {
     LEAFLESS_RESOLVE_SOURCE = 3,
 }
 
+enumeration! {
+    leafless_resolve => leafless_resolve {
+        LEAFLESS_RESOLVE_NONE => LEAFLESS_RESOLVE_NONE,
+        LEAFLESS_RESOLVE_INNER => LEAFLESS_RESOLVE_INNER,
+        LEAFLESS_RESOLVE_OUTER => LEAFLESS_RESOLVE_OUTER,
+        LEAFLESS_RESOLVE_SOURCE => LEAFLESS_RESOLVE_SOURCE,
+    }
+}
+
 /// Where marching cubes puts a vertex on an edge between an inside and an outside sample.
 #[derive(Clone, Copy)]
 #[repr(u32)]
@@ -77,6 +101,13 @@ pub enum leafless_vertex_placement {
     LEAFLESS_PLACEMENT_CROSSING = 1,
 }
 
+enumeration! {
+    leafless_vertex_placement => VertexPlacement {
+        LEAFLESS_PLACEMENT_MIDPOINT => VertexPlacement::Midpoint,
+        LEAFLESS_PLACEMENT_CROSSING => VertexPlacement::Crossing,
+    }
+}
+
 /// How a surface is extracted. NULL means the defaults. All fields but the first may be zero, which is their
 /// default. A field that the method does not use must be zero.
 #[derive(Clone, Copy)]
@@ -85,14 +116,14 @@ pub struct leafless_surface_options {
     /// sizeof(leafless_surface_options).
     pub struct_size: u32,
     /// A leafless_surface_method.
-    pub method: u32,
+    pub method: Number<leafless_surface_method>,
     /// Of all methods but LEAFLESS_SURFACE_MARCHING_CUBES: a leafless_snap.
-    pub snap: u32,
+    pub snap: Number<leafless_snap>,
     /// Of octrees: a leafless_resolve. Solids decide all samples themselves.
-    pub resolve: u32,
+    pub resolve: Number<leafless_resolve>,
     /// Of LEAFLESS_SURFACE_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
     /// their solid's surface is.
-    pub placement: u32,
+    pub placement: Number<leafless_vertex_placement>,
     /// 0.
     pub reserved: u32,
     /// Of LEAFLESS_RESOLVE_SOURCE: the solid that the octree was made from.
@@ -118,55 +149,34 @@ fn zero(is_zero: bool, name: &'static str, problem: &'static str) -> Result<(), 
 impl leafless_surface_options {
     fn method(&self) -> Result<Method, Failure> {
         zero(self.reserved == 0, "surface.reserved", "must be 0")?;
-        let snap = match self.snap {
-            fat if fat == LEAFLESS_SNAP_FAT as u32 => Snap::Fat,
-            thin if thin == LEAFLESS_SNAP_THIN as u32 => Snap::Thin,
-            _ => return Err(Failure::Argument { name: "surface.snap", problem: "is no leafless_snap" }),
-        };
-        match self.method {
-            cubes if cubes == LEAFLESS_SURFACE_MARCHING_CUBES as u32 => {
+        let snap = self.snap.known("surface.snap")?;
+        match self.method.known("surface.method")? {
+            LEAFLESS_SURFACE_MARCHING_CUBES => {
                 let problem = "is not for marching cubes, whose vertices lie between samples";
-                zero(self.snap == LEAFLESS_SNAP_FAT as u32, "surface.snap", problem)?;
+                zero(snap == Snap::Fat, "surface.snap", problem)?;
                 Ok(Method::MarchingCubes)
             }
-            smc if smc == LEAFLESS_SURFACE_SMC as u32 => Ok(Method::Smc(snap)),
-            shrink if shrink == LEAFLESS_SURFACE_SHRINK as u32 => Ok(Method::Shrink(snap)),
-            published if published == LEAFLESS_SURFACE_SHRINK_PUBLISHED as u32 => {
-                Ok(Method::PublishedShrink(snap))
-            }
-            _ => {
-                let problem = "is no leafless_surface_method";
-                Err(Failure::Argument { name: "surface.method", problem })
-            }
-        }
-    }
-
-    fn placement(&self) -> Result<VertexPlacement, Failure> {
-        match self.placement {
-            middle if middle == LEAFLESS_PLACEMENT_MIDPOINT as u32 => Ok(VertexPlacement::Midpoint),
-            crossing if crossing == LEAFLESS_PLACEMENT_CROSSING as u32 => Ok(VertexPlacement::Crossing),
-            _ => {
-                let problem = "is no leafless_vertex_placement";
-                Err(Failure::Argument { name: "surface.placement", problem })
-            }
+            LEAFLESS_SURFACE_SMC => Ok(Method::Smc(snap)),
+            LEAFLESS_SURFACE_SHRINK => Ok(Method::Shrink(snap)),
+            LEAFLESS_SURFACE_SHRINK_PUBLISHED => Ok(Method::PublishedShrink(snap)),
         }
     }
 
     /// # Safety
     /// `source` is NULL or misaligned, or a living handle.
     unsafe fn resolve<'a>(&self) -> Result<Option<Resolve<'a>>, Failure> {
-        if self.resolve == LEAFLESS_RESOLVE_SOURCE as u32 {
+        let resolve = self.resolve.known("surface.resolve")?;
+        if let LEAFLESS_RESOLVE_SOURCE = resolve {
             // SAFETY: the caller's promise.
             let source = unsafe { shared(self.source, "surface.source")? };
             return Ok(Some(Resolve::Source(source.solid.solid())));
         }
         zero(self.source.is_null(), "surface.source", "is for LEAFLESS_RESOLVE_SOURCE only")?;
-        match self.resolve {
-            none if none == LEAFLESS_RESOLVE_NONE as u32 => Ok(None),
-            inner if inner == LEAFLESS_RESOLVE_INNER as u32 => Ok(Some(Resolve::Inner)),
-            outer if outer == LEAFLESS_RESOLVE_OUTER as u32 => Ok(Some(Resolve::Outer)),
-            _ => Err(Failure::Argument { name: "surface.resolve", problem: "is no leafless_resolve" }),
-        }
+        Ok(match resolve {
+            LEAFLESS_RESOLVE_INNER => Some(Resolve::Inner),
+            LEAFLESS_RESOLVE_OUTER => Some(Resolve::Outer),
+            _ => None,
+        })
     }
 }
 
@@ -209,7 +219,11 @@ pub unsafe extern "C" fn leafless_octree_surface(
         let surface = sized(surface, "surface")?;
         let (method, resolve) = (surface.method()?, surface.resolve()?);
         let problem = "octrees do not know where their solid's surface is: extract that of the solid";
-        zero(surface.placement()? == VertexPlacement::Midpoint, "surface.placement", problem)?;
+        zero(
+            surface.placement.known("surface.placement")? == VertexPlacement::Midpoint,
+            "surface.placement",
+            problem,
+        )?;
         let mesh = out(mesh, "mesh")?;
         mesh.write(give(controlled(options, |control| match method {
             Method::MarchingCubes => marching_cubes(octree, resolve, control),
@@ -254,10 +268,11 @@ pub unsafe extern "C" fn leafless_solid_surface(
         let solid = shared(solid, "solid")?.solid.solid();
         let frame = self::frame(frame)?;
         let surface = sized(surface, "surface")?;
-        let (method, placement) = (surface.method()?, surface.placement()?);
+        let (method, placement) = (surface.method()?, surface.placement.known("surface.placement")?);
         let is_midpoint = placement == VertexPlacement::Midpoint;
         let problem = "is for octrees: a solid decides all samples itself";
-        zero(surface.resolve == LEAFLESS_RESOLVE_NONE as u32, "surface.resolve", problem)?;
+        let resolve = surface.resolve.known("surface.resolve")?;
+        zero(matches!(resolve, LEAFLESS_RESOLVE_NONE), "surface.resolve", problem)?;
         zero(surface.source.is_null(), "surface.source", problem)?;
         let mesh = out(mesh, "mesh")?;
         if !matches!(method, Method::MarchingCubes) {

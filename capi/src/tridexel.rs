@@ -4,7 +4,8 @@ use super::boundary::{Failure, Sized32, guard, handle, out, refer, release, shar
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::metadata::{self, Fact};
-use super::op::rule;
+use super::number::Number;
+use super::op::leafless_rule;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use core::ffi::c_char;
@@ -196,7 +197,7 @@ pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
 pub unsafe extern "C" fn leafless_tridexel_make(
     solid: *const leafless_solid,
     frame: *const leafless_frame,
-    rule: u32,
+    rule: Number<leafless_rule>,
     format: *const leafless_tridexel_format,
     options: *const leafless_options,
     tridexel: *mut *mut leafless_tridexel,
@@ -204,7 +205,7 @@ pub unsafe extern "C" fn leafless_tridexel_make(
     guard(|| unsafe {
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
-        let rule = self::rule(rule)?;
+        let rule = rule.known("rule")?;
         let (directions, format) = sized(format, "format")?.parts()?;
         let tridexel = out(tridexel, "tridexel")?;
         let wanted = DexelOptions { directions: directions.unwrap_or([true; 3]), format, rule };

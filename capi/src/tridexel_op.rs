@@ -2,7 +2,8 @@
 
 use super::boundary::{Failure, guard, out, shared, sized};
 use super::control::{controlled, leafless_options};
-use super::operation::{leafless_operation::*, operands, operation};
+use super::number::Number;
+use super::operation::{leafless_operation, leafless_operation::*, operands};
 use super::status::leafless_status;
 use super::tridexel::{give, leafless_tridexel, leafless_tridexel_format};
 use leafless::{Metadata, TriDexel, memory};
@@ -26,14 +27,14 @@ use leafless::{Metadata, TriDexel, memory};
 /// - Untrusted input: any models.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_combine(
-    operation: u32,
+    operation: Number<leafless_operation>,
     tridexels: *const *const leafless_tridexel,
     count: u64,
     options: *const leafless_options,
     result: *mut *mut leafless_tridexel,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operation = self::operation(operation)?;
+        let operation = operation.known("operation")?;
         let models = operands(tridexels, count, false, "tridexels", |handle| &handle.model)?;
         let result = out(result, "result")?;
         let views = memory::collected(models.iter().map(|model| *model.view()))?;

@@ -1,8 +1,9 @@
 //! What tri-dexel models become: meshes, octrees, solids, voxels.
 
-use super::boundary::{Failure, buffer, guard, out, shared, slice};
+use super::boundary::{buffer, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::mesh::{give as give_mesh, leafless_mesh};
+use super::number::{Number, enumeration};
 use super::octree::{give as give_octree, leafless_octree};
 use super::solid::{give as give_solid, leafless_solid};
 use super::status::leafless_status;
@@ -24,6 +25,13 @@ pub enum leafless_dexel_surface_method {
     /// Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, where the planes at its
     /// crossings fit best. Edges and corners of the solid stay, if the model stores normals.
     LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING = 1,
+}
+
+enumeration! {
+    leafless_dexel_surface_method => leafless_dexel_surface_method {
+        LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES => LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES,
+        LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING => LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING,
+    }
 }
 
 /// How exactly a surface of a tri-dexel model follows its rays.
@@ -122,20 +130,16 @@ impl From<&LongVoxel> for leafless_long_voxel {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_tridexel_surface(
     tridexel: *const leafless_tridexel,
-    method: u32,
+    method: Number<leafless_dexel_surface_method>,
     options: *const leafless_options,
     report: *mut leafless_dexel_surface_report,
     mesh: *mut *mut leafless_mesh,
 ) -> leafless_status {
     guard(|| unsafe {
         let model = shared(tridexel, "tridexel")?.model.view();
-        let extract = match method {
-            _ if method == LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES as u32 => marching_cubes_dexels,
-            _ if method == LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING as u32 => dual_contouring_dexels,
-            _ => {
-                let problem = "is no leafless_dexel_surface_method";
-                return Err(Failure::Argument { name: "method", problem });
-            }
+        let extract = match method.known("method")? {
+            LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES => marching_cubes_dexels,
+            LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING => dual_contouring_dexels,
         };
         let report = if report.is_null() { None } else { Some(out(report, "report")?) };
         let mesh = out(mesh, "mesh")?;

@@ -6,13 +6,13 @@ use super::channel_fill::leafless_criterion;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame_of, leafless_frame};
 use super::mesh::leafless_mesh;
+use super::number::{Number, enumeration};
 use super::octree::{leafless_octree, settled_tag};
 use super::status::leafless_status;
 use leafless::Octree;
-use leafless::attribute::{Attribute, Criterion, Detail};
+use leafless::attribute::{Attribute, Detail};
 use leafless::voxel::{Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef};
 use leafless::{Cell, Frame};
-use leafless_criterion::*;
 
 /// What a voxel is: a number in the array `kinds`.
 #[derive(Clone, Copy)]
@@ -37,6 +37,13 @@ pub enum leafless_voxel_boundary {
     LEAFLESS_VOXEL_BOUNDARY_TOUCHING = 1,
 }
 
+enumeration! {
+    leafless_voxel_boundary => VoxelBoundary {
+        LEAFLESS_VOXEL_BOUNDARY_UNDECIDED => VoxelBoundary::Undecided,
+        LEAFLESS_VOXEL_BOUNDARY_TOUCHING => VoxelBoundary::Touching,
+    }
+}
+
 /// Which voxels are listed beside inside and boundary voxels: 0, one of these values, or both joined by `|`.
 #[repr(u32)]
 pub enum leafless_voxel_lists {
@@ -56,7 +63,7 @@ pub struct leafless_voxel_options {
     /// The level of boundary voxels; 0, and what is beyond, is the octree's depth.
     pub boundary_depth: u32,
     /// A leafless_voxel_boundary.
-    pub boundary: u32,
+    pub boundary: Number<leafless_voxel_boundary>,
     /// 0, or leafless_voxel_lists.
     pub lists: u32,
     /// The longest edge of inside voxels, in model units; 0: as long as the octree's cells.
@@ -69,7 +76,7 @@ pub struct leafless_voxel_options {
     pub attribute: *const leafless_attribute,
     /// A leafless_criterion: what makes an inside voxel fine enough that is longer than the fine edge and no longer
     /// than the coarse one. Without one, all inside voxels have the coarse edge or less.
-    pub criterion: u32,
+    pub criterion: Number<leafless_criterion>,
     /// Zero.
     pub reserved: u32,
 }
@@ -80,20 +87,11 @@ unsafe impl Sized32 for leafless_voxel_options {}
 impl leafless_voxel_options {
     fn check(&self) -> Result<VoxelOptions, Failure> {
         let refused = |name, problem| Err(Failure::Argument { name, problem });
-        let boundary = match self.boundary {
-            0 => VoxelBoundary::Undecided,
-            1 => VoxelBoundary::Touching,
-            _ => return refused("voxel_options.boundary", "must be a leafless_voxel_boundary"),
-        };
+        let boundary = self.boundary.known("voxel_options.boundary")?;
         if self.lists > 3 {
             return refused("voxel_options.lists", "must be 0 or leafless_voxel_lists");
         }
-        let criterion = match self.criterion {
-            given if given == LEAFLESS_CRITERION_NONE as u32 => None,
-            given if given == LEAFLESS_CRITERION_VARIANCE as u32 => Some(Criterion::Variance),
-            given if given == LEAFLESS_CRITERION_RANGE as u32 => Some(Criterion::Range),
-            _ => return refused("voxel_options.criterion", "must be a leafless_criterion"),
-        };
+        let criterion = self.criterion.known("voxel_options.criterion")?;
         let mut options =
             VoxelOptions::new().boundary(boundary).outside(self.lists & 1 != 0).refined(self.lists & 2 != 0);
         if self.boundary_depth != 0 {
