@@ -44,38 +44,84 @@ impl Gathered {
     ) -> Result<Gathered, Error> {
         let frame = *classifier.frame();
         let mut gathered = Gathered { frame, splits: Vec::new(), centres: Vec::new() };
+        let front = memory::collected([(cell, part)].into_iter())?;
         let mark = worker.mark();
-        let mut front = memory::collected([(cell, part)].into_iter())?;
-        for level in cell.level..frame.depth() {
-            let verdicts = split_each(classifier, worker, &front, threads, job.control())?;
-            let finest = level + 1 == frame.depth();
-            let mut next = Vec::new();
-            gathered.splits.try_reserve(front.len())?;
-            // Children are split after all cells of this level, in the same order.
-            let below = if finest { 0 } else { gathered.splits.len() + front.len() };
-            for ((cell, _), eight) in front.iter().zip(verdicts) {
-                let first = u32::try_from(below + next.len()).map_err(|_| Error::OutOfMemory)?;
-                next.try_reserve(8)?;
-                let verdicts = map_parts(eight, |octant, part| {
-                    next.push((cell.child(octant), part));
-                    Ok(())
-                })?;
-                gathered.splits.push(Split { verdicts, first });
-            }
-            front = next;
-            if front.is_empty() {
-                break;
-            }
-        }
-        if centres {
-            gathered.centres = each(classifier, worker, &front, threads, |worker, cells, inside| {
-                worker.sample_many(cells, job.control(), inside)
-            })?;
-        }
+        let mut asking = Asking { classifier, worker, centres, job, threads };
+        gathered.below(&mut asking, front)?;
         worker.release(mark);
         Ok(gathered)
     }
+
+    /// Splits cells of one level and all that is open below them. Their splits, or their centres, come next.
+    fn below<C: Classifier>(
+        &mut self,
+        asking: &mut Asking<'_, C>,
+        front: Vec<(Cell, Part<C>)>,
+    ) -> Result<(), Error> {
+        let Asking { classifier, worker, centres, job, threads } = asking;
+        let Some(level) = front.first().map(|(cell, _)| cell.level) else { return Ok(()) };
+        if level == self.frame.depth() {
+            if *centres {
+                let inside = each(*classifier, worker, &front, *threads, |worker, cells, inside| {
+                    worker.sample_many(cells, job.control(), inside)
+                })?;
+                self.centres.try_reserve(inside.len())?;
+                self.centres.extend(inside);
+            }
+            return Ok(());
+        }
+        let verdicts = split_each(*classifier, worker, &front, *threads, job.control())?;
+        let mut next = Vec::new();
+        // Of each cell the place of its split, and how many of its children are open.
+        let mut families = memory::with_capacity(front.len())?;
+        self.splits.try_reserve(front.len())?;
+        for ((cell, _), eight) in front.into_iter().zip(verdicts) {
+            next.try_reserve(8)?;
+            let before = next.len();
+            let verdicts = map_parts(eight, |octant, part| {
+                next.push((cell.child(octant), part));
+                Ok(())
+            })?;
+            families.push((self.splits.len(), next.len() - before));
+            self.splits.push(Split { verdicts, first: 0 });
+        }
+        // The children of one piece after the other, each with all that is below it.
+        let is_large = worker.scratch_bytes() > MOST_BYTES;
+        let piece = if is_large { families.len().div_ceil(PIECES) } else { families.len() };
+        let mut next = next.into_iter();
+        for families in families.chunks(piece.max(1)) {
+            let finest = level + 1 == self.frame.depth();
+            let mut first = if finest { self.centres.len() } else { self.splits.len() };
+            let mut count = 0;
+            for &(split, open) in families {
+                self.splits[split].first = u32::try_from(first).map_err(|_| Error::OutOfMemory)?;
+                (first, count) = (first + open, count + open);
+            }
+            let children = memory::collected(next.by_ref().take(count))?;
+            let mark = asking.worker.mark();
+            self.below(asking, children)?;
+            asking.worker.release(mark);
+        }
+        Ok(())
+    }
 }
+
+/// Who is asked, and how.
+struct Asking<'a, C: Classifier> {
+    classifier: &'a C,
+    worker: &'a mut C::Worker,
+    /// Whether the centres of finest cells are asked for.
+    centres: bool,
+    job: &'a Job<'a>,
+    threads: usize,
+}
+
+/// If the parts of a level take more, what is below it is asked in pieces: a level has eight times as many parts as the one
+/// before where all of it is open, and a part of a solid that is moved twice may have a thousand cells.
+const MOST_BYTES: usize = 1 << 26;
+
+/// How many pieces there are then.
+const PIECES: usize = 64;
 
 impl Classifier for &Gathered {
     type Worker = Self;

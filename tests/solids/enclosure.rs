@@ -145,7 +145,8 @@ fn hold_as(
     }
     println!("{name}: {found:?}");
     assert!(!name.starts_with("joined") || found.several > found.cells / 10, "{name}: {found:?}");
-    assert!(found.inside > wanted / 5 && found.outside > wanted / 5, "{name}: {found:?}");
+    // Neither side is kept silent about. (Turned balls lie partly outside of the universe: 18 % of a million.)
+    assert!(found.inside > wanted / 6 && found.outside > wanted / 6, "{name}: {found:?}");
 }
 
 /// Two to six half-spaces.
