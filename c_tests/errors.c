@@ -597,6 +597,7 @@ int main(int argc, char **argv) {
         OK(leafless_solid_new_callbacks(&callbacks, &host));
         FAILS(LEAFLESS_E_CALLBACK, leafless_solid_contains(host, &other, at, 1, NULL, &membership));
         failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-815");
+        CHECK(leafless_last_code() == -815);
         FAILS(LEAFLESS_E_CALLBACK, leafless_solid_classify_box(host, &other, at, beside, NULL, &region));
         failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-815");
         CHECK(region == 77);
@@ -604,6 +605,9 @@ int main(int argc, char **argv) {
     }
     FAILS(LEAFLESS_E_CALLBACK, leafless_octree_write(ball, gives_up, NULL));
     failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-4711");
+    CHECK(leafless_last_code() == -4711);
+    FAILS(LEAFLESS_E_NULL, leafless_octree_check(NULL));
+    CHECK(leafless_last_code() == 0);
 
     FAILS(LEAFLESS_E_IO, leafless_octree_open("no/such/file", 12, &octree));
     failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");

@@ -7,7 +7,9 @@
 //! writes it anew.
 
 use crate::arrange::{Section, arranged};
+use crate::cpp;
 use crate::root;
+use std::sync::OnceLock;
 
 /// The header's sections in the order in which one needs them, and the files that each is made of.
 const SECTIONS: &[Section] = &[
@@ -51,7 +53,13 @@ fn source(file: &str) -> String {
     std::fs::read_to_string(root().join("capi/src").join(file).with_extension("rs")).unwrap()
 }
 
-fn generated() -> String {
+/// Made once: cbindgen takes seconds.
+fn generated() -> &'static str {
+    static HEADER: OnceLock<String> = OnceLock::new();
+    HEADER.get_or_init(generate)
+}
+
+fn generate() -> String {
     let config = cbindgen::Config::from_file(root().join("include/cbindgen.toml")).unwrap();
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in SECTIONS.iter().flat_map(|section| section.files).chain(&["number"]) {
@@ -67,18 +75,48 @@ fn generated() -> String {
     )
 }
 
+/// The header for C++, made of the one for C. Which pointers may be NULL the tests of NULL pointers know.
+fn generated_for_cpp() -> String {
+    let read = |name: &str| std::fs::read_to_string(root().join(name)).unwrap();
+    let tests =
+        ["null", "null_tridexel", "null_picture"].map(|name| read(&format!("c_tests/{name}.c"))).concat();
+    let tests = tests.split_whitespace().collect::<Vec<_>>().join(" ");
+    let may_be_null =
+        |function: &str, parameter: &str| tests.contains(&format!("MAY_BE_NULL({function}, {parameter},"));
+    let classes = cpp::made_of(generated(), &may_be_null);
+    format!("{}{classes}{}", read("include/preface.hpp"), read("include/epilogue.hpp"))
+}
+
 #[test]
-fn the_header_is_current() {
-    let path = root().join("include/leafless.h");
-    let generated = generated();
+fn the_headers_are_current() {
+    is_current("include/leafless.h", generated());
+    is_current("include/leafless.hpp", &generated_for_cpp());
+}
+
+fn is_current(name: &str, generated: &str) {
+    let path = root().join(name);
     if std::env::var_os("LEAFLESS_BLESS").is_some() {
-        std::fs::write(&path, &generated).unwrap();
+        std::fs::write(&path, generated).unwrap();
     }
     let committed = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         committed == generated,
-        "include/leafless.h is not what capi/src says: LEAFLESS_BLESS=1 cargo test --test c_api generated"
+        "{name} is not what capi/src says: LEAFLESS_BLESS=1 cargo test --test c_api generated"
     );
+}
+
+/// Every function of the C interface is called by the header for C++.
+#[test]
+fn the_header_for_cpp_is_complete() {
+    let (c, cpp) = (generated(), generated_for_cpp());
+    for (name, _) in functions(c) {
+        let own = ["leafless_last_status", "leafless_init"].contains(&name);
+        let call = cpp.match_indices(name).any(|(at, _)| {
+            let next = cpp[at + name.len()..].chars().next();
+            next.is_some_and(|next| next == '(' || next == '>')
+        });
+        assert!(call || own, "include/leafless.hpp does not have {name}");
+    }
 }
 
 /// The header's functions with the lines of their comments.
@@ -103,7 +141,7 @@ fn functions(header: &str) -> Vec<(&str, Vec<&str>)> {
 #[test]
 fn every_comment_has_the_fixed_order() {
     let header = generated();
-    let functions = functions(&header);
+    let functions = functions(header);
     for (name, comment) in &functions {
         assert!(!comment.is_empty() && !comment[0].starts_with("- "), "{name} has no purpose: {comment:?}");
         let heads: Vec<&str> =

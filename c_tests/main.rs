@@ -12,6 +12,7 @@
 
 mod arrange;
 mod check;
+mod cpp;
 mod generated;
 mod header;
 mod kit;
@@ -72,6 +73,14 @@ fn header_in_all_standards() {
     for standard in ["c++11", "c++14", "c++17", "c++20"] {
         run("header_cpp", Standard::Cpp(standard), Link::Static, &[]);
     }
+}
+
+/// The interface for C++, with exceptions and without.
+#[test]
+fn wrapper() {
+    run("wrapper", CPP17, Link::Static, &[]);
+    run("wrapper", Standard::Cpp("c++20"), Link::Shared, &[]);
+    run("wrapper_plain", CPP17, Link::Static, &[]);
 }
 
 #[test]

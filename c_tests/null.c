@@ -1422,6 +1422,15 @@ static void cells_and_faces(void) {
     uint64_t number;
     bool flag;
 
+    /* Corners are NULL both, or none of them. */
+    MAY_BE_NULL(leafless_cells_new, min_cell, leafless_cells_new(octree, 13, 0, 20, NULL, NULL, &cells));
+    leafless_cells_free(cells);
+    MAY_BE_NULL(leafless_cells_new, max_cell, leafless_cells_new(octree, 13, 0, 20, NULL, NULL, &cells));
+    leafless_cells_free(cells);
+    MAY_BE_NULL(leafless_faces_new, min_cell, leafless_faces_new(octree, 8, 0, 20, NULL, NULL, &faces));
+    leafless_faces_free(faces);
+    MAY_BE_NULL(leafless_faces_new, max_cell, leafless_faces_new(octree, 8, 0, 20, NULL, NULL, &faces));
+    leafless_faces_free(faces);
     OK(leafless_cells_new(octree, LEAFLESS_TAGS_LEAVES, 0, 20, cell, end, &cells));
     OK(leafless_faces_new(octree, LEAFLESS_TAGS_FULL, 0, 20, cell, end, &faces));
     NULL_POINTER(leafless_frame_cell_bounds, frame, leafless_frame_cell_bounds(NULL, cell, 0, low, low));

@@ -382,6 +382,13 @@ size_t leafless_last_error(char *message, size_t capacity);
 /// - Threads: any; every thread has its own status.
 leafless_status leafless_last_status(void);
 
+/// What a function of the host returned that ended the work, if that was the last failure in the calling
+/// thread (LEAFLESS_E_CALLBACK); else 0. So the host knows which of its functions it was, and why.
+///
+/// - Result: the number.
+/// - Threads: any; every thread has its own number.
+int32_t leafless_last_code(void);
+
 /* ---- 4. Options, cancelling, progress ----------------------------------------------------------------- */
 
 /// Hears how far an operation is, with the fraction done (0 to 1); returns 0 to go on. Anything else ends the

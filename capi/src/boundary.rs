@@ -139,7 +139,14 @@ fn guard_free(body: impl FnOnce()) {
 #[cold]
 fn refused(failure: Failure) -> leafless_status {
     let status = leafless_status::from(&failure);
-    keep(status, &failure);
+    let code = match &failure {
+        Failure::Library(error) => match error.cause() {
+            Error::Callback { code } => *code,
+            _ => 0,
+        },
+        _ => 0,
+    };
+    keep(status, code, &failure);
     status
 }
 
@@ -151,7 +158,7 @@ fn panicked(payload: Box<dyn Any + Send>) -> leafless_status {
         _ => "no message",
     };
     let status = leafless_status::LEAFLESS_E_PANIC;
-    keep(status, &format_args!("a defect of the library, please report it: {text}"));
+    keep(status, 0, &format_args!("a defect of the library, please report it: {text}"));
     status
 }
 

@@ -84,13 +84,15 @@ const ALL: [(leafless_status, &CStr); 22] = [
 /// The last failure of a thread. Of fixed size, so that a failure for want of memory can be told.
 struct Last {
     status: leafless_status,
+    /// What a function of the host returned, if that is why.
+    code: i32,
     length: usize,
     text: [u8; 511],
 }
 
 std::thread_local! {
     static LAST: RefCell<Last> =
-        const { RefCell::new(Last { status: leafless_status::LEAFLESS_OK, length: 0, text: [0; 511] }) };
+        const { RefCell::new(Last { status: leafless_status::LEAFLESS_OK, code: 0, length: 0, text: [0; 511] }) };
 }
 
 /// The largest length up to `most` at which `text` can be cut between characters.
@@ -107,10 +109,10 @@ impl Write for Last {
     }
 }
 
-pub(super) fn keep(status: leafless_status, text: &dyn Display) {
+pub(super) fn keep(status: leafless_status, code: i32, text: &dyn Display) {
     // Nothing below fails in this thread, so the cell is not borrowed twice.
     LAST.with_borrow_mut(|last| {
-        (last.status, last.length) = (status, 0);
+        (last.status, last.code, last.length) = (status, code, 0);
         // What does not fit is cut off.
         let _ = write!(last, "{text}");
     });
@@ -160,4 +162,14 @@ pub unsafe extern "C" fn leafless_last_error(message: *mut c_char, capacity: usi
 #[unsafe(no_mangle)]
 pub extern "C" fn leafless_last_status() -> leafless_status {
     LAST.with_borrow(|last| last.status)
+}
+
+/// What a function of the host returned that ended the work, if that was the last failure in the calling thread
+/// (LEAFLESS_E_CALLBACK); else 0. So the host knows which of its functions it was, and why.
+///
+/// - Result: the number.
+/// - Threads: any; every thread has its own number.
+#[unsafe(no_mangle)]
+pub extern "C" fn leafless_last_code() -> i32 {
+    LAST.with_borrow(|last| last.code)
 }

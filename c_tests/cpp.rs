@@ -1,0 +1,522 @@
+//! Makes `include/leafless.hpp` of `include/leafless.h`: every function of the C interface as a member of a class, or as a
+//! function, by the rules that stand at the top of the result.
+
+use std::fmt::Write;
+
+/// A parameter of a function in C.
+#[derive(Clone, Debug)]
+struct Parameter {
+    /// The type without `const` and `*`.
+    base: String,
+    is_const: bool,
+    pointers: usize,
+    name: String,
+    array: Option<usize>,
+    /// How many numbers an element of it has, if it is an array of any length.
+    dimension: usize,
+}
+
+/// Arrays whose elements have several numbers: the function, or all, the parameter, and the number.
+const DIMENSIONS: &[(&str, &str, usize)] = &[
+    ("leafless_layer_new_lines", "points_model", 6),
+    ("leafless_tridexel_voxels", "colours", 4),
+    ("leafless_mesh_copy", "vertices", 3),
+    ("leafless_mesh_copy", "triangles", 3),
+    ("leafless_mesh_normals", "normals", 3),
+    ("leafless_tridexel_read_cells", "ends_cells", 2),
+    ("", "points_model", 3),
+    ("", "planes", 4),
+    ("", "polygon_model", 2),
+    ("", "matrices", 12),
+];
+
+/// Functions with several arrays that may be left out. Their parameters are those of C.
+const AS_IN_C: &[&str] = &["leafless_tridexel_read", "leafless_octree_voxels"];
+
+impl Parameter {
+    fn parse(function: &str, text: &str) -> Parameter {
+        let (text, array) = match text.split_once('[') {
+            Some((text, size)) => (text, Some(size.trim_end_matches(']').parse().expect("a size"))),
+            None => (text, None),
+        };
+        let is_const = text.starts_with("const ");
+        let at = text.rfind([' ', '*']).expect("a type and a name") + 1;
+        let (kind, name) = text.split_at(at);
+        let base = kind.trim_start_matches("const ").split([' ', '*']).next().expect("a type");
+        let pointers = kind.matches('*').count();
+        let known =
+            DIMENSIONS.iter().find(|(of, known, _)| (of.is_empty() || *of == function) && *known == name);
+        let dimension = known.map_or(1, |&(.., dimension)| dimension);
+        Parameter { base: base.to_string(), is_const, pointers, name: name.to_string(), array, dimension }
+    }
+
+    /// Whether it is `const T *name`.
+    fn is_input(&self) -> bool {
+        self.is_const && self.pointers == 1 && self.array.is_none()
+    }
+
+    /// Whether it is `T *name`.
+    fn is_output(&self) -> bool {
+        !self.is_const && self.pointers == 1 && self.array.is_none()
+    }
+
+    /// Whether it says how many elements there are.
+    fn is_count(&self) -> bool {
+        self.is_output() && (self.name.ends_with("count") || self.name.ends_with("length"))
+    }
+
+    fn is(&self, base: &str, pointers: usize) -> bool {
+        self.base == base && self.pointers == pointers && self.array.is_none()
+    }
+
+    /// The type of an element of an array.
+    fn element(&self) -> String {
+        let base = if self.base == "void" { "std::byte" } else { &self.base };
+        if self.dimension == 1 { base.to_string() } else { array_of(base, self.dimension) }
+    }
+
+    /// The type of a fixed number of them.
+    fn fixed(&self) -> String {
+        array_of(&self.base, self.array.expect("a number"))
+    }
+
+    /// As it stands in C.
+    fn in_c(&self) -> String {
+        let qualifier = if self.is_const { "const " } else { "" };
+        let stars = "*".repeat(self.pointers + usize::from(self.array.is_some()));
+        format!("{qualifier}{} {stars}{}", self.base, self.name)
+    }
+}
+
+/// An array of so many elements; some have names.
+fn array_of(base: &str, count: usize) -> String {
+    match (base, count) {
+        ("double", 3) => "point".to_string(),
+        ("double", 12) => "affine".to_string(),
+        ("uint32_t", 3) => "cell_index".to_string(),
+        ("uint32_t", 2) => "ray_index".to_string(),
+        // (Without a space, at which lines would be broken.)
+        _ => format!("std::array<{base},{count}>"),
+    }
+}
+
+/// A function of the C interface.
+struct Function {
+    name: String,
+    result: String,
+    parameters: Vec<Parameter>,
+}
+
+/// What the header declares, without comments.
+fn functions(header: &str) -> Vec<Function> {
+    let mut functions = Vec::new();
+    let mut lines = header.lines().filter(|line| !line.trim_start().starts_with("//"));
+    while let Some(line) = lines.next() {
+        let starts = |words: &[&str]| words.iter().any(|word| line.starts_with(word));
+        let is_function = line.contains("leafless_") && line.contains('(') && !line.starts_with(' ');
+        if !is_function
+            || starts(&["typedef", "LEAFLESS_", "#", "/", "static inline", "}"])
+            || line.starts_with(" *")
+        {
+            continue;
+        }
+        let mut text = line.to_string();
+        while !text.ends_with(';') {
+            text = format!("{} {}", text.trim_end(), lines.next().expect("the end of a declaration").trim());
+        }
+        let (before, parameters) = text.split_once('(').expect("parameters");
+        let at = before.rfind([' ', '*']).expect("a result") + 1;
+        let (result, name) = before.split_at(at);
+        let parameters = parameters.trim_end_matches(");");
+        let parameters = match parameters {
+            "void" => Vec::new(),
+            list => list.split(", ").map(|text| Parameter::parse(name, text)).collect(),
+        };
+        functions.push(Function { name: name.to_string(), result: result.trim().to_string(), parameters });
+    }
+    functions
+}
+
+/// A function in C++, while it is put together.
+#[derive(Default)]
+struct Translation {
+    /// Parameters with their defaults, and whether they have one.
+    parameters: Vec<(String, Option<&'static str>)>,
+    /// What is passed to the C function, in its order.
+    arguments: Vec<String>,
+    /// Statements before the call.
+    before: Vec<String>,
+    /// Statements between the first call, which asks for sizes, and the second.
+    sizes: Vec<String>,
+    /// Arguments of the first call that differ.
+    first: Vec<(usize, String)>,
+    /// Types and values that are returned.
+    results: Vec<(String, String)>,
+    is_const: bool,
+    has_self: bool,
+}
+
+/// Which pointers may be NULL: pairs of a function and a parameter.
+pub type Nullable<'n> = dyn Fn(&str, &str) -> bool + 'n;
+
+struct Translator<'a> {
+    handles: Vec<String>,
+    nullable: &'a Nullable<'a>,
+}
+
+impl Translator<'_> {
+    /// The class of a function and its name there, if it has a class.
+    fn class_of<'f>(&self, name: &'f str) -> Option<(&str, &'f str)> {
+        let rest = name.strip_prefix("leafless_").expect("a prefix");
+        let fitting = self
+            .handles
+            .iter()
+            .filter(|class| rest.strip_prefix(class.as_str()).is_some_and(|r| r.starts_with('_')));
+        let class = fitting.max_by_key(|class| class.len())?;
+        Some((class, &rest[class.len() + 1..]))
+    }
+
+    fn is_handle(&self, base: &str) -> bool {
+        base.strip_prefix("leafless_").is_some_and(|name| self.handles.iter().any(|handle| handle == name))
+    }
+
+    fn translate(&self, function: &Function) -> Translation {
+        let class = self.class_of(&function.name).map(|(class, _)| class);
+        let list = &function.parameters;
+        let mut made = Translation::default();
+        // The name of the span that has one element for each question.
+        let mut asked: Option<&str> = None;
+        let mut i = 0;
+        while let Some(p) = list.get(i) {
+            let next = |k: usize| list.get(i + k);
+            let (name, base) = (p.name.as_str(), p.base.as_str());
+            // (Corners of rectangles of rays are NULL both, or none of them.)
+            let is_corner = p.is_const && p.array == Some(2);
+            let may_be_null = is_corner || (self.nullable)(&function.name, name);
+            if i == 0 && p.pointers == 1 && class.is_some_and(|class| base == format!("leafless_{class}")) {
+                made.has_self = true;
+                made.is_const = p.is_const;
+                made.arguments.push("get()".to_string());
+                i += 1;
+            } else if AS_IN_C.contains(&function.name.as_str()) {
+                made.parameters.push((p.in_c(), None));
+                made.arguments.push(name.to_string());
+                i += 1;
+            } else if p.is_output()
+                && next(1).is_some_and(|capacity| capacity.name.ends_with("capacity"))
+                && (function.name.ends_with("_next") || !next(2).is_some_and(Parameter::is_count))
+            {
+                // Filled as far as there is room for it.
+                made.parameters.push((format!("span<{}> {name}", p.element()), None));
+                made.arguments.push(pointer_to(p));
+                made.arguments.push(format!("{name}.size()"));
+                i += 2;
+            } else if p.is("char", 1)
+                && p.is_const
+                && next(1).is_some_and(|length| length.name == format!("{name}_length"))
+            {
+                made.parameters.push((format!("std::string_view {name}"), None));
+                made.arguments.push(format!("{name}.data()"));
+                made.arguments.push(format!("{name}.size()"));
+                i += 2;
+            } else if p.is("char", 2) && next(1).is_some_and(|length| length.name == format!("{name}_length"))
+            {
+                made.before.push(format!("const char *{name} = nullptr;"));
+                made.before.push(format!("std::size_t {name}_length = 0;"));
+                made.arguments.push(format!("&{name}"));
+                made.arguments.push(format!("&{name}_length"));
+                made.results
+                    .push(("std::string_view".to_string(), format!("detail::text({name}, {name}_length)")));
+                i += 2;
+            } else if self.is_handle(base) && p.pointers == 2 && !p.is_const {
+                let class = base.strip_prefix("leafless_").expect("a prefix");
+                let handle = format!("{name}_handle");
+                made.before.push(format!("{base} *{handle} = nullptr;"));
+                made.arguments.push(format!("&{handle}"));
+                made.results.push((format!("leafless::{class}"), format!("leafless::{class}({handle})")));
+                i += 1;
+            } else if self.is_handle(base)
+                && p.pointers == 2
+                && next(1).is_some_and(|count| count.name.ends_with("count"))
+            {
+                made.parameters.push((format!("span<const {base} *const> {name}"), None));
+                made.arguments.push(format!("{name}.data()"));
+                made.arguments.push(format!("{name}.size()"));
+                i += 2;
+            } else if self.is_handle(base) && p.pointers == 1 {
+                let class = base.strip_prefix("leafless_").expect("a prefix");
+                if may_be_null {
+                    made.parameters.push((format!("const leafless::{class} *{name}"), Some("nullptr")));
+                    made.arguments.push(format!("detail::handle_of({name})"));
+                } else {
+                    let qualifier = if p.is_const { "const " } else { "" };
+                    made.parameters.push((format!("{qualifier}leafless::{class} &{name}"), None));
+                    made.arguments.push(format!("{name}.get()"));
+                }
+                i += 1;
+            } else if let Some(arrays) = self.arrays_in(&list[i..]) {
+                for array in &list[i..i + arrays] {
+                    made.parameters.push((format!("span<const {}> {}", array.element(), array.name), None));
+                    made.arguments.push(pointer_to(array));
+                    if array.name != p.name {
+                        made.before.push(format!("detail::same_size({name}.size(), {}.size());", array.name));
+                    }
+                }
+                made.arguments.push(format!("{name}.size()"));
+                asked = Some(name);
+                i += arrays + 1;
+            } else if let Some((buffers, count)) = self.two_steps(&list[i..]) {
+                // T *a, [T *b,] uint64_t capacity, uint64_t *count
+                let counter = &list[i + buffers + 1].name;
+                made.before.push(format!("std::uint64_t {counter} = 0;"));
+                for buffer in &list[i..i + buffers] {
+                    let element = buffer.element();
+                    made.before.push(format!("std::vector<{element}> {};", buffer.name));
+                    made.sizes.push(format!("{}.resize(static_cast<std::size_t>({counter}));", buffer.name));
+                    made.first.push((made.arguments.len(), "nullptr".to_string()));
+                    made.arguments.push(pointer_to(buffer));
+                    made.results
+                        .push((format!("std::vector<{element}>"), format!("std::move({})", buffer.name)));
+                }
+                made.first.push((made.arguments.len(), "0".to_string()));
+                made.arguments.push(format!("{}.size()", list[i].name));
+                made.arguments.push(format!("&{counter}"));
+                i += count;
+            } else if p.array.is_some() && p.is_const {
+                if may_be_null {
+                    made.parameters.push((format!("const {} *{name}", p.fixed()), Some("nullptr")));
+                    made.arguments.push(format!("{name} == nullptr ? nullptr : {name}->data()"));
+                } else {
+                    made.parameters.push((format!("const {} &{name}", p.fixed()), None));
+                    made.arguments.push(format!("{name}.data()"));
+                }
+                i += 1;
+            } else if p.array.is_some() {
+                made.before.push(format!("{} {name}{{}};", p.fixed()));
+                made.arguments.push(format!("{name}.data()"));
+                made.results.push((p.fixed(), name.to_string()));
+                i += 1;
+            } else if p.is_input() && base.starts_with("leafless_") {
+                if may_be_null {
+                    made.parameters.push((format!("const {base} *{name}"), Some("nullptr")));
+                    made.arguments.push(name.to_string());
+                } else {
+                    made.parameters.push((format!("const {base} &{name}"), None));
+                    made.arguments.push(format!("&{name}"));
+                }
+                i += 1;
+            } else if p.is_output() && asked.is_some() && is_plural(name) && base != "void" {
+                // One answer for each question, where the caller wants it.
+                made.parameters.push((format!("span<{}> {name}", p.element()), None));
+                let asked = asked.expect("questions");
+                // (Values of attributes may have several numbers each.)
+                let check = if p.base == "double" { "at_least" } else { "same_size" };
+                made.before.push(format!("detail::{check}({asked}.size(), {name}.size());"));
+                made.arguments.push(format!("{name}.data()"));
+                i += 1;
+            } else if p.is_output()
+                && base != "void"
+                && next(1).is_none_or(|next| !next.name.ends_with("capacity"))
+            {
+                made.before.push(format!("{base} {name}{{}};"));
+                made.arguments.push(format!("&{name}"));
+                made.results.push((base.to_string(), name.to_string()));
+                i += 1;
+            } else {
+                // As in C.
+                made.parameters.push((p.in_c(), None));
+                made.arguments.push(name.to_string());
+                i += 1;
+            }
+        }
+        // Only what stands at the end may be left out.
+        let last = made.parameters.iter().rposition(|(_, default)| default.is_none()).map_or(0, |at| at + 1);
+        made.parameters[..last].iter_mut().for_each(|(_, default)| *default = None);
+        made
+    }
+
+    /// How many arrays of numbers or structs begin here that have one count.
+    fn arrays_in(&self, list: &[Parameter]) -> Option<usize> {
+        let is_array = |p: &Parameter| p.is_input() && !self.is_handle(&p.base);
+        let count = list.iter().take_while(|p| is_array(p)).count();
+        let counter = list.get(count).filter(|_| count > 0)?;
+        let is_counter = counter.pointers == 0
+            && (counter.name.ends_with("count") || counter.name.ends_with("length"))
+            && counter.base == "uint64_t";
+        // A struct before numbers belongs to something else.
+        let is_one = count == 1 || list[..count].iter().all(|p| !p.base.starts_with("leafless_"));
+        (is_counter && is_one).then_some(count)
+    }
+
+    /// Whether buffers begin here that are filled in two steps: how many, and of how many parameters.
+    fn two_steps(&self, list: &[Parameter]) -> Option<(usize, usize)> {
+        let buffers = list.iter().take_while(|p| p.is_output() && p.base != "bool").count();
+        let [capacity, count] = list.get(buffers..buffers + 2)? else { return None };
+        let is_capacity = capacity.pointers == 0 && capacity.name.ends_with("capacity");
+        let is_so = buffers > 0 && is_capacity && count.is_count();
+        // Buffers of one capacity have one kind of elements.
+        let is_alike = |p: &Parameter| p.base == list[0].base && p.dimension == 1;
+        assert!(!is_so || buffers == 1 || list[..buffers].iter().all(is_alike), "{list:?}");
+        is_so.then_some((buffers, buffers + 2))
+    }
+}
+
+/// Whether an output of this name has one element for each question.
+fn is_plural(name: &str) -> bool {
+    let name = name.trim_end_matches("_model");
+    name.ends_with('s') && !["bytes", "cells"].contains(&name)
+}
+
+/// The pointer to the first number of an array.
+fn pointer_to(array: &Parameter) -> String {
+    let name = &array.name;
+    match array.dimension {
+        1 => format!("{name}.data()"),
+        _ => format!("detail::numbers({name})"),
+    }
+}
+
+fn returned(made: &Translation) -> String {
+    match made.results.as_slice() {
+        [] => "void".to_string(),
+        [(kind, _)] => kind.clone(),
+        several => {
+            let kinds: Vec<&str> = several.iter().map(|(kind, _)| kind.as_str()).collect();
+            format!("std::tuple<{}>", kinds.join(", "))
+        }
+    }
+}
+
+/// Members that C++ has no name for.
+fn spelled(name: &str) -> &str {
+    match name {
+        "new" => "make",
+        "union" => "unite",
+        other => other,
+    }
+}
+
+/// The declarations of classes, and their bodies.
+pub fn made_of(header: &str, nullable: &Nullable<'_>) -> String {
+    let functions = functions(header);
+    let names = |suffix: &str| -> Vec<String> {
+        let fitting = functions.iter().filter_map(|f| f.name.strip_prefix("leafless_")?.strip_suffix(suffix));
+        fitting.map(str::to_string).collect()
+    };
+    let translator = Translator { handles: names("_free"), nullable };
+    let (mut classes, mut bodies, mut free) = (String::new(), String::new(), String::new());
+    for class in &translator.handles {
+        writeln!(classes, "class {class};").expect("memory");
+    }
+    for class in &translator.handles {
+        let handle = format!("leafless_{class}");
+        write!(
+            classes,
+            "\n/// A {handle}.\nclass {class} : public detail::owner<{handle}, {handle}_free> {{\npublic:\n    using owner::owner;\n"
+        )
+        .expect("memory");
+        for function in
+            functions.iter().filter(|f| translator.class_of(&f.name).is_some_and(|(of, _)| of == class))
+        {
+            let (_, name) = translator.class_of(&function.name).expect("a class");
+            if name == "free" {
+                continue;
+            }
+            let made = translator.translate(function);
+            let name = if name == "ref" { "share" } else { spelled(name) };
+            write_function(&made, function, Some(class), name, &mut classes, &mut bodies);
+        }
+        classes.push_str("};\n");
+    }
+    for function in functions.iter().filter(|f| translator.class_of(&f.name).is_none()) {
+        let name = function.name.strip_prefix("leafless_").expect("a prefix");
+        if ["last_error", "last_status", "last_code", "init"].contains(&name) {
+            continue;
+        }
+        let made = translator.translate(function);
+        write_function(&made, function, None, spelled(name), &mut free, &mut bodies);
+    }
+    format!("\n{classes}\n{free}{bodies}")
+}
+
+fn write_function(
+    made: &Translation,
+    function: &Function,
+    class: Option<&str>,
+    name: &str,
+    declarations: &mut String,
+    bodies: &mut String,
+) {
+    let is_fallible = function.result == "leafless_status";
+    let result = if is_fallible { format!("returns<{}>", returned(made)) } else { function.result.clone() };
+    let parameters = |with_defaults: bool| {
+        let list = made.parameters.iter().map(|(text, default)| match default {
+            Some(default) if with_defaults => format!("{text} = {default}"),
+            _ => text.clone(),
+        });
+        list.collect::<Vec<_>>().join(", ")
+    };
+    let space = if result.ends_with('*') { "" } else { " " };
+    let qualifier = if class.is_some() && made.has_self && made.is_const { " const" } else { "" };
+    let is_static = if class.is_some() && !made.has_self { "static " } else { "" };
+    let discards = if returned(made) == "void" && is_fallible { "" } else { "[[nodiscard]] " };
+    let indent = if class.is_some() { "    " } else { "" };
+    let declaration =
+        format!("{indent}{discards}{is_static}{result}{space}{name}({}){qualifier};", parameters(true));
+    declarations.push_str(&wrapped(&declaration, indent.len() + 4));
+
+    let scope = class.map_or(String::new(), |class| format!("{class}::"));
+    let head = format!("inline {result}{space}{scope}{name}({}){qualifier} {{", parameters(false));
+    bodies.push('\n');
+    bodies.push_str(&wrapped(&head, 4));
+    for line in &made.before {
+        bodies.push_str(&wrapped(&format!("    {line}"), 8));
+    }
+    let call = |arguments: &[String]| format!("{}({})", function.name, arguments.join(", "));
+    if !is_fallible {
+        bodies.push_str(&wrapped(&format!("    return {};", call(&made.arguments)), 8));
+        bodies.push_str("}\n");
+        return;
+    }
+    let value = match made.results.as_slice() {
+        [] => String::new(),
+        [(_, value)] => format!(", {value}"),
+        several => {
+            let values: Vec<&str> = several.iter().map(|(_, value)| value.as_str()).collect();
+            format!(", {}({})", returned(made), values.join(", "))
+        }
+    };
+    if made.first.is_empty() {
+        bodies
+            .push_str(&wrapped(&format!("    const leafless_status status = {};", call(&made.arguments)), 8));
+    } else {
+        let mut first = made.arguments.clone();
+        for (at, argument) in &made.first {
+            first[*at].clone_from(argument);
+        }
+        bodies.push_str(&wrapped(&format!("    leafless_status status = {};", call(&first)), 8));
+        bodies.push_str("    if (status == LEAFLESS_OK) {\n");
+        for line in &made.sizes {
+            writeln!(bodies, "        {line}").expect("memory");
+        }
+        bodies.push_str(&wrapped(&format!("        status = {};", call(&made.arguments)), 12));
+        bodies.push_str("    }\n");
+    }
+    bodies.push_str(&wrapped(&format!("    return detail::finish(status{value});"), 8));
+    bodies.push_str("}\n");
+}
+
+/// A line that is broken behind commas where it is too long.
+fn wrapped(text: &str, indent: usize) -> String {
+    let mut out = String::new();
+    let mut line = String::new();
+    for word in text.split_inclusive(", ") {
+        if !line.trim().is_empty() && line.chars().count() + word.trim_end().chars().count() > 110 {
+            writeln!(out, "{}", line.trim_end()).expect("memory");
+            line = " ".repeat(indent);
+        }
+        line.push_str(word);
+    }
+    writeln!(out, "{}", line.trim_end()).expect("memory");
+    out
+}

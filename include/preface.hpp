@@ -1,0 +1,292 @@
+// Leafless for C++17: owners, spans, exceptions and lambdas around the functions of leafless.h.
+//
+// Generated from leafless.h; do not edit. SPDX-License-Identifier: MIT OR Apache-2.0
+//
+// Every function of the C interface is here under its own name: leafless_octree_statistics is a member of octree,
+// and so is leafless_octree_build, which makes one, as a static member. What each does, its errors and its threads
+// stand in leafless.h. The rules by which the functions are translated:
+//
+// - An object is a class that owns one reference. It moves; share() gives one more reference.
+// - A function that fails throws leafless::error. With LEAFLESS_NO_EXCEPTIONS defined it returns a
+//   leafless::result instead, which is to be looked at.
+// - Results are returned; several results are a std::tuple in the order of the C function.
+// - An array that goes in is a leafless::span: of points (std::array<double, 3>), numbers or structs. An array whose
+//   length the caller knows, because there is one answer for each question, is a span that is filled.
+// - An array whose length only the library knows is returned as a std::vector. (It is filled in two calls.)
+// - Texts are std::string_view. What a _peek function returns belongs to the object.
+// - What may be NULL in C is a pointer here, by default nullptr where no argument without default follows.
+// - Functions of the host are lambdas, or objects with members (solid_of, half_space_of, attribute_of, with_progress,
+//   at the end of this file). An exception inside of one ends the work. It comes out of the function of the library
+//   that called it, and never runs through the library itself.
+
+#ifndef LEAFLESS_HPP
+#define LEAFLESS_HPP
+
+#include <leafless.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace leafless {
+
+/// A point or a direction: x, y and z.
+using point = std::array<double, 3>;
+
+/// An affine map: three rows of four numbers, the last of which is the offset.
+using affine = std::array<double, 12>;
+
+/// A cell by its indices along x, y and z.
+using cell_index = std::array<std::uint32_t, 3>;
+
+/// A ray along an axis by its indices along the other two, in the order x, y, z.
+using ray_index = std::array<std::uint32_t, 2>;
+
+/// Elements that lie one after another and belong to somebody else.
+template <class T> class span {
+public:
+    constexpr span() noexcept = default;
+    constexpr span(T *data, std::size_t size) noexcept : data_(data), size_(size) {}
+    /// All elements of a container that has data() and size().
+    template <class C, class = std::enable_if_t<std::is_convertible_v<decltype(std::declval<C &>().data()), T *>>>
+    constexpr span(C &container) noexcept : data_(container.data()), size_(container.size()) {}
+    template <class C, class = std::enable_if_t<std::is_convertible_v<decltype(std::declval<const C &>().data()), T *>>>
+    constexpr span(const C &container) noexcept : data_(container.data()), size_(container.size()) {}
+    template <std::size_t N> constexpr span(T (&array)[N]) noexcept : data_(array), size_(N) {}
+    constexpr T *data() const noexcept { return data_; }
+    constexpr std::size_t size() const noexcept { return size_; }
+    constexpr T *begin() const noexcept { return data_; }
+    constexpr T *end() const noexcept { return data_ + size_; }
+    constexpr T &operator[](std::size_t i) const noexcept { return data_[i]; }
+
+private:
+    T *data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+/// The message of the last failure in the calling thread.
+inline std::string last_message() {
+    std::string message(leafless_last_error(nullptr, 0) + 1, '\0');
+    leafless_last_error(message.data(), message.size());
+    message.pop_back();
+    return message;
+}
+
+#ifndef LEAFLESS_NO_EXCEPTIONS
+
+/// What a function throws that fails.
+class error : public std::runtime_error {
+public:
+    error(leafless_status status, const std::string &message) : std::runtime_error(message), status_(status) {}
+    leafless_status status() const noexcept { return status_; }
+
+private:
+    leafless_status status_;
+};
+
+#endif
+
+namespace detail {
+
+#ifndef LEAFLESS_NO_EXCEPTIONS
+
+/// Exceptions of the host's functions on their way around the library, by the numbers that the functions returned.
+class exceptions {
+public:
+    /// A number that no function of the host returns for anything else.
+    static std::int32_t keep(std::exception_ptr exception) noexcept {
+        try {
+            exceptions &all = instance();
+            const std::lock_guard<std::mutex> lock(all.mutex_);
+            do {
+                all.last_ = all.last_ == INT32_MIN ? -2 : all.last_ - 1;
+            } while (all.kept_.count(all.last_) != 0);
+            all.kept_.emplace(all.last_, std::move(exception));
+            return all.last_;
+        } catch (...) {
+            return -1; // No memory: the exception is lost, the failure is not.
+        }
+    }
+
+    static std::exception_ptr take(std::int32_t code) {
+        exceptions &all = instance();
+        const std::lock_guard<std::mutex> lock(all.mutex_);
+        const auto found = all.kept_.find(code);
+        if (found == all.kept_.end()) return nullptr;
+        const std::exception_ptr exception = found->second;
+        all.kept_.erase(found);
+        return exception;
+    }
+
+private:
+    static exceptions &instance() {
+        static exceptions all;
+        return all;
+    }
+
+    std::mutex mutex_;
+    std::map<std::int32_t, std::exception_ptr> kept_;
+    std::int32_t last_ = -1;
+};
+
+/// What a function of the host returns, or the number of what it throws.
+template <class F> std::int32_t guarded(F &&function) noexcept {
+    try {
+        return function();
+    } catch (...) {
+        return exceptions::keep(std::current_exception());
+    }
+}
+
+/// Throws what a failure in the calling thread was about.
+[[noreturn]] inline void raise(leafless_status status) {
+    if (status == LEAFLESS_E_CALLBACK) {
+        if (const std::exception_ptr exception = exceptions::take(leafless_last_code())) {
+            std::rethrow_exception(exception);
+        }
+    }
+    throw error(status, last_message());
+}
+
+/// Arrays that belong together.
+inline void same_size(std::size_t a, std::size_t b) {
+    if (a != b) throw std::invalid_argument("arrays that belong together have different sizes");
+}
+inline void at_least(std::size_t least, std::size_t size) {
+    if (size < least) throw std::invalid_argument("an array has no room for all answers");
+}
+
+#else
+
+template <class F> std::int32_t guarded(F &&function) noexcept { return function(); }
+inline void same_size(std::size_t a, std::size_t b) {
+    if (a != b) std::abort();
+}
+inline void at_least(std::size_t least, std::size_t size) {
+    if (size < least) std::abort();
+}
+
+#endif
+
+/// One reference to an object.
+template <class H, void (*Free)(H *)> class owner {
+public:
+    owner() noexcept = default;
+    explicit owner(H *handle) noexcept : handle_(handle) {}
+    owner(owner &&other) noexcept : handle_(other.release()) {}
+    owner &operator=(owner &&other) noexcept {
+        if (this != &other) reset(other.release());
+        return *this;
+    }
+    owner(const owner &) = delete;
+    owner &operator=(const owner &) = delete;
+    ~owner() { Free(handle_); }
+
+    /// The handle, for functions of leafless.h. It stays this object's.
+    H *get() const noexcept { return handle_; }
+    explicit operator bool() const noexcept { return handle_ != nullptr; }
+    /// The handle, which the caller now has to free.
+    [[nodiscard]] H *release() noexcept { return std::exchange(handle_, nullptr); }
+    void reset(H *handle = nullptr) noexcept { Free(std::exchange(handle_, handle)); }
+
+private:
+    H *handle_ = nullptr;
+};
+
+/// The handle of an object that may be absent.
+template <class T> auto handle_of(const T *object) noexcept { return object == nullptr ? nullptr : object->get(); }
+
+/// The first number of an array of several at once, such as points.
+template <class T, std::size_t N> const T *numbers(const span<const std::array<T, N>> &array) noexcept {
+    return array.size() == 0 ? nullptr : array.data()->data();
+}
+template <class T, std::size_t N> T *numbers(const span<std::array<T, N>> &array) noexcept {
+    return array.size() == 0 ? nullptr : array.data()->data();
+}
+template <class T, std::size_t N> T *numbers(std::vector<std::array<T, N>> &array) noexcept {
+    return array.empty() ? nullptr : array.data()->data();
+}
+
+inline std::string_view text(const char *data, std::size_t size) noexcept {
+    return data == nullptr ? std::string_view() : std::string_view(data, size);
+}
+
+} // namespace detail
+
+#ifdef LEAFLESS_NO_EXCEPTIONS
+
+/// What a function returns: a value, or why there is none.
+template <class T> class [[nodiscard]] result {
+public:
+    result(leafless_status status, T value) : status_(status), value_(std::move(value)) {}
+    leafless_status status() const noexcept { return status_; }
+    explicit operator bool() const noexcept { return status_ == LEAFLESS_OK; }
+    /// The value; without meaning after a failure.
+    T &value() & noexcept { return value_; }
+    T &&value() && noexcept { return std::move(value_); }
+
+private:
+    leafless_status status_;
+    T value_;
+};
+
+template <> class [[nodiscard]] result<void> {
+public:
+    explicit result(leafless_status status) noexcept : status_(status) {}
+    leafless_status status() const noexcept { return status_; }
+    explicit operator bool() const noexcept { return status_ == LEAFLESS_OK; }
+
+private:
+    leafless_status status_;
+};
+
+template <class T> using returns = result<T>;
+
+namespace detail {
+template <class T> result<T> finish(leafless_status status, T value) { return result<T>(status, std::move(value)); }
+inline result<void> finish(leafless_status status) { return result<void>(status); }
+} // namespace detail
+
+#else
+
+/// What a function returns.
+template <class T> using returns = T;
+
+namespace detail {
+template <class T> T finish(leafless_status status, T value) {
+    if (status != LEAFLESS_OK) raise(status);
+    return value;
+}
+inline void finish(leafless_status status) {
+    if (status != LEAFLESS_OK) raise(status);
+}
+} // namespace detail
+
+#endif
+
+/// Handles of several objects, for functions that take any number: `refs(a, b, c)`.
+template <class First, class... Rest> auto refs(const First &first, const Rest &...rest) {
+    using handle = std::add_pointer_t<std::add_const_t<std::remove_pointer_t<decltype(first.get())>>>;
+    return std::array<handle, 1 + sizeof...(rest)>{{first.get(), rest.get()...}};
+}
+
+/// Handles of a list of objects.
+template <class T> auto refs(const std::vector<T> &objects) {
+    std::vector<std::add_pointer_t<std::add_const_t<std::remove_pointer_t<decltype(objects[0].get())>>>> handles;
+    handles.reserve(objects.size());
+    for (const T &object : objects) handles.push_back(object.get());
+    return handles;
+}
