@@ -1,4 +1,4 @@
-/* What is proven of solids without an octree: volume, centroid, inertia, bounding box. */
+/* What is proven of solids without an octree: volume, centroid, inertia, areas, bounding box. */
 #include "check.h"
 
 static const double PI = 3.14159265358979323846;
@@ -116,6 +116,41 @@ static void ball(void) {
         leafless_solid_free(block);
     }
 
+    /* The section with a plane at a distance of 0.45 from the centre is a disc of radius 0.6. */
+    {
+        const double point[3] = {0.45, 0.6, -0.1}, normal[3] = {-3.0, 0.0, 0.0}, tilted[3] = {2.0, -1.0, 3.0};
+        const double none[3] = {0.0, 0.0, 0.0}, far[3] = {9.0, 9.0, 9.0}, wild[3] = {0.0, NAN, 0.0};
+        leafless_section_area section, same;
+        OK(leafless_solid_section_area(solid, &frame, point, normal, 1e-6, 0.0, NULL, &section));
+        CHECK(holds(section.area_model, PI * 0.36) && section.measured == LEAFLESS_MEASURED_TOLERANCE);
+        CHECK(section.area_model.upper - section.area_model.lower <= 1e-6 * section.area_model.upper);
+        CHECK(section.proof.full && section.proof.empty && !section.is_clipped && section.splits > 10);
+        options.max_splits = 0;
+        last = 0.0;
+        OK(leafless_solid_section_area(solid, &frame, point, normal, 1e-6, 0.0, &options, &same));
+        CHECK(last == 1.0 && same.splits == section.splits);
+        CHECK(same.area_model.lower == section.area_model.lower && same.area_model.upper == section.area_model.upper);
+        options.max_splits = 3;
+        last = 0.0;
+        OK(leafless_solid_section_area(solid, &frame, none, tilted, 0.0, 0.0, &options, &same));
+        CHECK(same.measured == LEAFLESS_MEASURED_BUDGET && same.splits == 3 && holds(same.area_model, PI * 0.5625));
+        OK(leafless_solid_section_area(solid, &frame, none, tilted, 0.0, 1e-4, NULL, &same));
+        CHECK(same.measured == LEAFLESS_MEASURED_TOLERANCE && holds(same.area_model, PI * 0.5625));
+        OK(leafless_solid_section_area(solid, &frame, far, normal, 0.0, 0.0, NULL, &same));
+        CHECK(same.area_model.lower == 0.0 && same.area_model.upper == 0.0 && same.splits == 0);
+        memset(&same, 0x5a, sizeof same);
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_section_area(solid, &frame, point, none, 0.0, 0.0, NULL, &same));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_section_area(solid, &frame, wild, normal, 0.0, 0.0, NULL, &same));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_section_area(solid, &frame, point, normal, -1.0, 0.0, NULL, &same));
+        options.max_splits = 0;
+        options.progress = refuse;
+        FAILS(LEAFLESS_E_CANCELLED, leafless_solid_section_area(solid, &frame, point, normal, 0.0, 0.0, &options, &same));
+        options.progress = stop;
+        for (i = 0; i < (int)sizeof same; i++) {
+            CHECK(((const unsigned char *)&same)[i] == 0x5a);
+        }
+    }
+
     /* Where the surface is known to a hundredth the octree is coarse. */
     {
         const leafless_frame shallow = check_frame(8);
@@ -166,6 +201,16 @@ static void block(void) {
         CHECK(measures.centroid_model[i].lower == -0.125 && measures.centroid_model[i].upper == -0.125);
         CHECK(extent.min_model[i].lower == -0.5 && extent.min_model[i].upper == -0.5);
         CHECK(extent.max_model[i].lower == 0.25 && extent.max_model[i].upper == 0.25);
+    }
+    /* Cut in its lower face, between planes of the lattice, and in its upper face. */
+    {
+        const double normal[3] = {0.0, 0.0, 1.0}, heights[3] = {-0.5, 0.01, 0.25};
+        leafless_section_area section;
+        for (i = 0; i < 3; i++) {
+            const double point[3] = {0.0, 0.0, heights[i]}, area = i < 2 ? 0.5625 : 0.0;
+            OK(leafless_solid_section_area(solid, &frame, point, normal, 0.0, 0.0, NULL, &section));
+            CHECK(section.area_model.lower == area && section.area_model.upper == area);
+        }
     }
     /* An octree on another frame is none on this. */
     {

@@ -81,6 +81,7 @@ static void null_pointers(void) {
     bool is_complete;
     leafless_extent extent;
     leafless_surface_area surface;
+    leafless_section_area section;
     double wanted[8][3];
     uint32_t indices[12][3];
     uint64_t number, other;
@@ -659,6 +660,18 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_surface_area, surface, leafless_solid_surface_area(solid, &frame, 0, 0.0, NULL, NULL));
     MAY_BE_NULL(leafless_solid_surface_area, options,
                 leafless_solid_surface_area(solid, &frame, 0, 0.0, NULL, &surface));
+    NULL_POINTER(leafless_solid_section_area, solid,
+                 leafless_solid_section_area(NULL, &frame, point, above, 0, 0.0, NULL, (leafless_section_area *)out));
+    NULL_POINTER(leafless_solid_section_area, frame,
+                 leafless_solid_section_area(solid, NULL, point, above, 0, 0.0, NULL, (leafless_section_area *)out));
+    NULL_POINTER(leafless_solid_section_area, point_model,
+                 leafless_solid_section_area(solid, &frame, NULL, above, 0, 0.0, NULL, (leafless_section_area *)out));
+    NULL_POINTER(leafless_solid_section_area, normal,
+                 leafless_solid_section_area(solid, &frame, point, NULL, 0, 0.0, NULL, (leafless_section_area *)out));
+    NULL_POINTER(leafless_solid_section_area, section,
+                 leafless_solid_section_area(solid, &frame, point, above, 0, 0.0, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_section_area, options,
+                leafless_solid_section_area(solid, &frame, point, above, 0, 0.0, NULL, &section));
     NULL_POINTER(leafless_solid_bounding_box, solid,
                  leafless_solid_bounding_box(NULL, &frame, 0, NULL, (leafless_extent *)out));
     NULL_POINTER(leafless_solid_bounding_box, frame,
@@ -808,6 +821,12 @@ static void misaligned(void) {
                leafless_solid_measure(solid, &frame, 0, 0.0, NULL, (leafless_measures *)WRONG(out)));
     MISALIGNED(leafless_solid_surface_area, surface,
                leafless_solid_surface_area(solid, &frame, 0, 0.0, NULL, (leafless_surface_area *)WRONG(out)));
+    MISALIGNED(leafless_solid_section_area, point_model,
+               leafless_solid_section_area(solid, &frame, (double *)WRONG(out), above, 0, 0.0, NULL,
+                                           (leafless_section_area *)out));
+    MISALIGNED(leafless_solid_section_area, section,
+               leafless_solid_section_area(solid, &frame, point, above, 0, 0.0, NULL,
+                                           (leafless_section_area *)WRONG(out)));
     MISALIGNED(leafless_solid_bounding_box, extent,
                leafless_solid_bounding_box(solid, &frame, 0, NULL, (leafless_extent *)WRONG(out)));
     MISALIGNED(leafless_octree_build, solid,
@@ -923,6 +942,8 @@ static void numbers(void) {
                    leafless_solid_measure(solid, &bad, 0, 0.0, NULL, (leafless_measures *)out));
         BAD_NUMBER(leafless_solid_surface_area, depth,
                    leafless_solid_surface_area(solid, &bad, 0, 0.0, NULL, (leafless_surface_area *)out));
+        BAD_NUMBER(leafless_solid_section_area, depth,
+                   leafless_solid_section_area(solid, &bad, point, above, 0, 0.0, NULL, (leafless_section_area *)out));
         BAD_NUMBER(leafless_solid_bounding_box, depth,
                    leafless_solid_bounding_box(solid, &bad, 0, NULL, (leafless_extent *)out));
         BAD_NUMBER(leafless_solid_contains, depth,

@@ -3003,6 +3003,16 @@ typedef struct leafless_surface_area {
     bool is_clipped;
 } leafless_surface_area;
 
+/// The area of a solid's section with a plane.
+typedef struct leafless_section_area {
+    leafless_interval area_model;  ///< Area. It contains the truth.
+    leafless_proof proof;  ///< What of the solid is proven: what is not counts as undecided.
+    uint64_t splits;  ///< How many times a cell was split.
+    leafless_measured measured;  ///< Why it ended.
+    /// Whether the solid may go on outside of the universe, or does: then it is the section inside of it.
+    bool is_clipped;
+} leafless_section_area;
+
 /// What is proven of a solid's bounding box inside of the universe.
 typedef struct leafless_extent {
     leafless_interval min_model[3];  ///< Lower corner; all numbers if `is_empty`.
@@ -3047,6 +3057,29 @@ leafless_status leafless_solid_measure(const leafless_solid *solid, const leafle
 /// - Untrusted input: any solid; the default of `max_splits` bounds the work.
 leafless_status leafless_solid_surface_area(const leafless_solid *solid, const leafless_frame *frame,
     double relative, double absolute_model, const leafless_options *options, leafless_surface_area *surface);
+
+/// The area of a solid's section with a plane, in the universe of a frame. The plane goes through a point,
+/// perpendicular to a normal of any length and either direction. The search splits only cells that the plane
+/// runs through. It ends with LEAFLESS_MEASURED_TOLERANCE if the interval is no wider than `relative` times
+/// its middle, or than `absolute_model` (square model units); with LEAFLESS_MEASURED_EXHAUSTED if no cell is
+/// left whose split would help; with LEAFLESS_MEASURED_BUDGET after `max_splits` of the options, or 2^20
+/// splits if that is 0. With N splits the width goes down with 1/N² on curved surfaces of half-spaces and
+/// what is made of them, with 1/N for other solids; plane faces of the former are known to rounding.
+///
+/// If faces of the solid lie in the plane, the sections on both sides of it differ. A plane perpendicular to
+/// an axis is taken as the limit from above, in the universe's upper face as that from below. If it is a
+/// plane of the lattice, the cells above it are those that count, and nothing is in doubt about faces there.
+/// Of any other plane the area contains the limits from both sides, and faces that lie in it stay in doubt.
+///
+/// - Buffers: as leafless_solid_measure; `point_model` and `normal`, 3 numbers each; `section`, one struct.
+/// - Result: `*section`.
+/// - Errors: as leafless_solid_measure, and LEAFLESS_E_ARGUMENT also if the normal is zero, or a number of
+///   point or normal is neither 0 nor of a magnitude between 2^-256 and 2^256.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
+leafless_status leafless_solid_section_area(const leafless_solid *solid, const leafless_frame *frame,
+    const double point_model[3], const double normal[3], double relative, double absolute_model,
+    const leafless_options *options, leafless_section_area *section);
 
 /// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search
 /// splits only cells that may reach beyond what is proven solid. It ends with LEAFLESS_MEASURED_TOLERANCE if

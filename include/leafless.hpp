@@ -428,6 +428,9 @@ public:
         double absolute_model, const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless_surface_area> surface_area(const leafless_frame &frame, double relative,
         double absolute_model, const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<leafless_section_area> section_area(const leafless_frame &frame,
+        const point &point_model, const point &normal, double relative, double absolute_model,
+        const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless_extent> bounding_box(const leafless_frame &frame, double tolerance_model,
         const leafless_options *options = nullptr) const;
     returns<void> distances(const leafless_frame &frame, span<const point> points_model,
@@ -1402,6 +1405,15 @@ inline returns<leafless_surface_area> solid::surface_area(const leafless_frame &
     const leafless_status status = leafless_solid_surface_area(get(), &frame, relative, absolute_model,
         options, &surface);
     return detail::finish(status, surface);
+}
+
+inline returns<leafless_section_area> solid::section_area(const leafless_frame &frame,
+    const point &point_model, const point &normal, double relative, double absolute_model,
+    const leafless_options *options) const {
+    leafless_section_area section{};
+    const leafless_status status = leafless_solid_section_area(get(), &frame, point_model.data(),
+        normal.data(), relative, absolute_model, options, &section);
+    return detail::finish(status, section);
 }
 
 inline returns<leafless_extent> solid::bounding_box(const leafless_frame &frame, double tolerance_model,

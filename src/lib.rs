@@ -83,6 +83,7 @@
 //! | … the normal of a surface of which only cells are known? | `render/normals.rs` |
 //! | … the list of voxels, their depth order? | `voxel/walk.rs`, `records.rs`, `order.rs` |
 //! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |
+//! | … the area of a plane section? | `query/section.rs`, `cut/section.rs` |
 
 #![no_std]
 #![deny(unsafe_code)]

@@ -122,6 +122,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             measured, has_centroid, is_clipped, is_exact
         }
         leafless_surface_area { area_model, splits, level, measured, is_clipped }
+        leafless_section_area { area_model, proof, splits, measured, is_clipped }
         leafless_extent {
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
         }

@@ -48,7 +48,7 @@
 //! | `picture` | pictures, PNG files, legends |
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
-//! | `measure` | volume, centroid, inertia, bounding boxes of solids |
+//! | `measure` | volume, centroid, inertia, areas of surfaces and sections, bounding boxes of solids |
 //! | `tridexel` | tri-dexel models: made of solids, described, metadata |
 //! | `tridexel_read` | cells, rays and intervals of tri-dexel models, statistics |
 //! | `tridexel_op` | set algebra of tri-dexel models, what they store |

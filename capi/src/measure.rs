@@ -1,13 +1,15 @@
-//! Measures of solids: volume, centroid, inertia, bounding box.
+//! Measures of solids: volume, centroid, inertia, areas of surface and sections, bounding box.
 
-use super::boundary::{guard, out, shared};
+use super::boundary::{array, guard, out, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::octree::leafless_proof;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use leafless::Interval;
-use leafless::query::{Extent, StopReason, SurfaceArea, surface_area};
+use leafless::query::{
+    Extent, SectionArea, SectionPlane, StopReason, SurfaceArea, section_area, surface_area,
+};
 use leafless::{MassProperties, Tolerance, bounding_box, measure};
 
 /// Why a search or a measurement ended.
@@ -90,6 +92,34 @@ impl From<SurfaceArea> for leafless_surface_area {
             level: surface.level.into(),
             measured: surface.stop_reason.into(),
             is_clipped: surface.clipped,
+        }
+    }
+}
+
+/// The area of a solid's section with a plane.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_section_area {
+    /// Area. It contains the truth.
+    pub area_model: leafless_interval,
+    /// What of the solid is proven: what is not counts as undecided.
+    pub proof: leafless_proof,
+    /// How many times a cell was split.
+    pub splits: u64,
+    /// Why it ended.
+    pub measured: leafless_measured,
+    /// Whether the solid may go on outside of the universe, or does: then it is the section inside of it.
+    pub is_clipped: bool,
+}
+
+impl From<SectionArea> for leafless_section_area {
+    fn from(section: SectionArea) -> leafless_section_area {
+        leafless_section_area {
+            area_model: section.area.into(),
+            proof: section.proof.into(),
+            splits: section.splits,
+            measured: section.stop_reason.into(),
+            is_clipped: section.clipped,
         }
     }
 }
@@ -212,6 +242,49 @@ pub unsafe extern "C" fn leafless_solid_surface_area(
         let surface = out(surface, "surface")?;
         let tolerance = Tolerance { relative, absolute: absolute_model };
         surface.write(controlled(options, |control| surface_area(solid, &frame, tolerance, control))?.into())
+    })
+}
+
+/// The area of a solid's section with a plane, in the universe of a frame. The plane goes through a point, perpendicular to
+/// a normal of any length and either direction. The search splits only cells that the plane runs through. It ends with
+/// LEAFLESS_MEASURED_TOLERANCE if the interval is no wider than `relative` times its middle, or than `absolute_model` (square
+/// model units); with LEAFLESS_MEASURED_EXHAUSTED if no cell is left whose split would help; with LEAFLESS_MEASURED_BUDGET
+/// after `max_splits` of the options, or 2^20 splits if that is 0. With N splits the width goes down with 1/N² on curved
+/// surfaces of half-spaces and what is made of them, with 1/N for other solids; plane faces of the former are known to
+/// rounding.
+///
+/// If faces of the solid lie in the plane, the sections on both sides of it differ. A plane perpendicular to an axis is taken
+/// as the limit from above, in the universe's upper face as that from below. If it is a plane of the lattice, the cells above
+/// it are those that count, and nothing is in doubt about faces there. Of any other plane the area contains the limits from
+/// both sides, and faces that lie in it stay in doubt.
+///
+/// - Buffers: as leafless_solid_measure; `point_model` and `normal`, 3 numbers each; `section`, one struct.
+/// - Result: `*section`.
+/// - Errors: as leafless_solid_measure, and LEAFLESS_E_ARGUMENT also if the normal is zero, or a number of point or normal is
+///   neither 0 nor of a magnitude between 2^-256 and 2^256.
+/// - Threads: any; works in the calling thread.
+/// - Untrusted input: any solid, any numbers; the default of `max_splits` bounds the work.
+///
+/// cbindgen:ptrs-as-arrays=[[point_model; 3], [normal; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_section_area(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    point_model: *const f64,
+    normal: *const f64,
+    relative: f64,
+    absolute_model: f64,
+    options: *const leafless_options,
+    section: *mut leafless_section_area,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let plane = SectionPlane::new(array(point_model, "point_model")?, array(normal, "normal")?)?;
+        let section = out(section, "section")?;
+        let tolerance = Tolerance { relative, absolute: absolute_model };
+        let found = controlled(options, |control| section_area(solid, &frame, &plane, tolerance, control))?;
+        section.write(found.into())
     })
 }
 

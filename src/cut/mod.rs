@@ -7,6 +7,7 @@
 //!   clipped and integrated over its faces. Moments are off by less than [`ERROR`].
 //! - For one curved surface and up to two planes, a plane near the surface stands for it, and what lies between both is
 //!   integrated. Moments are known to third order, with a bound of their error.
+//! - A plane and the cube have a polygon in common; slabs bound how much of it belongs to a solid.
 //! - The area of one surface is the flux through the walls of the cube, to third order. Where surfaces meet, each is
 //!   projected to a wall.
 
@@ -22,6 +23,7 @@ mod graph;
 mod polygon;
 mod quadratic;
 pub(crate) mod reach;
+mod section;
 mod surplus;
 mod taylor;
 #[cfg(test)]
@@ -33,6 +35,7 @@ pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
 pub(crate) use face::area_of_faces;
 pub(crate) use flux::{area_of_surface, most_area};
 pub(crate) use quadratic::Quadratic;
+pub(crate) use section::{SETTLED, Section};
 pub(crate) use taylor::Taylor;
 
 /// More than the error of any moment. (Twice what comes of the largest term that the formula admits; clipping is off

@@ -9,6 +9,7 @@
 //! | how much of it lies in a region? | `content` | `content` |
 //! | what are its volume, area, centroid, inertia? | | `measure` |
 //! | where does it begin and end? | | `extent` |
+//! | how large is its section with a plane? | | `section` |
 //! | how far is a point? | `distance` | `distance` |
 //! | how far is another solid, do both overlap? | | `clearance`, `interference` |
 //! | which cells of a box are solid, as bits? | `bitmap` | |
@@ -44,6 +45,7 @@ mod interference;
 mod measure;
 mod point;
 mod ray;
+mod section;
 
 pub use classify_box::{Region, classify_box};
 pub use classify_in::classify_in;
@@ -61,3 +63,4 @@ pub use point::{Membership, PointCursor, PointTable};
 #[cfg(feature = "render")]
 pub(crate) use ray::TouchedCell;
 pub use ray::{Obstacle, Ray, RayHit, RaySpans, Sight, cast_rays, line_of_sight, ray_spans};
+pub use section::{SECTION_SPLITS, SectionArea, SectionPlane, section_area};

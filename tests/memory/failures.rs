@@ -15,8 +15,8 @@ use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
 use leafless::mesh::{Polyhedron, PolyhedronArrays};
 use leafless::op::{DexelOptions, Zone, octree_from_dexels, resolve, union_of};
 use leafless::query::{
-    Columns, DistanceTo, Obstacle, PointTable, Side, cells_in, classify_box, classify_in, columns, distances,
-    heights, interference_at, ray_spans, surface_area,
+    Columns, DistanceTo, Obstacle, PointTable, SectionPlane, Side, cells_in, classify_box, classify_in,
+    columns, distances, heights, interference_at, ray_spans, section_area, surface_area,
 };
 use leafless::render::{
     Camera, Clip, ColourMap, Finish, MeshEdges, MeshLayer, OctreeLayer, Shot, SliceLayer, SlicePlane,
@@ -479,6 +479,11 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("area", [], {
         let ball = Csg::ball([15.0; 3], 9.0)?.difference(&Csg::cuboid([14.0; 3], [40.0; 3])?)?;
         surface_area(&ball, &frame(), 1e-2, &CONTROL)
+    });
+    operation!("section of a mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        let plane = SectionPlane::new([11.0; 3], [1.0, 0.2, -0.3])?;
+        section_area(&solid, &frame(), &plane, 1e-2, &CONTROL)
     });
     operation!("intersecting pairs", [closed], {
         TriangleMesh::from_facets(closed.triangles().iter().flat_map(|corners| {

@@ -24,4 +24,5 @@ mod points;
 mod ray_models;
 mod rays;
 mod region;
+mod section;
 mod triangles;

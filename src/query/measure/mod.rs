@@ -83,12 +83,12 @@ impl MassProperties {
     }
 }
 
-/// How well a volume is to be known: as soon as one of both is met.
+/// How well a volume or an area is to be known: as soon as one of both is met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// Width of the interval, as a share of its middle.
     pub relative: f64,
-    /// Width of the interval, in cubic model units.
+    /// Width of the interval, in cubic model units; of an area, in square ones.
     pub absolute: f64,
 }
 
