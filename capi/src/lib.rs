@@ -4,6 +4,18 @@
 //! does the work, hand its result over. The header's preface states the rules that hold for all of them;
 //! `boundary` enforces these, and the doc blocks here become the header's.
 //!
+//! # A new function
+//!
+//! 1. It stands in the file of its topic with its documentation, of which the entries have a fixed order; the header's preface says
+//!    which of them may be left out. An array of a fixed length is marked by `/// cbindgen:ptrs-as-arrays=[…]`.
+//! 2. A new struct or enumeration has its lines in `layout`; an enumeration that comes in has `enumeration!`.
+//! 3. A new file has its place in `SECTIONS` of `c_tests/generated.rs`, and in the table below.
+//! 4. Every pointer is tried NULL and misaligned, every number out of range, in `c_tests/null.c` (an array of a fixed length
+//!    misaligned by `WRONG(out)`). A program in `c_tests` compares what the function does with a truth.
+//! 5. `LEAFLESS_BLESS=1 cargo test --test c_api generated` writes the headers for C and C++ anew.
+//!
+//! # Files
+//!
 //! | file | section of the header |
 //! |---|---|
 //! | `version` | versions of library and interface |
@@ -15,11 +27,14 @@
 //! | `mesh_file` | mesh files, units |
 //! | `mesh_write` | mesh files, written |
 //! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
+//! | `mesh_moments` | volume and moments of meshes, triangles that intersect |
 //! | `metadata` | facts of octrees and channels, for both |
 //! | `number` | numbers that stand for members of enumerations |
 //! | `octree` | octrees: describing, statistics, metadata |
 //! | `operation` | set operations, for operands of every kind |
 //! | `solid` | solids: primitives, meshes, octrees, the host's own |
+//! | `csg` | half-spaces, primitives and expressions of them |
+//! | `host` | solids by functions of the host |
 //! | `volume` | bitmaps and arrays of samples, and solids of them |
 //! | `volume_arrays` | volumes from the host's arrays |
 //! | `volume_file` | volume files |
@@ -37,6 +52,7 @@
 //! | `point_cursor` | cursors and tables for points |
 //! | `rays` | rays: first hits, intervals, line of sight |
 //! | `columns` | columns of cells along an axis, height maps |
+//! | `content` | cells and volumes in regions |
 //! | `voxel` | voxel records in arrays |
 //! | `cells` | neighbours of cells, cells and boundary faces one after another |
 //! | `bitmap` | the cells of a box as bits |
@@ -48,6 +64,7 @@
 //! | `picture` | pictures, PNG files, legends |
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
+//! | `distance` | distances of points from solids |
 //! | `measure` | volume, centroid, inertia, areas of surfaces and sections, bounding boxes of solids |
 //! | `tridexel` | tri-dexel models: made of solids, described, metadata |
 //! | `tridexel_read` | cells, rays and intervals of tri-dexel models, statistics |
