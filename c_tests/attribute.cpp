@@ -82,8 +82,8 @@ void many_threads() {
     leafless_octree *solid = nullptr, *with = nullptr, *mapped = nullptr;
     OK(leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &solid));
     OK(leafless_octree_with_channel(solid, one.get(), &with));
-    OK(leafless_octree_save(with, PATH, std::strlen(PATH)));
-    OK(leafless_octree_map(PATH, std::strlen(PATH), &mapped));
+    OK(octree_save(with, PATH, std::strlen(PATH)));
+    OK(octree_map(PATH, std::strlen(PATH), &mapped));
     const Octree keep[3] = {Octree(solid), Octree(with), Octree(mapped)};
     std::vector<std::thread> readers;
     for (int t = 0; t < 8; t++) {

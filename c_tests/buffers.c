@@ -31,11 +31,11 @@ static uint8_t *bytes;
 static uint64_t length;
 
 static leafless_status octree_bytes(void *buffer, uint64_t capacity, uint64_t *count) {
-    return leafless_octree_to_bytes(octree, (uint8_t *)buffer, capacity, count);
+    return octree_to_bytes(octree, (uint8_t *)buffer, capacity, count);
 }
 
 static leafless_status stl_bytes(void *buffer, uint64_t capacity, uint64_t *count) {
-    return leafless_mesh_to_stl(mesh, (uint8_t *)buffer, capacity, count);
+    return mesh_to_stl(mesh, (uint8_t *)buffer, capacity, count);
 }
 
 static leafless_status levels(void *buffer, uint64_t capacity, uint64_t *count) {
@@ -45,7 +45,7 @@ static leafless_status levels(void *buffer, uint64_t capacity, uint64_t *count) 
 static leafless_status sections(void *buffer, uint64_t capacity, uint64_t *count) {
     leafless_probe probe;
     const leafless_status status =
-        leafless_bytes_probe(bytes, length, &probe, (leafless_section *)buffer, capacity);
+        probe_bytes(bytes, length, &probe, (leafless_section *)buffer, capacity);
     if (status == LEAFLESS_OK) {
         *count = probe.sections;
     }
@@ -55,7 +55,7 @@ static leafless_status sections(void *buffer, uint64_t capacity, uint64_t *count
 static leafless_status file_sections(void *buffer, uint64_t capacity, uint64_t *count) {
     leafless_probe probe;
     const leafless_status status =
-        leafless_file_probe("buffers.lfl", 11, &probe, (leafless_section *)buffer, capacity);
+        probe_path("buffers.lfl", 11, &probe, (leafless_section *)buffer, capacity);
     if (status == LEAFLESS_OK) {
         *count = probe.sections;
     }
@@ -191,7 +191,7 @@ int main(void) {
         for (i = 0; i < sizeof path; i += 2) {
             memcpy(path + i, "\xc3\xa4", 2);
         }
-        FAILS(LEAFLESS_E_IO, leafless_octree_open(path, sizeof path, &octree));
+        FAILS(LEAFLESS_E_IO, octree_open(path, sizeof path, &octree));
         whole = leafless_last_error(message, sizeof message);
         CHECK(whole == strlen(message) && whole <= 511);
         for (i = 1; i <= whole; i++) {

@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "files.h"
+
 #ifdef LEAFLESS_TEST
 /* What the library exports for tests alone. */
 #ifdef __cplusplus
@@ -135,10 +137,10 @@ static inline leafless_mesh *check_cube(void) {
 /* A whole file in memory, on an address that is good for anything. */
 static inline uint8_t *check_bytes(const leafless_octree *octree, uint64_t *length) {
     uint8_t *bytes;
-    OK(leafless_octree_to_bytes(octree, NULL, 0, length));
+    OK(octree_to_bytes(octree, NULL, 0, length));
     bytes = (uint8_t *)malloc((size_t)*length);
     CHECK(bytes != NULL);
-    OK(leafless_octree_to_bytes(octree, bytes, *length, length));
+    OK(octree_to_bytes(octree, bytes, *length, length));
     return bytes;
 }
 

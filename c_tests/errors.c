@@ -281,8 +281,8 @@ static leafless_status scanned_ball(void) {
     if (!status) status = leafless_octree_surface(octree, NULL, &options, &mesh);
     if (!status) status = leafless_octree_surface(octree, &surface, &options, &other);
     if (!status) status = leafless_mesh_describe(mesh, &report);
-    if (!status) status = leafless_mesh_to_bytes(mesh, &write, NULL, 0, &length);
-    if (!status) status = leafless_volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_NRRD_GZIP, NULL, 0, &length);
+    if (!status) status = mesh_to_bytes(mesh, &write, NULL, 0, &length);
+    if (!status) status = volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_NRRD_GZIP, NULL, 0, &length);
     if (!status) {
         CHECK(report.is_manifold && report.triangles > 5000);
     }
@@ -325,12 +325,12 @@ static leafless_status grainy_ball(void) {
         status = leafless_octree_carry_channels(grainy, operands, 2, LEAFLESS_CARRY_MEAN, NULL, 0, &options, &carried);
     }
     if (!status) status = leafless_channel_with_value_in(channel, grainy, &value, &options, &changed);
-    if (!status) status = leafless_octree_to_bytes(carried, NULL, 0, &length);
+    if (!status) status = octree_to_bytes(carried, NULL, 0, &length);
     if (!status) {
         bytes = (uint8_t *)malloc((size_t)length);
-        status = bytes == NULL ? LEAFLESS_E_NO_MEMORY : leafless_octree_to_bytes(carried, bytes, length, &length);
+        status = bytes == NULL ? LEAFLESS_E_NO_MEMORY : octree_to_bytes(carried, bytes, length, &length);
     }
-    if (!status) status = leafless_octree_from_bytes(bytes, length, &back);
+    if (!status) status = octree_from_bytes(bytes, length, &back);
     free(bytes);
     leafless_octree_free(back);
     leafless_channel_free(changed);
@@ -405,12 +405,12 @@ int main(int argc, char **argv) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_build(solid, &frame, 4, NULL, &octree));
     failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "rule");
 
-    FAILS(LEAFLESS_E_UTF8, leafless_octree_open("\xff", 1, &octree));
+    FAILS(LEAFLESS_E_UTF8, octree_open("\xff", 1, &octree));
     failed(LEAFLESS_E_UTF8, "LEAFLESS_E_UTF8", "path: is not UTF-8");
     FAILS(LEAFLESS_E_UTF8, leafless_octree_with_metadata(ball, "\xc3", 1, "", 0, &octree));
     FAILS(LEAFLESS_E_UTF8, leafless_octree_with_metadata(ball, "k", 1, "\xed\xa0\x80", 3, &octree));
 
-    FAILS(LEAFLESS_E_BUFFER, leafless_octree_to_bytes(ball, buffer, sizeof buffer, &count));
+    FAILS(LEAFLESS_E_BUFFER, octree_to_bytes(ball, buffer, sizeof buffer, &count));
     failed(LEAFLESS_E_BUFFER, "LEAFLESS_E_BUFFER", "16");
     FAILS(LEAFLESS_E_BUFFER, leafless_octree_levels(ball, levels, 2, &count));
     CHECK(count == 77);
@@ -478,24 +478,24 @@ int main(int argc, char **argv) {
         CHECK(none == NULL);
     }
 
-    FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_bytes((const uint8_t *)"solid\nfacet normal 0 0 0\nouter hoop\n", 36,
+    FAILS(LEAFLESS_E_MESH_FILE, mesh_from_bytes((const uint8_t *)"solid\nfacet normal 0 0 0\nouter hoop\n", 36,
                                                          NULL, NULL, &mesh));
     failed(LEAFLESS_E_MESH_FILE, "LEAFLESS_E_MESH_FILE", "line 3");
-    FAILS(LEAFLESS_E_MESH_FILE, leafless_mesh_from_bytes(NULL, 0, NULL, NULL, &mesh));
+    FAILS(LEAFLESS_E_MESH_FILE, mesh_from_bytes(NULL, 0, NULL, NULL, &mesh));
     CHECK(mesh == (leafless_mesh *)UNTOUCHED);
 
     {
         static const char text[] = "group() {\n  cube(size = [1, 2]);\n}";
         leafless_scene *scene = (leafless_scene *)UNTOUCHED;
-        FAILS(LEAFLESS_E_SCENE, leafless_scene_from_bytes((const uint8_t *)text, sizeof text - 1, NULL, 0, &scene));
+        FAILS(LEAFLESS_E_SCENE, scene_from_text(text, NULL, LEAFLESS_FACETS_AUTO, &scene));
         failed(LEAFLESS_E_SCENE, "LEAFLESS_E_SCENE", "line 2, column 15: expected 3 items");
         CHECK(scene == (leafless_scene *)UNTOUCHED);
     }
 
-    FAILS(LEAFLESS_E_FORMAT, leafless_octree_from_bytes((const uint8_t *)"no file at all, but of some length, more than a header"
+    FAILS(LEAFLESS_E_FORMAT, octree_from_bytes((const uint8_t *)"no file at all, but of some length, more than a header"
         " has, and so on, and so on, and so on, and so on, and so on, and so on, and so on, and so on", 128, &octree));
     failed(LEAFLESS_E_FORMAT, "LEAFLESS_E_FORMAT", "not a Leafless file");
-    FAILS(LEAFLESS_E_FORMAT, leafless_octree_from_bytes(bytes, length - 1, &octree));
+    FAILS(LEAFLESS_E_FORMAT, octree_from_bytes(bytes, length - 1, &octree));
     failed(LEAFLESS_E_FORMAT, "LEAFLESS_E_FORMAT", "bytes");
 
     {
@@ -506,30 +506,30 @@ int main(int argc, char **argv) {
         memcpy(altered, bytes, (size_t)length);
         altered[MAJOR_VERSION] = 3;
         make_checksums_right(altered);
-        FAILS(LEAFLESS_E_VERSION, leafless_octree_from_bytes(altered, length, &octree));
+        FAILS(LEAFLESS_E_VERSION, octree_from_bytes(altered, length, &octree));
         failed(LEAFLESS_E_VERSION, "LEAFLESS_E_VERSION", "3.1");
         check_write("newer.lfl", altered, (size_t)length);
-        FAILS(LEAFLESS_E_VERSION, leafless_octree_open("newer.lfl", 9, &octree));
-        FAILS(LEAFLESS_E_VERSION, leafless_octree_map("newer.lfl", 9, &octree));
+        FAILS(LEAFLESS_E_VERSION, octree_open("newer.lfl", 9, &octree));
+        FAILS(LEAFLESS_E_VERSION, octree_map("newer.lfl", 9, &octree));
 
         /* All checksums right, but the cells of the first brick are all EMPTY, so it should not be there. A brick
            of a certified octree has two planes of 64 bits. */
         memcpy(altered, bytes, (size_t)length);
-        OK(leafless_bytes_probe(bytes, length, &probe, sections, COUNT(sections)));
+        OK(probe_bytes(bytes, length, &probe, sections, COUNT(sections)));
         for (i = 0; i < probe.sections; i++) {
             if (strcmp(sections[i].name, "bricks") == 0) {
                 memset(altered + sections[i].offset, 0, 16);
             }
         }
         make_checksums_right(altered);
-        FAILS(LEAFLESS_E_DAMAGED, leafless_bytes_verify(altered, length));
+        FAILS(LEAFLESS_E_DAMAGED, verify_bytes(altered, length));
         failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "the octree is damaged");
-        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_from_bytes(altered, length, &octree));
+        FAILS(LEAFLESS_E_DAMAGED, octree_from_bytes(altered, length, &octree));
         check_write("damaged.lfl", altered, (size_t)length);
-        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_open("damaged.lfl", 11, &octree));
-        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_map_verified("damaged.lfl", 11, &octree));
+        FAILS(LEAFLESS_E_DAMAGED, octree_open("damaged.lfl", 11, &octree));
+        FAILS(LEAFLESS_E_DAMAGED, octree_map_verified("damaged.lfl", 11, &octree));
         CHECK(octree == UNTOUCHED);
-        OK(leafless_octree_map("damaged.lfl", 11, &octree));
+        OK(octree_map("damaged.lfl", 11, &octree));
         FAILS(LEAFLESS_E_DAMAGED, leafless_octree_check(octree));
         leafless_octree_free(octree);
         octree = UNTOUCHED;
@@ -603,19 +603,19 @@ int main(int argc, char **argv) {
         CHECK(region == 77);
         leafless_solid_free(host);
     }
-    FAILS(LEAFLESS_E_CALLBACK, leafless_octree_write(ball, gives_up, NULL));
+    FAILS(LEAFLESS_E_CALLBACK, octree_write_to(ball, gives_up, NULL));
     failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-4711");
     CHECK(leafless_last_code() == -4711);
     FAILS(LEAFLESS_E_NULL, leafless_octree_check(NULL));
     CHECK(leafless_last_code() == 0);
 
-    FAILS(LEAFLESS_E_IO, leafless_octree_open("no/such/file", 12, &octree));
+    FAILS(LEAFLESS_E_IO, octree_open("no/such/file", 12, &octree));
     failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
-    FAILS(LEAFLESS_E_IO, leafless_octree_map("no/such/file", 12, &octree));
+    FAILS(LEAFLESS_E_IO, octree_map("no/such/file", 12, &octree));
     failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
-    FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, "no/such/file", 12));
+    FAILS(LEAFLESS_E_IO, octree_save(ball, "no/such/file", 12));
     failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
-    FAILS(LEAFLESS_E_IO, leafless_mesh_open("no/such/file", 12, NULL, NULL, &mesh));
+    FAILS(LEAFLESS_E_IO, mesh_open("no/such/file", 12, NULL, NULL, &mesh));
     failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
     {
         /* Of a long path the end is told, and the reason after it. */
@@ -623,26 +623,26 @@ int main(int argc, char **argv) {
         int i;
         for (i = 0; i < 1000; i++) memcpy(path + 3 * i, "no/", 3);
         memcpy(path + 3000, "part.lfl", 8);
-        FAILS(LEAFLESS_E_IO, leafless_octree_open(path, 3008, &octree));
+        FAILS(LEAFLESS_E_IO, octree_open(path, 3008, &octree));
         failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/part.lfl: No such file");
     }
     /* A device that is always full. */
     if (access("/dev/full", W_OK) == 0) {
-        FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, "/dev/full", 9));
+        FAILS(LEAFLESS_E_IO, octree_save(ball, "/dev/full", 9));
         failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "space");
     }
 
     {
         static const uint8_t cut[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n1234567";
         leafless_volume *volume = (leafless_volume *)UNTOUCHED;
-        FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_from_bytes(cut, sizeof cut - 1, NULL, 0, &volume));
+        FAILS(LEAFLESS_E_VOLUME_FILE, volume_from_bytes(cut, sizeof cut - 1, NULL, 0, &volume));
         failed(LEAFLESS_E_VOLUME_FILE, "LEAFLESS_E_VOLUME_FILE", "8 bytes of samples are expected, and there are 7");
         check_write("errors.nrrd", cut, 20);
-        FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_open("errors.nrrd", 11, &volume));
+        FAILS(LEAFLESS_E_VOLUME_FILE, volume_open("errors.nrrd", 11, &volume));
         failed(LEAFLESS_E_VOLUME_FILE, "LEAFLESS_E_VOLUME_FILE", "errors.nrrd: ");
-        FAILS(LEAFLESS_E_IO, leafless_volume_open("no/such/file", 12, &volume));
+        FAILS(LEAFLESS_E_IO, volume_open("no/such/file", 12, &volume));
         failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file: No such file");
-        FAILS(LEAFLESS_E_IO, leafless_mesh_save(cube, "no/such/file.stl", 16, NULL));
+        FAILS(LEAFLESS_E_IO, mesh_save(cube, "no/such/file.stl", 16, NULL));
         failed(LEAFLESS_E_IO, "LEAFLESS_E_IO", "no/such/file.stl: No such file");
         CHECK(volume == (leafless_volume *)UNTOUCHED);
     }
@@ -689,17 +689,17 @@ int main(int argc, char **argv) {
         OK(leafless_channel_fill(many, NULL, &fill, NULL, &filled));
         OK(leafless_octree_with_channel(ball, filled, &with));
         file = check_bytes(with, &file_length);
-        OK(leafless_bytes_probe(file, file_length, &probe, sections, COUNT(sections)));
+        OK(probe_bytes(file, file_length, &probe, sections, COUNT(sections)));
         for (i = 0; i < probe.sections; i++) {
             if (sections[i].owner != 0 && sections[i].kind == SECTION_REL) {
                 memset(file + sections[i].offset, 0x5a, (size_t)sections[i].length);
             }
         }
         make_checksums_right(file);
-        FAILS(LEAFLESS_E_DAMAGED, leafless_octree_from_bytes(file, file_length, &octree));
+        FAILS(LEAFLESS_E_DAMAGED, octree_from_bytes(file, file_length, &octree));
         check_write("channel.lfl", file, (size_t)file_length);
         leafless_octree_free(with);
-        OK(leafless_octree_map("channel.lfl", 11, &with));
+        OK(octree_map("channel.lfl", 11, &with));
         leafless_channel_free(filled);
         OK(leafless_octree_channel_at(with, 0, &filled));
         FAILS(LEAFLESS_E_DAMAGED, leafless_channel_describe(filled, &info));
@@ -739,7 +739,7 @@ int main(int argc, char **argv) {
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "must have rays in the same directions");
         FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_ray(column, 2, ray, NULL, 0, &count));
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "axis: is none that the model has rays along");
-        FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_read(column, 1, NULL, NULL, &count, 1, &offset_count, NULL, NULL, NULL, NULL,
+        FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_copy(column, 1, NULL, NULL, &count, 1, &offset_count, NULL, NULL, NULL, NULL,
                                                         0, &count));
         failed(LEAFLESS_E_BUFFER, "LEAFLESS_E_BUFFER", "offsets: has a capacity of 1, and ");
         {
@@ -749,26 +749,26 @@ int main(int argc, char **argv) {
             leafless_section sections[32];
             uint64_t file_length = 0;
             uint8_t *file;
-            OK(leafless_tridexel_to_bytes(model, NULL, 0, &file_length));
+            OK(tridexel_to_bytes(model, NULL, 0, &file_length));
             file = (uint8_t *)malloc((size_t)file_length);
             CHECK(file != NULL);
-            OK(leafless_tridexel_to_bytes(model, file, file_length, &file_length));
-            FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_from_bytes(file, file_length, &octree));
+            OK(tridexel_to_bytes(model, file, file_length, &file_length));
+            FAILS(LEAFLESS_E_ARGUMENT, octree_from_bytes(file, file_length, &octree));
             failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "the file holds a tri-dexel model, where an octree is wanted");
-            FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_from_bytes(bytes, length, &result));
+            FAILS(LEAFLESS_E_ARGUMENT, tridexel_from_bytes(bytes, length, &result));
             failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "the file holds an octree, where a tri-dexel model is wanted");
-            OK(leafless_bytes_probe(file, file_length, &probe, sections, COUNT(sections)));
+            OK(probe_bytes(file, file_length, &probe, sections, COUNT(sections)));
             for (i = 0; i < probe.sections; i++) {
                 if (strstr(sections[i].name, "spans") != NULL) {
                     memset(file + sections[i].offset, 0xff, (size_t)sections[i].length);
                 }
             }
-            OK(leafless_tridexel_view_bytes(file, file_length, &viewed));
+            OK(tridexel_view_bytes(file, file_length, &viewed));
             FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_check(viewed));
             failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "the tri-dexel model is damaged: its rays along axis 0");
             FAILS(LEAFLESS_E_DAMAGED, check_tridexels(LEAFLESS_OPERATION_UNION, model, viewed, NULL, &result));
             FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_editor_subtract(editor, viewed, NULL));
-            FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_save(viewed, "damaged.lfl", 11));
+            FAILS(LEAFLESS_E_DAMAGED, tridexel_save(viewed, "damaged.lfl", 11));
             leafless_tridexel_free(viewed);
             free(file);
         }

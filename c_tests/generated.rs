@@ -4,12 +4,15 @@
 //! LEAFLESS_BLESS=1 cargo test --test c_api generated
 //! ```
 //!
-//! writes it anew.
+//! writes it anew. What it begins with is `include/preface.h`; the functions in C are those of `include/helpers.h`.
 
 use crate::arrange::{Section, arranged};
 use crate::cpp;
 use crate::root;
 use std::sync::OnceLock;
+
+/// The section whose structs the functions in C make.
+const SOURCES: &str = "Sources and sinks";
 
 /// The header's sections in the order in which one needs them, and the files that each is made of.
 const SECTIONS: &[Section] = &[
@@ -17,6 +20,7 @@ const SECTIONS: &[Section] = &[
     Section { title: "Errors", files: &["status", "boundary"] },
     Section { title: "Options, cancelling, progress", files: &["control"] },
     Section { title: "Frames", files: &["frame"] },
+    Section { title: SOURCES, files: &["source"] },
     Section { title: "Meshes", files: &["mesh", "mesh_arrays", "polyhedron", "mesh_moments"] },
     Section { title: "Mesh files", files: &["mesh_file", "mesh_write"] },
     Section { title: "Solids", files: &["operation", "solid", "csg"] },
@@ -67,7 +71,11 @@ fn generate() -> String {
     }
     let mut raw = Vec::new();
     builder.generate().unwrap().write(&mut raw);
-    let (sections, contents) = arranged(&String::from_utf8(raw).unwrap(), SECTIONS, source);
+    let (mut sections, contents) = arranged(&String::from_utf8(raw).unwrap(), SECTIONS, source);
+    let helpers = std::fs::read_to_string(root().join("include/helpers.h")).unwrap();
+    let start = sections.find(&format!(". {SOURCES} -")).unwrap();
+    let end = start + sections[start..].find("\n/* ---- ").unwrap();
+    sections.insert_str(end, &format!("\n{helpers}"));
     let preface = std::fs::read_to_string(root().join("include/preface.h")).unwrap();
     let preface = preface.replace("@CONTENTS@", contents.trim_end());
     format!(
@@ -129,8 +137,11 @@ fn functions(header: &str) -> Vec<(&str, Vec<&str>)> {
             continue;
         }
         let name = line.split_once('(').and_then(|(before, _)| before.rsplit([' ', '*']).next());
-        let is_type = ["typedef", "LEAFLESS_ENUM", "#", " "].iter().any(|start| line.starts_with(start));
-        if let Some(name) = name.filter(|name| name.starts_with("leafless_") && !is_type) {
+        // Functions in C are not exported.
+        let is_other = ["typedef", "LEAFLESS_ENUM", "#", " ", "static inline "]
+            .iter()
+            .any(|start| line.starts_with(start));
+        if let Some(name) = name.filter(|name| name.starts_with("leafless_") && !is_other) {
             functions.push((name, std::mem::take(&mut comment)));
         }
         comment.clear();

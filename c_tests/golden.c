@@ -110,20 +110,23 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
 }
 
 static void read_valid(const char *path, char *text) {
-    leafless_octree *octrees[5];
+    leafless_octree *octrees[6];
     leafless_probe probe;
     leafless_section sections[64];
     size_t length, i;
     uint8_t *bytes = check_read(path, &length);
     char *line;
-    uint64_t metadata[5] = {0, 0, 0, 0, 0}, count;
-    OK(leafless_file_probe(path, strlen(path), &probe, sections, COUNT(sections)));
-    OK(leafless_bytes_verify(bytes, length));
-    OK(leafless_octree_open(path, strlen(path), &octrees[0]));
-    OK(leafless_octree_map(path, strlen(path), &octrees[1]));
-    OK(leafless_octree_map_verified(path, strlen(path), &octrees[2]));
-    OK(leafless_octree_from_bytes(bytes, length, &octrees[3]));
-    OK(leafless_octree_view_bytes(bytes, length, &octrees[4]));
+    uint64_t metadata[6] = {0, 0, 0, 0, 0, 0}, count;
+    OK(probe_path(path, strlen(path), &probe, sections, COUNT(sections)));
+    OK(verify_bytes(bytes, length));
+    OK(octree_open(path, strlen(path), &octrees[0]));
+    OK(octree_map(path, strlen(path), &octrees[1]));
+    OK(octree_map_verified(path, strlen(path), &octrees[2]));
+    OK(octree_from_bytes(bytes, length, &octrees[3]));
+    OK(octree_view_bytes(bytes, length, &octrees[4]));
+    OK(octree_view_verified(bytes, length, &octrees[5]));
+    OK(verify_path(path, strlen(path), LEAFLESS_ACCESS_COPY));
+    OK(verify_path(path, strlen(path), LEAFLESS_ACCESS_MAP));
     CHECK(probe.file_length == length);
     for (line = strtok(text, "\n"); line != NULL; line = strtok(NULL, "\n")) {
         const char *canonical = value_of(line, "canonical");
@@ -161,20 +164,23 @@ static bool is_tridexel(const char *path) {
 }
 
 static void read_valid_tridexel(const char *path, const char *text) {
-    leafless_tridexel *models[5];
+    leafless_tridexel *models[6];
     leafless_octree *octree = NULL;
     leafless_probe probe;
     size_t length, i;
     uint64_t again_length = 0;
     uint8_t *again, *bytes = check_read(path, &length);
     uint32_t axis;
-    OK(leafless_file_probe(path, strlen(path), &probe, NULL, 0));
-    OK(leafless_bytes_verify(bytes, length));
-    OK(leafless_tridexel_open(path, strlen(path), &models[0]));
-    OK(leafless_tridexel_map(path, strlen(path), &models[1]));
-    OK(leafless_tridexel_map_verified(path, strlen(path), &models[2]));
-    OK(leafless_tridexel_from_bytes(bytes, length, &models[3]));
-    OK(leafless_tridexel_view_bytes(bytes, length, &models[4]));
+    OK(probe_path(path, strlen(path), &probe, NULL, 0));
+    OK(verify_bytes(bytes, length));
+    OK(tridexel_open(path, strlen(path), &models[0]));
+    OK(tridexel_map(path, strlen(path), &models[1]));
+    OK(tridexel_map_verified(path, strlen(path), &models[2]));
+    OK(tridexel_from_bytes(bytes, length, &models[3]));
+    OK(tridexel_view_bytes(bytes, length, &models[4]));
+    OK(tridexel_view_verified(bytes, length, &models[5]));
+    OK(verify_path(path, strlen(path), LEAFLESS_ACCESS_COPY));
+    OK(verify_path(path, strlen(path), LEAFLESS_ACCESS_MAP));
     CHECK(probe.file_length == length && probe.tridexel.directions != 0);
     for (i = 0; i < COUNT(models); i++) {
         bool equal = false;
@@ -189,13 +195,13 @@ static void read_valid_tridexel(const char *path, const char *text) {
             }
         }
     }
-    CHECK(leafless_octree_open(path, strlen(path), &octree) == LEAFLESS_E_ARGUMENT && octree == NULL);
+    CHECK(octree_open(path, strlen(path), &octree) == LEAFLESS_E_ARGUMENT && octree == NULL);
     if (strstr(text, "canonical: yes") != NULL) {
-        OK(leafless_tridexel_to_bytes(models[1], NULL, 0, &again_length));
+        OK(tridexel_to_bytes(models[1], NULL, 0, &again_length));
         CHECK(again_length == length);
         again = (uint8_t *)malloc((size_t)again_length);
         CHECK(again != NULL);
-        OK(leafless_tridexel_to_bytes(models[1], again, again_length, &again_length));
+        OK(tridexel_to_bytes(models[1], again, again_length, &again_length));
         CHECK(memcmp(again, bytes, length) == 0);
         free(again);
     }
@@ -233,7 +239,7 @@ static void read_invalid(const char *path, char *text) {
             : strcmp(by, "verification") == 0 ? 3
                                               : -1;
     CHECK(level >= 0);
-    status = leafless_bytes_probe(bytes, length, &probe, NULL, 0);
+    status = probe_bytes(bytes, length, &probe, NULL, 0);
     if (level == 0) {
         one_of(status);
         CHECK(!version || status == LEAFLESS_E_VERSION);
@@ -241,35 +247,39 @@ static void read_invalid(const char *path, char *text) {
         CHECK(status == LEAFLESS_OK);
     }
     if (is_tridexel(path)) {
-        status = leafless_tridexel_map(path, strlen(path), &model);
+        status = tridexel_map(path, strlen(path), &model);
         if (level <= 2) {
             one_of(status);
             CHECK(model == NULL);
-            one_of(leafless_tridexel_view_bytes(bytes, length, &model));
+            one_of(tridexel_view_bytes(bytes, length, &model));
         } else {
             CHECK(status == LEAFLESS_OK && model != NULL && !wrong_length);
             leafless_tridexel_free(model);
             model = NULL;
         }
-        one_of(leafless_tridexel_open(path, strlen(path), &model));
-        one_of(leafless_tridexel_map_verified(path, strlen(path), &model));
-        one_of(leafless_tridexel_from_bytes(bytes, length, &model));
+        one_of(tridexel_open(path, strlen(path), &model));
+        one_of(tridexel_map_verified(path, strlen(path), &model));
+        one_of(tridexel_from_bytes(bytes, length, &model));
+        one_of(tridexel_view_verified(bytes, length, &model));
     } else {
-        status = leafless_octree_map(path, strlen(path), &octree);
+        status = octree_map(path, strlen(path), &octree);
         if (level <= 2) {
             one_of(status);
             CHECK(octree == NULL);
-            one_of(leafless_octree_view_bytes(bytes, length, &octree));
+            one_of(octree_view_bytes(bytes, length, &octree));
         } else {
             CHECK(status == LEAFLESS_OK && octree != NULL && !wrong_length);
             leafless_octree_free(octree);
             octree = NULL;
         }
-        one_of(leafless_octree_open(path, strlen(path), &octree));
-        one_of(leafless_octree_map_verified(path, strlen(path), &octree));
-        one_of(leafless_octree_from_bytes(bytes, length, &octree));
+        one_of(octree_open(path, strlen(path), &octree));
+        one_of(octree_map_verified(path, strlen(path), &octree));
+        one_of(octree_from_bytes(bytes, length, &octree));
+        one_of(octree_view_verified(bytes, length, &octree));
     }
-    one_of(leafless_bytes_verify(bytes, length));
+    one_of(verify_bytes(bytes, length));
+    one_of(verify_path(path, strlen(path), LEAFLESS_ACCESS_COPY));
+    one_of(verify_path(path, strlen(path), LEAFLESS_ACCESS_MAP));
     CHECK(octree == NULL && model == NULL);
     free(bytes);
     invalid++;

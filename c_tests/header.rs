@@ -13,7 +13,8 @@ pub struct Header {
     pub structs: Vec<(String, Vec<String>)>,
     /// Enumerators, and macros that are numbers.
     pub values: Vec<String>,
-    /// Everything else that has a name: opaque structs, enumerations, function types, other macros.
+    /// Everything else that has a name: opaque structs, enumerations, function types, other macros, and
+    /// functions that no library exports, because they stand in the header.
     others: Vec<String>,
 }
 
@@ -33,6 +34,18 @@ fn code(text: &str) -> String {
 fn declared(declarator: &str) -> &str {
     let name = declarator.split('[').next().unwrap_or_default().trim();
     name.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default()
+}
+
+/// What follows the body that `text` begins with.
+fn after_body(text: &str) -> &str {
+    let mut depth = 0;
+    for (at, brace) in text.match_indices(['{', '}']) {
+        depth = if brace == "{" { depth + 1 } else { depth - 1 };
+        if depth == 0 {
+            return &text[at + 1..];
+        }
+    }
+    panic!("a closed body: {text}")
 }
 
 impl Header {
@@ -64,6 +77,11 @@ impl Header {
         let mut rest = plain.as_str();
         while let Some(end) = rest.find([';', '{']) {
             let declaration = rest[..end].trim();
+            if let Some(inline) = declaration.strip_prefix("static inline ") {
+                header.others.push(declared(inline.split('(').next().unwrap_or_default()).to_string());
+                rest = after_body(&rest[end..]);
+                continue;
+            }
             if rest[end..].starts_with('{') && !declaration.ends_with("\"C\"") {
                 let (body, after) = rest[end + 1..].split_once('}').expect("a closed body");
                 if let Some((_, enumeration)) = declaration.rsplit_once("LEAFLESS_ENUM(") {

@@ -1,4 +1,8 @@
-/* The header stands alone, before any other, and may be included twice. */
+/* The header stands alone, before any other, and may be included twice. Its functions in C please those who look closely. */
+#pragma GCC diagnostic error "-Wconversion"
+#pragma GCC diagnostic error "-Wshadow"
+#pragma GCC diagnostic error "-Wcast-qual"
+#pragma GCC diagnostic error "-Wmissing-prototypes"
 #include <leafless.h>
 #include <leafless.h>
 
@@ -11,6 +15,10 @@ int main(void) {
     leafless_frame frame = {{0.0, 0.0, 0.0}, 1.0, 4};
     leafless_octree *octree = NULL;
     leafless_octree_info info;
+    uint64_t length = 0;
+    const leafless_sink sink = leafless_to_buffer(NULL, 0, &length);
+    const leafless_source file = leafless_from_file("no/such/file", LEAFLESS_ACCESS_MAP);
+    const leafless_source bytes = leafless_from_bytes(&frame, 1, LEAFLESS_ACCESS_COPY);
     if (options.struct_size != sizeof options || options.max_nodes != 0) {
         return 4;
     }
@@ -21,6 +29,12 @@ int main(void) {
         return 2;
     }
     tag = info.root;
+    if (leafless_octree_write(octree, &sink) != LEAFLESS_OK || length == 0) {
+        return 5;
+    }
     leafless_octree_free(octree);
+    if (leafless_octree_read(&file, &octree) != LEAFLESS_E_IO || leafless_octree_read(&bytes, &octree) != LEAFLESS_E_FORMAT) {
+        return 6;
+    }
     return tag == LEAFLESS_TAG_FULL && info.frame.depth == 4 && LEAFLESS_COMPATIBLE() ? 0 : 3;
 }

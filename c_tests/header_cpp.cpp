@@ -1,4 +1,8 @@
-// The header stands alone, before any other, and may be included twice.
+// The header stands alone, before any other, and may be included twice. Its functions in C please those who look closely.
+#pragma GCC diagnostic error "-Wconversion"
+#pragma GCC diagnostic error "-Wshadow"
+#pragma GCC diagnostic error "-Wcast-qual"
+#pragma GCC diagnostic error "-Wold-style-cast"
 #include <leafless.h>
 #include <leafless.h>
 
@@ -18,8 +22,10 @@ static_assert(std::is_same<decltype(&leafless_octree_build),
               "leafless_octree_build");
 static_assert(!std::is_convertible<leafless_facets, leafless_rule>::value, "leafless_rule");
 static_assert(!std::is_convertible<uint32_t, leafless_rule>::value, "leafless_rule");
+static_assert(std::is_same<decltype(leafless_source::access), leafless_access>::value, "leafless_source");
 static_assert(std::is_standard_layout<leafless_octree_info>::value, "leafless_octree_info");
 static_assert(std::is_trivial<leafless_options>::value, "leafless_options");
+static_assert(std::is_trivial<leafless_source>::value && std::is_trivial<leafless_sink>::value, "leafless_source");
 
 int main() {
     leafless_frame frame = {{0.0, 0.0, 0.0}, 1.0, 4};
@@ -36,6 +42,16 @@ int main() {
     if (leafless_octree_describe(octree, &info) != LEAFLESS_OK) {
         return 2;
     }
+    uint64_t length = 0;
+    const leafless_sink sink = leafless_to_buffer(nullptr, 0, &length);
+    if (leafless_octree_write(octree, &sink) != LEAFLESS_OK || length == 0) {
+        return 5;
+    }
     leafless_octree_free(octree);
+    const leafless_source file = leafless_from_file("no/such/file", LEAFLESS_ACCESS_MAP);
+    const leafless_source bytes = leafless_from_bytes(&frame, 1, LEAFLESS_ACCESS_COPY);
+    if (leafless_octree_read(&file, &octree) != LEAFLESS_E_IO || leafless_octree_read(&bytes, &octree) != LEAFLESS_E_FORMAT) {
+        return 6;
+    }
     return info.root == LEAFLESS_TAG_FULL && info.frame.depth == 4 && LEAFLESS_COMPATIBLE() ? 0 : 3;
 }

@@ -262,7 +262,7 @@ static void taken_up(const leafless_solid *ball) {
     CHECK(source_length == 37 && memcmp(source, "xxh3:", 5) == 0);
     bytes = check_bytes(octree, &length);
     leafless_octree_free(octree);
-    OK(leafless_octree_from_bytes(bytes, length, &loaded));
+    OK(octree_from_bytes(bytes, length, &loaded));
     free(bytes);
 
     /* By what made it, and by nothing else. */

@@ -92,18 +92,18 @@ static void meshes(void) {
     CHECK(min[0] == 1 && min[1] == 2 && min[2] == 3);
     OK(leafless_mesh_sewn(moved, &sewn));
 
-    OK(leafless_mesh_to_stl(cube, NULL, 0, &length));
+    OK(mesh_to_stl(cube, NULL, 0, &length));
     CHECK(length == 84 + 50 * 12);
     stl = (uint8_t *)malloc((size_t)length);
     CHECK(stl != NULL);
-    OK(leafless_mesh_to_stl(cube, stl, length, &length));
-    OK(leafless_mesh_from_bytes(stl, length, NULL, NULL, &again));
+    OK(mesh_to_stl(cube, stl, length, &length));
+    OK(mesh_from_bytes(stl, length, NULL, NULL, &again));
     OK(leafless_mesh_volume(again, &volume));
     CHECK(volume == 1.0);
     leafless_mesh_free(again);
     check_write("cube.stl", stl, (size_t)length);
     free(stl);
-    OK(leafless_mesh_open("cube.stl", strlen("cube.stl"), NULL, NULL, &again));
+    OK(mesh_open("cube.stl", strlen("cube.stl"), NULL, NULL, &again));
     OK(leafless_mesh_volume(again, &volume));
     CHECK(volume == 1.0);
 

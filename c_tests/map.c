@@ -8,7 +8,7 @@
 
 typedef leafless_status (*way_in)(const char *path, size_t path_length, leafless_octree **octree);
 
-static const way_in WAYS[] = {leafless_octree_open, leafless_octree_map, leafless_octree_map_verified};
+static const way_in WAYS[] = {octree_open, octree_map, octree_map_verified};
 
 /* What `writes` was called with, one after the other. */
 typedef struct sink {
@@ -55,11 +55,12 @@ static void ask_everything(const leafless_octree *octree) {
 static void refused(uint8_t *bytes, uint64_t length, const leafless_octree *original, bool in_files) {
     leafless_octree *octree = NULL;
     leafless_status status;
-    CHECK(leafless_bytes_verify(bytes, length) != LEAFLESS_OK);
-    status = leafless_octree_from_bytes(bytes, length, &octree);
+    CHECK(verify_bytes(bytes, length) != LEAFLESS_OK);
+    status = octree_from_bytes(bytes, length, &octree);
     CHECK(octree == NULL);
     CHECK(status == LEAFLESS_E_FORMAT || status == LEAFLESS_E_DAMAGED || status == LEAFLESS_E_VERSION);
-    status = leafless_octree_view_bytes(bytes, length, &octree);
+    CHECK(octree_view_verified(bytes, length, &octree) == status && octree == NULL);
+    status = octree_view_bytes(bytes, length, &octree);
     CHECK((status == LEAFLESS_OK) == (octree != NULL));
     if (status == LEAFLESS_OK) {
         ask_everything(octree);
@@ -68,10 +69,12 @@ static void refused(uint8_t *bytes, uint64_t length, const leafless_octree *orig
     }
     if (in_files) {
         check_write("damaged.lfl", bytes, (size_t)length);
-        CHECK(leafless_octree_open(PATH("damaged.lfl"), &octree) != LEAFLESS_OK);
-        CHECK(leafless_octree_map_verified(PATH("damaged.lfl"), &octree) != LEAFLESS_OK);
+        CHECK(octree_open(PATH("damaged.lfl"), &octree) != LEAFLESS_OK);
+        CHECK(octree_map_verified(PATH("damaged.lfl"), &octree) != LEAFLESS_OK);
+        CHECK(verify_path(PATH("damaged.lfl"), LEAFLESS_ACCESS_COPY) != LEAFLESS_OK);
+        CHECK(verify_path(PATH("damaged.lfl"), LEAFLESS_ACCESS_MAP) != LEAFLESS_OK);
         CHECK(octree == NULL);
-        if (leafless_octree_map(PATH("damaged.lfl"), &octree) == LEAFLESS_OK) {
+        if (octree_map(PATH("damaged.lfl"), &octree) == LEAFLESS_OK) {
             ask_everything(octree);
             leafless_octree_free(octree);
         }
@@ -91,7 +94,7 @@ static void ways_in_and_out(void) {
     sink s;
 
     OK(leafless_octree_with_metadata(ball, "units", 5, "mm", 2, &named));
-    OK(leafless_octree_save(named, PATH("ball.lfl")));
+    OK(octree_save(named, PATH("ball.lfl")));
     bytes = check_bytes(named, &length);
     file = check_read("ball.lfl", &on_disk);
     CHECK(on_disk == length && memcmp(file, bytes, on_disk) == 0);
@@ -106,18 +109,23 @@ static void ways_in_and_out(void) {
         CHECK(value_length == 2 && memcmp(value, "mm", 2) == 0);
         leafless_octree_free(octree);
     }
-    OK(leafless_bytes_verify(bytes, length));
-    OK(leafless_octree_from_bytes(bytes, length, &octree));
+    OK(verify_bytes(bytes, length));
+    OK(verify_path(PATH("ball.lfl"), LEAFLESS_ACCESS_COPY));
+    OK(verify_path(PATH("ball.lfl"), LEAFLESS_ACCESS_MAP_VERIFIED));
+    OK(octree_view_verified(bytes, length, &octree));
     CHECK(check_same(octree, ball));
     leafless_octree_free(octree);
-    OK(leafless_octree_view_bytes(bytes, length, &octree));
+    OK(octree_from_bytes(bytes, length, &octree));
+    CHECK(check_same(octree, ball));
+    leafless_octree_free(octree);
+    OK(octree_view_bytes(bytes, length, &octree));
     CHECK(check_same(octree, ball));
     /* What is read in place is the host's: no copy was made of it. */
     OK(leafless_octree_peek_metadata(octree, "units", 5, &value, &value_length));
     CHECK(value_length == 2);
     leafless_octree_free(octree);
 
-    OK(leafless_file_probe(PATH("ball.lfl"), &probe, sections, COUNT(sections)));
+    OK(probe_path(PATH("ball.lfl"), &probe, sections, COUNT(sections)));
     CHECK(probe.major == 0 && probe.frame.depth == 6 && probe.frame.edge == 2.0 && probe.file_length == length);
     CHECK(probe.root == LEAFLESS_TAG_BRANCH && probe.exterior == LEAFLESS_TAG_EMPTY && !probe.is_binary);
     CHECK(probe.sections > 2 && probe.sections <= COUNT(sections));
@@ -131,10 +139,10 @@ static void ways_in_and_out(void) {
     CHECK(strcmp(sections[1].name, "metadata") == 0 && !sections[1].is_required && sections[1].owner == 0);
     CHECK(probe.proof.full && probe.proof.empty && probe.proof.displacement_model == 0.0);
     memset(&of_bytes, 0xaa, sizeof of_bytes);
-    OK(leafless_bytes_probe(bytes, length, &of_bytes, same, COUNT(same)));
+    OK(probe_bytes(bytes, length, &of_bytes, same, COUNT(same)));
     CHECK(of_bytes.sections == probe.sections && of_bytes.elements == probe.elements);
     CHECK(same[1].offset == sections[1].offset && same[1].kind == sections[1].kind);
-    OK(leafless_file_probe(PATH("ball.lfl"), &probe, NULL, 0));
+    OK(probe_path(PATH("ball.lfl"), &probe, NULL, 0));
 
     /* The same bytes through a function, as often as it takes; every call of it may fail. */
     s.bytes = (uint8_t *)malloc((size_t)length);
@@ -142,7 +150,7 @@ static void ways_in_and_out(void) {
     s.capacity = (size_t)length;
     s.length = s.calls = 0;
     s.fails_at = SIZE_MAX;
-    OK(leafless_octree_write(named, writes, &s));
+    OK(octree_write_to(named, writes, &s));
     CHECK(s.length == length && memcmp(s.bytes, bytes, s.length) == 0);
     {
         const size_t calls = s.calls;
@@ -151,7 +159,7 @@ static void ways_in_and_out(void) {
             char message[512];
             s.length = s.calls = 0;
             s.fails_at = (size_t)i;
-            FAILS(LEAFLESS_E_CALLBACK, leafless_octree_write(named, writes, &s));
+            FAILS(LEAFLESS_E_CALLBACK, octree_write_to(named, writes, &s));
             CHECK(s.calls == i + 1);
             (void)leafless_last_error(message, sizeof message);
             CHECK(strstr(message, "77") != NULL);
@@ -163,9 +171,9 @@ static void ways_in_and_out(void) {
 
     /* A file says what its cells prove. */
     OK(leafless_octree_with_proof(ball, LEAFLESS_PROVEN_EMPTY, 0.5, &named));
-    OK(leafless_octree_save(named, PATH("ball.lfl")));
+    OK(octree_save(named, PATH("ball.lfl")));
     leafless_octree_free(named);
-    OK(leafless_file_probe(PATH("ball.lfl"), &probe, NULL, 0));
+    OK(probe_path(PATH("ball.lfl"), &probe, NULL, 0));
     CHECK(!probe.proof.full && probe.proof.empty && probe.proof.displacement_model == 0.5);
     for (i = 0; i < COUNT(WAYS); i++) {
         leafless_octree_info info;
@@ -183,25 +191,25 @@ static void truncated(void) {
     size_t way;
     uint8_t *bytes = check_bytes(ball, &length);
     leafless_probe probe;
-    OK(leafless_octree_save(ball, PATH("cut.lfl")));
+    OK(octree_save(ball, PATH("cut.lfl")));
     for (cut = length; cut-- > 0;) {
         /* Exactly as long, so that memory checkers see every byte beyond the end. */
         uint64_t *exact = (uint64_t *)malloc((size_t)cut + (cut == 0));
         leafless_status status;
         CHECK(exact != NULL);
         memcpy(exact, bytes, (size_t)cut);
-        FAILS(LEAFLESS_E_FORMAT, leafless_bytes_verify((uint8_t *)exact, cut));
-        FAILS(LEAFLESS_E_FORMAT, leafless_octree_from_bytes((uint8_t *)exact, cut, &octree));
-        FAILS(LEAFLESS_E_FORMAT, leafless_octree_view_bytes((uint8_t *)exact, cut, &octree));
+        FAILS(LEAFLESS_E_FORMAT, verify_bytes((uint8_t *)exact, cut));
+        FAILS(LEAFLESS_E_FORMAT, octree_from_bytes((uint8_t *)exact, cut, &octree));
+        FAILS(LEAFLESS_E_FORMAT, octree_view_bytes((uint8_t *)exact, cut, &octree));
         /* Header and section table may be there. */
-        status = leafless_bytes_probe((uint8_t *)exact, cut, &probe, NULL, 0);
+        status = probe_bytes((uint8_t *)exact, cut, &probe, NULL, 0);
         CHECK(status == LEAFLESS_E_FORMAT || (status == LEAFLESS_OK && cut >= 128));
         free(exact);
         CHECK(truncate("cut.lfl", (off_t)cut) == 0);
         for (way = 0; way < COUNT(WAYS); way++) {
             FAILS(LEAFLESS_E_FORMAT, WAYS[way](PATH("cut.lfl"), &octree));
         }
-        FAILS(LEAFLESS_E_FORMAT, leafless_file_probe(PATH("cut.lfl"), &probe, NULL, 0));
+        FAILS(LEAFLESS_E_FORMAT, probe_path(PATH("cut.lfl"), &probe, NULL, 0));
         CHECK(octree == NULL);
     }
     /* Nor longer. */
@@ -209,8 +217,8 @@ static void truncated(void) {
         uint8_t *longer = (uint8_t *)calloc(1, (size_t)length + 8);
         CHECK(longer != NULL);
         memcpy(longer, bytes, (size_t)length);
-        FAILS(LEAFLESS_E_FORMAT, leafless_bytes_verify(longer, length + 8));
-        FAILS(LEAFLESS_E_FORMAT, leafless_octree_view_bytes(longer, length + 1, &octree));
+        FAILS(LEAFLESS_E_FORMAT, verify_bytes(longer, length + 8));
+        FAILS(LEAFLESS_E_FORMAT, octree_view_bytes(longer, length + 1, &octree));
         check_write("cut.lfl", longer, (size_t)length + 8);
         for (way = 0; way < COUNT(WAYS); way++) {
             FAILS(LEAFLESS_E_FORMAT, WAYS[way](PATH("cut.lfl"), &octree));
@@ -234,7 +242,7 @@ static void flipped(void) {
             bytes[i] ^= FLIPS[flip];
         }
     }
-    OK(leafless_bytes_verify(bytes, length));
+    OK(verify_bytes(bytes, length));
     free(bytes);
     leafless_octree_free(ball);
 }
@@ -247,20 +255,20 @@ static void removed_and_replaced(void) {
     leafless_cursor_state state;
     leafless_frame frame = check_frame(6);
 
-    OK(leafless_octree_save(ball, PATH("one.lfl")));
-    OK(leafless_octree_map(PATH("one.lfl"), &first));
+    OK(octree_save(ball, PATH("one.lfl")));
+    OK(octree_map(PATH("one.lfl"), &first));
     /* Another solid takes the name; the mapping stays what it was. */
-    OK(leafless_octree_save(box, PATH("one.lfl")));
-    OK(leafless_octree_map(PATH("one.lfl"), &second));
+    OK(octree_save(box, PATH("one.lfl")));
+    OK(octree_map(PATH("one.lfl"), &second));
     CHECK(check_same(first, ball) && check_same(second, box));
     CHECK(unlink("one.lfl") == 0);
     CHECK(check_same(first, ball) && check_same(second, box));
     OK(leafless_octree_check(first));
     /* A mapped one is saved over its own file. */
-    OK(leafless_octree_save(first, PATH("one.lfl")));
+    OK(octree_save(first, PATH("one.lfl")));
     leafless_octree_free(second);
-    OK(leafless_octree_map_verified(PATH("one.lfl"), &second));
-    OK(leafless_octree_save(second, PATH("one.lfl")));
+    OK(octree_map_verified(PATH("one.lfl"), &second));
+    OK(octree_save(second, PATH("one.lfl")));
     CHECK(check_same(second, ball));
     /* What was made of the mapping keeps it. */
     OK(leafless_octree_as_solid(second, &solid));
@@ -295,21 +303,21 @@ static void what_cannot_be_saved(void) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_with_metadata(half, "more", 4, much, rest + 1, &big));
     CHECK(big == NULL);
     OK(leafless_octree_with_metadata(half, "more", 4, much, rest, &big));
-    OK(leafless_octree_save(big, PATH("big.lfl")));
-    OK(leafless_octree_to_bytes(big, NULL, 0, &length));
+    OK(octree_save(big, PATH("big.lfl")));
+    OK(octree_to_bytes(big, NULL, 0, &length));
     CHECK(length > MIB);
-    OK(leafless_octree_open(PATH("big.lfl"), &old));
+    OK(octree_open(PATH("big.lfl"), &old));
     CHECK(check_same(old, ball));
     leafless_octree_free(old);
     leafless_octree_free(big);
     old = big = NULL;
     length = 77;
     OK(leafless_octree_with_metadata(half, "much", 4, much, MIB - 12, &big));
-    OK(leafless_octree_save(ball, PATH("kept.lfl")));
-    FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, PATH("kept.lfl/below")));
-    FAILS(LEAFLESS_E_IO, leafless_octree_save(ball, PATH(".")));
+    OK(octree_save(ball, PATH("kept.lfl")));
+    FAILS(LEAFLESS_E_IO, octree_save(ball, PATH("kept.lfl/below")));
+    FAILS(LEAFLESS_E_IO, octree_save(ball, PATH(".")));
     CHECK(length == 77);
-    OK(leafless_octree_open(PATH("kept.lfl"), &old));
+    OK(octree_open(PATH("kept.lfl"), &old));
     CHECK(check_same(old, ball));
     leafless_octree_free(old);
     leafless_octree_free(big);

@@ -8,7 +8,7 @@ static const char PLY[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty flo
                           "0 0 0 0 7 7\n8 0 0 0 7 7\n8 8 0 240 7 7\n0 8 0 240 7 7\n3 0 1 2\n3 0 2 3\n";
 
 static void colours(void) {
-    leafless_mesh_source source;
+    leafless_mesh_found found;
     leafless_mesh *mesh;
     leafless_attribute *colour;
     leafless_channel *channel;
@@ -21,7 +21,7 @@ static void colours(void) {
     bool per_corner;
     double values[24], at[2][4];
     const double points[2][3] = {{4, 2, 3}, {1, 6, -1}};
-    OK(leafless_mesh_from_bytes((const uint8_t *)PLY, sizeof PLY - 1, NULL, &source, &mesh));
+    OK(mesh_from_bytes((const uint8_t *)PLY, sizeof PLY - 1, NULL, &found, &mesh));
     OK(leafless_mesh_peek_attribute_at(mesh, 9, &count, NULL, NULL, NULL, NULL));
     CHECK(count == 1);
     OK(leafless_mesh_peek_attribute_at(mesh, 0, &count, &name, &length, &components, &per_corner));

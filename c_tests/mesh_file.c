@@ -172,38 +172,38 @@ static leafless_mesh_options defaults(void) {
     return options;
 }
 
-static leafless_mesh_source nothing(void) {
-    leafless_mesh_source source;
-    memset(&source, 0x5a, sizeof source);
-    return source;
+static leafless_mesh_found nothing(void) {
+    leafless_mesh_found found;
+    memset(&found, 0x5a, sizeof found);
+    return found;
 }
 
 /* Reads the sample and checks the result. */
 static void reads(const sample *one, const leafless_mesh_options *options, uint32_t unit, double edge) {
-    leafless_mesh_source source = nothing();
+    leafless_mesh_found found = nothing();
     leafless_mesh *mesh = NULL;
-    OK(leafless_mesh_from_bytes((const uint8_t *)one->bytes, one->length, options, &source, &mesh));
-    CHECK(source.format == one->format && source.unit == unit && source.skipped == 0);
+    OK(mesh_from_bytes((const uint8_t *)one->bytes, one->length, options, &found, &mesh));
+    CHECK(found.format == one->format && found.unit == unit && found.skipped == 0);
     is_tetrahedron(mesh, edge);
     leafless_mesh_free(mesh);
     mesh = NULL;
-    source = nothing();
+    found = nothing();
     check_write(one->name, one->bytes, one->length);
-    OK(leafless_mesh_open(one->name, strlen(one->name), options, &source, &mesh));
-    CHECK(source.format == one->format && source.unit == unit && source.skipped == 0);
+    OK(mesh_open(one->name, strlen(one->name), options, &found, &mesh));
+    CHECK(found.format == one->format && found.unit == unit && found.skipped == 0);
     is_tetrahedron(mesh, edge);
     leafless_mesh_free(mesh);
 }
 
 static void refused(leafless_status status, const void *bytes, uint64_t length, const leafless_mesh_options *options,
                     const char *part) {
-    const leafless_mesh_source untouched_source = nothing();
+    const leafless_mesh_found untouched_found = nothing();
     leafless_mesh *const untouched = (leafless_mesh *)(uintptr_t)0x5a5a5a58;
     leafless_mesh *mesh = untouched;
-    leafless_mesh_source source = nothing();
+    leafless_mesh_found found = nothing();
     char message[512];
-    FAILS(status, leafless_mesh_from_bytes((const uint8_t *)bytes, length, options, &source, &mesh));
-    CHECK(mesh == untouched && memcmp(&source, &untouched_source, sizeof source) == 0);
+    FAILS(status, mesh_from_bytes((const uint8_t *)bytes, length, options, &found, &mesh));
+    CHECK(mesh == untouched && memcmp(&found, &untouched_found, sizeof found) == 0);
     (void)leafless_last_error(message, sizeof message);
     if (strstr(message, part) == NULL) {
         fprintf(stderr, "\"%s\" does not say \"%s\"\n", message, part);
@@ -268,7 +268,7 @@ static void damaged(const sample *one) {
         leafless_mesh *mesh = NULL;
         CHECK(bytes != NULL);
         memcpy(bytes, one->bytes, end);
-        (void)leafless_mesh_from_bytes(bytes, end, &options, NULL, &mesh);
+        (void)mesh_from_bytes(bytes, end, &options, NULL, &mesh);
         leafless_mesh_free(mesh);
         free(bytes);
     }
@@ -280,10 +280,10 @@ static void damaged(const sample *one) {
         for (end = 0; end < COUNT(OTHERS); end++) {
             leafless_mesh *mesh = NULL;
             bytes[i] = OTHERS[end];
-            (void)leafless_mesh_from_bytes(bytes, length, &options, NULL, &mesh);
+            (void)mesh_from_bytes(bytes, length, &options, NULL, &mesh);
             leafless_mesh_free(mesh);
             mesh = NULL;
-            (void)leafless_mesh_from_bytes(bytes, length, NULL, NULL, &mesh);
+            (void)mesh_from_bytes(bytes, length, NULL, NULL, &mesh);
             leafless_mesh_free(mesh);
         }
         free(bytes);
@@ -302,7 +302,7 @@ static void warnings(void) {
     const char *text = NULL;
     size_t length = 0;
     uint64_t count = 77, i;
-    OK(leafless_mesh_from_bytes((const uint8_t *)STRANGE, sizeof STRANGE - 1, NULL, NULL, &mesh));
+    OK(mesh_from_bytes((const uint8_t *)STRANGE, sizeof STRANGE - 1, NULL, NULL, &mesh));
     is_tetrahedron(mesh, 3.0);
     OK(leafless_mesh_peek_warning_at(mesh, 99, &count, NULL, NULL));
     CHECK(count == COUNT(TEXTS));
@@ -320,7 +320,7 @@ static void warnings(void) {
     leafless_mesh_free(moved);
     leafless_mesh_free(mesh);
     mesh = NULL;
-    OK(leafless_mesh_from_bytes((const uint8_t *)PLY, sizeof PLY - 1, NULL, NULL, &mesh));
+    OK(mesh_from_bytes((const uint8_t *)PLY, sizeof PLY - 1, NULL, NULL, &mesh));
     count = 77;
     OK(leafless_mesh_peek_warning_at(mesh, 0, &count, NULL, NULL));
     CHECK(count == 0);
@@ -385,7 +385,7 @@ static void bad_files(void) {
     uint8_t *bytes = binary_stl(3, &length);
     refused(LEAFLESS_E_MESH_FILE, NULL, 0, NULL, "empty");
     refused(LEAFLESS_E_MESH_FILE, "who knows what this is\n", 23, NULL, "format");
-    OK(leafless_mesh_from_bytes(bytes, length, NULL, NULL, &mesh));
+    OK(mesh_from_bytes(bytes, length, NULL, NULL, &mesh));
     leafless_mesh_free(mesh);
     options.format = LEAFLESS_MESH_FORMAT_STL;
     refused(LEAFLESS_E_MESH_FILE, bytes, length - 1, &options, "3 facets");
@@ -406,10 +406,10 @@ static void bad_files(void) {
     options.scale = 0x1p250;
     refused(LEAFLESS_E_MESH, bytes, length, &options, "vertex");
     free(bytes);
-    FAILS(LEAFLESS_E_IO, leafless_mesh_open("no/such.stl", 11, NULL, NULL, &mesh));
-    FAILS(LEAFLESS_E_IO, leafless_mesh_open(".", 1, NULL, NULL, &mesh));
-    FAILS(LEAFLESS_E_UTF8, leafless_mesh_open("\xff.stl", 5, NULL, NULL, &mesh));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_open("", 0, NULL, NULL, &mesh));
+    FAILS(LEAFLESS_E_IO, mesh_open("no/such.stl", 11, NULL, NULL, &mesh));
+    FAILS(LEAFLESS_E_IO, mesh_open(".", 1, NULL, NULL, &mesh));
+    FAILS(LEAFLESS_E_UTF8, mesh_open("\xff.stl", 5, NULL, NULL, &mesh));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_open("", 0, NULL, NULL, &mesh));
 }
 
 int main(void) {

@@ -241,7 +241,7 @@ int main(void) {
     {
         static const char OFF[] = "OFF 4 1 0\n0 0 0\n2 0 0\n2 2 0.25\n0 2 0\n4 0 1 2 3\n";
         leafless_mesh *mesh = NULL;
-        OK(leafless_mesh_from_bytes((const uint8_t *)OFF, sizeof OFF - 1, NULL, NULL, &mesh));
+        OK(mesh_from_bytes((const uint8_t *)OFF, sizeof OFF - 1, NULL, NULL, &mesh));
         OK(leafless_mesh_describe(mesh, &report));
         CHECK(report.polygons == 1 && report.bent_polygons == 1);
         CHECK(fabs(report.polygon_deviation_model - 0.0625) < 0.001);

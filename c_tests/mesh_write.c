@@ -47,11 +47,11 @@ static leafless_mesh_write_options defaults(void) {
 static uint8_t *bytes_of(const leafless_mesh *mesh, const leafless_mesh_write_options *options, uint64_t *length) {
     uint64_t again;
     uint8_t *bytes;
-    OK(leafless_mesh_to_bytes(mesh, options, NULL, 0, length));
+    OK(mesh_to_bytes(mesh, options, NULL, 0, length));
     bytes = (uint8_t *)malloc((size_t)*length);
     CHECK(bytes != NULL);
-    FAILS(LEAFLESS_E_BUFFER, leafless_mesh_to_bytes(mesh, options, bytes, *length - 1, &again));
-    OK(leafless_mesh_to_bytes(mesh, options, bytes, *length, &again));
+    FAILS(LEAFLESS_E_BUFFER, mesh_to_bytes(mesh, options, bytes, *length - 1, &again));
+    OK(mesh_to_bytes(mesh, options, bytes, *length, &again));
     CHECK(again == *length);
     return bytes;
 }
@@ -75,7 +75,7 @@ static void formats(void) {
         for (text = 0; text < 2; text++) {
             const char *const start = FORMATS[i].start[text];
             leafless_mesh_write_options options = defaults();
-            leafless_mesh_source source;
+            leafless_mesh_found found;
             leafless_mesh *back = NULL;
             uint64_t length;
             uint8_t *bytes, *file;
@@ -86,19 +86,19 @@ static void formats(void) {
             bytes = bytes_of(mesh, &options, &length);
             CHECK(start == NULL || memcmp(bytes, start, strlen(start)) == 0);
             options.format = LEAFLESS_MESH_FORMAT_ANY;
-            OK(leafless_mesh_save(mesh, FORMATS[i].path, strlen(FORMATS[i].path), &options));
+            OK(mesh_save(mesh, FORMATS[i].path, strlen(FORMATS[i].path), &options));
             file = check_read(FORMATS[i].path, &file_length);
             CHECK(file_length == length && memcmp(file, bytes, file_length) == 0);
             free(file);
-            OK(leafless_mesh_open(FORMATS[i].path, strlen(FORMATS[i].path), NULL, &source, &back));
-            CHECK(source.format == FORMATS[i].format);
-            CHECK(source.unit == (source.format == LEAFLESS_MESH_FORMAT_3MF ? LEAFLESS_UNIT_MILLIMETRE
+            OK(mesh_open(FORMATS[i].path, strlen(FORMATS[i].path), NULL, &found, &back));
+            CHECK(found.format == FORMATS[i].format);
+            CHECK(found.unit == (found.format == LEAFLESS_MESH_FORMAT_3MF ? LEAFLESS_UNIT_MILLIMETRE
                                                                            : LEAFLESS_UNIT_UNKNOWN));
-            same(mesh, back, source.format == LEAFLESS_MESH_FORMAT_STL);
+            same(mesh, back, found.format == LEAFLESS_MESH_FORMAT_STL);
             leafless_mesh_free(back);
             free(bytes);
         }
-        OK(leafless_mesh_save(mesh, FORMATS[i].path, strlen(FORMATS[i].path), NULL));
+        OK(mesh_save(mesh, FORMATS[i].path, strlen(FORMATS[i].path), NULL));
     }
     leafless_mesh_free(mesh);
 }
@@ -106,7 +106,7 @@ static void formats(void) {
 static void units(void) {
     leafless_mesh_write_options options = defaults();
     leafless_mesh *mesh = tetrahedron(7), *back;
-    leafless_mesh_source source;
+    leafless_mesh_found found;
     uint32_t unit;
     options.format = LEAFLESS_MESH_FORMAT_3MF;
     for (unit = LEAFLESS_UNIT_MICROMETRE; unit <= LEAFLESS_UNIT_FOOT; unit++) {
@@ -114,8 +114,8 @@ static void units(void) {
         uint8_t *bytes;
         options.unit = unit;
         bytes = bytes_of(mesh, &options, &length);
-        OK(leafless_mesh_from_bytes(bytes, length, NULL, &source, &back));
-        CHECK(source.unit == unit);
+        OK(mesh_from_bytes(bytes, length, NULL, &found, &back));
+        CHECK(found.unit == unit);
         same(mesh, back, false);
         leafless_mesh_free(back);
         free(bytes);
@@ -153,7 +153,7 @@ static void normals(void) {
         uint8_t *bytes;
         options.format = FORMATS[i].format;
         options.is_text = FORMATS[i].is_text;
-        OK(leafless_mesh_to_bytes(mesh, &options, NULL, 0, &lengths[0]));
+        OK(mesh_to_bytes(mesh, &options, NULL, 0, &lengths[0]));
         options.has_normals = 1;
         bytes = bytes_of(mesh, &options, &lengths[1]);
         CHECK((lengths[1] > lengths[0]) == (FORMATS[i].has != NULL));
@@ -163,7 +163,7 @@ static void normals(void) {
             while (at + length < lengths[1] && memcmp(bytes + at, FORMATS[i].has, length) != 0) at++;
             CHECK(at + length < lengths[1]);
         }
-        OK(leafless_mesh_from_bytes(bytes, lengths[1], NULL, NULL, &back));
+        OK(mesh_from_bytes(bytes, lengths[1], NULL, NULL, &back));
         same(mesh, back, false);
         leafless_mesh_free(back);
         free(bytes);
@@ -187,7 +187,7 @@ static void losses(void) {
         options.format = format;
         OK(leafless_mesh_written_form(far, &options, &kept));
         bytes = bytes_of(far, &options, &length);
-        OK(leafless_mesh_from_bytes(bytes, length, NULL, NULL, &back));
+        OK(mesh_from_bytes(bytes, length, NULL, NULL, &back));
         OK(leafless_mesh_counts(kept, &counts[0][0], &counts[0][1]));
         OK(leafless_mesh_counts(back, &counts[1][0], &counts[1][1]));
         CHECK(memcmp(counts[0], counts[1], sizeof counts[0]) == 0);
@@ -213,43 +213,41 @@ static void refusals(void) {
     leafless_mesh *mesh = tetrahedron(1), *huge = tetrahedron(1e40), *nothing = NULL;
     const leafless_mesh_arrays none = check_arrays(NULL, 0, NULL, 0);
     leafless_mesh_write_options options = defaults();
-    uint8_t stl[284], all[284];
+    uint8_t stl[84 + 50 * 4];
     uint64_t length = 0, size;
     FILE *file;
-    /* As the function that has only this format. */
     options.format = LEAFLESS_MESH_FORMAT_STL;
-    OK(leafless_mesh_to_stl(mesh, stl, sizeof stl, &length));
-    OK(leafless_mesh_to_bytes(mesh, &options, all, sizeof all, &length));
-    CHECK(length == 284 && memcmp(stl, all, sizeof stl) == 0);
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_to_bytes(huge, &options, NULL, 0, &length));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(huge, "refused.stl", 11, NULL));
+    OK(mesh_to_bytes(mesh, &options, stl, sizeof stl, &length));
+    CHECK(length == 84 + 50 * 4);
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_to_bytes(huge, &options, NULL, 0, &length));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(huge, "refused.stl", 11, NULL));
     OK(leafless_mesh_new(&none, &nothing));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(nothing, "refused.obj", 11, NULL));
-    OK(leafless_mesh_save(nothing, "nothing.ply", 11, NULL));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(nothing, "refused.obj", 11, NULL));
+    OK(mesh_save(nothing, "nothing.ply", 11, NULL));
     options.format = LEAFLESS_MESH_FORMAT_ANY;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_to_bytes(mesh, &options, NULL, 0, &length));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused", 7, NULL));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.lfl", 11, &options));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, ".ply", 4, &options));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_to_bytes(mesh, &options, NULL, 0, &length));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(mesh, "refused", 7, NULL));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(mesh, "refused.lfl", 11, &options));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(mesh, ".ply", 4, &options));
     options.format = 6;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(mesh, "refused.ply", 11, &options));
     options = defaults();
     options.is_text = 2;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(mesh, "refused.ply", 11, &options));
     options = defaults();
     options.unit = 7;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(mesh, "refused.ply", 11, &options));
     options = defaults();
     options.has_normals = 2;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(mesh, "refused.ply", 11, &options));
     for (size = 0; size < 4; size++) {
         options = defaults();
         options.struct_size = (uint32_t)size;
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(mesh, "refused.ply", 11, &options));
+        FAILS(LEAFLESS_E_ARGUMENT, mesh_save(mesh, "refused.ply", 11, &options));
         FAILS(LEAFLESS_E_ARGUMENT, leafless_init(&options, (size_t)size));
     }
-    FAILS(LEAFLESS_E_IO, leafless_mesh_save(mesh, "no/such/file.ply", 16, NULL));
-    FAILS(LEAFLESS_E_UTF8, leafless_mesh_save(mesh, "a\0.ply", 6, NULL));
+    FAILS(LEAFLESS_E_IO, mesh_save(mesh, "no/such/file.ply", 16, NULL));
+    FAILS(LEAFLESS_E_UTF8, mesh_save(mesh, "a\0.ply", 6, NULL));
     file = fopen("refused.ply", "rb");
     CHECK(file == NULL);
     file = fopen("refused.obj", "rb");
@@ -257,10 +255,10 @@ static void refusals(void) {
     /* A format that is given does not look at the extension. */
     options = defaults();
     options.format = LEAFLESS_MESH_FORMAT_OFF;
-    OK(leafless_mesh_save(mesh, "written", 7, &options));
+    OK(mesh_save(mesh, "written", 7, &options));
     /* The old file stays if the new one is refused. */
-    OK(leafless_mesh_save(mesh, "kept.stl", 8, NULL));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_save(huge, "kept.stl", 8, NULL));
+    OK(mesh_save(mesh, "kept.stl", 8, NULL));
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_save(huge, "kept.stl", 8, NULL));
     {
         size_t kept;
         uint8_t *bytes = check_read("kept.stl", &kept);

@@ -31,13 +31,6 @@ static int32_t range(void *ctx, const double *min, const double *max, leafless_i
     return 0;
 }
 
-static int32_t take(void *ctx, const uint8_t *bytes, uint64_t count) {
-    (void)ctx;
-    (void)bytes;
-    (void)count;
-    return 0;
-}
-
 static leafless_frame frame = {{-1, -1, -1}, 2, 4};
 static leafless_octree *octree;
 static leafless_mesh *mesh;
@@ -69,8 +62,6 @@ static void null_pointers(void) {
     static const uint32_t faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, loops[] = {0, 3, 6, 9, 12};
     static const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     leafless_polyhedron_arrays polyhedron;
-    leafless_mesh_options mesh_options;
-    leafless_mesh_source *source = (leafless_mesh_source *)out, found;
     uint8_t stl[84 + 50 * 12];
     const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     uint64_t length = 0;
@@ -93,7 +84,6 @@ static void null_pointers(void) {
     memset(&callbacks, 0, sizeof callbacks);
     callbacks.struct_size = sizeof callbacks;
     callbacks.classify = classify;
-    OK(leafless_init(&mesh_options, sizeof mesh_options));
     OK(leafless_init(&polyhedron, sizeof polyhedron));
     polyhedron.vertices = corners;
     polyhedron.vertex_count = 4;
@@ -101,7 +91,7 @@ static void null_pointers(void) {
     polyhedron.corner_count = 12;
     polyhedron.loops = loops;
     polyhedron.loop_count = 4;
-    OK(leafless_mesh_to_stl(mesh, stl, sizeof stl, &number));
+    OK(mesh_to_stl(mesh, stl, sizeof stl, &number));
     check_write("null.stl", stl, sizeof stl);
     NULL_POINTER(leafless_init, value, leafless_init(NULL, sizeof(leafless_options)));
     MISALIGNED(leafless_init, value, leafless_init(WRONG(out), sizeof(leafless_options)));
@@ -141,17 +131,6 @@ static void null_pointers(void) {
                  leafless_mesh_from_polyhedron(NULL, (double *)out, mesh_result));
     NULL_POINTER(leafless_mesh_from_polyhedron, mesh,
                  leafless_mesh_from_polyhedron(&polyhedron, (double *)out, NULL));
-    NULL_POINTER(leafless_mesh_open, path, leafless_mesh_open(NULL, 3, &mesh_options, source, mesh_result));
-    NULL_POINTER(leafless_mesh_open, path, leafless_mesh_open(NULL, 0, &mesh_options, source, mesh_result));
-    NULL_POINTER(leafless_mesh_open, mesh, leafless_mesh_open("null.stl", 8, &mesh_options, source, NULL));
-    NULL_POINTER(leafless_mesh_from_bytes, bytes,
-                 leafless_mesh_from_bytes(NULL, 84, &mesh_options, source, mesh_result));
-    NULL_POINTER(leafless_mesh_from_bytes, mesh,
-                 leafless_mesh_from_bytes(stl, sizeof stl, &mesh_options, source, NULL));
-    NULL_POINTER(leafless_mesh_to_stl, mesh, leafless_mesh_to_stl(NULL, NULL, 0, (uint64_t *)out));
-    NULL_POINTER(leafless_mesh_to_stl, bytes, leafless_mesh_to_stl(mesh, NULL, 1000, (uint64_t *)out));
-    MAY_BE_NULL(leafless_mesh_to_stl, bytes, leafless_mesh_to_stl(mesh, NULL, 0, &number));
-    NULL_POINTER(leafless_mesh_to_stl, length, leafless_mesh_to_stl(mesh, (uint8_t *)out, sizeof room, NULL));
     NULL_POINTER(leafless_mesh_ref, mesh, leafless_mesh_ref(NULL, mesh_result));
     NULL_POINTER(leafless_mesh_ref, reference, leafless_mesh_ref(mesh, NULL));
     NULL_POINTER(leafless_mesh_counts, mesh, leafless_mesh_counts(NULL, (uint64_t *)out, (uint64_t *)out + 1));
@@ -358,34 +337,7 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_with_touch, operand, leafless_solid_with_touch(NULL, 0, solid_result));
     NULL_POINTER(leafless_solid_with_touch, solid, leafless_solid_with_touch(solid, 0, NULL));
     BAD_NUMBER(leafless_solid_with_touch, touch, leafless_solid_with_touch(solid, 7, solid_result));
-    NULL_POINTER(leafless_scene_open, path, leafless_scene_open(NULL, 3, scene_result));
-    NULL_POINTER(leafless_scene_open, path, leafless_scene_open(NULL, 0, scene_result));
-    NULL_POINTER(leafless_scene_open, scene, leafless_scene_open("null.csg", 8, NULL));
-    NULL_POINTER(leafless_scene_from_bytes, bytes, leafless_scene_from_bytes(NULL, 4, NULL, 0, scene_result));
-    MAY_BE_NULL(leafless_scene_from_bytes, bytes, leafless_scene_from_bytes(NULL, 0, NULL, 0, &scene));
-    leafless_scene_free(scene);
-    MAY_BE_NULL(leafless_scene_from_bytes, folder,
-                leafless_scene_from_bytes((const uint8_t *)"cube();", 7, NULL, 0, &scene));
-    NULL_POINTER(leafless_scene_from_bytes, scene,
-                 leafless_scene_from_bytes((const uint8_t *)"cube();", 7, NULL, 0, NULL));
-    NULL_POINTER(leafless_scene_open_with, path, leafless_scene_open_with(NULL, 3, NULL, scene_result));
-    NULL_POINTER(leafless_scene_open_with, scene, leafless_scene_open_with("null.csg", 8, NULL, NULL));
-    NULL_POINTER(leafless_scene_from_bytes_with, bytes,
-                 leafless_scene_from_bytes_with(NULL, 4, NULL, 0, NULL, scene_result));
-    NULL_POINTER(leafless_scene_from_bytes_with, scene,
-                 leafless_scene_from_bytes_with((const uint8_t *)"cube();", 7, NULL, 0, NULL, NULL));
-    leafless_scene_free(scene);
-    check_write("null.csg", "cube();", 7);
-    MAY_BE_NULL(leafless_scene_open_with, options, leafless_scene_open_with("null.csg", 8, NULL, &scene));
-    leafless_scene_free(scene);
-    MAY_BE_NULL(leafless_scene_from_bytes_with, bytes,
-                leafless_scene_from_bytes_with(NULL, 0, NULL, 0, NULL, &scene));
-    leafless_scene_free(scene);
-    MAY_BE_NULL(leafless_scene_from_bytes_with, folder,
-                leafless_scene_from_bytes_with((const uint8_t *)"cube();", 7, NULL, 0, NULL, &scene));
-    leafless_scene_free(scene);
-    MAY_BE_NULL(leafless_scene_from_bytes_with, options,
-                leafless_scene_from_bytes_with((const uint8_t *)"mesh(\"null.stl\");", 17, "", 0, NULL, &scene));
+    OK(scene_from_text("mesh(\"null.stl\");", "", LEAFLESS_FACETS_AUTO, &scene));
     NULL_POINTER(leafless_scene_describe, scene, leafless_scene_describe(NULL, (leafless_scene_report *)out));
     NULL_POINTER(leafless_scene_describe, report, leafless_scene_describe(scene, NULL));
     NULL_POINTER(leafless_scene_describe_mesh, scene,
@@ -574,37 +526,9 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_cursor_ascend, cursor, leafless_cursor_ascend(NULL, (bool *)out));
     MAY_BE_NULL(leafless_cursor_ascend, moved, leafless_cursor_ascend(cursor, NULL));
 
-    NULL_POINTER(leafless_file_probe, path, leafless_file_probe(NULL, 1, (leafless_probe *)out, NULL, 0));
-    NULL_POINTER(leafless_file_probe, probe, leafless_file_probe("x", 1, NULL, NULL, 0));
-    NULL_POINTER(leafless_file_probe, sections, leafless_file_probe("x", 1, (leafless_probe *)out, NULL, 4));
-    NULL_POINTER(leafless_bytes_probe, bytes, leafless_bytes_probe(NULL, length, (leafless_probe *)out, NULL, 0));
-    NULL_POINTER(leafless_bytes_probe, probe, leafless_bytes_probe(bytes, length, NULL, NULL, 0));
-    NULL_POINTER(leafless_bytes_probe, sections, leafless_bytes_probe(bytes, length, (leafless_probe *)out, NULL, 4));
-    NULL_POINTER(leafless_bytes_verify, bytes, leafless_bytes_verify(NULL, length));
-    NULL_POINTER(leafless_octree_open, path, leafless_octree_open(NULL, 1, result));
-    NULL_POINTER(leafless_octree_open, octree, leafless_octree_open("x", 1, NULL));
-    NULL_POINTER(leafless_octree_map, path, leafless_octree_map(NULL, 1, result));
-    NULL_POINTER(leafless_octree_map, octree, leafless_octree_map("x", 1, NULL));
-    NULL_POINTER(leafless_octree_map_verified, path, leafless_octree_map_verified(NULL, 1, result));
-    NULL_POINTER(leafless_octree_map_verified, octree, leafless_octree_map_verified("x", 1, NULL));
-    NULL_POINTER(leafless_octree_from_bytes, bytes, leafless_octree_from_bytes(NULL, length, result));
-    NULL_POINTER(leafless_octree_from_bytes, octree, leafless_octree_from_bytes(bytes, length, NULL));
-    NULL_POINTER(leafless_octree_view_bytes, bytes, leafless_octree_view_bytes(NULL, length, result));
-    NULL_POINTER(leafless_octree_view_bytes, octree, leafless_octree_view_bytes(bytes, length, NULL));
-    NULL_POINTER(leafless_octree_save, octree, leafless_octree_save(NULL, "x", 1));
-    NULL_POINTER(leafless_octree_save, path, leafless_octree_save(octree, NULL, 1));
-    NULL_POINTER(leafless_octree_to_bytes, octree, leafless_octree_to_bytes(NULL, NULL, 0, (uint64_t *)out));
-    NULL_POINTER(leafless_octree_to_bytes, bytes, leafless_octree_to_bytes(octree, NULL, length, (uint64_t *)out));
-    MAY_BE_NULL(leafless_octree_to_bytes, bytes, leafless_octree_to_bytes(octree, NULL, 0, &number));
-    NULL_POINTER(leafless_octree_to_bytes, length, leafless_octree_to_bytes(octree, NULL, 0, NULL));
-    NULL_POINTER(leafless_octree_write, octree, leafless_octree_write(NULL, take, NULL));
-    NULL_POINTER(leafless_octree_write, write, leafless_octree_write(octree, NULL, NULL));
-    MAY_BE_NULL(leafless_octree_write, ctx, leafless_octree_write(octree, take, NULL));
-
-    /* Nothing was written, and there is no file where nothing could be saved. */
+    /* Nothing was written. */
     untouched();
     CHECK(never == UNTOUCHED);
-    refused(LEAFLESS_E_IO, "leafless_octree_open", "", leafless_octree_open("x", 1, result));
 
     /* Texts of no bytes may be NULL, and so may options; and what there is nothing of. */
     MAY_BE_NULL(leafless_octree_without_metadata, key, leafless_octree_without_metadata(octree, NULL, 0, result));
@@ -698,21 +622,6 @@ static void null_pointers(void) {
                 leafless_mesh_intersecting_pairs(mesh, NULL, &pair, 1, &number, &is_complete));
     MAY_BE_NULL(leafless_mesh_intersecting_pairs, pairs,
                 leafless_mesh_intersecting_pairs(mesh, &options, NULL, 0, &number, &is_complete));
-    MAY_BE_NULL(leafless_mesh_open, options, leafless_mesh_open("null.stl", 8, NULL, &found, mesh_result));
-    leafless_mesh_free(*mesh_result);
-    MAY_BE_NULL(leafless_mesh_open, source, leafless_mesh_open("null.stl", 8, &mesh_options, NULL, mesh_result));
-    leafless_mesh_free(*mesh_result);
-    MAY_BE_NULL(leafless_mesh_from_bytes, options,
-                leafless_mesh_from_bytes(stl, sizeof stl, NULL, &found, mesh_result));
-    leafless_mesh_free(*mesh_result);
-    MAY_BE_NULL(leafless_mesh_from_bytes, source,
-                leafless_mesh_from_bytes(stl, sizeof stl, &mesh_options, NULL, mesh_result));
-    leafless_mesh_free(*mesh_result);
-    refused(LEAFLESS_E_FORMAT, "leafless_bytes_verify", "", leafless_bytes_verify(NULL, 0));
-    refused(LEAFLESS_E_FORMAT, "leafless_octree_from_bytes", "", leafless_octree_from_bytes(NULL, 0, result));
-    refused(LEAFLESS_E_FORMAT, "leafless_octree_view_bytes", "", leafless_octree_view_bytes(NULL, 0, result));
-    refused(LEAFLESS_E_MESH_FILE, "leafless_mesh_from_bytes", "",
-            leafless_mesh_from_bytes(NULL, 0, NULL, source, mesh_result));
 
     /* Nothing happens. */
     leafless_control_free(NULL);
@@ -743,11 +652,7 @@ static void misaligned(void) {
     const leafless_solid *solids[2];
     uint32_t operation;
     const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    uint64_t length = 0;
-    uint8_t *bytes = check_bytes(octree, &length), *beside = (uint8_t *)malloc((size_t)length + 1);
     leafless_options bad_control;
-    CHECK(beside != NULL);
-    memcpy(beside + 1, bytes, (size_t)length);
 
     MISALIGNED(leafless_control_new, control, leafless_control_new((leafless_control **)WRONG(out)));
     MISALIGNED(leafless_control_cancel, control, leafless_control_cancel((leafless_control *)WRONG(control)));
@@ -770,12 +675,6 @@ static void misaligned(void) {
     MISALIGNED(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, (leafless_interval *)WRONG(out)));
     MISALIGNED(leafless_mesh_from_polyhedron, arrays,
                leafless_mesh_from_polyhedron((const leafless_polyhedron_arrays *)WRONG(out), NULL, mesh_result));
-    MISALIGNED(leafless_mesh_from_bytes, options,
-               leafless_mesh_from_bytes(bytes, length, (const leafless_mesh_options *)WRONG(out), NULL, mesh_result));
-    MISALIGNED(leafless_mesh_from_bytes, source,
-               leafless_mesh_from_bytes(bytes, length, NULL, (leafless_mesh_source *)WRONG(out), mesh_result));
-    MISALIGNED(leafless_mesh_open, mesh,
-               leafless_mesh_open("null.stl", 8, NULL, NULL, (leafless_mesh **)WRONG(out)));
     MISALIGNED(leafless_mesh_new, arrays,
                leafless_mesh_new((const leafless_mesh_arrays *)WRONG(&arrays), mesh_result));
     MISALIGNED(leafless_mesh_new, mesh, leafless_mesh_new(&arrays, (leafless_mesh **)WRONG(out)));
@@ -896,22 +795,9 @@ static void misaligned(void) {
     MISALIGNED(leafless_cursor_read, cursor,
                leafless_cursor_read((leafless_cursor *)WRONG(cursor), (leafless_cursor_state *)out));
     MISALIGNED(leafless_cursor_read, state, leafless_cursor_read(cursor, (leafless_cursor_state *)WRONG(out)));
-    MISALIGNED(leafless_bytes_probe, probe, leafless_bytes_probe(bytes, length, (leafless_probe *)WRONG(out), NULL, 0));
-    MISALIGNED(leafless_bytes_probe, sections,
-               leafless_bytes_probe(bytes, length, (leafless_probe *)out, (leafless_section *)WRONG(out), 4));
-    MISALIGNED(leafless_octree_to_bytes, length, leafless_octree_to_bytes(octree, NULL, 0, (uint64_t *)WRONG(out)));
 
-    /* Bytes of files: copies may lie anywhere, what is used in place may not. */
-    refused(LEAFLESS_E_ARGUMENT, "leafless_bytes_verify", "", leafless_bytes_verify(beside + 1, length));
-    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_view_bytes", "",
-            leafless_octree_view_bytes(beside + 1, length, result));
     untouched();
     CHECK(never == UNTOUCHED);
-    OK(leafless_octree_from_bytes(beside + 1, length, result));
-    CHECK(check_same(*result, octree));
-    leafless_octree_free(*result);
-    free(beside);
-    free(bytes);
 }
 
 /* Every number that is not in its range, in every place of every function that takes numbers. */
@@ -1066,19 +952,6 @@ static void numbers(void) {
     refused(LEAFLESS_E_ARGUMENT, "leafless_octree_peek_metadata_at", "index",
             leafless_octree_peek_metadata_at(octree, UINT64_MAX, (uint64_t *)out, (const char **)out + 1,
                                              (size_t *)out + 2, (const char **)out + 3, (size_t *)out + 4));
-
-    /* Paths: none, with a NUL, no UTF-8. */
-    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_open", "path", leafless_octree_open("x", 0, result));
-    {
-        const leafless_status status = leafless_octree_open("a\0b", 3, result);
-        CHECK(status == LEAFLESS_E_UTF8);
-        CHECK(leafless_octree_map("a\0b", 3, result) == LEAFLESS_E_UTF8);
-        CHECK(leafless_octree_save(octree, "a\0b", 3) == LEAFLESS_E_UTF8);
-        CHECK(leafless_mesh_open("a\0b", 3, NULL, NULL, mesh_result) == LEAFLESS_E_UTF8);
-        CHECK(leafless_octree_save(octree, "a\xff", 2) == LEAFLESS_E_UTF8);
-        CHECK(leafless_file_probe("a\xff", 2, (leafless_probe *)out, NULL, 0) == LEAFLESS_E_UTF8);
-    }
-    refused(LEAFLESS_E_ARGUMENT, "leafless_octree_map", "./.", leafless_octree_map("./.", 3, result));
 
     untouched();
     CHECK(never == UNTOUCHED);
@@ -1246,12 +1119,6 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_volume_range, range, leafless_volume_range(volume, NULL, NULL));
     NULL_POINTER(leafless_solid_new_volume, volume, leafless_solid_new_volume(NULL, band, NULL, solid_result));
     NULL_POINTER(leafless_solid_new_volume, solid, leafless_solid_new_volume(volume, band, NULL, NULL));
-    NULL_POINTER(leafless_volume_open, path, leafless_volume_open(NULL, 3, made));
-    NULL_POINTER(leafless_volume_open, path, leafless_volume_open(NULL, 0, made));
-    NULL_POINTER(leafless_volume_open, volume, leafless_volume_open("x", 1, NULL));
-    NULL_POINTER(leafless_volume_from_bytes, bytes, leafless_volume_from_bytes(NULL, 9, NULL, 0, made));
-    NULL_POINTER(leafless_volume_from_bytes, data, leafless_volume_from_bytes(header, length, NULL, 2, made));
-    NULL_POINTER(leafless_volume_from_bytes, volume, leafless_volume_from_bytes(header, length, header, 2, NULL));
     NULL_POINTER(leafless_volume_data_file, bytes, leafless_volume_data_file(NULL, 9, NULL, 0, count));
     NULL_POINTER(leafless_volume_data_file, name, leafless_volume_data_file(header, length, NULL, 9, count));
     NULL_POINTER(leafless_volume_data_file, name_length,
@@ -1259,11 +1126,6 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_volume_open_raw, path, leafless_volume_open_raw(NULL, 1, &layout, made));
     NULL_POINTER(leafless_volume_open_raw, layout, leafless_volume_open_raw("x", 1, NULL, made));
     NULL_POINTER(leafless_volume_open_raw, volume, leafless_volume_open_raw("x", 1, &layout, NULL));
-    NULL_POINTER(leafless_volume_save, volume, leafless_volume_save(NULL, 0, "x", 1));
-    NULL_POINTER(leafless_volume_save, path, leafless_volume_save(volume, 0, NULL, 1));
-    NULL_POINTER(leafless_volume_to_bytes, volume, leafless_volume_to_bytes(NULL, 0, NULL, 0, count));
-    NULL_POINTER(leafless_volume_to_bytes, bytes, leafless_volume_to_bytes(volume, 0, NULL, 8, count));
-    NULL_POINTER(leafless_volume_to_bytes, length, leafless_volume_to_bytes(volume, 0, NULL, 0, NULL));
     NULL_POINTER(leafless_octree_bitmap, octree,
                  leafless_octree_bitmap(NULL, 4, low, high, NULL, NULL, NULL, 0, count));
     NULL_POINTER(leafless_octree_bitmap, min_cell,
@@ -1287,12 +1149,6 @@ static void volumes_and_surfaces(void) {
     MISALIGNED(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, (double *)WRONG(out), 8, count));
     NULL_POINTER(leafless_mesh_area, mesh, leafless_mesh_area(NULL, (double *)out));
     NULL_POINTER(leafless_mesh_area, area_model, leafless_mesh_area(mesh, NULL));
-    NULL_POINTER(leafless_mesh_save, mesh, leafless_mesh_save(NULL, "x.ply", 5, &write));
-    NULL_POINTER(leafless_mesh_save, path, leafless_mesh_save(mesh, NULL, 5, &write));
-    NULL_POINTER(leafless_mesh_to_bytes, mesh, leafless_mesh_to_bytes(NULL, &write, NULL, 0, count));
-    NULL_POINTER(leafless_mesh_to_bytes, options, leafless_mesh_to_bytes(mesh, NULL, NULL, 0, count));
-    NULL_POINTER(leafless_mesh_to_bytes, bytes, leafless_mesh_to_bytes(mesh, &write, NULL, 9, count));
-    NULL_POINTER(leafless_mesh_to_bytes, length, leafless_mesh_to_bytes(mesh, &write, NULL, 0, NULL));
     NULL_POINTER(leafless_mesh_written_form, mesh, leafless_mesh_written_form(NULL, &write, mesh_result));
     NULL_POINTER(leafless_mesh_written_form, options, leafless_mesh_written_form(mesh, NULL, mesh_result));
     NULL_POINTER(leafless_mesh_written_form, kept, leafless_mesh_written_form(mesh, &write, NULL));
@@ -1323,9 +1179,6 @@ static void volumes_and_surfaces(void) {
                leafless_solid_new_volume(volume, band, (leafless_options *)WRONG(&options), solid_result));
     MISALIGNED(leafless_solid_new_volume, solid,
                leafless_solid_new_volume(volume, band, NULL, (leafless_solid **)WRONG(out)));
-    MISALIGNED(leafless_volume_open, volume, leafless_volume_open("x", 1, (leafless_volume **)WRONG(out)));
-    MISALIGNED(leafless_volume_to_bytes, length,
-               leafless_volume_to_bytes(volume, 0, NULL, 0, (uint64_t *)WRONG(out)));
     MISALIGNED(leafless_octree_bitmap, min_cell,
                leafless_octree_bitmap(octree, 4, cell, high, NULL, NULL, NULL, 0, count));
     MISALIGNED(leafless_octree_bitmap, max_cell,
@@ -1353,27 +1206,15 @@ static void volumes_and_surfaces(void) {
     surface.resolve = LEAFLESS_RESOLVE_OUTER;
     surface.source = NULL;
     MISALIGNED(leafless_mesh_area, area_model, leafless_mesh_area(mesh, (double *)WRONG(out)));
-    MISALIGNED(leafless_mesh_save, options,
-               leafless_mesh_save(mesh, "x.ply", 5, (leafless_mesh_write_options *)WRONG(&write)));
-    MISALIGNED(leafless_mesh_to_bytes, options,
-               leafless_mesh_to_bytes(mesh, (leafless_mesh_write_options *)WRONG(&write), NULL, 0, count));
     MISALIGNED(leafless_mesh_written_form, options,
                leafless_mesh_written_form(mesh, (leafless_mesh_write_options *)WRONG(&write), mesh_result));
-    MISALIGNED(leafless_mesh_to_bytes, length,
-               leafless_mesh_to_bytes(mesh, &write, NULL, 0, (uint64_t *)WRONG(out)));
 
     layout.sample_type = LEAFLESS_SAMPLE_U8;
-    BAD_NUMBER(leafless_volume_save, format, leafless_volume_save(volume, 4, "x", 1));
-    BAD_NUMBER(leafless_volume_to_bytes, format, leafless_volume_to_bytes(volume, UINT32_MAX, NULL, 0, count));
     BAD_NUMBER(leafless_octree_bitmap, level,
                leafless_octree_bitmap(octree, 5, low, high, NULL, NULL, NULL, 0, count));
     BAD_NUMBER(leafless_octree_bitmap, level,
                leafless_octree_bitmap(octree, UINT32_MAX, low, high, NULL, NULL, NULL, 0, count));
-    CHECK(leafless_volume_open("a\0b", 3, made) == LEAFLESS_E_UTF8);
     CHECK(leafless_volume_open_raw("a\xff", 2, &layout, made) == LEAFLESS_E_UTF8);
-    CHECK(leafless_volume_save(volume, 0, "a\0b", 3) == LEAFLESS_E_UTF8);
-    CHECK(leafless_mesh_save(mesh, "a\xff.ply", 6, NULL) == LEAFLESS_E_UTF8);
-    refused(LEAFLESS_E_VOLUME_FILE, "leafless_volume_from_bytes", "", leafless_volume_from_bytes(NULL, 0, NULL, 0, made));
     refused(LEAFLESS_E_VOLUME_FILE, "leafless_volume_data_file", "", leafless_volume_data_file(NULL, 0, NULL, 0, count));
     untouched();
     CHECK(never == UNTOUCHED);
@@ -1384,14 +1225,6 @@ static void volumes_and_surfaces(void) {
     MAY_BE_NULL(leafless_solid_new_volume, options, leafless_solid_new_volume(volume, band, NULL, solid_result));
     leafless_solid_free(*solid_result);
     MAY_BE_NULL(leafless_volume_data_file, name, leafless_volume_data_file(header, length, NULL, 0, &number));
-    {
-        static const char WHOLE[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 1\nencoding: raw\n\nab";
-        MAY_BE_NULL(leafless_volume_from_bytes, data,
-                    leafless_volume_from_bytes((const uint8_t *)WHOLE, sizeof WHOLE - 1, NULL, 0, made));
-        leafless_volume_free(*made);
-    }
-    MAY_BE_NULL(leafless_volume_to_bytes, bytes, leafless_volume_to_bytes(volume, 0, NULL, 0, &number));
-    CHECK(number == 8);
     {
         uint64_t inner[4], outer[4];
         MAY_BE_NULL(leafless_octree_bitmap, inner,
@@ -1420,8 +1253,6 @@ static void volumes_and_surfaces(void) {
     surface.resolve = 0;
     MAY_BE_NULL(leafless_solid_surface, options, leafless_solid_surface(solid, &frame, &surface, NULL, mesh_result));
     leafless_mesh_free(*mesh_result);
-    MAY_BE_NULL(leafless_mesh_save, options, leafless_mesh_save(mesh, "null.ply", 8, NULL));
-    MAY_BE_NULL(leafless_mesh_to_bytes, bytes, leafless_mesh_to_bytes(mesh, &write, NULL, 0, &number));
     MAY_BE_NULL(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 0, &number));
     CHECK(number == 8);
     OK(leafless_mesh_area(mesh, &real));

@@ -92,51 +92,51 @@ static void intervals(void) {
                leafless_tridexel_ray(model, 0, ray, (leafless_dexel *)WRONG(out), 1, count));
     refused(LEAFLESS_E_BUFFER, "leafless_tridexel_ray", "dexels", leafless_tridexel_ray(model, 0, ray, dexels, 0, count));
 #define READ(model, axis, first, end, offsets, offset_count, ends, normals, surfaces, materials, interval_count)      \
-    leafless_tridexel_read(model, axis, first, end, offsets, 2, offset_count, ends, normals, surfaces, materials, 1, \
+    leafless_tridexel_copy(model, axis, first, end, offsets, 2, offset_count, ends, normals, surfaces, materials, 1, \
                            interval_count)
-    NULL_POINTER(leafless_tridexel_read, tridexel, READ(NULL, 0, ray, end, count, count, NULL, NULL, NULL, NULL, count));
-    NULL_POINTER(leafless_tridexel_read, first, READ(model, 0, NULL, end, count, count, NULL, NULL, NULL, NULL, count));
-    NULL_POINTER(leafless_tridexel_read, end, READ(model, 0, ray, NULL, count, count, NULL, NULL, NULL, NULL, count));
-    NULL_POINTER(leafless_tridexel_read, offsets, READ(model, 0, ray, end, NULL, count, NULL, NULL, NULL, NULL, count));
-    NULL_POINTER(leafless_tridexel_read, offset_count,
+    NULL_POINTER(leafless_tridexel_copy, tridexel, READ(NULL, 0, ray, end, count, count, NULL, NULL, NULL, NULL, count));
+    NULL_POINTER(leafless_tridexel_copy, first, READ(model, 0, NULL, end, count, count, NULL, NULL, NULL, NULL, count));
+    NULL_POINTER(leafless_tridexel_copy, end, READ(model, 0, ray, NULL, count, count, NULL, NULL, NULL, NULL, count));
+    NULL_POINTER(leafless_tridexel_copy, offsets, READ(model, 0, ray, end, NULL, count, NULL, NULL, NULL, NULL, count));
+    NULL_POINTER(leafless_tridexel_copy, offset_count,
                  READ(model, 0, ray, end, count, NULL, doubles, doubles, numbers, numbers, count));
-    NULL_POINTER(leafless_tridexel_read, interval_count,
+    NULL_POINTER(leafless_tridexel_copy, interval_count,
                  READ(model, 0, ray, end, count, count, doubles, doubles, numbers, numbers, NULL));
-    BAD_NUMBER(leafless_tridexel_read, axis, READ(model, 3, ray, end, count, count, NULL, NULL, NULL, NULL, count));
-    BAD_NUMBER(leafless_tridexel_read, first, READ(model, 0, beyond, end, count, count, NULL, NULL, NULL, NULL, count));
-    BAD_NUMBER(leafless_tridexel_read, end, READ(model, 0, ray, beyond, count, count, NULL, NULL, NULL, NULL, count));
-    MISALIGNED(leafless_tridexel_read, ends_model,
+    BAD_NUMBER(leafless_tridexel_copy, axis, READ(model, 3, ray, end, count, count, NULL, NULL, NULL, NULL, count));
+    BAD_NUMBER(leafless_tridexel_copy, first, READ(model, 0, beyond, end, count, count, NULL, NULL, NULL, NULL, count));
+    BAD_NUMBER(leafless_tridexel_copy, end, READ(model, 0, ray, beyond, count, count, NULL, NULL, NULL, NULL, count));
+    MISALIGNED(leafless_tridexel_copy, ends_model,
                READ(model, 0, ray, end, count, count, (double *)WRONG(out), NULL, NULL, NULL, count));
-    MISALIGNED(leafless_tridexel_read, normals,
+    MISALIGNED(leafless_tridexel_copy, normals,
                READ(model, 0, ray, end, count, count, NULL, (double *)WRONG(out), NULL, NULL, count));
-    MISALIGNED(leafless_tridexel_read, surfaces,
+    MISALIGNED(leafless_tridexel_copy, surfaces,
                READ(model, 0, ray, end, count, count, NULL, NULL, (uint32_t *)WRONG(out), NULL, count));
-    MISALIGNED(leafless_tridexel_read, materials,
+    MISALIGNED(leafless_tridexel_copy, materials,
                READ(model, 0, ray, end, count, count, NULL, NULL, NULL, (uint32_t *)WRONG(out), count));
 #undef READ
-#define CELLS(model, axis, first, end, ends, count) leafless_tridexel_read_cells(model, axis, first, end, ends, 1, count)
-    NULL_POINTER(leafless_tridexel_read_cells, tridexel, CELLS(NULL, 0, ray, end, doubles, count));
-    NULL_POINTER(leafless_tridexel_read_cells, first, CELLS(model, 0, NULL, end, doubles, count));
-    NULL_POINTER(leafless_tridexel_read_cells, end, CELLS(model, 0, ray, NULL, doubles, count));
-    NULL_POINTER(leafless_tridexel_read_cells, ends_cells, CELLS(model, 0, ray, end, NULL, count));
-    NULL_POINTER(leafless_tridexel_read_cells, interval_count, CELLS(model, 0, ray, end, doubles, NULL));
-    BAD_NUMBER(leafless_tridexel_read_cells, axis, CELLS(model, 3, ray, end, doubles, count));
-    BAD_NUMBER(leafless_tridexel_read_cells, end, CELLS(model, 0, ray, beyond, doubles, count));
-    MISALIGNED(leafless_tridexel_read_cells, ends_cells, CELLS(model, 0, ray, end, (double *)WRONG(out), count));
+#define CELLS(model, axis, first, end, ends, count) leafless_tridexel_copy_cells(model, axis, first, end, ends, 1, count)
+    NULL_POINTER(leafless_tridexel_copy_cells, tridexel, CELLS(NULL, 0, ray, end, doubles, count));
+    NULL_POINTER(leafless_tridexel_copy_cells, first, CELLS(model, 0, NULL, end, doubles, count));
+    NULL_POINTER(leafless_tridexel_copy_cells, end, CELLS(model, 0, ray, NULL, doubles, count));
+    NULL_POINTER(leafless_tridexel_copy_cells, ends_cells, CELLS(model, 0, ray, end, NULL, count));
+    NULL_POINTER(leafless_tridexel_copy_cells, interval_count, CELLS(model, 0, ray, end, doubles, NULL));
+    BAD_NUMBER(leafless_tridexel_copy_cells, axis, CELLS(model, 3, ray, end, doubles, count));
+    BAD_NUMBER(leafless_tridexel_copy_cells, end, CELLS(model, 0, ray, beyond, doubles, count));
+    MISALIGNED(leafless_tridexel_copy_cells, ends_cells, CELLS(model, 0, ray, end, (double *)WRONG(out), count));
 #undef CELLS
-    BAD_NUMBER(leafless_tridexel_read_cells, ends_cells,
-               leafless_tridexel_read_cells(model, 0, ray, end, doubles, UINT64_MAX, count));
-    BAD_NUMBER(leafless_tridexel_read, ends_model,
-               leafless_tridexel_read(model, 0, ray, end, NULL, 0, count, doubles, NULL, NULL, NULL, UINT64_MAX, count));
+    BAD_NUMBER(leafless_tridexel_copy_cells, ends_cells,
+               leafless_tridexel_copy_cells(model, 0, ray, end, doubles, UINT64_MAX, count));
+    BAD_NUMBER(leafless_tridexel_copy, ends_model,
+               leafless_tridexel_copy(model, 0, ray, end, NULL, 0, count, doubles, NULL, NULL, NULL, UINT64_MAX, count));
     untouched();
-    MAY_BE_NULL(leafless_tridexel_read, ends_model,
-                leafless_tridexel_read(model, 0, NULL, NULL, NULL, 0, &found, NULL, NULL, NULL, NULL, 0, &also));
-    MAY_BE_NULL(leafless_tridexel_read, normals,
-                leafless_tridexel_read(model, 1, ray, end, NULL, 0, &found, doubles, NULL, numbers + 8, numbers + 10, 1, &also));
-    MAY_BE_NULL(leafless_tridexel_read, surfaces,
-                leafless_tridexel_read(model, 1, ray, end, NULL, 0, &found, NULL, doubles, NULL, NULL, 1, &also));
-    MAY_BE_NULL(leafless_tridexel_read, materials,
-                leafless_tridexel_read(model, 1, ray, end, NULL, 0, &found, NULL, NULL, numbers, NULL, 1, &also));
+    MAY_BE_NULL(leafless_tridexel_copy, ends_model,
+                leafless_tridexel_copy(model, 0, NULL, NULL, NULL, 0, &found, NULL, NULL, NULL, NULL, 0, &also));
+    MAY_BE_NULL(leafless_tridexel_copy, normals,
+                leafless_tridexel_copy(model, 1, ray, end, NULL, 0, &found, doubles, NULL, numbers + 8, numbers + 10, 1, &also));
+    MAY_BE_NULL(leafless_tridexel_copy, surfaces,
+                leafless_tridexel_copy(model, 1, ray, end, NULL, 0, &found, NULL, doubles, NULL, NULL, 1, &also));
+    MAY_BE_NULL(leafless_tridexel_copy, materials,
+                leafless_tridexel_copy(model, 1, ray, end, NULL, 0, &found, NULL, NULL, numbers, NULL, 1, &also));
     CHECK(found == 2 && also == 1);
 }
 
@@ -225,11 +225,6 @@ static void facts(void) {
 #undef PEEK
     untouched();
     CHECK(never == UNTOUCHED);
-}
-
-static int32_t take(void *ctx, const uint8_t *bytes, uint64_t count) {
-    (void)ctx, (void)bytes, (void)count;
-    return 0;
 }
 
 static void uses(void) {
@@ -339,44 +334,6 @@ static void arrays(void) {
     leafless_tridexel_free(other);
 }
 
-static void files(void) {
-    void *out = fresh(), *never = UNTOUCHED;
-    leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
-    uint64_t length = 0, number;
-    uint8_t *bytes;
-    MAY_BE_NULL(leafless_tridexel_to_bytes, bytes, leafless_tridexel_to_bytes(model, NULL, 0, &length));
-    bytes = (uint8_t *)malloc((size_t)length + 1);
-    CHECK(bytes != NULL);
-    NULL_POINTER(leafless_tridexel_open, path, leafless_tridexel_open(NULL, 1, result));
-    NULL_POINTER(leafless_tridexel_open, tridexel, leafless_tridexel_open("x", 1, NULL));
-    NULL_POINTER(leafless_tridexel_map, path, leafless_tridexel_map(NULL, 1, result));
-    NULL_POINTER(leafless_tridexel_map, tridexel, leafless_tridexel_map("x", 1, NULL));
-    NULL_POINTER(leafless_tridexel_map_verified, path, leafless_tridexel_map_verified(NULL, 1, result));
-    NULL_POINTER(leafless_tridexel_map_verified, tridexel, leafless_tridexel_map_verified("x", 1, NULL));
-    NULL_POINTER(leafless_tridexel_from_bytes, bytes, leafless_tridexel_from_bytes(NULL, length, result));
-    NULL_POINTER(leafless_tridexel_from_bytes, tridexel, leafless_tridexel_from_bytes(bytes, length, NULL));
-    NULL_POINTER(leafless_tridexel_view_bytes, bytes, leafless_tridexel_view_bytes(NULL, length, result));
-    NULL_POINTER(leafless_tridexel_view_bytes, tridexel, leafless_tridexel_view_bytes(bytes, length, NULL));
-    NULL_POINTER(leafless_tridexel_save, tridexel, leafless_tridexel_save(NULL, "x", 1));
-    NULL_POINTER(leafless_tridexel_save, path, leafless_tridexel_save(model, NULL, 1));
-    NULL_POINTER(leafless_tridexel_to_bytes, tridexel, leafless_tridexel_to_bytes(NULL, NULL, 0, (uint64_t *)out));
-    NULL_POINTER(leafless_tridexel_to_bytes, bytes, leafless_tridexel_to_bytes(model, NULL, length, (uint64_t *)out));
-    NULL_POINTER(leafless_tridexel_to_bytes, length, leafless_tridexel_to_bytes(model, NULL, 0, NULL));
-    NULL_POINTER(leafless_tridexel_write, tridexel, leafless_tridexel_write(NULL, take, NULL));
-    NULL_POINTER(leafless_tridexel_write, write, leafless_tridexel_write(model, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_write, ctx, leafless_tridexel_write(model, take, NULL));
-    refused(LEAFLESS_E_FORMAT, "leafless_tridexel_from_bytes", "", leafless_tridexel_from_bytes(NULL, 0, result));
-    /* Copies may be made of bytes on any address, what is used in place must lie well. */
-    OK(leafless_tridexel_to_bytes(model, bytes + 1, length, &number));
-    refused(LEAFLESS_E_ARGUMENT, "leafless_tridexel_view_bytes", "",
-            leafless_tridexel_view_bytes(bytes + 1, length, result));
-    untouched();
-    CHECK(never == UNTOUCHED);
-    OK(leafless_tridexel_from_bytes(bytes + 1, length, &other));
-    leafless_tridexel_free(other);
-    free(bytes);
-}
-
 static void editors(void) {
     void *out = fresh(), *never = UNTOUCHED;
     leafless_tridexel *other = NULL;
@@ -429,7 +386,6 @@ int main(void) {
     facts();
     uses();
     arrays();
-    files();
     editors();
     /* All of it is as good as ever. */
     OK(leafless_tridexel_check(model));

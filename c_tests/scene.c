@@ -5,7 +5,7 @@ static const leafless_frame frame = {{-4, -4, -4}, 8, 5};
 
 static leafless_scene *scene_of(const char *text) {
     leafless_scene *scene = NULL;
-    OK(leafless_scene_from_bytes((const uint8_t *)text, strlen(text), NULL, 0, &scene));
+    OK(scene_from_text(text, NULL, LEAFLESS_FACETS_AUTO, &scene));
     return scene;
 }
 
@@ -26,8 +26,7 @@ static leafless_interval volume_of(leafless_scene *scene) {
 static void refused(const char *text, const char *folder, const char *words) {
     char message[512];
     leafless_scene *scene = NULL;
-    FAILS(LEAFLESS_E_SCENE, leafless_scene_from_bytes((const uint8_t *)text, strlen(text), folder,
-                                                      folder == NULL ? 0 : strlen(folder), &scene));
+    FAILS(LEAFLESS_E_SCENE, scene_from_text(text, folder, LEAFLESS_FACETS_AUTO, &scene));
     CHECK(scene == NULL);
     leafless_last_error(message, sizeof message);
     if (strstr(message, words) == NULL) {
@@ -43,6 +42,7 @@ static void reports(void) {
                                "[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 3, 2]]);";
     const uint64_t polygons[] = {1, 0, 1};
     const uint32_t facets[] = {LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON};
+    const leafless_source nothing = leafless_from_bytes(NULL, 0, LEAFLESS_ACCESS_COPY);
     leafless_scene_options options;
     leafless_scene_report report;
     leafless_scene_mesh mesh;
@@ -53,8 +53,7 @@ static void reports(void) {
     OK(leafless_init(&options, sizeof options));
     CHECK(options.struct_size == sizeof options && options.facets == LEAFLESS_FACETS_AUTO);
     for (i = 0; i < 3; i++) {
-        options.facets = facets[i];
-        OK(leafless_scene_from_bytes_with((const uint8_t *)text, strlen(text), NULL, 0, &options, &scene));
+        OK(scene_from_text(text, NULL, facets[i], &scene));
         OK(leafless_scene_describe(scene, &report));
         CHECK(report.polygons == polygons[i] && report.exact == 1 - polygons[i] && report.ignored_slices == 0);
         CHECK(report.meshes == 1 && !report.is_empty);
@@ -67,17 +66,15 @@ static void reports(void) {
         FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_mesh_file(scene, 1, NULL, 0, &length));
         leafless_scene_free(scene);
     }
-    options.facets = 3;
-    FAILS(LEAFLESS_E_ARGUMENT,
-          leafless_scene_from_bytes_with((const uint8_t *)text, strlen(text), NULL, 0, &options, &scene));
-    OK(leafless_scene_from_bytes_with(NULL, 0, NULL, 0, NULL, &scene));
+    FAILS(LEAFLESS_E_ARGUMENT, scene_from_text(text, NULL, 3, &scene));
+    OK(leafless_scene_read(&nothing, NULL, &scene));
     OK(leafless_scene_describe(scene, &report));
     CHECK(report.is_empty && report.meshes == 0);
     leafless_scene_free(scene);
     /* A mesh file. */
     check_write("t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 36);
     check_write("mesh.csg", "mesh(\"t.off\");", 14);
-    OK(leafless_scene_open_with("mesh.csg", 8, NULL, &scene));
+    OK(scene_open("mesh.csg", 8, NULL, &scene));
     OK(leafless_scene_describe_mesh(scene, 0, &mesh));
     CHECK(mesh.line == 1 && mesh.column == 1 && mesh.report.boundary_edges == 3);
     FAILS(LEAFLESS_E_BUFFER, leafless_scene_mesh_file(scene, 0, name, 4, &length));
@@ -119,7 +116,7 @@ int main(void) {
     leafless_scene_free(other);
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree));
     leafless_solid_free(solid);
-    OK(leafless_octree_save(octree, octree_path, strlen(octree_path)));
+    OK(octree_save(octree, octree_path, strlen(octree_path)));
     leafless_octree_free(octree);
     scene = scene_of("halfspace([1, 0, 0, 0]);");
     FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_bounds(scene, low, high));
@@ -127,18 +124,18 @@ int main(void) {
     CHECK(volume.lower == 256 && volume.upper == 256);
 
     /* Files. */
-    OK(leafless_scene_from_bytes((const uint8_t *)naming, strlen(naming), "", 0, &scene));
+    OK(scene_from_text(naming, "", LEAFLESS_FACETS_AUTO, &scene));
     volume = volume_of(scene);
     CHECK(fabs(volume.lower - (32 - 2 * pi)) < 1 && volume.upper == volume.lower);
     refused(naming, NULL, "line 1, column 8: ");
     refused("\n octree(\"none.lfl\");", "", "line 2, column 9: none.lfl");
     check_write(scene_path, naming, strlen(naming));
-    OK(leafless_scene_open(scene_path, strlen(scene_path), &scene));
+    OK(scene_open(scene_path, strlen(scene_path), NULL, &scene));
     volume = volume_of(scene);
     CHECK(volume.upper == volume.lower);
-    FAILS(LEAFLESS_E_IO, leafless_scene_open("none.csg", 8, &scene));
-    FAILS(LEAFLESS_E_UTF8, leafless_scene_open("\xff", 1, &scene));
-    FAILS(LEAFLESS_E_UTF8, leafless_scene_from_bytes((const uint8_t *)naming, strlen(naming), "\xff", 1, &scene));
+    FAILS(LEAFLESS_E_IO, scene_open("none.csg", 8, NULL, &scene));
+    FAILS(LEAFLESS_E_UTF8, scene_open("\xff", 1, NULL, &scene));
+    FAILS(LEAFLESS_E_UTF8, scene_from_text(naming, "\xff", LEAFLESS_FACETS_AUTO, &scene));
 
     /* Texts. */
     refused("cube(", NULL, "line 1, column 6: ");

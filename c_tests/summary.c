@@ -144,7 +144,7 @@ static void volumes(void) {
     CHECK(range.kind == LEAFLESS_RANGE_WITHIN && range.values[0].lower <= 5 && range.values[0].upper >= 15);
     leafless_attribute_free(smooth);
     leafless_attribute_free(steps);
-    OK(leafless_volume_from_bytes((const uint8_t *)NRRD, sizeof NRRD - 1, NULL, 0, &volume));
+    OK(volume_from_bytes((const uint8_t *)NRRD, sizeof NRRD - 1, NULL, 0, &volume));
     OK(leafless_volume_as_attribute(volume, LEAFLESS_INTERPOLATION_NEAREST, NULL, &turned));
     OK(leafless_attribute_values(turned, &first[0][0], 2, values));
     CHECK(values[0] == 5 && values[1] == 9);

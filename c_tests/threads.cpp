@@ -207,7 +207,7 @@ void messages() {
             char message[512];
             const std::string path = "no/such/file/of/thread/" + std::to_string(number);
             if (number % 2 == 0) {
-                FAILS(LEAFLESS_E_IO, leafless_octree_open(path.data(), path.size(), &result));
+                FAILS(LEAFLESS_E_IO, octree_open(path.data(), path.size(), &result));
             } else {
                 FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_resolve(octree, static_cast<leafless_rule>(99), nullptr, &result));
             }
@@ -543,9 +543,9 @@ int main(int argc, char **) {
     numbers_of_threads(numbers);
     leafless_octree *octree = check_ball(6, LEAFLESS_RULE_CERTIFIED), *mapped = nullptr;
     reads(octree);
-    OK(leafless_octree_save(octree, "threads.lfl", 11));
+    OK(octree_save(octree, "threads.lfl", 11));
     leafless_octree_free(octree);
-    OK(leafless_octree_map("threads.lfl", 11, &mapped));
+    OK(octree_map("threads.lfl", 11, &mapped));
     reads(mapped);
     leafless_octree_free(mapped);
     references();

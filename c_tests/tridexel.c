@@ -149,7 +149,7 @@ static void boxes(void) {
         OK(leafless_tridexel_statistics(model, 2, &statistics));
         CHECK(statistics.rays == 0 && statistics.volume_model == 0 && statistics.min_model[0] == INFINITY);
         CHECK(statistics.max_model[2] == -INFINITY);
-        OK(leafless_tridexel_read(model, 2, NULL, NULL, offsets, 1, &offset_count, NULL, NULL, NULL, NULL, 0, &intervals));
+        OK(leafless_tridexel_copy(model, 2, NULL, NULL, offsets, 1, &offset_count, NULL, NULL, NULL, NULL, 0, &intervals));
         CHECK(offset_count == 1 && offsets[0] == 0 && intervals == 0);
         leafless_tridexel_free(model);
     }
@@ -192,9 +192,9 @@ static void balls(void) {
             uint64_t offset_count, count, total = 0;
             uint32_t i, j;
             double length = 0;
-            OK(leafless_tridexel_read(model, axis, none, all, NULL, 0, &offset_count, NULL, NULL, NULL, NULL, 0, &count));
+            OK(leafless_tridexel_copy(model, axis, none, all, NULL, 0, &offset_count, NULL, NULL, NULL, NULL, 0, &count));
             CHECK(offset_count == COUNT(offsets) && count < COUNT(ends));
-            OK(leafless_tridexel_read(model, axis, none, all, offsets, COUNT(offsets), &offset_count, &ends[0][0],
+            OK(leafless_tridexel_copy(model, axis, none, all, offsets, COUNT(offsets), &offset_count, &ends[0][0],
                                       &normals[0][0][0], &surfaces[0][0], materials, COUNT(ends), &count));
             for (j = 0; j < SIDE; j++) {
                 for (i = 0; i < SIDE; i++) {
@@ -238,10 +238,10 @@ static void balls(void) {
                 /* Within the window there are the same; of some rays, theirs; of one array, that one. */
                 const uint32_t low[2] = {20, 30}, high[2] = {24, 33};
                 uint64_t some[13], few, k;
-                OK(leafless_tridexel_read(model, axis, NULL, NULL, NULL, 0, &offset_count, &also[0][0], NULL, NULL, NULL,
+                OK(leafless_tridexel_copy(model, axis, NULL, NULL, NULL, 0, &offset_count, &also[0][0], NULL, NULL, NULL,
                                           count, &few));
                 CHECK(few == count && memcmp(also, ends, (size_t)count * sizeof ends[0]) == 0);
-                OK(leafless_tridexel_read(model, axis, low, high, some, 13, &offset_count, &also[0][0], NULL, NULL, NULL,
+                OK(leafless_tridexel_copy(model, axis, low, high, some, 13, &offset_count, &also[0][0], NULL, NULL, NULL,
                                           12, &few));
                 CHECK(offset_count == 13 && few == 12);
                 for (k = 0; k < 12; k++) {
@@ -251,12 +251,12 @@ static void balls(void) {
                 /* Too small a buffer: nothing is written. */
                 some[0] = 77;
                 materials[0] = 77;
-                FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_read(model, axis, low, high, some, 12, &offset_count, NULL,
+                FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_copy(model, axis, low, high, some, 12, &offset_count, NULL,
                                                                 NULL, NULL, materials, 12, &few));
-                FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_read(model, axis, low, high, some, 13, &offset_count, NULL,
+                FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_copy(model, axis, low, high, some, 13, &offset_count, NULL,
                                                                 NULL, NULL, materials, 11, &few));
                 CHECK(some[0] == 77 && materials[0] == 77);
-                FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_read(model, axis, high, low, some, 13, &offset_count, NULL,
+                FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_copy(model, axis, high, low, some, 13, &offset_count, NULL,
                                                                   NULL, NULL, NULL, 0, &few));
             }
         }
@@ -299,10 +299,10 @@ static void places(void) {
             OK(leafless_tridexel_contains_cell(models[0], cell, &inside));
             CHECK(inside == (k >= 3 && k < 7));
         }
-        OK(leafless_tridexel_read_cells(models[0], 1, first, end, NULL, 0, &count));
+        OK(leafless_tridexel_copy_cells(models[0], 1, first, end, NULL, 0, &count));
         CHECK(count == 2);
-        OK(leafless_tridexel_read_cells(models[0], 1, NULL, NULL, cells, 2, &count));
-        OK(leafless_tridexel_read(models[0], 1, NULL, NULL, NULL, 0, &offset_count, model_ends, NULL, NULL, NULL, 2, &count));
+        OK(leafless_tridexel_copy_cells(models[0], 1, NULL, NULL, cells, 2, &count));
+        OK(leafless_tridexel_copy(models[0], 1, NULL, NULL, NULL, 0, &offset_count, model_ends, NULL, NULL, NULL, 2, &count));
         CHECK(count == 2 && (!format.ends || memcmp(cells, ends_cells, sizeof cells) == 0));
         OK(leafless_tridexel_ray(models[0], 1, first, dexels, 2, &count));
         for (i = 0; i < 2; i++) {
@@ -311,7 +311,7 @@ static void places(void) {
         }
         /* Too small a buffer: nothing is written. */
         also[0] = 77;
-        FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_read_cells(models[0], 1, first, end, also, 1, &count));
+        FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_copy_cells(models[0], 1, first, end, also, 1, &count));
         CHECK(also[0] == 77);
         rays.ends_cells = cells;
         rays.ends_model = model_ends;

@@ -230,7 +230,7 @@ static void arrays(void) {
         to->surfaces = &surfaces_of[axis][0][0];
         to->materials = materials[axis];
         OK(leafless_tridexel_window(model, axis, to->first, to->end));
-        OK(leafless_tridexel_read(model, axis, NULL, NULL, offsets[axis], SIDE * SIDE + 1, &offset_count,
+        OK(leafless_tridexel_copy(model, axis, NULL, NULL, offsets[axis], SIDE * SIDE + 1, &offset_count,
                                   &ends[axis][0][0], &normals[axis][0][0], &surfaces_of[axis][0][0], materials[axis],
                                   SIDE * SIDE, &to->interval_count));
     }
@@ -316,21 +316,21 @@ static void files(void) {
     const char *value;
     size_t value_length;
     OK(leafless_tridexel_with_metadata(plain, "name", 4, "round", 5, &model));
-    OK(leafless_tridexel_to_bytes(model, NULL, 0, &length));
+    OK(tridexel_to_bytes(model, NULL, 0, &length));
     bytes = (uint8_t *)malloc((size_t)length);
     copy = (uint8_t *)malloc((size_t)length);
     CHECK(bytes != NULL && copy != NULL);
-    FAILS(LEAFLESS_E_BUFFER, leafless_tridexel_to_bytes(model, bytes, length - 1, &again));
-    OK(leafless_tridexel_to_bytes(model, bytes, length, &again));
+    FAILS(LEAFLESS_E_BUFFER, tridexel_to_bytes(model, bytes, length - 1, &again));
+    OK(tridexel_to_bytes(model, bytes, length, &again));
     CHECK(again == length);
     to.to = copy;
-    OK(leafless_tridexel_write(model, take, &to));
+    OK(tridexel_write_to(model, take, &to));
     CHECK(to.length == length && memcmp(bytes, copy, (size_t)length) == 0);
     to.fails = 1;
-    FAILS(LEAFLESS_E_CALLBACK, leafless_tridexel_write(model, take, &to));
-    OK(leafless_tridexel_save(model, "ball.lfl", 8));
-    OK(leafless_bytes_verify(bytes, length));
-    OK(leafless_bytes_probe(bytes, length, &probe, sections, COUNT(sections)));
+    FAILS(LEAFLESS_E_CALLBACK, tridexel_write_to(model, take, &to));
+    OK(tridexel_save(model, "ball.lfl", 8));
+    OK(verify_bytes(bytes, length));
+    OK(probe_bytes(bytes, length, &probe, sections, COUNT(sections)));
     CHECK(probe.frame.depth == DEPTH && probe.file_length == length && probe.elements == 0);
     CHECK(probe.tridexel.directions == LEAFLESS_AXES_ALL && probe.tridexel.normals == LEAFLESS_DEXEL_NORMALS_16);
     CHECK(probe.tridexel.ends == LEAFLESS_DEXEL_ENDS_FIXED && probe.tridexel.has_materials == 1);
@@ -338,19 +338,19 @@ static void files(void) {
         leafless_dexel_statistics statistics;
         switch (way) {
         case 0:
-            OK(leafless_tridexel_open("ball.lfl", 8, &back));
+            OK(tridexel_open("ball.lfl", 8, &back));
             break;
         case 1:
-            OK(leafless_tridexel_map("ball.lfl", 8, &back));
+            OK(tridexel_map("ball.lfl", 8, &back));
             break;
         case 2:
-            OK(leafless_tridexel_map_verified("ball.lfl", 8, &back));
+            OK(tridexel_map_verified("ball.lfl", 8, &back));
             break;
         case 3:
-            OK(leafless_tridexel_from_bytes(bytes, length, &back));
+            OK(tridexel_from_bytes(bytes, length, &back));
             break;
         default:
-            OK(leafless_tridexel_view_bytes(bytes, length, &back));
+            OK(tridexel_view_bytes(bytes, length, &back));
         }
         OK(leafless_tridexel_check(back));
         CHECK(same(back, model));
@@ -364,21 +364,21 @@ static void files(void) {
         back = NULL;
     }
     /* The file of one kind is none of the other. */
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_open("ball.lfl", 8, &none));
-    OK(leafless_octree_save(octree, "tree.lfl", 8));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_open("tree.lfl", 8, &back));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_map("tree.lfl", 8, &back));
-    OK(leafless_file_probe("tree.lfl", 8, &probe, NULL, 0));
+    FAILS(LEAFLESS_E_ARGUMENT, octree_open("ball.lfl", 8, &none));
+    OK(octree_save(octree, "tree.lfl", 8));
+    FAILS(LEAFLESS_E_ARGUMENT, tridexel_open("tree.lfl", 8, &back));
+    FAILS(LEAFLESS_E_ARGUMENT, tridexel_map("tree.lfl", 8, &back));
+    OK(probe_path("tree.lfl", 8, &probe, NULL, 0));
     CHECK(probe.tridexel.directions == 0 && probe.elements > 0);
-    FAILS(LEAFLESS_E_IO, leafless_tridexel_open("no/such/file", 12, &back));
+    FAILS(LEAFLESS_E_IO, tridexel_open("no/such/file", 12, &back));
     /* Cut off anywhere, and with any byte changed, it is no file. */
     for (k = 0; k < length; k += 97) {
-        FAILS(LEAFLESS_E_FORMAT, leafless_tridexel_from_bytes(bytes, k, &back));
+        FAILS(LEAFLESS_E_FORMAT, tridexel_from_bytes(bytes, k, &back));
     }
     for (k = 0; k < length; k += 89) {
         leafless_status status;
         bytes[k] ^= 1;
-        status = leafless_tridexel_from_bytes(bytes, length, &back);
+        status = tridexel_from_bytes(bytes, length, &back);
         CHECK(status == LEAFLESS_E_FORMAT || status == LEAFLESS_E_VERSION || status == LEAFLESS_E_DAMAGED);
         bytes[k] ^= 1;
     }

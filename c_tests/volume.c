@@ -381,11 +381,11 @@ static void bands_and_places(void) {
 static uint8_t *bytes_of(const leafless_volume *volume, uint32_t format, uint64_t *length) {
     uint8_t *bytes;
     uint64_t again;
-    OK(leafless_volume_to_bytes(volume, format, NULL, 0, length));
+    OK(volume_to_bytes(volume, format, NULL, 0, length));
     bytes = (uint8_t *)malloc((size_t)*length);
     CHECK(bytes != NULL);
-    FAILS(LEAFLESS_E_BUFFER, leafless_volume_to_bytes(volume, format, bytes, *length - 1, &again));
-    OK(leafless_volume_to_bytes(volume, format, bytes, *length, &again));
+    FAILS(LEAFLESS_E_BUFFER, volume_to_bytes(volume, format, bytes, *length - 1, &again));
+    OK(volume_to_bytes(volume, format, bytes, *length, &again));
     CHECK(again == *length);
     return bytes;
 }
@@ -410,29 +410,29 @@ static void files(void) {
     uint8_t *bytes;
     size_t i;
     for (i = 0; i < 2; i++) {
-        OK(leafless_volume_save(volume, FORMATS[i], PATHS[i], strlen(PATHS[i])));
+        OK(volume_save(volume, FORMATS[i], PATHS[i], strlen(PATHS[i])));
         bytes = bytes_of(volume, FORMATS[i], &lengths[i]);
         same_file(PATHS[i], bytes, lengths[i]);
-        OK(leafless_volume_from_bytes(bytes, lengths[i], NULL, 0, &back));
+        OK(volume_from_bytes(bytes, lengths[i], NULL, 0, &back));
         OK(leafless_volume_describe(back, &info));
         CHECK(info.format == LEAFLESS_VOLUME_FORMAT_NRRD && info.file_type == LEAFLESS_SAMPLE_U8 && !info.is_placed);
         CHECK(memcmp(info.corner_model, corner, sizeof corner) == 0 && info.spacing_model[1] == 0.25);
         leafless_volume_free(back);
-        OK(leafless_volume_open(PATHS[i], strlen(PATHS[i]), &back));
+        OK(volume_open(PATHS[i], strlen(PATHS[i]), &back));
         again = same_voxels(back, &band);
         CHECK(check_same(again, octree));
         leafless_octree_free(again);
         leafless_volume_free(back);
         /* Cut anywhere: refused. */
         for (length = 0; length < lengths[i]; length += 1 + length / 3) {
-            FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_from_bytes(bytes, length, NULL, 0, &back));
+            FAILS(LEAFLESS_E_VOLUME_FILE, volume_from_bytes(bytes, length, NULL, 0, &back));
         }
         free(bytes);
     }
     CHECK(lengths[1] < lengths[0] && lengths[0] > COUNT_ALL);
     bytes = bytes_of(volume, LEAFLESS_VOLUME_FORMAT_RAW, &length);
     CHECK(length == COUNT_ALL);
-    OK(leafless_volume_save(volume, LEAFLESS_VOLUME_FORMAT_RAW, "volume.raw", 10));
+    OK(volume_save(volume, LEAFLESS_VOLUME_FORMAT_RAW, "volume.raw", 10));
     same_file("volume.raw", bytes, length);
     free(bytes);
     memcpy(layout.corner_model, corner, sizeof corner);
@@ -446,12 +446,12 @@ static void files(void) {
     layout.extents[2]++;
     FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_open_raw("volume.raw", 10, &layout, &back));
     FAILS(LEAFLESS_E_IO, leafless_volume_open_raw("no/such/file", 12, &layout, &back));
-    FAILS(LEAFLESS_E_IO, leafless_volume_open("no/such/file", 12, &back));
-    FAILS(LEAFLESS_E_IO, leafless_volume_save(volume, LEAFLESS_VOLUME_FORMAT_RAW, "no/such/file", 12));
-    FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_open("volume.raw", 10, &back));
-    FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_from_bytes(NULL, 0, NULL, 0, &back));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_save(volume, LEAFLESS_VOLUME_FORMAT_METAIMAGE, "volume.mha", 10));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_save(volume, 4, "volume.mha", 10));
+    FAILS(LEAFLESS_E_IO, volume_open("no/such/file", 12, &back));
+    FAILS(LEAFLESS_E_IO, volume_save(volume, LEAFLESS_VOLUME_FORMAT_RAW, "no/such/file", 12));
+    FAILS(LEAFLESS_E_VOLUME_FILE, volume_open("volume.raw", 10, &back));
+    FAILS(LEAFLESS_E_VOLUME_FILE, volume_from_bytes(NULL, 0, NULL, 0, &back));
+    FAILS(LEAFLESS_E_ARGUMENT, volume_save(volume, LEAFLESS_VOLUME_FORMAT_METAIMAGE, "volume.mha", 10));
+    FAILS(LEAFLESS_E_ARGUMENT, volume_save(volume, 4, "volume.mha", 10));
     CHECK(back == NULL);
     leafless_octree_free(octree);
     leafless_volume_free(volume);
@@ -485,18 +485,18 @@ static void headers(void) {
     OK(leafless_volume_data_file((const uint8_t *)DETACHED, sizeof DETACHED - 1, name, sizeof name, &length));
     CHECK(memcmp(name, "eight.raw", 9) == 0);
     FAILS(LEAFLESS_E_VOLUME_FILE,
-          leafless_volume_from_bytes((const uint8_t *)DETACHED, sizeof DETACHED - 1, NULL, 0, &volume));
+          volume_from_bytes((const uint8_t *)DETACHED, sizeof DETACHED - 1, NULL, 0, &volume));
     FAILS(LEAFLESS_E_VOLUME_FILE,
-          leafless_volume_from_bytes((const uint8_t *)DETACHED, sizeof DETACHED - 1, data, 31, &volume));
+          volume_from_bytes((const uint8_t *)DETACHED, sizeof DETACHED - 1, data, 31, &volume));
     CHECK(volume == NULL);
-    OK(leafless_volume_from_bytes((const uint8_t *)DETACHED, sizeof DETACHED - 1, data, 32, &volume));
+    OK(volume_from_bytes((const uint8_t *)DETACHED, sizeof DETACHED - 1, data, 32, &volume));
     OK(leafless_volume_describe(volume, &info));
     CHECK(info.unit == LEAFLESS_UNIT_MILLIMETRE && info.file_type == LEAFLESS_SAMPLE_I32);
     CHECK(info.sample_type == LEAFLESS_SAMPLE_F32 && info.default_threshold == -0.5 && info.is_placed);
     CHECK(info.placement[0] == 0 && info.placement[1] == -1 && info.placement[4] == 1 && info.placement[7] == 20);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_frame(volume, &frame));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_NRRD, NULL, 0, &length));
-    OK(leafless_volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_RAW, NULL, 0, &length));
+    FAILS(LEAFLESS_E_ARGUMENT, volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_NRRD, NULL, 0, &length));
+    OK(volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_RAW, NULL, 0, &length));
     CHECK(length == 32);
     /* Voxels of 2³, turned by a quarter: from 7 to 11, 19 to 23, 29 to 33. */
     OK(leafless_volume_bounds(volume, min, max));
@@ -526,7 +526,7 @@ static void headers(void) {
     }
     check_write("volume.mha", file, sizeof file);
     volume = NULL;
-    OK(leafless_volume_open("volume.mha", 10, &volume));
+    OK(volume_open("volume.mha", 10, &volume));
     OK(leafless_volume_describe(volume, &info));
     CHECK(info.format == LEAFLESS_VOLUME_FORMAT_METAIMAGE && info.file_type == LEAFLESS_SAMPLE_U8 && !info.is_placed);
     CHECK(info.corner_model[0] == 0 && info.corner_model[2] == 0 && info.spacing_model[2] == 3);

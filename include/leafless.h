@@ -14,13 +14,14 @@
  *   A leafless_solid is a shape: it can be asked about points, rays, boxes, volumes and other solids, and
  *   it can be built. A leafless_octree stores a shape in the cells of a leafless_frame; set operations on
  *   one frame are exact. A leafless_tridexel stores a shape as intervals of rays. Octrees and tri-dexel
- *   models are saved to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or PARTIAL,
+ *   models are written to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or PARTIAL,
  *   which is undecided. A volume is an interval that contains the true volume.
  *
  * EXAMPLE: a bored ball, its volume, a file. (Check each status; see RULES.)
  *
  *   const double centre[3] = {0, 0, 0};
  *   const leafless_frame frame = {{-1, -1, -1}, 2, 8};
+ *   const leafless_sink file = leafless_to_file("bored.lfl");
  *   leafless_solid *parts[2] = {NULL, NULL}, *bored = NULL;
  *   leafless_octree *octree = NULL;
  *   leafless_statistics all;
@@ -30,7 +31,7 @@
  *   leafless_octree_build(bored, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree);
  *   leafless_octree_statistics(octree, &all);
  *   printf("%f to %f\n", all.volume_model.lower, all.volume_model.upper);
- *   leafless_octree_save(octree, "bored.lfl", strlen("bored.lfl"));
+ *   leafless_octree_write(octree, &file);
  *
  * CONTENTS
  *
@@ -39,26 +40,27 @@
  *   3. Errors
  *   4. Options, cancelling, progress
  *   5. Frames
- *   6. Meshes
- *   7. Mesh files
- *   8. Solids
- *   9. Solids by functions of the host
- *   10. Volumes
- *   11. Scenes
- *   12. Octrees
- *   13. Points and boxes
- *   14. Cells of octrees
- *   15. Rays, columns, heights
- *   16. Volumes, areas, bounding boxes
- *   17. Distance and interference
- *   18. Octrees that are split on demand
- *   19. Attributes
- *   20. Channels
- *   21. Voxel records
- *   22. Surfaces
- *   23. Tri-dexel models
- *   24. Files of octrees and tri-dexel models
- *   25. Pictures
+ *   6. Sources and sinks
+ *   7. Meshes
+ *   8. Mesh files
+ *   9. Solids
+ *   10. Solids by functions of the host
+ *   11. Volumes
+ *   12. Scenes
+ *   13. Octrees
+ *   14. Points and boxes
+ *   15. Cells of octrees
+ *   16. Rays, columns, heights
+ *   17. Volumes, areas, bounding boxes
+ *   18. Distance and interference
+ *   19. Octrees that are split on demand
+ *   20. Attributes
+ *   21. Channels
+ *   22. Voxel records
+ *   23. Surfaces
+ *   24. Tri-dexel models
+ *   25. Files of octrees and tri-dexel models
+ *   26. Pictures
  *
  * RULES that hold for all functions
  *
@@ -80,7 +82,7 @@
  * most), or the memory of a new thread. Triangulating a polygon with holes or dents needs 320 bytes a corner:
  * the library reserves and releases that amount first, so that a shortage is an error.
  *
- * Objects. Objects are opaque handles. _new, _open and the like return a reference; _ref returns one more;
+ * Objects. Objects are opaque handles. _new, _read and the like return a reference; _ref returns one more;
  * _free gives one back, and accepts NULL. References may be given back in any order: an object shares what it
  * needs of another one. A pointer from a _peek function belongs to the object.
  *
@@ -128,6 +130,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 /* LEAFLESS_ENUM: an enumeration of a fixed size. C has no such thing; there the name is the integer's.
  * LEAFLESS_INIT: the default of a struct with a struct_size, as in
@@ -568,7 +571,137 @@ leafless_status leafless_frame_cell_of(const leafless_frame *frame, const double
 leafless_status leafless_frame_plane(const leafless_frame *frame, uint32_t axis, uint32_t index,
     leafless_interval *plane_model);
 
-/* ---- 6. Meshes ---------------------------------------------------------------------------------------- */
+/* ---- 6. Sources and sinks ----------------------------------------------------------------------------- */
+
+/// How a source is used. Octrees and tri-dexel models can be used where they lie; everything else is read
+/// with LEAFLESS_ACCESS_COPY.
+LEAFLESS_ENUM(leafless_access, uint32_t) {
+    /// It is read into memory, and all of it is verified: the plain way, and the one for files that may not
+    /// be trusted. Later changes of the file or of the bytes do not matter. Bytes may lie on any address.
+    LEAFLESS_ACCESS_COPY = 0,
+    /// It is used where it lies: a file is mapped into memory, bytes are viewed. Only its header, section
+    /// table, bounds, level table or windows, and metadata are checked: some microseconds for any length.
+    /// What queries touch is read when they do. Of what is damaged elsewhere queries answer undecided or
+    /// wrong, but stay in bounds and end.
+    LEAFLESS_ACCESS_MAP = 1,
+    /// As LEAFLESS_ACCESS_MAP, but all of it is verified first, in one scan. Who writes to it afterwards
+    /// undoes that.
+    LEAFLESS_ACCESS_MAP_VERIFIED = 2,
+};
+
+/// What is read: a file by its path, or the bytes of a whole file in memory. One of the two is given, and the
+/// fields of the other are zero, else functions return LEAFLESS_E_ARGUMENT. leafless_from_file and
+/// leafless_from_bytes make it.
+///
+/// A file that is mapped must be a regular one. While the object that was read lives, or one that shares the
+/// file with it, nobody may make the file shorter: reading beyond its new end raises SIGBUS, which by default
+/// ends the process. Nobody may write to it either: answers may then be wrong, and nothing more is promised.
+/// Removing the file, or replacing it by renaming another over it, as a leafless_sink does, is harmless.
+///
+/// Bytes that are viewed begin on an address that is a multiple of 8, and stay the host's. They must stay,
+/// unchanged, until the last reference is given back to the object that was read, and to all that was made of
+/// it and shares them: cursors, solids, channels, models with other metadata, and all that was made of these.
+/// They are for files that are part of a program, or that the host maps itself.
+///
+/// Untrusted input: with LEAFLESS_ACCESS_COPY any file and any bytes, and memory is at most a small multiple
+/// of their length, unless the function says more. With the other two any content too, but only where nobody
+/// else can change it.
+typedef struct leafless_source {
+    uint32_t struct_size;  ///< sizeof(leafless_source).
+    leafless_access access;  ///< How it is used.
+    const char *path;  ///< The file's path, UTF-8; NULL if bytes are given.
+    size_t path_length;  ///< Its length in bytes.
+    const uint8_t *bytes;  ///< All bytes of a file; NULL if a path is given, or if there are none.
+    uint64_t length;  ///< Their number.
+} leafless_source;
+
+/// Takes bytes of a file in order: all `count` of them, and returns 0; anything else ends the writing with
+/// LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may
+/// call this library.
+typedef int32_t (*leafless_write_fn)(void *ctx, const uint8_t *bytes, uint64_t count);
+
+/// Where a file is written to: a path, a function of the host, or a buffer. Just one of `path`, `write` and
+/// `length` is given, and the fields of the others are zero, else functions return LEAFLESS_E_ARGUMENT.
+/// leafless_to_file, leafless_to_function and leafless_to_buffer make it.
+///
+/// A path. At any moment, also after a crash or a power failure, there is the old file or the new one, each
+/// complete; after LEAFLESS_OK the new one is on the disk. The bytes go to a temporary file in the same
+/// directory, which is synchronised with the disk and then renamed over the old file. On Linux the temporary
+/// file has no name until it is complete, so that nothing is left of it when the process is killed, where the
+/// file system has such files. Elsewhere a file `.leafless-….tmp` may stay behind. A file that is replaced
+/// keeps its permissions, its other hard links keep the old contents. A symbolic link is followed. What is no
+/// regular file, such as a pipe, is written to directly; a pipe that nobody reads raises SIGPIPE, and a file
+/// beyond the process's limit SIGXFSZ, if the host has not ignored them. A pipe that nobody has opened for
+/// reading is waited for, also if signal handlers run meanwhile. After an error, LEAFLESS_E_IO or another,
+/// the old file is as it was; only if the very last step fails, synchronising the directory, the new one is
+/// in place.
+///
+/// A function. It is called with a few large pieces, from the first byte to the last. LEAFLESS_E_CALLBACK has
+/// what it returned in the message. Other errors come before anything is written.
+///
+/// A buffer. Asking for the length takes as long as filling. LEAFLESS_E_BUFFER if the capacity is too small.
+typedef struct leafless_sink {
+    uint32_t struct_size;  ///< sizeof(leafless_sink).
+    uint32_t reserved;  ///< Zero.
+    const char *path;  ///< The file's path, UTF-8.
+    size_t path_length;  ///< Its length in bytes.
+    leafless_write_fn write;  ///< Takes the bytes.
+    void *write_ctx;  ///< What `write` is called with.
+    uint8_t *bytes;  ///< Room for `capacity` bytes, or NULL to ask for the length only.
+    uint64_t capacity;  ///< How many bytes there is room for.
+    uint64_t *length;  ///< Where the length of the file is written to: the number of bytes.
+} leafless_sink;
+
+/// The file at a path, which ends with a NUL.
+static inline leafless_source leafless_from_file(const char *path, leafless_access access) {
+    leafless_source source = LEAFLESS_INIT(leafless_source);
+    source.access = access;
+    source.path = path;
+    /* NULL is refused for what it is, and not taken for no bytes. */
+    source.path_length = path != NULL ? strlen(path) : 1;
+    return source;
+}
+
+/// The bytes of a whole file.
+static inline leafless_source leafless_from_bytes(const void *bytes, uint64_t length,
+                                                  leafless_access access) {
+    leafless_source source = LEAFLESS_INIT(leafless_source);
+    source.access = access;
+#ifdef __cplusplus
+    source.bytes = static_cast<const uint8_t *>(bytes);
+#else
+    source.bytes = (const uint8_t *)bytes;
+#endif
+    source.length = length;
+    return source;
+}
+
+/// To the file at a path, which ends with a NUL.
+static inline leafless_sink leafless_to_file(const char *path) {
+    leafless_sink sink = LEAFLESS_INIT(leafless_sink);
+    sink.path = path;
+    sink.path_length = path != NULL ? strlen(path) : 1;
+    return sink;
+}
+
+/// To a buffer; `bytes` is NULL and `capacity` 0 to ask for the length only.
+static inline leafless_sink leafless_to_buffer(uint8_t *bytes, uint64_t capacity, uint64_t *length) {
+    leafless_sink sink = LEAFLESS_INIT(leafless_sink);
+    sink.bytes = bytes;
+    sink.capacity = capacity;
+    sink.length = length;
+    return sink;
+}
+
+/// To a function, which is called with `ctx`.
+static inline leafless_sink leafless_to_function(leafless_write_fn write, void *ctx) {
+    leafless_sink sink = LEAFLESS_INIT(leafless_sink);
+    sink.write = write;
+    sink.write_ctx = ctx;
+    return sink;
+}
+
+/* ---- 7. Meshes ---------------------------------------------------------------------------------------- */
 
 /// Which points a surface encloses.
 ///
@@ -973,7 +1106,7 @@ leafless_status leafless_mesh_measure(const leafless_mesh *mesh, leafless_fill f
 leafless_status leafless_mesh_intersecting_pairs(const leafless_mesh *mesh, const leafless_options *options,
     leafless_intersecting_pair *pairs, uint64_t capacity, uint64_t *count, bool *is_complete);
 
-/* ---- 7. Mesh files ------------------------------------------------------------------------------------ */
+/* ---- 8. Mesh files ------------------------------------------------------------------------------------ */
 
 /// The formats of mesh files, which can be read and written.
 LEAFLESS_ENUM(leafless_mesh_format, uint32_t) {
@@ -1003,30 +1136,30 @@ LEAFLESS_ENUM(leafless_unit, uint32_t) {
 /// their default.
 typedef struct leafless_mesh_options {
     uint32_t struct_size;  ///< sizeof(leafless_mesh_options).
-    uint32_t format;  ///< The file's format, a leafless_mesh_format.
-    /// The unit of the numbers in the file, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means what the file says,
-    /// which only a 3MF does; anything else overrides that.
-    uint32_t unit;
-    /// The unit that the mesh shall have, a leafless_unit. LEAFLESS_UNIT_UNKNOWN means that of the file.
-    uint32_t target;
+    leafless_mesh_format format;  ///< The file's format.
+    /// The unit of the numbers in the file. LEAFLESS_UNIT_UNKNOWN means what the file says, which only a 3MF
+    /// does; anything else overrides that.
+    leafless_unit unit;
+    /// The unit that the mesh shall have. LEAFLESS_UNIT_UNKNOWN means that of the file.
+    leafless_unit target;
     double scale;  ///< What all coordinates are multiplied by besides: 2^-256 to 2^256, or 0, which means 1.
 } leafless_mesh_options;
 
 /// What a mesh file says besides the mesh.
-typedef struct leafless_mesh_source {
+typedef struct leafless_mesh_found {
     leafless_mesh_format format;  ///< The file's format.
     leafless_unit unit;  ///< The unit of the mesh, converted but not scaled, if it is known.
     /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
     /// not contain.
     uint64_t skipped;
-} leafless_mesh_source;
+} leafless_mesh_found;
 
 /// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
-/// triangles.
+/// triangles. Of bytes no name is known that could tell the format.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `source`, one struct, or
-///   NULL if it is not wanted; `mesh`, one pointer.
-/// - Result: `*mesh`, not checked to be closed; `*source`. leafless_mesh_peek_warning_at tells where the file
+/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `found`, one
+///   struct, or NULL if it is not wanted; `mesh`, one pointer.
+/// - Result: `*mesh`, not checked to be closed; `*found`. leafless_mesh_peek_warning_at tells where the file
 ///   departs from its format, though it could be read.
 /// - Errors: LEAFLESS_E_MESH_FILE, with the part, line, facet or byte in the message, if the file cannot be
 ///   read, if its format is not known, or if `target` is given and nobody says from which unit;
@@ -1037,19 +1170,8 @@ typedef struct leafless_mesh_source {
 /// - Untrusted input: any file. Memory is at most a small multiple of its length; of a 3MF, which is
 ///   compressed, of 64 times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25
 ///   triangles, or to as many as the file has.
-leafless_status leafless_mesh_open(const char *path, size_t path_length, const leafless_mesh_options *options,
-    leafless_mesh_source *source, leafless_mesh **mesh);
-
-/// As leafless_mesh_open for a file in memory, of whose name nothing is known.
-///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `options`, one struct, or NULL;
-///   `source`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
-/// - Result: `*mesh`, not checked to be closed; `*source`.
-/// - Errors: as leafless_mesh_open, but those of paths.
-/// - Ownership: the bytes are not kept; give `*mesh` back with leafless_mesh_free.
-/// - Untrusted input: any bytes; memory as for leafless_mesh_open.
-leafless_status leafless_mesh_from_bytes(const uint8_t *bytes, uint64_t length,
-    const leafless_mesh_options *options, leafless_mesh_source *source, leafless_mesh **mesh);
+leafless_status leafless_mesh_read(const leafless_source *source, const leafless_mesh_options *options,
+    leafless_mesh_found *found, leafless_mesh **mesh);
 
 /// What a mesh file departs from its format in, though it could be read: a sentence in UTF-8 for each kind of
 /// departure, by its place among all. A mesh that was not read from a file, or was made from another mesh,
@@ -1063,78 +1185,54 @@ leafless_status leafless_mesh_from_bytes(const uint8_t *bytes, uint64_t length,
 leafless_status leafless_mesh_peek_warning_at(const leafless_mesh *mesh, uint64_t index, uint64_t *count,
     const char **warning, size_t *warning_length);
 
-/// Writes a binary STL file into memory: 84 + 50 t bytes. Coordinates are rounded to 32 bits;
-/// leafless_mesh_written_form tells what that costs.
-///
-/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if a coordinate is beyond
-///   the range of 32-bit floating point numbers; LEAFLESS_E_NO_MEMORY.
-leafless_status leafless_mesh_to_stl(const leafless_mesh *mesh, uint8_t *bytes, uint64_t capacity,
-    uint64_t *length);
-
 /// How a mesh file is written. NULL means the defaults. All fields but the first may be zero, which is their
 /// default.
 typedef struct leafless_mesh_write_options {
     uint32_t struct_size;  ///< sizeof(leafless_mesh_write_options).
-    /// The file's format, a leafless_mesh_format. LEAFLESS_MESH_FORMAT_ANY means what the extension of the
-    /// path says: .stl, .obj, .ply, .off or .3mf, in any letter case.
-    uint32_t format;
+    /// The file's format. LEAFLESS_MESH_FORMAT_ANY means what the extension of the path says: .stl, .obj,
+    /// .ply, .off or .3mf, in any letter case.
+    leafless_mesh_format format;
     /// 1 to write STL and PLY as text, which is several times as long; OBJ and OFF always are text, and a 3MF
     /// never is. Else 0.
     uint32_t is_text;
-    /// The unit of the coordinates, a leafless_unit, which only a 3MF tells. LEAFLESS_UNIT_UNKNOWN means the
-    /// millimetre. Nothing is converted.
-    uint32_t unit;
+    /// The unit of the coordinates, which only a 3MF tells. LEAFLESS_UNIT_UNKNOWN means the millimetre.
+    /// Nothing is converted.
+    leafless_unit unit;
     /// 1 to write PLY and OBJ with the normals that leafless_mesh_normals tells; other formats have none.
     /// Else 0.
     uint32_t has_normals;
 } leafless_mesh_write_options;
 
-/// Saves a mesh in a file: STL, PLY, OBJ, OFF or 3MF. At any moment there is the old file or the new one,
-/// each complete, as leafless_octree_save tells.
+/// Writes a mesh file: STL, PLY, OBJ, OFF or 3MF.
 ///
 /// Vertices and triangles keep their order. PLY (little-endian, of type double), OBJ and OFF hold the
 /// coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that
 /// have a vertex twice. STL rounds coordinates to 32 bits without a word: what is small and far away loses
 /// triangles, up to all of them. leafless_mesh_written_form tells before. O(n) time and memory.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL.
-/// - Result: LEAFLESS_OK once the file is on the disk.
+/// - Buffers: `options`, one struct, or NULL, with a format unless the sink has a path; `sink`, one struct.
 /// - Errors: LEAFLESS_E_ARGUMENT if the format or the unit is none, if the format is LEAFLESS_MESH_FORMAT_ANY
-///   and the path has none of the extensions, for an STL of coordinates beyond the range of float, or for an
-///   OBJ without vertices; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file is then as it
-///   was; only if the very last step fails, synchronising the directory, the new one is in place.
+///   and there is no path or it has none of the extensions, for an STL of coordinates beyond the range of
+///   float, or for an OBJ without vertices; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any mesh.
-leafless_status leafless_mesh_save(const leafless_mesh *mesh, const char *path, size_t path_length,
-    const leafless_mesh_write_options *options);
+leafless_status leafless_mesh_write(const leafless_mesh *mesh, const leafless_mesh_write_options *options,
+    const leafless_sink *sink);
 
-/// The bytes of a mesh's file, in memory: those that leafless_mesh_save writes. Asking for the length takes
-/// as long as filling.
-///
-/// - Buffers: `options`, one struct, with a format; `bytes`, room for `capacity` bytes, or NULL to ask for
-///   the length only; `length`, one number.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT as leafless_mesh_save, and
-///   if the format is LEAFLESS_MESH_FORMAT_ANY; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any mesh.
-leafless_status leafless_mesh_to_bytes(const leafless_mesh *mesh, const leafless_mesh_write_options *options,
-    uint8_t *bytes, uint64_t capacity, uint64_t *length);
-
-/// The mesh that a reader gets back from the file that leafless_mesh_save writes. An STL has 32-bit
+/// The mesh that a reader gets back from the file that leafless_mesh_write writes. An STL has 32-bit
 /// coordinates: vertices move, vertices that meet are one, and triangles of which two corners meet are
 /// dropped, so that the surface may be pinched, flat or gone. leafless_mesh_describe of both meshes tells.
 /// All other formats keep vertices and triangles as they are. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, with a format; `kept`, one pointer.
 /// - Result: `*kept`.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_mesh_to_bytes; LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT as leafless_mesh_write without a path; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*kept` back with leafless_mesh_free.
 /// - Untrusted input: any mesh.
 leafless_status leafless_mesh_written_form(const leafless_mesh *mesh,
     const leafless_mesh_write_options *options, leafless_mesh **kept);
 
-/* ---- 8. Solids ---------------------------------------------------------------------------------------- */
+/* ---- 9. Solids ---------------------------------------------------------------------------------------- */
 
 /// What is made of several operands.
 LEAFLESS_ENUM(leafless_operation, uint32_t) {
@@ -1412,7 +1510,7 @@ leafless_status leafless_solid_adaptive(const leafless_solid *operand, double to
 leafless_status leafless_solid_with_touch(const leafless_solid *operand, leafless_touch touch,
     leafless_solid **solid);
 
-/* ---- 9. Solids by functions of the host --------------------------------------------------------------- */
+/* ---- 10. Solids by functions of the host -------------------------------------------------------------- */
 
 /// What a host promises of its shape outside of the universe that it is asked about.
 LEAFLESS_ENUM(leafless_exterior, uint32_t) {
@@ -1577,7 +1675,7 @@ typedef struct leafless_function {
 /// - Untrusted input: any answers.
 leafless_status leafless_solid_new_function(const leafless_function *function, leafless_solid **solid);
 
-/* ---- 10. Volumes -------------------------------------------------------------------------------------- */
+/* ---- 11. Volumes -------------------------------------------------------------------------------------- */
 
 /// The type of samples. The arrays of a volume are of the first five types. Samples of other types are
 /// converted to one of these when they are copied.
@@ -1765,35 +1863,28 @@ leafless_status leafless_volume_view(const leafless_volume_layout *layout, const
     uint64_t length, leafless_volume **volume);
 
 /// Reads a volume file, NRRD or MetaImage; the content tells which. If it names another file for its samples,
-/// that is read from the same folder or below it.
+/// that is read from the same folder or below it, or given as `data`.
 ///
 /// NRRD: versions 1 to 5, attached and detached, raw, gzip and ascii. MetaImage: binary, ASCII and
 /// compressed. All types of single numbers, both byte orders. What is neither 8 nor 16 bits wide becomes
 /// float, and int8_t becomes int16_t. O(n); the samples are copied once.
 ///
 /// Samples in another file must lie in the header's folder or below it, by their real path: links are
-/// followed before that is judged. The header's folder is the one that `path` names and, if the header is a
-/// link, also the one in which the header really lies, which is searched second.
+/// followed before that is judged. The header's folder is the one that the path names and, if the header is a
+/// link, also the one in which the header really lies, which is searched second. For bytes no file is looked
+/// for.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `volume`, one pointer.
+/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY. `data`, one struct of the same kind: the file
+///   of the samples, which is then not looked for; else NULL, and of bytes that need one
+///   LEAFLESS_E_VOLUME_FILE. leafless_volume_data_file tells its name. `volume`, one pointer.
 /// - Result: `*volume`; leafless_volume_describe tells what the file says.
 /// - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
 ///   damaged, or uses something that cannot be read; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*volume` back with leafless_volume_free.
 /// - Untrusted input: any file. A header that asks for more samples than its data can hold is refused before
 ///   anything is allocated; compressed samples become at most 1032 times as long as the file.
-leafless_status leafless_volume_open(const char *path, size_t path_length, leafless_volume **volume);
-
-/// As leafless_volume_open for a file in memory.
-///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `data`, `data_length` bytes: the file
-///   of the samples, if leafless_volume_data_file tells of one; else NULL and 0. `volume`, one pointer.
-/// - Result: `*volume`.
-/// - Errors: as leafless_volume_open, but those of paths.
-/// - Ownership: the bytes are not kept; give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any bytes; memory as for leafless_volume_open.
-leafless_status leafless_volume_from_bytes(const uint8_t *bytes, uint64_t length, const uint8_t *data,
-    uint64_t data_length, leafless_volume **volume);
+leafless_status leafless_volume_read(const leafless_source *source, const leafless_source *data,
+    leafless_volume **volume);
 
 /// The name of the file that has the samples of a volume file, relative to that.
 ///
@@ -1818,62 +1909,22 @@ leafless_status leafless_volume_data_file(const uint8_t *bytes, uint64_t length,
 leafless_status leafless_volume_open_raw(const char *path, size_t path_length,
     const leafless_volume_layout *layout, leafless_volume **volume);
 
-/// Saves a volume in a file. At any moment there is the old file or the new one, each complete, as
-/// leafless_octree_save tells.
+/// Writes a volume file.
 ///
 /// The byte of the lowest weight comes first, and bits become bytes 0 and 1. A NRRD holds the place of the
 /// first sample, corner + spacing / 2, rounded so that the same corner is read again; where no double does
 /// that, near a power of two, the volume lies half a last place beside. It holds no unit. A raw file holds no
 /// place at all. O(n) time and memory.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8. `format` is a leafless_volume_format.
-/// - Result: LEAFLESS_OK once the file is on the disk.
+/// - Buffers: `sink`, one struct.
 /// - Errors: LEAFLESS_E_ARGUMENT if `format` is none that can be written, or if the volume has other axes
-///   than x, y and z and shall become a NRRD; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old
-///   file is then as it was; only if the very last step fails, synchronising the directory, the new one is in
-///   place.
+///   than x, y and z and shall become a NRRD; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any volume.
-leafless_status leafless_volume_save(const leafless_volume *volume, uint32_t format, const char *path,
-    size_t path_length);
+leafless_status leafless_volume_write(const leafless_volume *volume, leafless_volume_format format,
+    const leafless_sink *sink);
 
-/// The bytes of a volume's file, in memory: those that leafless_volume_save writes. Asking for the length
-/// takes as long as filling.
-///
-/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
-///   `format` is a leafless_volume_format.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT as leafless_volume_save;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any volume.
-leafless_status leafless_volume_to_bytes(const leafless_volume *volume, uint32_t format, uint8_t *bytes,
-    uint64_t capacity, uint64_t *length);
-
-/* ---- 11. Scenes --------------------------------------------------------------------------------------- */
-
-/// Reads a scene from a file. Files that it names are looked for beside it.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `scene`, one pointer.
-/// - Result: `*scene`.
-/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
-///   file that it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*scene` back with leafless_scene_free.
-/// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
-///   files that it names. It may name any file, by absolute paths too, which is then read as a mesh or an
-///   octree.
-leafless_status leafless_scene_open(const char *path, size_t path_length, leafless_scene **scene);
-
-/// As leafless_scene_open for a text in memory, in UTF-8. Files that it names are looked for in `folder`.
-///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
-///   UTF-8; NULL if the scene may name no files. `scene`, one pointer.
-/// - Result: `*scene`.
-/// - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder,
-///   LEAFLESS_E_SCENE.
-/// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
-/// - Untrusted input: any bytes, as for leafless_scene_open.
-leafless_status leafless_scene_from_bytes(const uint8_t *bytes, uint64_t length, const char *folder,
-    size_t folder_length, leafless_scene **scene);
+/* ---- 12. Scenes --------------------------------------------------------------------------------------- */
 
 /// Which circles, balls, cylinders and solids of revolution are drawn as polygons, prisms and polyhedra.
 LEAFLESS_ENUM(leafless_facets, uint32_t) {
@@ -1887,30 +1938,29 @@ LEAFLESS_ENUM(leafless_facets, uint32_t) {
 /// default.
 typedef struct leafless_scene_options {
     uint32_t struct_size;  ///< sizeof(leafless_scene_options).
-    uint32_t facets;  ///< Which curves are drawn as polygons, a leafless_facets.
+    leafless_facets facets;  ///< Which curves are drawn as polygons.
+    /// Where files are looked for that a text in memory names, UTF-8; NULL if it may name none. NULL for a
+    /// scene with a path, whose files are looked for beside it.
+    const char *folder;
+    /// Its length in bytes. An empty one that is not NULL is the folder that the process is in.
+    size_t folder_length;
 } leafless_scene_options;
 
-/// As leafless_scene_open, with options.
+/// Reads a scene, a text in UTF-8. Files that it names are looked for beside it, or in the folder of the
+/// options for a text in memory.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `scene`, one pointer.
+/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `scene`, one
+///   pointer.
 /// - Result: `*scene`.
-/// - Errors: as leafless_scene_open; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
+/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
+///   file that it names, also if there is no folder; LEAFLESS_E_ARGUMENT if there are a path and a folder;
+///   LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*scene` back with leafless_scene_free.
-/// - Untrusted input: as for leafless_scene_open; with LEAFLESS_FACETS_POLYGON a ball may take memory for
-///   half a million half-spaces.
-leafless_status leafless_scene_open_with(const char *path, size_t path_length,
-    const leafless_scene_options *options, leafless_scene **scene);
-
-/// As leafless_scene_from_bytes, with options.
-///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
-///   UTF-8; NULL if the scene may name no files. `options`, one struct, or NULL; `scene`, one pointer.
-/// - Result: `*scene`.
-/// - Errors: as leafless_scene_from_bytes; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
-/// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
-/// - Untrusted input: any bytes, as for leafless_scene_open_with.
-leafless_status leafless_scene_from_bytes_with(const uint8_t *bytes, uint64_t length, const char *folder,
-    size_t folder_length, const leafless_scene_options *options, leafless_scene **scene);
+/// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
+///   files that it names; with LEAFLESS_FACETS_POLYGON a ball may take memory for half a million half-spaces.
+///   It may name any file, by absolute paths too, which is then read as a mesh or an octree.
+leafless_status leafless_scene_read(const leafless_source *source, const leafless_scene_options *options,
+    leafless_scene **scene);
 
 /// What was found while a scene was read.
 typedef struct leafless_scene_report {
@@ -1990,7 +2040,7 @@ leafless_status leafless_scene_bounds(const leafless_scene *scene, double min_mo
 leafless_status leafless_solid_new_scene(const leafless_scene *scene, const leafless_frame *frame,
     leafless_solid **solid);
 
-/* ---- 12. Octrees -------------------------------------------------------------------------------------- */
+/* ---- 13. Octrees -------------------------------------------------------------------------------------- */
 
 /// What is known of a cell.
 LEAFLESS_ENUM(leafless_tag, uint8_t) {
@@ -2110,7 +2160,7 @@ leafless_status leafless_octree_levels(const leafless_octree *octree, leafless_s
 
 /// Checks that an octree is well-formed and canonical: O(n). Its channels are not looked at: see
 /// leafless_channel_check. Those that the library makes, opens or maps verified are; the bytes that checksums
-/// cover are not looked at here, see leafless_bytes_verify.
+/// cover are not looked at here, see leafless_file_verify.
 ///
 /// - Result: LEAFLESS_OK if it is.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.
@@ -2247,7 +2297,7 @@ leafless_status leafless_octree_combine(leafless_operation operation, const leaf
 leafless_status leafless_octree_complement(const leafless_octree *octree, const leafless_options *options,
     leafless_octree **result);
 
-/* ---- 13. Points and boxes ----------------------------------------------------------------------------- */
+/* ---- 14. Points and boxes ----------------------------------------------------------------------------- */
 
 /// The answer to a point query.
 LEAFLESS_ENUM(leafless_membership, uint8_t) {
@@ -2403,7 +2453,7 @@ leafless_status leafless_point_table_contains(const leafless_point_table *table,
 leafless_status leafless_point_table_contains_many(const leafless_point_table *table,
     const double *points_model, uint64_t count, leafless_membership *memberships);
 
-/* ---- 14. Cells of octrees ----------------------------------------------------------------------------- */
+/* ---- 15. Cells of octrees ----------------------------------------------------------------------------- */
 
 /// Where a cursor stands.
 typedef struct leafless_cursor_state {
@@ -2641,7 +2691,7 @@ leafless_status leafless_octree_bitmap(const leafless_octree *octree, uint32_t l
     const uint32_t min_cell[3], const uint32_t max_cell[3], const leafless_options *options, uint64_t *inner,
     uint64_t *outer, uint64_t capacity, uint64_t *count);
 
-/* ---- 15. Rays, columns, heights ----------------------------------------------------------------------- */
+/* ---- 16. Rays, columns, heights ----------------------------------------------------------------------- */
 
 /// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or
 /// has a magnitude between 2^-256 and 2^256.
@@ -2853,7 +2903,7 @@ leafless_status leafless_solid_heights(const leafless_solid *solid, const leafle
     uint32_t axis, const uint32_t first[2], const uint32_t end[2], leafless_side side,
     const leafless_options *options, leafless_interval *heights_model, uint64_t capacity, uint64_t *count);
 
-/* ---- 16. Volumes, areas, bounding boxes --------------------------------------------------------------- */
+/* ---- 17. Volumes, areas, bounding boxes --------------------------------------------------------------- */
 
 /// How many finest cells of a solid lie in a region, between bounds. A cell where the region is FULL lies in
 /// it, one where it is EMPTY does not, and one where it is PARTIAL may: so the bounds hold whether a cell
@@ -3100,7 +3150,7 @@ leafless_status leafless_solid_section_area(const leafless_solid *solid, const l
 leafless_status leafless_solid_bounding_box(const leafless_solid *solid, const leafless_frame *frame,
     double tolerance_model, const leafless_options *options, leafless_extent *extent);
 
-/* ---- 17. Distance and interference -------------------------------------------------------------------- */
+/* ---- 18. Distance and interference -------------------------------------------------------------------- */
 
 /// What a distance is measured to.
 LEAFLESS_ENUM(leafless_distance_to, uint32_t) {
@@ -3333,7 +3383,7 @@ leafless_status leafless_solid_clearance(const leafless_solid *a, const leafless
     const leafless_frame *frame, double tolerance_model, const leafless_options *options,
     leafless_clearance *clearance);
 
-/* ---- 18. Octrees that are split on demand ------------------------------------------------------------- */
+/* ---- 19. Octrees that are split on demand ------------------------------------------------------------- */
 
 /// What the work on an octree came to.
 typedef struct leafless_lazy_counts {
@@ -3508,7 +3558,7 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy, uint64_t *splits
 leafless_status leafless_lazy_freeze(const leafless_lazy *lazy, const leafless_options *options,
     leafless_octree **octree);
 
-/* ---- 19. Attributes ----------------------------------------------------------------------------------- */
+/* ---- 20. Attributes ----------------------------------------------------------------------------------- */
 
 /// What is known of the values in the interior of a box.
 LEAFLESS_ENUM(leafless_range_kind, uint32_t) {
@@ -3717,7 +3767,7 @@ leafless_status leafless_mesh_as_attribute(const leafless_mesh *mesh, const char
 leafless_status leafless_mesh_values_as_attribute(const leafless_mesh *mesh, const double *values,
     uint64_t count, uint32_t components, bool per_corner, leafless_attribute **attribute);
 
-/* ---- 20. Channels ------------------------------------------------------------------------------------- */
+/* ---- 21. Channels ------------------------------------------------------------------------------------- */
 
 /// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even
 /// integer half-way.
@@ -4121,7 +4171,7 @@ leafless_status leafless_octree_carry_channels(const leafless_octree *octree,
     const leafless_carry_rule *rules, uint64_t rule_count, const leafless_options *options,
     leafless_octree **result);
 
-/* ---- 21. Voxel records -------------------------------------------------------------------------------- */
+/* ---- 22. Voxel records -------------------------------------------------------------------------------- */
 
 /// What a voxel is: a number in the array `kinds`.
 LEAFLESS_ENUM(leafless_voxel_kind, uint8_t) {
@@ -4248,7 +4298,7 @@ leafless_status leafless_octree_from_voxels(const leafless_frame *lattice, const
     const uint8_t *levels, const uint8_t *kinds, uint64_t count, uint32_t boundary,
     const leafless_options *options, leafless_octree **octree);
 
-/* ---- 22. Surfaces ------------------------------------------------------------------------------------- */
+/* ---- 23. Surfaces ------------------------------------------------------------------------------------- */
 
 /// How a surface is made.
 LEAFLESS_ENUM(leafless_surface_method, uint32_t) {
@@ -4319,7 +4369,7 @@ typedef struct leafless_surface_options {
 /// are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
 /// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_counts
 /// and leafless_mesh_copy hand the arrays out, leafless_mesh_describe and leafless_mesh_area tell about them,
-/// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_save writes them.
+/// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_write writes them.
 ///
 /// Time is linear in the octree's array elements and the mesh: it grows with the surface, not with the
 /// volume. (Coplanar shrink takes O(n log n + n w) for n cells at the surface of which at most w lie along a
@@ -4385,7 +4435,7 @@ leafless_status leafless_solid_surface(const leafless_solid *solid, const leafle
 leafless_status leafless_volume_surface(const leafless_volume *volume, const leafless_interval *band,
     const leafless_options *options, leafless_mesh **mesh);
 
-/* ---- 23. Tri-dexel models ----------------------------------------------------------------------------- */
+/* ---- 24. Tri-dexel models ----------------------------------------------------------------------------- */
 
 /// The axes that rays run along. The numbers may be added.
 LEAFLESS_ENUM(leafless_axes, uint32_t) {
@@ -4548,7 +4598,7 @@ leafless_status leafless_tridexel_peek_metadata(const leafless_tridexel *tridexe
 leafless_status leafless_tridexel_peek_metadata_at(const leafless_tridexel *tridexel, uint64_t index,
     uint64_t *count, const char **key, size_t *key_length, const char **value, size_t *value_length);
 
-/// Intervals of rays along one axis, as leafless_tridexel_read hands them out.
+/// Intervals of rays along one axis, as leafless_tridexel_copy hands them out.
 typedef struct leafless_ray_arrays {
     uint32_t axis;  ///< The axis that the rays run along: 0 for x, 1 for y, 2 for z.
     uint32_t reserved;  ///< Zero.
@@ -4570,8 +4620,8 @@ typedef struct leafless_ray_arrays {
     /// all.
     const uint32_t *materials;
     /// Two numbers for each interval: its start and its end in finest cells from the universe's lower face,
-    /// as leafless_tridexel_read_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by
-    /// this number if its coordinate in `ends_model` is the one that leafless_tridexel_read would hand out
+    /// as leafless_tridexel_copy_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by
+    /// this number if its coordinate in `ends_model` is the one that leafless_tridexel_copy would hand out
     /// for it, else by the coordinate. If `ends_model` is NULL it counts always. NULL if coordinates alone
     /// count.
     const double *ends_cells;
@@ -4584,8 +4634,8 @@ typedef struct leafless_ray_arrays {
 /// does not store is left out. Ends are rounded as `format` says, and keep their side of every centre of a
 /// cell, which is the real number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that
 /// are empty after rounding are left out; those that touch are joined, unless both have materials and these
-/// differ. The directions are not compared with each other. All that leafless_tridexel_read and
-/// leafless_tridexel_read_cells hand out of a model makes an equal one on the same frame.
+/// differ. The directions are not compared with each other. All that leafless_tridexel_copy and
+/// leafless_tridexel_copy_cells hand out of a model makes an equal one on the same frame.
 ///
 /// - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of
 ///   `rays`; `rays`, `count` structs, 1 to 3, each for another axis; `options`, one struct or NULL;
@@ -4693,22 +4743,22 @@ leafless_status leafless_tridexel_ray(const leafless_tridexel *tridexel, uint32_
 /// - Errors: LEAFLESS_E_ARGUMENT if the model has no rays along `axis`, `first` lies beyond `end`, or the
 ///   rays reach beyond the universe; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written then.
 /// - Untrusted input: any model, any numbers.
-leafless_status leafless_tridexel_read(const leafless_tridexel *tridexel, uint32_t axis,
+leafless_status leafless_tridexel_copy(const leafless_tridexel *tridexel, uint32_t axis,
     const uint32_t first[2], const uint32_t end[2], uint64_t *offsets, uint64_t offset_capacity,
     uint64_t *offset_count, double *ends_model, double *normals, uint32_t *surfaces, uint32_t *materials,
     uint64_t interval_capacity, uint64_t *interval_count);
 
 /// Where the intervals of many rays along one axis start and end, exactly as it is stored: in finest cells
 /// from the universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of
-/// leafless_tridexel_read, in the same order. O(rays + intervals).
+/// leafless_tridexel_copy, in the same order. O(rays + intervals).
 ///
-/// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_read has them;
+/// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_copy has them;
 ///   `ends_cells`, room for 2 numbers for each of `interval_capacity` intervals, or NULL to ask for the count
 ///   only; `interval_count`, one number. `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `ends_cells`, 0 to 2^depth; `*interval_count`.
-/// - Errors: as leafless_tridexel_read.
+/// - Errors: as leafless_tridexel_copy.
 /// - Untrusted input: any model, any numbers.
-leafless_status leafless_tridexel_read_cells(const leafless_tridexel *tridexel, uint32_t axis,
+leafless_status leafless_tridexel_copy_cells(const leafless_tridexel *tridexel, uint32_t axis,
     const uint32_t first[2], const uint32_t end[2], double *ends_cells, uint64_t interval_capacity,
     uint64_t *interval_count);
 
@@ -5011,7 +5061,7 @@ leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel, cons
     const uint8_t *colours, uint64_t colour_count, leafless_long_voxel *voxels, uint64_t capacity,
     uint64_t *count);
 
-/* ---- 24. Files of octrees and tri-dexel models -------------------------------------------------------- */
+/* ---- 25. Files of octrees and tri-dexel models -------------------------------------------------------- */
 
 /// Major version of the file format that this library writes, and the only one that it reads.
 #define LEAFLESS_FORMAT_MAJOR 0
@@ -5061,250 +5111,77 @@ typedef struct leafless_section {
 } leafless_section;
 
 /// What a file says of itself, without looking at more than header and section table. Whether the rest is
-/// good is not known then.
+/// good is not known then. Bytes may be the first ones of a file only: 128 and 40 for each section. 488
+/// suffice for an octree without channels that this library wrote, 808 for a tri-dexel model, 163 968 for any
+/// file.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `probe`, one struct; `sections`, room for `capacity`
-///   structs, or NULL if they are not wanted.
+/// - Buffers: `source`, one struct, of which `access` makes no difference; `probe`, one struct; `sections`,
+///   room for `capacity` structs, or NULL if they are not wanted.
 /// - Result: `*probe`; as many sections as it says.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any file.
-leafless_status leafless_file_probe(const char *path, size_t path_length, leafless_probe *probe,
+/// - Errors: LEAFLESS_E_FORMAT, also if bytes end before the section table does; LEAFLESS_E_VERSION;
+///   LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any file, any bytes.
+leafless_status leafless_file_probe(const leafless_source *source, leafless_probe *probe,
     leafless_section *sections, uint64_t capacity);
 
-/// As leafless_file_probe for the first bytes of a file in memory, or all of them: 128 and 40 for each
-/// section. 488 suffice for an octree without channels that this library wrote, 808 for a tri-dexel model,
-/// 163 968 for any file.
+/// Checks everything that the format promises of a whole file, of an octree or of a tri-dexel model: O(n).
+/// With LEAFLESS_ACCESS_COPY a file is read into memory, else it is mapped. Bytes are looked at where they
+/// lie.
 ///
-/// - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `probe`, one struct; `sections`, room
-///   for `capacity` structs, or NULL if they are not wanted.
-/// - Result: `*probe`; as many sections as it says.
-/// - Errors: LEAFLESS_E_FORMAT, also if the bytes end before the section table does; LEAFLESS_E_VERSION;
-///   LEAFLESS_E_BUFFER; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any bytes.
-leafless_status leafless_bytes_probe(const uint8_t *bytes, uint64_t length, leafless_probe *probe,
-    leafless_section *sections, uint64_t capacity);
-
-/// Checks everything that the format promises of a whole file in memory: O(n).
-///
-/// - Buffers: `bytes`, `length` bytes on an address that is a multiple of 8; may be NULL if there are none.
+/// - Buffers: `source`, one struct; bytes on an address that is a multiple of 8.
 /// - Result: LEAFLESS_OK if the file is good.
 /// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the bytes are
-///   misaligned; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any bytes.
-leafless_status leafless_bytes_verify(const uint8_t *bytes, uint64_t length);
-
-/// Reads a file into memory and verifies all of it: the plain way, and the one for files that may not be
-/// trusted. Later changes of the file do not matter.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
-/// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FORMAT, also if the file holds a tri-dexel model; LEAFLESS_E_VERSION;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Untrusted input: any file; memory is at most a small multiple of its length.
-leafless_status leafless_octree_open(const char *path, size_t path_length, leafless_octree **octree);
-
-/// Maps a file into memory and looks at its header, section table, bounds, level table and metadata only:
-/// some microseconds for a file of any size. What queries touch is read when they do. Of a file that is
-/// damaged elsewhere queries answer undecided or wrong, but stay in bounds and end.
-///
-/// While the octree lives, or a cursor, a solid or an octree with other metadata that shares it, nobody may
-/// make the file shorter: reading beyond its new end raises SIGBUS, which by default ends the process. Nobody
-/// may write to it either: answers may then be wrong, and nothing more is promised. Removing the file, or
-/// replacing it by renaming another over it, as leafless_octree_save does, is harmless.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
-/// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the
-///   header; LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
+///   misaligned, or if there is no regular file that could be mapped; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
 ///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Untrusted input: any contents, but only where nobody else can change the file; else
-///   leafless_octree_open.
-leafless_status leafless_octree_map(const char *path, size_t path_length, leafless_octree **octree);
+/// - Untrusted input: as leafless_source tells.
+leafless_status leafless_file_verify(const leafless_source *source);
 
-/// As leafless_octree_map, but verifies all of the file first, in one scan. Who writes to the file afterwards
-/// undoes that.
+/// Reads an octree, with its metadata and channels.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `octree`, one pointer.
+/// - Buffers: `source`, one struct; `octree`, one pointer.
 /// - Result: `*octree`.
-/// - Errors: as leafless_octree_open, and LEAFLESS_E_ARGUMENT if there is no regular file.
-/// - Ownership: give `*octree` back with leafless_octree_free.
-/// - Untrusted input: any contents, but only where nobody else can change the file; else
-///   leafless_octree_open.
-leafless_status leafless_octree_map_verified(const char *path, size_t path_length, leafless_octree **octree);
+/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED, with LEAFLESS_ACCESS_MAP only if the
+///   level table contradicts the header; LEAFLESS_E_ARGUMENT if the file holds a tri-dexel model, if there is
+///   no regular file that could be mapped, or if bytes that shall be viewed are misaligned; LEAFLESS_E_IO;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*octree` back
+///   with leafless_octree_free.
+/// - Untrusted input: as leafless_source tells.
+leafless_status leafless_octree_read(const leafless_source *source, leafless_octree **octree);
 
-/// The octree in the bytes of a whole file, copied and verified as by leafless_octree_open.
+/// Writes an octree's file. Equal octrees with equal metadata and channels give equal bytes. Only for a
+/// buffer is the file in memory as a whole.
 ///
-/// - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `octree`, one pointer.
-/// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the bytes are not kept; give `*octree` back with leafless_octree_free.
-/// - Untrusted input: any bytes; memory is at most a small multiple of their number.
-leafless_status leafless_octree_from_bytes(const uint8_t *bytes, uint64_t length, leafless_octree **octree);
-
-/// The octree in the bytes of a whole file, used where they lie, and checked as little as by
-/// leafless_octree_map; call leafless_bytes_verify first where they may be damaged. For files that are part
-/// of a program, or that the host maps itself.
-///
-/// - Buffers: `bytes`, `length` bytes on an address that is a multiple of 8; `octree`, one pointer.
-/// - Result: `*octree`.
-/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED if the level table contradicts the
-///   header; LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back
-///   to the octree, to every octree that leafless_octree_with_metadata or leafless_octree_without_metadata
-///   made of it, and to every cursor and solid of these. Give `*octree` back with leafless_octree_free.
-/// - Untrusted input: any bytes, as leafless_octree_map.
-leafless_status leafless_octree_view_bytes(const uint8_t *bytes, uint64_t length, leafless_octree **octree);
-
-/// Saves an octree: at any moment, also after a crash or a power failure, there is the old file or the new
-/// one, each complete. Equal octrees with equal metadata give equal bytes.
-///
-/// The bytes go to a temporary file in the same directory, which is synchronised with the disk and then
-/// renamed over the old file. On Linux the temporary file has no name until it is complete, so that nothing
-/// is left of it when the process is killed, where the file system has such files. Elsewhere a file
-/// `.leafless-….tmp` may stay behind. A file that is replaced keeps its permissions, its other hard links
-/// keep the old contents. A symbolic link is followed. What is no regular file, such as a pipe, is written to
-/// directly; a pipe that nobody reads raises SIGPIPE, and a file beyond the process's limit SIGXFSZ, if the
-/// host has not ignored them. A pipe that nobody has opened for reading is waited for, also if signal
-/// handlers run meanwhile.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8.
-/// - Result: LEAFLESS_OK once the file is on the disk.
-/// - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged;
-///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails,
-///   synchronising the directory, the new one is in place.
+/// - Buffers: `sink`, one struct.
+/// - Errors: LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_IO;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any octree.
-leafless_status leafless_octree_save(const leafless_octree *octree, const char *path, size_t path_length);
+leafless_status leafless_octree_write(const leafless_octree *octree, const leafless_sink *sink);
 
-/// The bytes of an octree's file, in memory. Asking for the length takes as long as filling.
+/// Reads a tri-dexel model, with its metadata. Of a file that is damaged where LEAFLESS_ACCESS_MAP does not
+/// look, intervals are read as they stand there, in bounds; set algebra, editors and writing check all of it
+/// first and return LEAFLESS_E_DAMAGED.
 ///
-/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the octree was mapped
-///   unverified and is damaged; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any octree.
-leafless_status leafless_octree_to_bytes(const leafless_octree *octree, uint8_t *bytes, uint64_t capacity,
-    uint64_t *length);
-
-/// Takes bytes of a file in order: all `count` of them, and returns 0; anything else ends the writing with
-/// LEAFLESS_E_CALLBACK. It is called in the calling thread. It must return: no exception, no longjmp. It may
-/// call this library.
-typedef int32_t (*leafless_write_fn)(void *ctx, const uint8_t *bytes, uint64_t count);
-
-/// Writes an octree's file through a function of the host, in a few large pieces; the file is never in memory
-/// as a whole.
-///
-/// - Result: LEAFLESS_OK once `write` has taken all bytes.
-/// - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
-///   LEAFLESS_E_DAMAGED if the octree was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last
-///   two come before anything is written.
-/// - Untrusted input: any octree.
-leafless_status leafless_octree_write(const leafless_octree *octree, leafless_write_fn write, void *ctx);
-
-/// Reads the file of a tri-dexel model into memory and verifies all of it: the plain way, and the one for
-/// files that may not be trusted. Later changes of the file do not matter.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `tridexel`, one pointer.
+/// - Buffers: `source`, one struct; `tridexel`, one pointer.
 /// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*tridexel` back with leafless_tridexel_free.
-/// - Untrusted input: any file; memory is at most a small multiple of its length.
-leafless_status leafless_tridexel_open(const char *path, size_t path_length, leafless_tridexel **tridexel);
+/// - Errors: LEAFLESS_E_FORMAT; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT if the file holds
+///   an octree, if there is no regular file that could be mapped, or if bytes that shall be viewed are
+///   misaligned; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: how long a file or bytes must stay as they are, leafless_source tells. Give `*tridexel` back
+///   with leafless_tridexel_free.
+/// - Untrusted input: as leafless_source tells.
+leafless_status leafless_tridexel_read(const leafless_source *source, leafless_tridexel **tridexel);
 
-/// Maps the file of a tri-dexel model into memory and looks at its header, section table, bounds, windows and
-/// metadata only: some microseconds for a file of any size. Of a file that is damaged elsewhere intervals are
-/// read as they stand there, in bounds; set algebra, editors and writing check all of it first and return
-/// LEAFLESS_E_DAMAGED.
+/// Writes a tri-dexel model's file. Equal models with equal metadata give equal bytes. Only for a buffer is
+/// the file in memory as a whole.
 ///
-/// While the model lives, or one with other metadata that shares it, nobody may make the file shorter or
-/// write to it, as for leafless_octree_map. Removing the file, or replacing it by renaming another over it,
-/// as leafless_tridexel_save does, is harmless.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `tridexel`, one pointer.
-/// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_ARGUMENT if there is no regular file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*tridexel` back with leafless_tridexel_free.
-/// - Untrusted input: any contents, but only where nobody else can change the file; else
-///   leafless_tridexel_open.
-leafless_status leafless_tridexel_map(const char *path, size_t path_length, leafless_tridexel **tridexel);
-
-/// As leafless_tridexel_map, but verifies all of the file first, in one scan. Who writes to the file
-/// afterwards undoes that.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `tridexel`, one pointer.
-/// - Result: `*tridexel`.
-/// - Errors: as leafless_tridexel_open, and LEAFLESS_E_ARGUMENT if there is no regular file.
-/// - Ownership: give `*tridexel` back with leafless_tridexel_free.
-/// - Untrusted input: any contents, but only where nobody else can change the file; else
-///   leafless_tridexel_open.
-leafless_status leafless_tridexel_map_verified(const char *path, size_t path_length,
-    leafless_tridexel **tridexel);
-
-/// The tri-dexel model in the bytes of a whole file, copied and verified as by leafless_tridexel_open.
-///
-/// - Buffers: `bytes`, `length` bytes, may be NULL if there are none; `tridexel`, one pointer.
-/// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the bytes are not kept; give `*tridexel` back with leafless_tridexel_free.
-/// - Untrusted input: any bytes; memory is at most a small multiple of their number.
-leafless_status leafless_tridexel_from_bytes(const uint8_t *bytes, uint64_t length,
-    leafless_tridexel **tridexel);
-
-/// The tri-dexel model in the bytes of a whole file, used where they lie, and checked as little as by
-/// leafless_tridexel_map; call leafless_bytes_verify first where they may be damaged. For files that are part
-/// of a program, or that the host maps itself.
-///
-/// - Buffers: `bytes`, `length` bytes on an address that is a multiple of 8; `tridexel`, one pointer.
-/// - Result: `*tridexel`.
-/// - Errors: LEAFLESS_E_FORMAT, also if the file holds an octree; LEAFLESS_E_VERSION; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_ARGUMENT if the bytes are misaligned; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the bytes stay the host's. They must stay, unchanged, until the last reference is given back
-///   to the model, and to every model that leafless_tridexel_with_metadata or
-///   leafless_tridexel_without_metadata made of it. Give `*tridexel` back with leafless_tridexel_free.
-/// - Untrusted input: any bytes, as leafless_tridexel_map.
-leafless_status leafless_tridexel_view_bytes(const uint8_t *bytes, uint64_t length,
-    leafless_tridexel **tridexel);
-
-/// Saves a tri-dexel model: at any moment, also after a crash or a power failure, there is the old file or
-/// the new one, each complete. Equal models with equal metadata give equal bytes. What leafless_octree_save
-/// says of temporary files, permissions, links and pipes holds here, too.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8.
-/// - Result: LEAFLESS_OK once the file is on the disk.
-/// - Errors: LEAFLESS_E_IO; LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged;
-///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails,
-///   synchronising the directory, the new one is in place.
+/// - Buffers: `sink`, one struct.
+/// - Errors: LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_IO;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any model.
-leafless_status leafless_tridexel_save(const leafless_tridexel *tridexel, const char *path,
-    size_t path_length);
+leafless_status leafless_tridexel_write(const leafless_tridexel *tridexel, const leafless_sink *sink);
 
-/// The bytes of a tri-dexel model's file, in memory. Asking for the length takes as long as filling.
-///
-/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_DAMAGED if the model was mapped
-///   unverified and is damaged; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any model.
-leafless_status leafless_tridexel_to_bytes(const leafless_tridexel *tridexel, uint8_t *bytes,
-    uint64_t capacity, uint64_t *length);
-
-/// Writes a tri-dexel model's file through a function of the host, in a few large pieces; the file is never
-/// in memory as a whole.
-///
-/// - Result: LEAFLESS_OK once `write` has taken all bytes.
-/// - Errors: LEAFLESS_E_CALLBACK with what `write` returned in the message; LEAFLESS_E_NULL if it is NULL;
-///   LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_NO_MEMORY. The last two
-///   come before anything is written.
-/// - Untrusted input: any model.
-leafless_status leafless_tridexel_write(const leafless_tridexel *tridexel, leafless_write_fn write,
-    void *ctx);
-
-/* ---- 25. Pictures ------------------------------------------------------------------------------------- */
+/* ---- 26. Pictures ------------------------------------------------------------------------------------- */
 
 /// From where a picture is taken. leafless_camera_fitted sets all of it; a host may as well.
 typedef struct leafless_camera {
@@ -5645,7 +5522,7 @@ leafless_status leafless_picture_render(const leafless_shot *shot, const leafles
     float *depths, uint64_t depth_capacity);
 
 /// Saves a picture as a PNG file: without opacity if all pixels are opaque. At any moment there is the old
-/// file or the new one, each complete, as leafless_octree_save tells. The same picture makes the same bytes.
+/// file or the new one, each complete, as leafless_sink tells. The same picture makes the same bytes.
 ///
 /// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `path`,
 ///   `path_length` bytes of UTF-8.

@@ -14,13 +14,14 @@
  *   A leafless_solid is a shape: it can be asked about points, rays, boxes, volumes and other solids, and
  *   it can be built. A leafless_octree stores a shape in the cells of a leafless_frame; set operations on
  *   one frame are exact. A leafless_tridexel stores a shape as intervals of rays. Octrees and tri-dexel
- *   models are saved to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or PARTIAL,
+ *   models are written to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or PARTIAL,
  *   which is undecided. A volume is an interval that contains the true volume.
  *
  * EXAMPLE: a bored ball, its volume, a file. (Check each status; see RULES.)
  *
  *   const double centre[3] = {0, 0, 0};
  *   const leafless_frame frame = {{-1, -1, -1}, 2, 8};
+ *   const leafless_sink file = leafless_to_file("bored.lfl");
  *   leafless_solid *parts[2] = {NULL, NULL}, *bored = NULL;
  *   leafless_octree *octree = NULL;
  *   leafless_statistics all;
@@ -30,7 +31,7 @@
  *   leafless_octree_build(bored, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree);
  *   leafless_octree_statistics(octree, &all);
  *   printf("%f to %f\n", all.volume_model.lower, all.volume_model.upper);
- *   leafless_octree_save(octree, "bored.lfl", strlen("bored.lfl"));
+ *   leafless_octree_write(octree, &file);
  *
  * CONTENTS
  *
@@ -56,7 +57,7 @@
  * most), or the memory of a new thread. Triangulating a polygon with holes or dents needs 320 bytes a corner:
  * the library reserves and releases that amount first, so that a shortage is an error.
  *
- * Objects. Objects are opaque handles. _new, _open and the like return a reference; _ref returns one more;
+ * Objects. Objects are opaque handles. _new, _read and the like return a reference; _ref returns one more;
  * _free gives one back, and accepts NULL. References may be given back in any order: an object shares what it
  * needs of another one. A pointer from a _peek function belongs to the object.
  *
@@ -104,6 +105,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 /* LEAFLESS_ENUM: an enumeration of a fixed size. C has no such thing; there the name is the integer's.
  * LEAFLESS_INIT: the default of a struct with a struct_size, as in

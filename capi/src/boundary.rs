@@ -321,14 +321,27 @@ pub(super) unsafe fn text<'a>(
 /// # Safety
 /// As [`slice`].
 pub(super) unsafe fn path<'a>(pointer: *const c_char, length: usize) -> Result<&'a str, Failure> {
-    checked(pointer, "path")?;
+    // SAFETY: the caller's promise.
+    unsafe { named_path(pointer, length, "path") }
+}
+
+/// As [`path`], for one that has another name.
+///
+/// # Safety
+/// As [`slice`].
+pub(super) unsafe fn named_path<'a>(
+    pointer: *const c_char,
+    length: usize,
+    name: &'static str,
+) -> Result<&'a str, Failure> {
+    checked(pointer, name)?;
     // SAFETY: the caller's promise is that of `slice`.
-    let path = unsafe { text(pointer, length, "path")? };
+    let path = unsafe { text(pointer, length, name)? };
     if path.is_empty() {
-        return Err(Failure::Argument { name: "path", problem: "is empty" });
+        return Err(Failure::Argument { name, problem: "is empty" });
     }
     if path.contains('\0') {
-        return Err(Failure::Nul { name: "path" });
+        return Err(Failure::Nul { name });
     }
     Ok(path)
 }

@@ -37,6 +37,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_options { struct_size, threads, max_nodes, max_bytes, max_splits, progress, progress_ctx, control }
         leafless_frame { origin, edge, depth }
         leafless_interval { lower, upper }
+        leafless_source { struct_size, access, path, path_length, bytes, length }
+        leafless_sink {
+            struct_size, reserved, path, path_length, write, write_ctx, bytes, capacity, length
+        }
         leafless_cells_in { full_least, full_most, upper_least, upper_most }
         leafless_mesh_report {
             facets_read, triangles, vertices, welded, degenerate, boundary_edges, boundary_loops, misoriented_edges,
@@ -58,7 +62,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_intersecting_pair { min_model, max_model, triangles }
         leafless_mesh_options { struct_size, format, unit, target, scale }
-        leafless_mesh_source { format, unit, skipped }
+        leafless_mesh_found { format, unit, skipped }
         leafless_mesh_write_options { struct_size, format, is_text, unit, has_normals }
         leafless_volume_layout {
             struct_size, sample_type, extents, byte_order, skip, corner_model, spacing_model
@@ -152,12 +156,13 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_long_voxel { first, length, material, colour, kind }
         leafless_tridexel_probe { directions, ends, normals, has_surfaces, has_materials, reserved, rays, intervals }
         leafless_dexel_statistics { rays, intervals, bytes, volume_model, min_model, max_model }
-        leafless_scene_options { struct_size, facets }
+        leafless_scene_options { struct_size, facets, folder, folder_length }
         leafless_scene_report { polygons, exact, ignored_slices, meshes, is_empty }
         leafless_scene_mesh { line, column, turned, report }
         leafless_section { kind, owner, is_required, name, offset, length, count }
     }
     values! { to;
+        leafless_access { LEAFLESS_ACCESS_COPY, LEAFLESS_ACCESS_MAP, LEAFLESS_ACCESS_MAP_VERIFIED }
         leafless_status {
             LEAFLESS_OK, LEAFLESS_E_NULL, LEAFLESS_E_ARGUMENT, LEAFLESS_E_UTF8, LEAFLESS_E_BUFFER,
             LEAFLESS_E_FRAME, LEAFLESS_E_NOT_SAMPLED, LEAFLESS_E_MESH, LEAFLESS_E_MESH_FILE,

@@ -22,6 +22,7 @@
 //! | `status` | status codes, messages |
 //! | `control` | options, cancelling, progress |
 //! | `frame` | frames, intervals |
+//! | `source` | sources and sinks: where files are read from and written to |
 //! | `mesh` | triangle meshes |
 //! | `mesh_arrays` | triangle meshes from the host's arrays |
 //! | `mesh_file` | mesh files, units |
@@ -73,7 +74,7 @@
 //! | `tridexel_arrays` | tri-dexel models from the host's arrays |
 //! | `tridexel_surface` | meshes, octrees, solids and voxels of tri-dexel models |
 //! | `tridexel_file` | files of tri-dexel models |
-//! | `file` | files and their bytes |
+//! | `file` | files: what they say of themselves, whether they are good; octrees |
 //! | `layout` | for tests: what the structs look like |
 
 #![allow(unsafe_code, non_camel_case_types)]
@@ -125,6 +126,7 @@ mod polyhedron;
 mod rays;
 mod scene;
 mod solid;
+mod source;
 mod status;
 mod surface;
 mod tridexel;
@@ -184,6 +186,7 @@ pub use polyhedron::*;
 pub use rays::*;
 pub use scene::*;
 pub use solid::*;
+pub use source::*;
 pub use status::*;
 pub use surface::*;
 pub use tridexel::*;

@@ -317,7 +317,7 @@ pub unsafe extern "C" fn leafless_octree_levels(
 
 /// Checks that an octree is well-formed and canonical: O(n). Its channels are not looked at: see
 /// leafless_channel_check. Those that the library makes, opens or maps
-/// verified are; the bytes that checksums cover are not looked at here, see leafless_bytes_verify.
+/// verified are; the bytes that checksums cover are not looked at here, see leafless_file_verify.
 ///
 /// - Result: LEAFLESS_OK if it is.
 /// - Errors: LEAFLESS_E_DAMAGED, with the first damage in the message; LEAFLESS_E_NO_MEMORY.

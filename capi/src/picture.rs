@@ -166,7 +166,7 @@ unsafe fn picture(colours: *const u8, width: u32, height: u32) -> Result<Picture
 }
 
 /// Saves a picture as a PNG file: without opacity if all pixels are opaque. At any moment there is the old file or the
-/// new one, each complete, as leafless_octree_save tells. The same picture makes the same bytes.
+/// new one, each complete, as leafless_sink tells. The same picture makes the same bytes.
 ///
 /// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `path`,
 ///   `path_length` bytes of UTF-8.

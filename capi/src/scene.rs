@@ -1,14 +1,14 @@
 //! Scenes in the language of OpenSCAD's CSG dumps.
 
-use super::boundary::{
-    Failure, Sized32, buffer, guard, handle, out, path, refer, release, shared, sized, slice, text,
-};
+use super::boundary::{Failure, Sized32, buffer, guard, handle, out, refer, release, shared, sized, text};
 use super::frame::{frame, leafless_frame};
 use super::mesh::leafless_mesh_report;
+use super::number::{Number, enumeration};
 use super::solid::{give, leafless_solid};
+use super::source::{Source, copy, leafless_source};
 use super::status::leafless_status;
 use core::ffi::c_char;
-use leafless::scene::{Facets, Scene, SceneMesh, SceneOptions, open_scene, read_scene};
+use leafless::scene::{Facets, Scene, SceneMesh, SceneOptions};
 use std::path::Path;
 
 /// What a text describes: set operations on primitives, swept figures, meshes and octrees.
@@ -27,56 +27,6 @@ pub struct leafless_scene {
     scene: Scene,
 }
 
-/// Reads a scene from a file. Files that it names are looked for beside it.
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `scene`, one pointer.
-/// - Result: `*scene`.
-/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
-///   file that it names; LEAFLESS_E_IO if the file itself cannot be read; LEAFLESS_E_UTF8;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*scene` back with leafless_scene_free.
-/// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
-///   files that it names. It may name any file, by absolute paths too, which is then read as a mesh or an
-///   octree.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_scene_open(
-    path: *const c_char,
-    path_length: usize,
-    scene: *mut *mut leafless_scene,
-) -> leafless_status {
-    guard(|| unsafe {
-        let path = self::path(path, path_length)?;
-        let result = out(scene, "scene")?;
-        result.write(handle(leafless_scene { scene: open_scene(path)? }))
-    })
-}
-
-/// As leafless_scene_open for a text in memory, in UTF-8. Files that it names are looked for in `folder`.
-///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
-///   UTF-8; NULL if the scene may name no files. `scene`, one pointer.
-/// - Result: `*scene`.
-/// - Errors: as leafless_scene_open, but LEAFLESS_E_IO; of names of files, if there is no folder,
-///   LEAFLESS_E_SCENE.
-/// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
-/// - Untrusted input: any bytes, as for leafless_scene_open.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_scene_from_bytes(
-    bytes: *const u8,
-    length: u64,
-    folder: *const c_char,
-    folder_length: usize,
-    scene: *mut *mut leafless_scene,
-) -> leafless_status {
-    guard(|| unsafe {
-        let bytes = slice(bytes, length, "bytes")?;
-        let folder = if folder.is_null() { None } else { Some(text(folder, folder_length, "folder")?) };
-        let result = out(scene, "scene")?;
-        let scene = read_scene(bytes, folder.map(Path::new))?;
-        result.write(handle(leafless_scene { scene }))
-    })
-}
-
 /// Which circles, balls, cylinders and solids of revolution are drawn as polygons, prisms and polyhedra.
 #[derive(Clone, Copy)]
 #[repr(u32)]
@@ -88,7 +38,14 @@ pub enum leafless_facets {
     /// All, with as many sides as OpenSCAD gives them, which must be 1024 at most.
     LEAFLESS_FACETS_POLYGON = 2,
 }
-use leafless_facets::*;
+
+enumeration! {
+    leafless_facets => Facets {
+        LEAFLESS_FACETS_AUTO => Facets::Auto,
+        LEAFLESS_FACETS_EXACT => Facets::Exact,
+        LEAFLESS_FACETS_POLYGON => Facets::Polygon,
+    }
+}
 
 /// How a scene is to be read. NULL means the defaults. All fields but the first may be zero, which is their
 /// default.
@@ -97,75 +54,64 @@ use leafless_facets::*;
 pub struct leafless_scene_options {
     /// sizeof(leafless_scene_options).
     pub struct_size: u32,
-    /// Which curves are drawn as polygons, a leafless_facets.
-    pub facets: u32,
+    /// Which curves are drawn as polygons.
+    pub facets: Number<leafless_facets>,
+    /// Where files are looked for that a text in memory names, UTF-8; NULL if it may name none. NULL for a
+    /// scene with a path, whose files are looked for beside it.
+    pub folder: *const c_char,
+    /// Its length in bytes. An empty one that is not NULL is the folder that the process is in.
+    pub folder_length: usize,
 }
 
-// SAFETY: numbers.
+// SAFETY: numbers and a pointer.
 unsafe impl Sized32 for leafless_scene_options {}
 
+/// The options, and the folder.
+///
 /// # Safety
-/// `options` is NULL or points to valid options.
-unsafe fn options(options: *const leafless_scene_options) -> Result<SceneOptions, Failure> {
+/// `options` is NULL or points to valid options, of which the folder stays as long as the result is used.
+unsafe fn options<'a>(
+    options: *const leafless_scene_options,
+) -> Result<(SceneOptions, Option<&'a Path>), Failure> {
     // SAFETY: the caller's promise.
     let given = unsafe { sized(options, "options")? };
-    let known = [
-        (LEAFLESS_FACETS_AUTO, Facets::Auto),
-        (LEAFLESS_FACETS_EXACT, Facets::Exact),
-        (LEAFLESS_FACETS_POLYGON, Facets::Polygon),
-    ];
-    match known.iter().find(|(facets, _)| *facets as u32 == given.facets) {
-        Some(&(_, facets)) => Ok(SceneOptions::with_facets(facets)),
-        None => Err(Failure::Argument { name: "options.facets", problem: "is no leafless_facets" }),
-    }
+    let facets = given.facets.known("options.facets")?;
+    // SAFETY: the caller's promise.
+    let folder = unsafe { text(given.folder, given.folder_length, "options.folder")? };
+    Ok((SceneOptions::with_facets(facets), (!given.folder.is_null()).then_some(Path::new(folder))))
 }
 
-/// As leafless_scene_open, with options.
+/// Reads a scene, a text in UTF-8. Files that it names are looked for beside it, or in the folder of the options
+/// for a text in memory.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `options`, one struct, or NULL; `scene`, one pointer.
+/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `scene`, one
+///   pointer.
 /// - Result: `*scene`.
-/// - Errors: as leafless_scene_open; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
+/// - Errors: LEAFLESS_E_SCENE, with line and column in the message, for whatever is wrong with the text or a
+///   file that it names, also if there is no folder; LEAFLESS_E_ARGUMENT if there are a path and a folder; LEAFLESS_E_IO if the file itself cannot be read;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*scene` back with leafless_scene_free.
-/// - Untrusted input: as for leafless_scene_open; with LEAFLESS_FACETS_POLYGON a ball may take memory for half
-///   a million half-spaces.
+/// - Untrusted input: any text; nesting costs memory, not stack, and memory is linear in the text and in the
+///   files that it names; with LEAFLESS_FACETS_POLYGON a ball may take memory for half a million half-spaces.
+///   It may name any file, by absolute paths too, which is then read as a mesh or an octree.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_scene_open_with(
-    path: *const c_char,
-    path_length: usize,
+pub unsafe extern "C" fn leafless_scene_read(
+    source: *const leafless_source,
     options: *const leafless_scene_options,
     scene: *mut *mut leafless_scene,
 ) -> leafless_status {
     guard(|| unsafe {
-        let path = self::path(path, path_length)?;
-        let options = self::options(options)?;
+        let source = copy(source)?;
+        let (options, folder) = self::options(options)?;
         let result = out(scene, "scene")?;
-        result.write(handle(leafless_scene { scene: options.open(path)? }))
-    })
-}
-
-/// As leafless_scene_from_bytes, with options.
-///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `folder`, `folder_length` bytes of
-///   UTF-8; NULL if the scene may name no files. `options`, one struct, or NULL; `scene`, one pointer.
-/// - Result: `*scene`.
-/// - Errors: as leafless_scene_from_bytes; LEAFLESS_E_ARGUMENT if `options.facets` is no leafless_facets.
-/// - Ownership: the bytes are not kept; give `*scene` back with leafless_scene_free.
-/// - Untrusted input: any bytes, as for leafless_scene_open_with.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_scene_from_bytes_with(
-    bytes: *const u8,
-    length: u64,
-    folder: *const c_char,
-    folder_length: usize,
-    options: *const leafless_scene_options,
-    scene: *mut *mut leafless_scene,
-) -> leafless_status {
-    guard(|| unsafe {
-        let bytes = slice(bytes, length, "bytes")?;
-        let folder = if folder.is_null() { None } else { Some(text(folder, folder_length, "folder")?) };
-        let options = self::options(options)?;
-        let result = out(scene, "scene")?;
-        let scene = options.read(bytes, folder.map(Path::new))?;
+        let scene = match (source, folder) {
+            (Source::Path(path), None) => options.open(path)?,
+            (Source::Bytes(bytes), folder) => options.read(bytes, folder)?,
+            (Source::Path(_), Some(_)) => {
+                let problem = "must be NULL for a scene with a path, whose files lie beside it";
+                return Err(Failure::Argument { name: "options.folder", problem });
+            }
+        };
         result.write(handle(leafless_scene { scene }))
     })
 }

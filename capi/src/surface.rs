@@ -188,7 +188,7 @@ impl leafless_surface_options {
 /// are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
 /// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_counts
 /// and leafless_mesh_copy hand the arrays out, leafless_mesh_describe and leafless_mesh_area tell about them,
-/// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_save writes them.
+/// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_write writes them.
 ///
 /// Time is linear in the octree's array elements and the mesh: it grows with the surface, not with the
 /// volume. (Coplanar shrink takes O(n log n + n w) for n cells at the surface of which at most w lie along a

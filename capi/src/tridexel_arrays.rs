@@ -11,7 +11,7 @@ use leafless::TriDexel;
 use leafless::dexel::{Dexel, DexelEnd};
 use leafless::memory;
 
-/// Intervals of rays along one axis, as leafless_tridexel_read hands them out.
+/// Intervals of rays along one axis, as leafless_tridexel_copy hands them out.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_ray_arrays {
@@ -39,8 +39,8 @@ pub struct leafless_ray_arrays {
     /// A number for each interval, what it is made of; 0 where nothing is said. NULL if nothing is said at all.
     pub materials: *const u32,
     /// Two numbers for each interval: its start and its end in finest cells from the universe's lower face, as
-    /// leafless_tridexel_read_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by
-    /// this number if its coordinate in `ends_model` is the one that leafless_tridexel_read would hand out
+    /// leafless_tridexel_copy_cells hands them out; the centre of cell k lies at k + 1/2. An end counts by
+    /// this number if its coordinate in `ends_model` is the one that leafless_tridexel_copy would hand out
     /// for it, else by the coordinate. If `ends_model` is NULL it counts always. NULL if coordinates alone
     /// count.
     pub ends_cells: *const f64,
@@ -147,7 +147,7 @@ impl Arrays<'_> {
 /// store is left out. Ends are rounded as `format` says, and keep their side of every centre of a cell, which is the real
 /// number origin + (k + 1/2) edge / 2^depth; that is decided exactly. Intervals that are empty after rounding
 /// are left out; those that touch are joined, unless both have materials and these differ. The directions are
-/// not compared with each other. All that leafless_tridexel_read and leafless_tridexel_read_cells hand out of
+/// not compared with each other. All that leafless_tridexel_copy and leafless_tridexel_copy_cells hand out of
 /// a model makes an equal one on the same frame.
 ///
 /// - Buffers: `frame`, one struct; `format`, one struct or NULL, whose `directions` are 0 or the axes of `rays`; `rays`,

@@ -270,7 +270,7 @@ impl Arrays {
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_read(
+pub unsafe extern "C" fn leafless_tridexel_copy(
     tridexel: *const leafless_tridexel,
     axis: u32,
     first: *const u32,
@@ -325,18 +325,18 @@ pub unsafe extern "C" fn leafless_tridexel_read(
 
 /// Where the intervals of many rays along one axis start and end, exactly as it is stored: in finest cells from the
 /// universe's lower face, of which the centre of cell k lies at k + 1/2. The intervals are those of
-/// leafless_tridexel_read, in the same order. O(rays + intervals).
+/// leafless_tridexel_copy, in the same order. O(rays + intervals).
 ///
-/// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_read has them; `ends_cells`, room for 2
+/// - Buffers: `first` and `end`, 2 numbers each, or NULL both, as leafless_tridexel_copy has them; `ends_cells`, room for 2
 ///   numbers for each of `interval_capacity` intervals, or NULL to ask for the count only; `interval_count`, one number.
 ///   `axis` is 0 for x, 1 for y, 2 for z.
 /// - Result: `ends_cells`, 0 to 2^depth; `*interval_count`.
-/// - Errors: as leafless_tridexel_read.
+/// - Errors: as leafless_tridexel_copy.
 /// - Untrusted input: any model, any numbers.
 ///
 /// cbindgen:ptrs-as-arrays=[[first; 2], [end; 2]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_read_cells(
+pub unsafe extern "C" fn leafless_tridexel_copy_cells(
     tridexel: *const leafless_tridexel,
     axis: u32,
     first: *const u32,

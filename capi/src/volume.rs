@@ -4,6 +4,7 @@ use super::boundary::{Failure, array, guard, out, refer, release, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{leafless_frame, leafless_interval};
 use super::mesh_file::{leafless_unit, unit_of};
+use super::number::enumeration;
 use super::solid::{give_any, leafless_solid};
 use super::status::leafless_status;
 use core::ffi::c_void;
@@ -82,6 +83,15 @@ pub enum leafless_volume_format {
     /// To be written: NRRD with samples compressed by DEFLATE. (A file that is read is
     /// LEAFLESS_VOLUME_FORMAT_NRRD, compressed or not.)
     LEAFLESS_VOLUME_FORMAT_NRRD_GZIP = 3,
+}
+
+enumeration! {
+    leafless_volume_format => leafless_volume_format {
+        LEAFLESS_VOLUME_FORMAT_RAW => leafless_volume_format::LEAFLESS_VOLUME_FORMAT_RAW,
+        LEAFLESS_VOLUME_FORMAT_NRRD => leafless_volume_format::LEAFLESS_VOLUME_FORMAT_NRRD,
+        LEAFLESS_VOLUME_FORMAT_METAIMAGE => leafless_volume_format::LEAFLESS_VOLUME_FORMAT_METAIMAGE,
+        LEAFLESS_VOLUME_FORMAT_NRRD_GZIP => leafless_volume_format::LEAFLESS_VOLUME_FORMAT_NRRD_GZIP,
+    }
 }
 
 /// What can be said of a volume at once.

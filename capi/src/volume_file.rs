@@ -1,17 +1,17 @@
 //! Volume files.
 
 use super::boundary::{Failure, buffer, guard, handle, out, path, shared, slice};
+use super::number::Number;
+use super::source::{Source, copy, data, leafless_sink, leafless_source, sink};
 use super::status::leafless_status;
 use super::volume::leafless_volume_format::*;
-use super::volume::{leafless_volume, type_of};
+use super::volume::{leafless_volume, leafless_volume_format, type_of};
 use super::volume_arrays::{Layout, leafless_volume_layout};
 use core::ffi::c_char;
 use leafless::exchange::{
     NrrdEncoding, VolumeFile, VolumeFormat, open_volume, read_volume, read_whole, volume_data_file,
     write_nrrd, write_raw_volume,
 };
-use leafless::file::replace;
-use std::io::Write;
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -32,18 +32,13 @@ fn give(file: VolumeFile) -> *mut leafless_volume {
 }
 
 impl leafless_volume {
-    fn file(&self, format: u32) -> Result<Vec<u8>, Failure> {
+    fn file(&self, format: leafless_volume_format) -> Result<Vec<u8>, Failure> {
         let refuse = |name, problem| Err(Failure::Argument { name, problem });
         let encoding = match format {
-            raw if raw == LEAFLESS_VOLUME_FORMAT_RAW as u32 => {
-                return Ok(write_raw_volume(&self.samples, &self.grid)?);
-            }
-            nrrd if nrrd == LEAFLESS_VOLUME_FORMAT_NRRD as u32 => NrrdEncoding::Raw,
-            gzip if gzip == LEAFLESS_VOLUME_FORMAT_NRRD_GZIP as u32 => NrrdEncoding::Gzip,
-            meta if meta == LEAFLESS_VOLUME_FORMAT_METAIMAGE as u32 => {
-                return refuse("format", "MetaImage can be read only");
-            }
-            _ => return refuse("format", "is no leafless_volume_format"),
+            LEAFLESS_VOLUME_FORMAT_RAW => return Ok(write_raw_volume(&self.samples, &self.grid)?),
+            LEAFLESS_VOLUME_FORMAT_NRRD => NrrdEncoding::Raw,
+            LEAFLESS_VOLUME_FORMAT_NRRD_GZIP => NrrdEncoding::Gzip,
+            LEAFLESS_VOLUME_FORMAT_METAIMAGE => return refuse("format", "MetaImage can be read only"),
         };
         if self.placement.is_some() {
             return refuse("volume", "has other axes than x, y and z, which cannot be written");
@@ -53,17 +48,19 @@ impl leafless_volume {
 }
 
 /// Reads a volume file, NRRD or MetaImage; the content tells which. If it names another file for its samples,
-/// that is read from the same folder or below it.
+/// that is read from the same folder or below it, or given as `data`.
 ///
 /// NRRD: versions 1 to 5, attached and detached, raw, gzip and ascii. MetaImage: binary, ASCII and
 /// compressed. All types of single numbers, both byte orders. What is neither 8 nor 16 bits wide becomes
 /// float, and int8_t becomes int16_t. O(n); the samples are copied once.
 ///
 /// Samples in another file must lie in the header's folder or below it, by their real path: links are followed
-/// before that is judged. The header's folder is the one that `path` names and, if the header is a link, also
-/// the one in which the header really lies, which is searched second.
+/// before that is judged. The header's folder is the one that the path names and, if the header is a link, also
+/// the one in which the header really lies, which is searched second. For bytes no file is looked for.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `volume`, one pointer.
+/// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY. `data`, one struct of the same kind: the file of
+///   the samples, which is then not looked for; else NULL, and of bytes that need one LEAFLESS_E_VOLUME_FILE.
+///   leafless_volume_data_file tells its name. `volume`, one pointer.
 /// - Result: `*volume`; leafless_volume_describe tells what the file says.
 /// - Errors: LEAFLESS_E_VOLUME_FILE, with what is wrong where in the message, if the file is neither, is
 ///   damaged, or uses something that cannot be read; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
@@ -71,38 +68,21 @@ impl leafless_volume {
 /// - Untrusted input: any file. A header that asks for more samples than its data can hold is refused before
 ///   anything is allocated; compressed samples become at most 1032 times as long as the file.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_volume_open(
-    path: *const c_char,
-    path_length: usize,
+pub unsafe extern "C" fn leafless_volume_read(
+    source: *const leafless_source,
+    data: *const leafless_source,
     volume: *mut *mut leafless_volume,
 ) -> leafless_status {
     guard(|| unsafe {
-        let path = self::path(path, path_length)?;
-        out(volume, "volume")?.write(give(open_volume(path)?))
-    })
-}
-
-/// As leafless_volume_open for a file in memory.
-///
-/// - Buffers: `bytes`, `length` bytes; may be NULL if there are none. `data`, `data_length` bytes: the file
-///   of the samples, if leafless_volume_data_file tells of one; else NULL and 0. `volume`, one pointer.
-/// - Result: `*volume`.
-/// - Errors: as leafless_volume_open, but those of paths.
-/// - Ownership: the bytes are not kept; give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any bytes; memory as for leafless_volume_open.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_volume_from_bytes(
-    bytes: *const u8,
-    length: u64,
-    data: *const u8,
-    data_length: u64,
-    volume: *mut *mut leafless_volume,
-) -> leafless_status {
-    guard(|| unsafe {
-        let bytes = slice(bytes, length, "bytes")?;
-        let data =
-            if data.is_null() && data_length == 0 { None } else { Some(slice(data, data_length, "data")?) };
-        out(volume, "volume")?.write(give(read_volume(bytes, data)?))
+        let source = copy(source)?;
+        let data = self::data(data)?;
+        let volume = out(volume, "volume")?;
+        let file = match (source, data) {
+            (Source::Path(path), None) => open_volume(path)?,
+            (Source::Bytes(bytes), None) => read_volume(bytes, None)?,
+            (header, Some(samples)) => read_volume(&header.whole()?, Some(&samples.whole()?))?,
+        };
+        volume.write(give(file))
     })
 }
 
@@ -158,59 +138,28 @@ pub unsafe extern "C" fn leafless_volume_open_raw(
     })
 }
 
-/// Saves a volume in a file. At any moment there is the old file or the new one, each complete, as
-/// leafless_octree_save tells.
+/// Writes a volume file.
 ///
 /// The byte of the lowest weight comes first, and bits become bytes 0 and 1. A NRRD holds the place of the
 /// first sample, corner + spacing / 2, rounded so that the same corner is read again; where no double does that,
 /// near a power of two, the volume lies half a last place beside. It holds no unit. A raw file holds no place at all.
 /// O(n) time and memory.
 ///
-/// - Buffers: `path`, `path_length` bytes of UTF-8. `format` is a leafless_volume_format.
-/// - Result: LEAFLESS_OK once the file is on the disk.
+/// - Buffers: `sink`, one struct.
 /// - Errors: LEAFLESS_E_ARGUMENT if `format` is none that can be written, or if the volume has other axes
-///   than x, y and z and shall become a NRRD; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY. The old
-///   file is then as it was; only if the very last step fails, synchronising the directory, the new one is in
-///   place.
+///   than x, y and z and shall become a NRRD; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_volume_save(
+pub unsafe extern "C" fn leafless_volume_write(
     volume: *const leafless_volume,
-    format: u32,
-    path: *const c_char,
-    path_length: usize,
+    format: Number<leafless_volume_format>,
+    sink: *const leafless_sink,
 ) -> leafless_status {
     guard(|| unsafe {
         let volume = shared(volume, "volume")?;
-        let path = Path::new(self::path(path, path_length)?);
-        let bytes = volume.file(format)?;
-        Ok(replace(path, |file| Ok(file.write_all(&bytes)?))?)
-    })
-}
-
-/// The bytes of a volume's file, in memory: those that leafless_volume_save writes. Asking for the length
-/// takes as long as filling.
-///
-/// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
-///   `format` is a leafless_volume_format.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT as leafless_volume_save;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any volume.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_volume_to_bytes(
-    volume: *const leafless_volume,
-    format: u32,
-    bytes: *mut u8,
-    capacity: u64,
-    length: *mut u64,
-) -> leafless_status {
-    guard(|| unsafe {
-        let volume = shared(volume, "volume")?;
-        let bytes = buffer(bytes, capacity, "bytes")?;
-        let length = out(length, "length")?;
-        let file = volume.file(format)?;
-        bytes.fill(&file)?;
-        length.write(file.len() as u64)
+        let format = format.known("format")?;
+        let sink = self::sink(sink)?;
+        sink.put_whole(&volume.file(format)?)
     })
 }

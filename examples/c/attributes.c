@@ -128,6 +128,8 @@ static leafless_status print_values(const leafless_octree *octree) {
 
 int main(int argc, char **argv) {
     const char *path = argc > 1 ? argv[1] : "attributes.lfl";
+    const leafless_sink file = leafless_to_file(path);
+    const leafless_source in_place = leafless_from_file(path, LEAFLESS_ACCESS_MAP);
     const double low[3] = {-30, -30, -30}, high[3] = {30, 30, 30};
     const double lying[12] = {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0}; /* from z to x */
     gradient along_x = {20, 180, -60, 60};
@@ -151,9 +153,9 @@ int main(int argc, char **argv) {
     parts[0] = steel, parts[1] = copper;
     if (!s) s = leafless_octree_combine(LEAFLESS_OPERATION_UNION, parts, 2, NULL, &both);
     if (!s) s = leafless_octree_carry_channels(both, parts, 2, LEAFLESS_CARRY_MEAN, rules, 1, NULL, &whole);
-    if (!s) s = leafless_octree_save(whole, path, strlen(path));
+    if (!s) s = leafless_octree_write(whole, &file);
     /* Mapped, channels are read from the file where they lie. */
-    if (!s) s = leafless_octree_map(path, strlen(path), &stored);
+    if (!s) s = leafless_octree_read(&in_place, &stored);
     if (!s) s = print_channels(stored);
     if (!s) s = print_values(stored);
     if (s) {

@@ -9,7 +9,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { DEPTH = 8, STEPS = 300 };
 
@@ -100,9 +99,10 @@ int main(int argc, char **argv) {
     if (!s) s = print_model("chips", chips);
     if (!s) s = print_heights(part);
     if (!s && argc > 1) {
+        const leafless_sink file = leafless_to_file(argv[1]);
         leafless_mesh *mesh = NULL;
         s = leafless_tridexel_surface(part, LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING, NULL, NULL, &mesh);
-        if (!s) s = leafless_mesh_save(mesh, argv[1], strlen(argv[1]), NULL);
+        if (!s) s = leafless_mesh_write(mesh, NULL, &file);
         leafless_mesh_free(mesh);
     }
     if (s) {

@@ -10,7 +10,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { NX = 96, NY = 64, NZ = 48 };
 
@@ -83,6 +82,8 @@ static leafless_status print_surface(const char *method, const leafless_mesh *me
 
 int main(int argc, char **argv) {
     static const char PATH[] = "isosurface.ply";
+    const leafless_source given = leafless_from_file(argc > 1 ? argv[1] : "", LEAFLESS_ACCESS_COPY);
+    const leafless_sink file = leafless_to_file(PATH);
     const leafless_interval band = {argc > 2 ? atof(argv[2]) : 0, INFINITY};
     leafless_surface_options shrink = {.struct_size = sizeof shrink, .method = LEAFLESS_SURFACE_SHRINK};
     leafless_volume *volume = NULL;
@@ -91,7 +92,7 @@ int main(int argc, char **argv) {
     leafless_mesh *surface = NULL, *shrunk = NULL;
     leafless_statistics statistics;
     leafless_frame frame;
-    leafless_status s = argc > 1 ? leafless_volume_open(argv[1], strlen(argv[1]), &volume) : scan(&volume);
+    leafless_status s = argc > 1 ? leafless_volume_read(&given, NULL, &volume) : scan(&volume);
     if (!s) s = print_volume(volume);
     if (!s) s = frame_of(volume, &frame);
     /* Without a band the threshold is the middle of the samples' type. */
@@ -104,7 +105,7 @@ int main(int argc, char **argv) {
     if (!s) s = print_surface("cubes", surface);
     if (!s) s = leafless_octree_surface(octree, &shrink, NULL, &shrunk);
     if (!s) s = print_surface("shrunk", shrunk);
-    if (!s) s = leafless_mesh_save(surface, PATH, strlen(PATH), NULL);
+    if (!s) s = leafless_mesh_write(surface, NULL, &file);
     if (!s) printf("written   %s\n", PATH);
     if (s) {
         char message[512];

@@ -9,7 +9,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { AROUND = 48, UP = 12, DEPTH = 7, WORST = 10 };
 
@@ -107,8 +106,8 @@ int main(int argc, char **argv) {
     leafless_statistics bounds, estimate;
     leafless_frame frame;
     double min[3], max[3];
-    leafless_status s =
-        argc > 1 ? leafless_mesh_open(argv[1], strlen(argv[1]), NULL, NULL, &mesh) : dome(&mesh);
+    const leafless_source file = leafless_from_file(argc > 1 ? argv[1] : "", LEAFLESS_ACCESS_COPY);
+    leafless_status s = argc > 1 ? leafless_mesh_read(&file, NULL, NULL, &mesh) : dome(&mesh);
     if (!s) s = print_report(mesh);
     /* Around holes it is the winding number that says where inside is: at least one half. Whatever is certified
        holds for each point of a cell; near the holes more cells stay undecided than the surface cuts. */

@@ -7,7 +7,6 @@
 #include <leafless.h>
 
 #include <stdio.h>
-#include <string.h>
 
 /* A wedge: 6 corners (mm), 8 triangles whose corners turn counter-clockwise as seen from outside. */
 static const double CORNERS[6][3] = {{0, 0, 0}, {40, 0, 0}, {0, 30, 0}, {40, 30, 0}, {0, 0, 20}, {0, 30, 20}};
@@ -37,6 +36,8 @@ int main(void) {
     leafless_octree *wedge = NULL, *hole = NULL, *drilled = NULL, *named = NULL, *mapped = NULL;
     const leafless_octree *operands[2];
     leafless_frame frame;
+    const leafless_sink file = leafless_to_file(PATH);
+    const leafless_source in_place = leafless_from_file(PATH, LEAFLESS_ACCESS_MAP);
     leafless_membership answers[3];
     double min[3], max[3];
     int i, exit_code = 1;
@@ -64,8 +65,8 @@ int main(void) {
 
     /* The file is the octree's arrays: mapped, it is ready at once, however large it is. */
     if (leafless_octree_with_metadata(drilled, "units", 5, "mm", 2, &named) != LEAFLESS_OK ||
-        leafless_octree_save(named, PATH, strlen(PATH)) != LEAFLESS_OK ||
-        leafless_octree_map(PATH, strlen(PATH), &mapped) != LEAFLESS_OK ||
+        leafless_octree_write(named, &file) != LEAFLESS_OK ||
+        leafless_octree_read(&in_place, &mapped) != LEAFLESS_OK ||
         leafless_octree_contains_many(mapped, &POINTS[0][0], 3, answers) != LEAFLESS_OK) {
         goto failed;
     }

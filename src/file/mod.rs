@@ -1,7 +1,7 @@
 //! The file format: the arrays of an octree or a tri-dexel model as they lie in memory, mapped and queried in place.
 //!
 //! The functions of this module are for octrees; those in [`dexels`] have the same names and are for tri-dexel models.
-//! [`probe`] and [`verify`] know both.
+//! [`probe`], [`verify`] and [`verify_path`] know both.
 //!
 //! # Ways in
 //!
@@ -10,7 +10,7 @@
 //! | [`probe`], [`probe_from`], [`probe_bytes`] | header and section table | both | O(sections) |
 //! | [`map`], [`view`], [`from_static`] (bytes) | in place | header, section table, bounds, objects, level tables | O(sections + objects + depth) |
 //! | [`map_verified`], [`verify`] (bytes) | in place | everything | O(n) |
-//! | [`open`], [`from_bytes`] | a copy | everything | O(n) |
+//! | [`open`], [`from_bytes`], [`verify_path`] | a copy | everything | O(n) |
 //!
 //! `open` is the plain way. Mapping is for files that are larger than what is asked of them, and is `unsafe`
 //! because of what others may do to a mapped file. [`save`], [`write_to`] and [`to_bytes`] write: equal trees
@@ -33,7 +33,7 @@
 //!
 //! Whatever the bytes, none of this panics, reads beyond them, or goes on for ever:
 //!
-//! * [`open`], [`from_bytes`], [`map_verified`] and [`verify`] accept nothing but a well-formed tree and
+//! * [`open`], [`from_bytes`], [`map_verified`], [`verify`] and [`verify_path`] accept nothing but a well-formed tree and
 //!   well-formed channels with right checksums; everything that follows is then what it would be of a tree
 //!   that was just built. They need O(n) time, and memory for at most six times the length of the file (once
 //!   for the copy; the rest only for files that are all metadata, or all records of small channels). `open`
@@ -141,3 +141,5 @@ pub use probe::{probe, probe_from};
 #[cfg(feature = "std")]
 pub use replace::{abandon_saves, replace};
 pub use verify::verify;
+#[cfg(feature = "std")]
+pub use verify::verify_path;

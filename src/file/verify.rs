@@ -1,10 +1,14 @@
 //! Verifying whatever a file holds.
 
+#[cfg(feature = "std")]
+use super::buffer;
 use super::header::{Head, Model};
 use super::read;
 use crate::dexel::TriDexel;
 use crate::error::Error;
 use crate::octree::Octree;
+#[cfg(feature = "std")]
+use std::path::Path;
 
 /// Checks everything that the format promises: what [`view`](super::view) checks, all checksums, that padding is zero,
 /// that the metadata can be read, and that the tree and the channels, or the tri-dexel model, are well-formed and in
@@ -21,4 +25,15 @@ pub fn verify(bytes: &[u8]) -> Result<(), Error> {
         Model::Octree => read::verify::<Octree>(bytes),
         Model::Dexels => read::verify::<TriDexel>(bytes),
     }
+}
+
+/// As [`verify`] for the file at `path`, which is read into memory. A pipe or device may be read too.
+///
+/// # Errors
+/// [`Error::File`] with the path and one of these causes: as [`verify`], and [`Error::Io`].
+#[cfg(feature = "std")]
+pub fn verify_path(path: impl AsRef<Path>) -> Result<(), Error> {
+    let path = path.as_ref();
+    let read = || verify(buffer::read(path, |_| Ok(()))?.bytes());
+    read().map_err(|error| error.of_file(path))
 }

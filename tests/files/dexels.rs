@@ -133,6 +133,7 @@ fn valid_vectors_are_read_by_every_way_in() {
         assert_eq!(said.format, format(made.model.form()));
         let aligned = Aligned::new(&bytes);
         file::verify(aligned.bytes()).unwrap();
+        file::verify_path(&path).unwrap();
         let owned = [
             dexels::from_bytes(&bytes).unwrap(),
             dexels::open(&path).unwrap(),

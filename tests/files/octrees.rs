@@ -320,6 +320,7 @@ fn every_way_in_gives_the_tree_back() {
         let view = file::view(aligned.bytes()).unwrap();
         same(&compact(&view).unwrap().with_metadata(tree.metadata().clone()));
         file::verify(aligned.bytes()).unwrap();
+        file::verify_path(&path).unwrap();
         // What lives as long as the program needs no copy.
         same(&file::from_static(Box::leak(Box::new(Aligned::new(&bytes))).bytes()).unwrap());
 
@@ -950,6 +951,7 @@ mod save {
         let directory = tempfile::tempdir().unwrap();
         io_error(file::save(&small(), directory.path()));
         io_error(file::save(&small(), directory.path().join("missing/tree.lfl")));
+        io_error(file::verify_path(directory.path().join("missing/tree.lfl")));
         io_error(file::save(&small(), ""));
         assert!(names(directory.path()).is_empty());
     }
@@ -969,14 +971,21 @@ mod save {
         let reader = std::thread::spawn(move || file::open(reader));
         file::save(&tree, &pipe).unwrap();
         assert_eq!(reader.join().unwrap().unwrap(), tree);
+        let path = pipe.clone();
+        let verifier = std::thread::spawn(move || file::verify_path(path));
+        file::save(&tree, &pipe).unwrap();
+        verifier.join().unwrap().unwrap();
         // What is piped in may be cut or go on, too.
         let bytes = file::to_bytes(&tree).unwrap();
         for sent in [bytes[..bytes.len() - 1].to_vec(), [&bytes[..], b"x"].concat()] {
-            let path = pipe.clone();
+            let (path, same) = (pipe.clone(), pipe.clone());
             let reader = std::thread::spawn(move || file::open(path));
-            fs::write(&pipe, sent).unwrap();
+            fs::write(&pipe, &sent).unwrap();
             let error = format_error(reader.join().unwrap());
             assert!(matches!(error, FormatError::Length { .. }));
+            let verifier = std::thread::spawn(move || file::verify_path(same));
+            fs::write(&pipe, sent).unwrap();
+            assert_eq!(format_error(verifier.join().unwrap()), error);
         }
         #[cfg(feature = "mmap")]
         // SAFETY: it is refused.
