@@ -23,7 +23,7 @@ const DIMENSIONS: &[(&str, &str, usize)] = &[
     ("leafless_mesh_copy", "vertices", 3),
     ("leafless_mesh_copy", "triangles", 3),
     ("leafless_mesh_normals", "normals", 3),
-    ("leafless_tridexel_read_cells", "ends_cells", 2),
+    ("leafless_tridexel_copy_cells", "ends_cells", 2),
     ("", "points_model", 3),
     ("", "planes", 4),
     ("", "polygon_model", 2),
@@ -31,7 +31,7 @@ const DIMENSIONS: &[(&str, &str, usize)] = &[
 ];
 
 /// Functions with several arrays that may be left out. Their parameters are those of C.
-const AS_IN_C: &[&str] = &["leafless_tridexel_read", "leafless_octree_voxels"];
+const AS_IN_C: &[&str] = &["leafless_tridexel_copy", "leafless_octree_voxels"];
 
 impl Parameter {
     fn parse(function: &str, text: &str) -> Parameter {

@@ -308,6 +308,33 @@ void progress() {
     }
 }
 
+void files() {
+    const leafless::octree octree = leafless::octree::build(leafless::solid::new_ball({0, 0, 0}, 0.5), FRAME,
+                                                            LEAFLESS_RULE_CERTIFIED);
+    std::vector<std::uint8_t> bytes;
+    auto take = [&](leafless::span<const std::uint8_t> piece) { bytes.insert(bytes.end(), piece.begin(), piece.end()); };
+    octree.write(leafless::sink_to(take));
+    const auto copied = leafless_from_bytes(bytes.data(), bytes.size(), LEAFLESS_ACCESS_COPY);
+    CHECK(leafless::octree::read(copied).equal(octree));
+    octree.write(leafless_to_file("wrapper.lfl"));
+    const leafless::octree mapped =
+        leafless::octree::read(leafless_from_file("wrapper.lfl", LEAFLESS_ACCESS_MAP_VERIFIED));
+    CHECK(mapped.equal(octree));
+    auto refuse = [](leafless::span<const std::uint8_t>) { throw host_failure{11}; };
+    try {
+        octree.write(leafless::sink_to(refuse));
+        CHECK(false);
+    } catch (const host_failure &failure) {
+        CHECK(failure.number == 11);
+    }
+    try {
+        static_cast<void>(leafless::octree::read(leafless_from_file("no/such.lfl", LEAFLESS_ACCESS_MAP)));
+        CHECK(false);
+    } catch (const leafless::error &failure) {
+        CHECK(failure.status() == LEAFLESS_E_IO && std::string(failure.what()).find("no/such.lfl") == 0);
+    }
+}
+
 void walks() {
     const leafless::solid whole = leafless::solid::new_ball({0, 0, 0}, 0.5);
     const leafless::octree octree = leafless::octree::build(whole, FRAME, LEAFLESS_RULE_CERTIFIED);
@@ -340,6 +367,7 @@ int main() {
     failures();
     hosts();
     progress();
+    files();
     walks();
     return 0;
 }

@@ -229,6 +229,18 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     return detail::finish(status, attribute(made));
 }
 
+/// A sink that hands the pieces of a file to a function, which takes a span<const std::uint8_t> and must outlive the sink.
+template <class F> leafless_sink sink_to(F &take) {
+    const leafless_write_fn write = [](void *ctx, const std::uint8_t *bytes,
+                                       std::uint64_t count) noexcept -> std::int32_t {
+        return detail::guarded([&]() -> std::int32_t {
+            (*static_cast<F *>(ctx))(detail::array_at(bytes, count));
+            return 0;
+        });
+    };
+    return leafless_to_function(write, &take);
+}
+
 /// Calls `use` with options that tell `hear` of progress, from 0 to 1, and returns what it returns. `hear` says
 /// whether to go on; it is called by one thread at a time. What it throws comes out here.
 template <class Hear, class Use> auto with_progress(leafless_options options, Hear hear, Use use) {

@@ -15,7 +15,7 @@
 // - An array whose length only the library knows is returned as a std::vector. (It is filled in two calls.)
 // - Texts are std::string_view. What a _peek function returns belongs to the object.
 // - What may be NULL in C is a pointer here, by default nullptr where no argument without default follows.
-// - Functions of the host are lambdas, or objects with members (solid_of, half_space_of, attribute_of, with_progress,
+// - Functions of the host are lambdas, or objects with members (solid_of, half_space_of, attribute_of, sink_to, with_progress,
 //   at the end of this file). An exception inside of one ends the work. It comes out of the function of the library
 //   that called it, and never runs through the library itself.
 
@@ -344,15 +344,10 @@ public:
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<std::tuple<std::vector<leafless_intersecting_pair>,
         bool>> intersecting_pairs(const leafless_options *options = nullptr) const;
-    [[nodiscard]] static returns<std::tuple<leafless_mesh_source, leafless::mesh>> open(std::string_view path,
-        const leafless_mesh_options *options = nullptr);
-    [[nodiscard]] static returns<std::tuple<leafless_mesh_source,
-        leafless::mesh>> from_bytes(span<const uint8_t> bytes,
-        const leafless_mesh_options *options = nullptr);
+    [[nodiscard]] static returns<std::tuple<leafless_mesh_found,
+        leafless::mesh>> read(const leafless_source &source, const leafless_mesh_options &options);
     [[nodiscard]] returns<std::tuple<uint64_t, std::string_view>> peek_warning_at(uint64_t index) const;
-    [[nodiscard]] returns<std::vector<uint8_t>> to_stl() const;
-    returns<void> save(std::string_view path, const leafless_mesh_write_options *options = nullptr) const;
-    [[nodiscard]] returns<std::vector<uint8_t>> to_bytes(const leafless_mesh_write_options &options) const;
+    returns<void> write(const leafless_mesh_write_options &options, const leafless_sink &sink) const;
     [[nodiscard]] returns<leafless::mesh> written_form(const leafless_mesh_write_options &options) const;
     [[nodiscard]] returns<std::tuple<uint64_t, std::string_view, uint32_t,
         bool>> peek_attribute_at(uint64_t index) const;
@@ -466,14 +461,12 @@ public:
         span<const std::byte> samples);
     [[nodiscard]] static returns<leafless::volume> view(const leafless_volume_layout &layout,
         span<const std::byte> samples);
-    [[nodiscard]] static returns<leafless::volume> open(std::string_view path);
-    [[nodiscard]] static returns<leafless::volume> from_bytes(span<const uint8_t> bytes,
-        span<const uint8_t> data);
+    [[nodiscard]] static returns<leafless::volume> read(const leafless_source &source,
+        const leafless_source &data);
     [[nodiscard]] static returns<std::vector<char>> data_file(span<const uint8_t> bytes);
     [[nodiscard]] static returns<leafless::volume> open_raw(std::string_view path,
         const leafless_volume_layout &layout);
-    returns<void> save(uint32_t format, std::string_view path) const;
-    [[nodiscard]] returns<std::vector<uint8_t>> to_bytes(uint32_t format) const;
+    returns<void> write(leafless_volume_format format, const leafless_sink &sink) const;
     [[nodiscard]] returns<leafless::attribute> as_attribute(leafless_interpolation interpolation,
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_interval *band = nullptr,
@@ -484,13 +477,8 @@ public:
 class scene : public detail::owner<leafless_scene, leafless_scene_free> {
 public:
     using owner::owner;
-    [[nodiscard]] static returns<leafless::scene> open(std::string_view path);
-    [[nodiscard]] static returns<leafless::scene> from_bytes(span<const uint8_t> bytes,
-        std::string_view folder);
-    [[nodiscard]] static returns<leafless::scene> open_with(std::string_view path,
-        const leafless_scene_options *options = nullptr);
-    [[nodiscard]] static returns<leafless::scene> from_bytes_with(span<const uint8_t> bytes,
-        std::string_view folder, const leafless_scene_options *options = nullptr);
+    [[nodiscard]] static returns<leafless::scene> read(const leafless_source &source,
+        const leafless_scene_options &options);
     [[nodiscard]] returns<leafless_scene_report> describe() const;
     [[nodiscard]] returns<leafless_scene_mesh> describe_mesh(uint64_t index) const;
     [[nodiscard]] returns<std::vector<uint8_t>> mesh_file(uint64_t index) const;
@@ -571,14 +559,8 @@ public:
         const leafless_options *options = nullptr);
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_surface_options *surface = nullptr,
         const leafless_options *options = nullptr) const;
-    [[nodiscard]] static returns<leafless::octree> open(std::string_view path);
-    [[nodiscard]] static returns<leafless::octree> map(std::string_view path);
-    [[nodiscard]] static returns<leafless::octree> map_verified(std::string_view path);
-    [[nodiscard]] static returns<leafless::octree> from_bytes(span<const uint8_t> bytes);
-    [[nodiscard]] static returns<leafless::octree> view_bytes(span<const uint8_t> bytes);
-    returns<void> save(std::string_view path) const;
-    [[nodiscard]] returns<std::vector<uint8_t>> to_bytes() const;
-    returns<void> write(leafless_write_fn write, void *ctx) const;
+    [[nodiscard]] static returns<leafless::octree> read(const leafless_source &source);
+    returns<void> write(const leafless_sink &sink) const;
 };
 
 /// A leafless_point_cursor.
@@ -736,10 +718,10 @@ public:
     [[nodiscard]] returns<std::tuple<ray_index, ray_index>> window(uint32_t axis) const;
     [[nodiscard]] returns<std::vector<leafless_dexel>> ray(uint32_t axis,
         const ray_index *ray = nullptr) const;
-    returns<void> read(uint32_t axis, const uint32_t *first, const uint32_t *end, uint64_t *offsets,
+    returns<void> copy(uint32_t axis, const uint32_t *first, const uint32_t *end, uint64_t *offsets,
         uint64_t offset_capacity, uint64_t *offset_count, double *ends_model, double *normals,
         uint32_t *surfaces, uint32_t *materials, uint64_t interval_capacity, uint64_t *interval_count) const;
-    [[nodiscard]] returns<std::vector<std::array<double,2>>> read_cells(uint32_t axis,
+    [[nodiscard]] returns<std::vector<std::array<double,2>>> copy_cells(uint32_t axis,
         const ray_index *first = nullptr, const ray_index *end = nullptr) const;
     [[nodiscard]] static returns<leafless::tridexel> combine(leafless_operation operation,
         span<const leafless_tridexel *const> tridexels, const leafless_options *options = nullptr);
@@ -756,14 +738,8 @@ public:
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<std::vector<leafless_long_voxel>> voxels(const leafless_options *options,
         span<const std::array<uint8_t,4>> colours) const;
-    [[nodiscard]] static returns<leafless::tridexel> open(std::string_view path);
-    [[nodiscard]] static returns<leafless::tridexel> map(std::string_view path);
-    [[nodiscard]] static returns<leafless::tridexel> map_verified(std::string_view path);
-    [[nodiscard]] static returns<leafless::tridexel> from_bytes(span<const uint8_t> bytes);
-    [[nodiscard]] static returns<leafless::tridexel> view_bytes(span<const uint8_t> bytes);
-    returns<void> save(std::string_view path) const;
-    [[nodiscard]] returns<std::vector<uint8_t>> to_bytes() const;
-    returns<void> write(leafless_write_fn write, void *ctx) const;
+    [[nodiscard]] static returns<leafless::tridexel> read(const leafless_source &source);
+    returns<void> write(const leafless_sink &sink) const;
 };
 
 /// A leafless_tridexel_editor.
@@ -836,9 +812,9 @@ returns<void> frame_check(const leafless_frame &frame);
     std::vector<uint32_t>>> voxels_triangles(const leafless_frame &lattice, span<const uint64_t> codes,
     span<const uint8_t> levels, span<const uint8_t> kinds, const leafless::mesh &mesh,
     const leafless_options *options = nullptr);
-[[nodiscard]] returns<leafless_probe> file_probe(std::string_view path, span<leafless_section> sections);
-[[nodiscard]] returns<leafless_probe> bytes_probe(span<const uint8_t> bytes, span<leafless_section> sections);
-returns<void> bytes_verify(span<const uint8_t> bytes);
+[[nodiscard]] returns<leafless_probe> file_probe(const leafless_source &source,
+    span<leafless_section> sections);
+returns<void> file_verify(const leafless_source &source);
 [[nodiscard]] returns<leafless_camera> camera_fitted(span<const point> points_model, double azimuth_degrees,
     double elevation_degrees, double field_of_view_degrees, double aspect);
 [[nodiscard]] returns<std::array<uint8_t,4>> transfer_colour(const leafless_transfer &transfer,
@@ -1009,23 +985,12 @@ inline returns<std::tuple<std::vector<leafless_intersecting_pair>,
         is_complete));
 }
 
-inline returns<std::tuple<leafless_mesh_source, leafless::mesh>> mesh::open(std::string_view path,
-    const leafless_mesh_options *options) {
-    leafless_mesh_source source{};
+inline returns<std::tuple<leafless_mesh_found, leafless::mesh>> mesh::read(const leafless_source &source,
+    const leafless_mesh_options &options) {
+    leafless_mesh_found found{};
     leafless_mesh *mesh_handle = nullptr;
-    const leafless_status status = leafless_mesh_open(path.data(), path.size(), options, &source,
-        &mesh_handle);
-    return detail::finish(status, std::tuple<leafless_mesh_source, leafless::mesh>(source,
-        leafless::mesh(mesh_handle)));
-}
-
-inline returns<std::tuple<leafless_mesh_source, leafless::mesh>> mesh::from_bytes(span<const uint8_t> bytes,
-    const leafless_mesh_options *options) {
-    leafless_mesh_source source{};
-    leafless_mesh *mesh_handle = nullptr;
-    const leafless_status status = leafless_mesh_from_bytes(bytes.data(), bytes.size(), options, &source,
-        &mesh_handle);
-    return detail::finish(status, std::tuple<leafless_mesh_source, leafless::mesh>(source,
+    const leafless_status status = leafless_mesh_read(&source, &options, &found, &mesh_handle);
+    return detail::finish(status, std::tuple<leafless_mesh_found, leafless::mesh>(found,
         leafless::mesh(mesh_handle)));
 }
 
@@ -1039,31 +1004,10 @@ inline returns<std::tuple<uint64_t, std::string_view>> mesh::peek_warning_at(uin
         warning_length)));
 }
 
-inline returns<std::vector<uint8_t>> mesh::to_stl() const {
-    std::uint64_t length = 0;
-    std::vector<uint8_t> bytes;
-    leafless_status status = leafless_mesh_to_stl(get(), nullptr, 0, &length);
-    if (status == LEAFLESS_OK) {
-        bytes.resize(static_cast<std::size_t>(length));
-        status = leafless_mesh_to_stl(get(), bytes.data(), bytes.size(), &length);
-    }
-    return detail::finish(status, std::move(bytes));
-}
-
-inline returns<void> mesh::save(std::string_view path, const leafless_mesh_write_options *options) const {
-    const leafless_status status = leafless_mesh_save(get(), path.data(), path.size(), options);
+inline returns<void> mesh::write(const leafless_mesh_write_options &options,
+    const leafless_sink &sink) const {
+    const leafless_status status = leafless_mesh_write(get(), &options, &sink);
     return detail::finish(status);
-}
-
-inline returns<std::vector<uint8_t>> mesh::to_bytes(const leafless_mesh_write_options &options) const {
-    std::uint64_t length = 0;
-    std::vector<uint8_t> bytes;
-    leafless_status status = leafless_mesh_to_bytes(get(), &options, nullptr, 0, &length);
-    if (status == LEAFLESS_OK) {
-        bytes.resize(static_cast<std::size_t>(length));
-        status = leafless_mesh_to_bytes(get(), &options, bytes.data(), bytes.size(), &length);
-    }
-    return detail::finish(status, std::move(bytes));
 }
 
 inline returns<leafless::mesh> mesh::written_form(const leafless_mesh_write_options &options) const {
@@ -1539,16 +1483,9 @@ inline returns<leafless::volume> volume::view(const leafless_volume_layout &layo
     return detail::finish(status, leafless::volume(volume_handle));
 }
 
-inline returns<leafless::volume> volume::open(std::string_view path) {
+inline returns<leafless::volume> volume::read(const leafless_source &source, const leafless_source &data) {
     leafless_volume *volume_handle = nullptr;
-    const leafless_status status = leafless_volume_open(path.data(), path.size(), &volume_handle);
-    return detail::finish(status, leafless::volume(volume_handle));
-}
-
-inline returns<leafless::volume> volume::from_bytes(span<const uint8_t> bytes, span<const uint8_t> data) {
-    leafless_volume *volume_handle = nullptr;
-    const leafless_status status = leafless_volume_from_bytes(bytes.data(), bytes.size(), data.data(),
-        data.size(), &volume_handle);
+    const leafless_status status = leafless_volume_read(&source, &data, &volume_handle);
     return detail::finish(status, leafless::volume(volume_handle));
 }
 
@@ -1572,20 +1509,9 @@ inline returns<leafless::volume> volume::open_raw(std::string_view path,
     return detail::finish(status, leafless::volume(volume_handle));
 }
 
-inline returns<void> volume::save(uint32_t format, std::string_view path) const {
-    const leafless_status status = leafless_volume_save(get(), format, path.data(), path.size());
+inline returns<void> volume::write(leafless_volume_format format, const leafless_sink &sink) const {
+    const leafless_status status = leafless_volume_write(get(), format, &sink);
     return detail::finish(status);
-}
-
-inline returns<std::vector<uint8_t>> volume::to_bytes(uint32_t format) const {
-    std::uint64_t length = 0;
-    std::vector<uint8_t> bytes;
-    leafless_status status = leafless_volume_to_bytes(get(), format, nullptr, 0, &length);
-    if (status == LEAFLESS_OK) {
-        bytes.resize(static_cast<std::size_t>(length));
-        status = leafless_volume_to_bytes(get(), format, bytes.data(), bytes.size(), &length);
-    }
-    return detail::finish(status, std::move(bytes));
 }
 
 inline returns<leafless::attribute> volume::as_attribute(leafless_interpolation interpolation,
@@ -1603,31 +1529,10 @@ inline returns<leafless::mesh> volume::surface(const leafless_interval *band,
     return detail::finish(status, leafless::mesh(mesh_handle));
 }
 
-inline returns<leafless::scene> scene::open(std::string_view path) {
+inline returns<leafless::scene> scene::read(const leafless_source &source,
+    const leafless_scene_options &options) {
     leafless_scene *scene_handle = nullptr;
-    const leafless_status status = leafless_scene_open(path.data(), path.size(), &scene_handle);
-    return detail::finish(status, leafless::scene(scene_handle));
-}
-
-inline returns<leafless::scene> scene::from_bytes(span<const uint8_t> bytes, std::string_view folder) {
-    leafless_scene *scene_handle = nullptr;
-    const leafless_status status = leafless_scene_from_bytes(bytes.data(), bytes.size(), folder.data(),
-        folder.size(), &scene_handle);
-    return detail::finish(status, leafless::scene(scene_handle));
-}
-
-inline returns<leafless::scene> scene::open_with(std::string_view path,
-    const leafless_scene_options *options) {
-    leafless_scene *scene_handle = nullptr;
-    const leafless_status status = leafless_scene_open_with(path.data(), path.size(), options, &scene_handle);
-    return detail::finish(status, leafless::scene(scene_handle));
-}
-
-inline returns<leafless::scene> scene::from_bytes_with(span<const uint8_t> bytes, std::string_view folder,
-    const leafless_scene_options *options) {
-    leafless_scene *scene_handle = nullptr;
-    const leafless_status status = leafless_scene_from_bytes_with(bytes.data(), bytes.size(), folder.data(),
-        folder.size(), options, &scene_handle);
+    const leafless_status status = leafless_scene_read(&source, &options, &scene_handle);
     return detail::finish(status, leafless::scene(scene_handle));
 }
 
@@ -2012,54 +1917,14 @@ inline returns<leafless::mesh> octree::surface(const leafless_surface_options *s
     return detail::finish(status, leafless::mesh(mesh_handle));
 }
 
-inline returns<leafless::octree> octree::open(std::string_view path) {
+inline returns<leafless::octree> octree::read(const leafless_source &source) {
     leafless_octree *octree_handle = nullptr;
-    const leafless_status status = leafless_octree_open(path.data(), path.size(), &octree_handle);
+    const leafless_status status = leafless_octree_read(&source, &octree_handle);
     return detail::finish(status, leafless::octree(octree_handle));
 }
 
-inline returns<leafless::octree> octree::map(std::string_view path) {
-    leafless_octree *octree_handle = nullptr;
-    const leafless_status status = leafless_octree_map(path.data(), path.size(), &octree_handle);
-    return detail::finish(status, leafless::octree(octree_handle));
-}
-
-inline returns<leafless::octree> octree::map_verified(std::string_view path) {
-    leafless_octree *octree_handle = nullptr;
-    const leafless_status status = leafless_octree_map_verified(path.data(), path.size(), &octree_handle);
-    return detail::finish(status, leafless::octree(octree_handle));
-}
-
-inline returns<leafless::octree> octree::from_bytes(span<const uint8_t> bytes) {
-    leafless_octree *octree_handle = nullptr;
-    const leafless_status status = leafless_octree_from_bytes(bytes.data(), bytes.size(), &octree_handle);
-    return detail::finish(status, leafless::octree(octree_handle));
-}
-
-inline returns<leafless::octree> octree::view_bytes(span<const uint8_t> bytes) {
-    leafless_octree *octree_handle = nullptr;
-    const leafless_status status = leafless_octree_view_bytes(bytes.data(), bytes.size(), &octree_handle);
-    return detail::finish(status, leafless::octree(octree_handle));
-}
-
-inline returns<void> octree::save(std::string_view path) const {
-    const leafless_status status = leafless_octree_save(get(), path.data(), path.size());
-    return detail::finish(status);
-}
-
-inline returns<std::vector<uint8_t>> octree::to_bytes() const {
-    std::uint64_t length = 0;
-    std::vector<uint8_t> bytes;
-    leafless_status status = leafless_octree_to_bytes(get(), nullptr, 0, &length);
-    if (status == LEAFLESS_OK) {
-        bytes.resize(static_cast<std::size_t>(length));
-        status = leafless_octree_to_bytes(get(), bytes.data(), bytes.size(), &length);
-    }
-    return detail::finish(status, std::move(bytes));
-}
-
-inline returns<void> octree::write(leafless_write_fn write, void *ctx) const {
-    const leafless_status status = leafless_octree_write(get(), write, ctx);
+inline returns<void> octree::write(const leafless_sink &sink) const {
+    const leafless_status status = leafless_octree_write(get(), &sink);
     return detail::finish(status);
 }
 
@@ -2580,24 +2445,24 @@ inline returns<std::vector<leafless_dexel>> tridexel::ray(uint32_t axis, const r
     return detail::finish(status, std::move(dexels));
 }
 
-inline returns<void> tridexel::read(uint32_t axis, const uint32_t *first, const uint32_t *end,
+inline returns<void> tridexel::copy(uint32_t axis, const uint32_t *first, const uint32_t *end,
     uint64_t *offsets, uint64_t offset_capacity, uint64_t *offset_count, double *ends_model, double *normals,
     uint32_t *surfaces, uint32_t *materials, uint64_t interval_capacity, uint64_t *interval_count) const {
-    const leafless_status status = leafless_tridexel_read(get(), axis, first, end, offsets, offset_capacity,
+    const leafless_status status = leafless_tridexel_copy(get(), axis, first, end, offsets, offset_capacity,
         offset_count, ends_model, normals, surfaces, materials, interval_capacity, interval_count);
     return detail::finish(status);
 }
 
-inline returns<std::vector<std::array<double,2>>> tridexel::read_cells(uint32_t axis, const ray_index *first,
+inline returns<std::vector<std::array<double,2>>> tridexel::copy_cells(uint32_t axis, const ray_index *first,
     const ray_index *end) const {
     std::uint64_t interval_count = 0;
     std::vector<std::array<double,2>> ends_cells;
-    leafless_status status = leafless_tridexel_read_cells(get(), axis,
+    leafless_status status = leafless_tridexel_copy_cells(get(), axis,
         first == nullptr ? nullptr : first->data(), end == nullptr ? nullptr : end->data(), nullptr, 0,
         &interval_count);
     if (status == LEAFLESS_OK) {
         ends_cells.resize(static_cast<std::size_t>(interval_count));
-        status = leafless_tridexel_read_cells(get(), axis, first == nullptr ? nullptr : first->data(),
+        status = leafless_tridexel_copy_cells(get(), axis, first == nullptr ? nullptr : first->data(),
             end == nullptr ? nullptr : end->data(), detail::numbers(ends_cells), ends_cells.size(),
             &interval_count);
     }
@@ -2668,54 +2533,14 @@ inline returns<std::vector<leafless_long_voxel>> tridexel::voxels(const leafless
     return detail::finish(status, std::move(voxels));
 }
 
-inline returns<leafless::tridexel> tridexel::open(std::string_view path) {
+inline returns<leafless::tridexel> tridexel::read(const leafless_source &source) {
     leafless_tridexel *tridexel_handle = nullptr;
-    const leafless_status status = leafless_tridexel_open(path.data(), path.size(), &tridexel_handle);
+    const leafless_status status = leafless_tridexel_read(&source, &tridexel_handle);
     return detail::finish(status, leafless::tridexel(tridexel_handle));
 }
 
-inline returns<leafless::tridexel> tridexel::map(std::string_view path) {
-    leafless_tridexel *tridexel_handle = nullptr;
-    const leafless_status status = leafless_tridexel_map(path.data(), path.size(), &tridexel_handle);
-    return detail::finish(status, leafless::tridexel(tridexel_handle));
-}
-
-inline returns<leafless::tridexel> tridexel::map_verified(std::string_view path) {
-    leafless_tridexel *tridexel_handle = nullptr;
-    const leafless_status status = leafless_tridexel_map_verified(path.data(), path.size(), &tridexel_handle);
-    return detail::finish(status, leafless::tridexel(tridexel_handle));
-}
-
-inline returns<leafless::tridexel> tridexel::from_bytes(span<const uint8_t> bytes) {
-    leafless_tridexel *tridexel_handle = nullptr;
-    const leafless_status status = leafless_tridexel_from_bytes(bytes.data(), bytes.size(), &tridexel_handle);
-    return detail::finish(status, leafless::tridexel(tridexel_handle));
-}
-
-inline returns<leafless::tridexel> tridexel::view_bytes(span<const uint8_t> bytes) {
-    leafless_tridexel *tridexel_handle = nullptr;
-    const leafless_status status = leafless_tridexel_view_bytes(bytes.data(), bytes.size(), &tridexel_handle);
-    return detail::finish(status, leafless::tridexel(tridexel_handle));
-}
-
-inline returns<void> tridexel::save(std::string_view path) const {
-    const leafless_status status = leafless_tridexel_save(get(), path.data(), path.size());
-    return detail::finish(status);
-}
-
-inline returns<std::vector<uint8_t>> tridexel::to_bytes() const {
-    std::uint64_t length = 0;
-    std::vector<uint8_t> bytes;
-    leafless_status status = leafless_tridexel_to_bytes(get(), nullptr, 0, &length);
-    if (status == LEAFLESS_OK) {
-        bytes.resize(static_cast<std::size_t>(length));
-        status = leafless_tridexel_to_bytes(get(), bytes.data(), bytes.size(), &length);
-    }
-    return detail::finish(status, std::move(bytes));
-}
-
-inline returns<void> tridexel::write(leafless_write_fn write, void *ctx) const {
-    const leafless_status status = leafless_tridexel_write(get(), write, ctx);
+inline returns<void> tridexel::write(const leafless_sink &sink) const {
+    const leafless_status status = leafless_tridexel_write(get(), &sink);
     return detail::finish(status);
 }
 
@@ -2974,22 +2799,14 @@ inline returns<std::tuple<std::vector<uint64_t>,
         std::move(triangles)));
 }
 
-inline returns<leafless_probe> file_probe(std::string_view path, span<leafless_section> sections) {
+inline returns<leafless_probe> file_probe(const leafless_source &source, span<leafless_section> sections) {
     leafless_probe probe{};
-    const leafless_status status = leafless_file_probe(path.data(), path.size(), &probe, sections.data(),
-        sections.size());
+    const leafless_status status = leafless_file_probe(&source, &probe, sections.data(), sections.size());
     return detail::finish(status, probe);
 }
 
-inline returns<leafless_probe> bytes_probe(span<const uint8_t> bytes, span<leafless_section> sections) {
-    leafless_probe probe{};
-    const leafless_status status = leafless_bytes_probe(bytes.data(), bytes.size(), &probe, sections.data(),
-        sections.size());
-    return detail::finish(status, probe);
-}
-
-inline returns<void> bytes_verify(span<const uint8_t> bytes) {
-    const leafless_status status = leafless_bytes_verify(bytes.data(), bytes.size());
+inline returns<void> file_verify(const leafless_source &source) {
+    const leafless_status status = leafless_file_verify(&source);
     return detail::finish(status);
 }
 
@@ -3298,6 +3115,18 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     const leafless_status status = leafless_attribute_new_callbacks(&callbacks, &made);
     if (status == LEAFLESS_OK) static_cast<void>(owned.release());
     return detail::finish(status, attribute(made));
+}
+
+/// A sink that hands the pieces of a file to a function, which takes a span<const std::uint8_t> and must outlive the sink.
+template <class F> leafless_sink sink_to(F &take) {
+    const leafless_write_fn write = [](void *ctx, const std::uint8_t *bytes,
+                                       std::uint64_t count) noexcept -> std::int32_t {
+        return detail::guarded([&]() -> std::int32_t {
+            (*static_cast<F *>(ctx))(detail::array_at(bytes, count));
+            return 0;
+        });
+    };
+    return leafless_to_function(write, &take);
 }
 
 /// Calls `use` with options that tell `hear` of progress, from 0 to 1, and returns what it returns. `hear` says

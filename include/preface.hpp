@@ -15,7 +15,7 @@
 // - An array whose length only the library knows is returned as a std::vector. (It is filled in two calls.)
 // - Texts are std::string_view. What a _peek function returns belongs to the object.
 // - What may be NULL in C is a pointer here, by default nullptr where no argument without default follows.
-// - Functions of the host are lambdas, or objects with members (solid_of, half_space_of, attribute_of, with_progress,
+// - Functions of the host are lambdas, or objects with members (solid_of, half_space_of, attribute_of, sink_to, with_progress,
 //   at the end of this file). An exception inside of one ends the work. It comes out of the function of the library
 //   that called it, and never runs through the library itself.
 
