@@ -33,6 +33,12 @@ const DIMENSIONS: &[(&str, &str, usize)] = &[
 /// Functions with several arrays that may be left out. Their parameters are those of C.
 const AS_IN_C: &[&str] = &["leafless_tridexel_copy", "leafless_octree_voxels"];
 
+/// Functions whose answers have several numbers each, and how these are counted.
+const VALUES: &[(&str, &str)] = &[
+    ("leafless_attribute_values", "const std::size_t components = detail::components_of(get());"),
+    ("leafless_channel_values", "const std::size_t components = detail::components_of(get());"),
+];
+
 impl Parameter {
     fn parse(function: &str, text: &str) -> Parameter {
         let (text, array) = match text.split_once('[') {
@@ -202,6 +208,14 @@ impl Translator<'_> {
                 made.parameters.push((p.in_c(), None));
                 made.arguments.push(name.to_string());
                 i += 1;
+            } else if name == "colours" && next(1).is_some_and(|width| width.name == "width") {
+                // A picture: four bytes a pixel.
+                let qualifier = if p.is_const { "const " } else { "" };
+                made.parameters.push((format!("span<{qualifier}{base}> {name}"), None));
+                made.before
+                    .push(format!("detail::at_least(std::size_t{{4}} * width * height, {name}.size());"));
+                made.arguments.push(format!("{name}.data()"));
+                i += 1;
             } else if p.is_output()
                 && next(1).is_some_and(|capacity| capacity.name.ends_with("capacity"))
                 && (function.name.ends_with("_next") || !next(2).is_some_and(Parameter::is_count))
@@ -309,9 +323,14 @@ impl Translator<'_> {
                 // One answer for each question, where the caller wants it.
                 made.parameters.push((format!("span<{}> {name}", p.element()), None));
                 let asked = asked.expect("questions");
-                // (Values of attributes may have several numbers each.)
-                let check = if p.base == "double" { "at_least" } else { "same_size" };
-                made.before.push(format!("detail::{check}({asked}.size(), {name}.size());"));
+                match VALUES.iter().find(|(of, _)| *of == function.name) {
+                    Some((_, components)) => {
+                        made.before.push((*components).to_string());
+                        made.before
+                            .push(format!("detail::at_least({asked}.size() * components, {name}.size());"));
+                    }
+                    None => made.before.push(format!("detail::same_size({asked}.size(), {name}.size());")),
+                }
                 made.arguments.push(format!("{name}.data()"));
                 i += 1;
             } else if p.is_output()
@@ -459,7 +478,9 @@ fn write_function(
     let space = if result.ends_with('*') { "" } else { " " };
     let qualifier = if class.is_some() && made.has_self && made.is_const { " const" } else { "" };
     let is_static = if class.is_some() && !made.has_self { "static " } else { "" };
-    let discards = if returned(made) == "void" && is_fallible { "" } else { "[[nodiscard]] " };
+    // What changes its object may be called for that alone.
+    let changes = made.has_self && !made.is_const;
+    let discards = if changes || returned(made) == "void" && is_fallible { "" } else { "[[nodiscard]] " };
     let indent = if class.is_some() { "    " } else { "" };
     let declaration =
         format!("{indent}{discards}{is_static}{result}{space}{name}({}){qualifier};", parameters(true));

@@ -426,6 +426,7 @@ fn examples() {
         ("c/dexel_cuts.c", C99),
         ("c/pictures.c", C99),
         ("cpp/cut_stock.cpp", CPP17),
+        ("cpp/part.cpp", CPP17),
     ];
     for (name, standard) in examples {
         let source = root().join("examples").join(name);

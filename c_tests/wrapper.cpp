@@ -245,6 +245,11 @@ void hosts() {
     const std::array<leafless::point, 2> points = {{{0, 0, 0.25}, {0, 0, -0.5}}};
     std::array<double, 2> values = {0, 0};
     height.values(points, values);
+    try {
+        height.values(points, leafless::span<double>(values.data(), 1));
+        CHECK(false);
+    } catch (const std::invalid_argument &) {
+    }
     CHECK(values[0] == 0.25 && values[1] == -0.5 && height.components() == 1);
     struct colour {
         void values(leafless::span<const leafless::point> at, leafless::span<double> found) const {
@@ -260,6 +265,18 @@ void hosts() {
     };
     std::array<double, 6> colours = {};
     leafless::attribute_of(colour(), 3).values(points, colours);
+    try {
+        leafless::attribute_of(colour(), 3).values(points, leafless::span<double>(colours.data(), 5));
+        CHECK(false);
+    } catch (const std::invalid_argument &) {
+    }
+    // A picture that is too small for its size.
+    std::vector<std::uint8_t> small(4 * 8 * 8 - 1);
+    try {
+        leafless::picture_save(small, 8, 8, "wrapper.png");
+        CHECK(false);
+    } catch (const std::invalid_argument &) {
+    }
     CHECK(colours[2] == 0.25 && colours[5] == -0.5);
     const leafless::attribute failing = leafless::attribute_of(
         [](const leafless::point &, leafless::span<double>) { throw host_failure{7}; }, 1);

@@ -220,6 +220,16 @@ template <class T, std::size_t N> T *numbers(std::vector<std::array<T, N>> &arra
     return array.empty() ? nullptr : array.data()->data();
 }
 
+/// How many numbers a value has; the most that there may be, if that is not told.
+inline std::size_t components_of(const leafless_attribute *attribute) noexcept {
+    std::uint32_t components = 4;
+    return leafless_attribute_components(attribute, &components) == LEAFLESS_OK ? components : 4;
+}
+inline std::size_t components_of(const leafless_channel *channel) noexcept {
+    leafless_channel_info info{};
+    return leafless_channel_describe(channel, &info) == LEAFLESS_OK ? info.components : 4;
+}
+
 inline std::string_view text(const char *data, std::size_t size) noexcept {
     return data == nullptr ? std::string_view() : std::string_view(data, size);
 }
@@ -568,8 +578,8 @@ class point_cursor : public detail::owner<leafless_point_cursor, leafless_point_
 public:
     using owner::owner;
     [[nodiscard]] static returns<leafless::point_cursor> make(const leafless::octree &octree);
-    [[nodiscard]] returns<leafless_membership> contains(const point &point_model);
-    [[nodiscard]] returns<leafless_tag> tag_at(const cell_index &cell);
+    returns<leafless_membership> contains(const point &point_model);
+    returns<leafless_tag> tag_at(const cell_index &cell);
 };
 
 /// A leafless_point_table.
@@ -588,9 +598,9 @@ public:
     using owner::owner;
     [[nodiscard]] static returns<leafless::cursor> make(const leafless::octree &octree);
     [[nodiscard]] returns<leafless_cursor_state> read() const;
-    [[nodiscard]] returns<bool> descend(uint32_t octant);
-    [[nodiscard]] returns<bool> ascend();
-    [[nodiscard]] returns<bool> seek(const cell_index &cell, uint32_t level);
+    returns<bool> descend(uint32_t octant);
+    returns<bool> ascend();
+    returns<bool> seek(const cell_index &cell, uint32_t level);
     [[nodiscard]] returns<std::tuple<leafless_cell,
         bool>> neighbour(const std::array<int32_t,3> &direction) const;
     [[nodiscard]] returns<std::vector<leafless_cell>> neighbours(const std::array<int32_t,3> &direction) const;
@@ -604,7 +614,7 @@ public:
         uint32_t min_level, uint32_t max_level, const cell_index *min_cell = nullptr,
         const cell_index *max_cell = nullptr);
     returns<void> seek(const cell_index &cell, uint32_t level);
-    [[nodiscard]] returns<uint64_t> next(span<leafless_cell> buffer);
+    returns<uint64_t> next(span<leafless_cell> buffer);
 };
 
 /// A leafless_faces.
@@ -615,7 +625,7 @@ public:
         uint32_t min_level, uint32_t max_level, const cell_index *min_cell = nullptr,
         const cell_index *max_cell = nullptr);
     returns<void> seek(const cell_index &cell, uint32_t level);
-    [[nodiscard]] returns<uint64_t> next(span<leafless_boundary_face> buffer);
+    returns<uint64_t> next(span<leafless_boundary_face> buffer);
 };
 
 /// A leafless_columns.
@@ -634,14 +644,14 @@ public:
         const leafless_frame &frame);
     [[nodiscard]] static returns<leafless::lazy> resume(const leafless::octree &octree,
         const leafless::solid &solid, const leafless_frame &frame, const leafless_options *options = nullptr);
-    [[nodiscard]] returns<std::array<leafless_tag,8>> split(const cell_index &cell, uint32_t level);
-    [[nodiscard]] returns<bool> refine(uint32_t level, const leafless_options *options = nullptr);
-    [[nodiscard]] returns<bool> refine_box(const point &min_model, const point &max_model, uint32_t level,
+    returns<std::array<leafless_tag,8>> split(const cell_index &cell, uint32_t level);
+    returns<bool> refine(uint32_t level, const leafless_options *options = nullptr);
+    returns<bool> refine_box(const point &min_model, const point &max_model, uint32_t level,
         const leafless_options *options = nullptr);
-    [[nodiscard]] returns<bool> refine_point(const point &point_model, uint32_t level,
+    returns<bool> refine_point(const point &point_model, uint32_t level,
         const leafless_options *options = nullptr);
-    [[nodiscard]] returns<bool> refine_ray(const point &origin_model, const point &direction_model,
-        double from, double to, uint32_t level, const leafless_options *options = nullptr);
+    returns<bool> refine_ray(const point &origin_model, const point &direction_model, double from, double to,
+        uint32_t level, const leafless_options *options = nullptr);
     [[nodiscard]] returns<std::tuple<leafless_tag, bool>> tag(const cell_index &cell, uint32_t level) const;
     [[nodiscard]] returns<leafless_membership> contains(const point &point_model) const;
     [[nodiscard]] returns<leafless_statistics> statistics() const;
@@ -826,12 +836,13 @@ returns<void> voxels_solid_parts(const leafless_frame &lattice, span<const uint6
     double y);
 returns<void> picture_render(const leafless_shot &shot, span<const leafless_layer *const> layers,
     const leafless_options *options, span<uint8_t> colours, span<float> depths);
-returns<void> picture_save(const uint8_t *colours, uint32_t width, uint32_t height, std::string_view path);
-[[nodiscard]] returns<std::vector<uint8_t>> picture_to_bytes(const uint8_t *colours, uint32_t width,
+returns<void> picture_save(span<const uint8_t> colours, uint32_t width, uint32_t height,
+    std::string_view path);
+[[nodiscard]] returns<std::vector<uint8_t>> picture_to_bytes(span<const uint8_t> colours, uint32_t width,
     uint32_t height);
-[[nodiscard]] returns<std::tuple<uint8_t, leafless_legend_box>> picture_draw_bar(uint32_t width,
+[[nodiscard]] returns<leafless_legend_box> picture_draw_bar(span<uint8_t> colours, uint32_t width,
     uint32_t height, std::string_view title, const leafless_transfer &transfer, leafless_legend_side side);
-[[nodiscard]] returns<std::tuple<uint8_t, leafless_legend_box>> picture_draw_names(uint32_t width,
+[[nodiscard]] returns<leafless_legend_box> picture_draw_names(span<uint8_t> colours, uint32_t width,
     uint32_t height, std::string_view title, span<const leafless_legend_name> names,
     leafless_legend_side side);
 
@@ -2198,7 +2209,8 @@ inline returns<uint32_t> attribute::components() const {
 }
 
 inline returns<void> attribute::values(span<const point> points_model, span<double> values) const {
-    detail::at_least(points_model.size(), values.size());
+    const std::size_t components = detail::components_of(get());
+    detail::at_least(points_model.size() * components, values.size());
     const leafless_status status = leafless_attribute_values(get(), detail::numbers(points_model),
         points_model.size(), values.data());
     return detail::finish(status);
@@ -2296,7 +2308,8 @@ inline returns<leafless::channel> channel::fill(const leafless::attribute &attri
 }
 
 inline returns<void> channel::values(span<const point> points_model, span<double> values) const {
-    detail::at_least(points_model.size(), values.size());
+    const std::size_t components = detail::components_of(get());
+    detail::at_least(points_model.size() * components, values.size());
     const leafless_status status = leafless_channel_values(get(), detail::numbers(points_model),
         points_model.size(), values.data());
     return detail::finish(status);
@@ -2830,7 +2843,7 @@ inline returns<void> voxels_solid_parts(const leafless_frame &lattice, span<cons
     const leafless_options *options, span<double> parts) {
     detail::same_size(codes.size(), levels.size());
     detail::same_size(codes.size(), kinds.size());
-    detail::at_least(codes.size(), parts.size());
+    detail::same_size(codes.size(), parts.size());
     const leafless_status status = leafless_voxels_solid_parts(&lattice, codes.data(), levels.data(),
         kinds.data(), codes.size(), solid.get(), options, parts.data());
     return detail::finish(status);
@@ -2851,40 +2864,44 @@ inline returns<void> picture_render(const leafless_shot &shot, span<const leafle
     return detail::finish(status);
 }
 
-inline returns<void> picture_save(const uint8_t *colours, uint32_t width, uint32_t height,
+inline returns<void> picture_save(span<const uint8_t> colours, uint32_t width, uint32_t height,
     std::string_view path) {
-    const leafless_status status = leafless_picture_save(colours, width, height, path.data(), path.size());
+    detail::at_least(std::size_t{4} * width * height, colours.size());
+    const leafless_status status = leafless_picture_save(colours.data(), width, height, path.data(),
+        path.size());
     return detail::finish(status);
 }
 
-inline returns<std::vector<uint8_t>> picture_to_bytes(const uint8_t *colours, uint32_t width,
+inline returns<std::vector<uint8_t>> picture_to_bytes(span<const uint8_t> colours, uint32_t width,
     uint32_t height) {
+    detail::at_least(std::size_t{4} * width * height, colours.size());
     std::uint64_t length = 0;
     std::vector<uint8_t> bytes;
-    leafless_status status = leafless_picture_to_bytes(colours, width, height, nullptr, 0, &length);
+    leafless_status status = leafless_picture_to_bytes(colours.data(), width, height, nullptr, 0, &length);
     if (status == LEAFLESS_OK) {
         bytes.resize(static_cast<std::size_t>(length));
-        status = leafless_picture_to_bytes(colours, width, height, bytes.data(), bytes.size(), &length);
+        status = leafless_picture_to_bytes(colours.data(), width, height, bytes.data(), bytes.size(),
+            &length);
     }
     return detail::finish(status, std::move(bytes));
 }
 
-inline returns<std::tuple<uint8_t, leafless_legend_box>> picture_draw_bar(uint32_t width, uint32_t height,
+inline returns<leafless_legend_box> picture_draw_bar(span<uint8_t> colours, uint32_t width, uint32_t height,
     std::string_view title, const leafless_transfer &transfer, leafless_legend_side side) {
-    uint8_t colours{};
+    detail::at_least(std::size_t{4} * width * height, colours.size());
     leafless_legend_box covered{};
-    const leafless_status status = leafless_picture_draw_bar(&colours, width, height, title.data(),
+    const leafless_status status = leafless_picture_draw_bar(colours.data(), width, height, title.data(),
         title.size(), &transfer, side, &covered);
-    return detail::finish(status, std::tuple<uint8_t, leafless_legend_box>(colours, covered));
+    return detail::finish(status, covered);
 }
 
-inline returns<std::tuple<uint8_t, leafless_legend_box>> picture_draw_names(uint32_t width, uint32_t height,
+inline returns<leafless_legend_box> picture_draw_names(span<uint8_t> colours, uint32_t width, uint32_t height,
     std::string_view title, span<const leafless_legend_name> names, leafless_legend_side side) {
-    uint8_t colours{};
+    detail::at_least(std::size_t{4} * width * height, colours.size());
     leafless_legend_box covered{};
-    const leafless_status status = leafless_picture_draw_names(&colours, width, height, title.data(),
+    const leafless_status status = leafless_picture_draw_names(colours.data(), width, height, title.data(),
         title.size(), names.data(), names.size(), side, &covered);
-    return detail::finish(status, std::tuple<uint8_t, leafless_legend_box>(colours, covered));
+    return detail::finish(status, covered);
 }
 
 // ---- functions of the host ----------------------------------------------------------------------------------

@@ -220,6 +220,16 @@ template <class T, std::size_t N> T *numbers(std::vector<std::array<T, N>> &arra
     return array.empty() ? nullptr : array.data()->data();
 }
 
+/// How many numbers a value has; the most that there may be, if that is not told.
+inline std::size_t components_of(const leafless_attribute *attribute) noexcept {
+    std::uint32_t components = 4;
+    return leafless_attribute_components(attribute, &components) == LEAFLESS_OK ? components : 4;
+}
+inline std::size_t components_of(const leafless_channel *channel) noexcept {
+    leafless_channel_info info{};
+    return leafless_channel_describe(channel, &info) == LEAFLESS_OK ? info.components : 4;
+}
+
 inline std::string_view text(const char *data, std::size_t size) noexcept {
     return data == nullptr ? std::string_view() : std::string_view(data, size);
 }
