@@ -4,11 +4,13 @@ pub(crate) mod bounds;
 mod host;
 pub(crate) mod linear;
 pub(crate) mod lines;
+pub(crate) mod literals;
 pub(crate) mod map;
 mod plane;
 pub(crate) mod points;
 pub(crate) mod power;
 pub(crate) mod quadric;
+pub(crate) mod table;
 pub(crate) mod tangent;
 pub(crate) mod torus;
 

@@ -7,7 +7,7 @@ use crate::cut;
 use crate::error::Error;
 use crate::lattice::{Cell, Interval};
 use crate::solid::Ask;
-use crate::solid::half_space::bounds::{centre, half_edge};
+use crate::solid::half_space::literals::most_area;
 
 impl Scratch {
     /// Bounds of the area of the boundary in a cell; `None` if too little is known of an operand that is open there.
@@ -47,24 +47,14 @@ impl Scratch {
     }
 
     fn area_of_half_spaces(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Interval> {
-        let taylor = |index: u32| program.half_spaces[index as usize].taylor(centre(cell), half_edge(cell));
-        // A union has the boundary of the complements' intersection.
-        if let Some((literals, false, _)) = self.literals(program, part) {
-            let mut surfaces = [None; 3];
-            for (surface, (index, complement)) in surfaces.iter_mut().zip(literals.into_iter().flatten()) {
-                let own = taylor(index)?;
-                *surface = Some(if complement { own.complement() } else { own });
-            }
-            return Some(match &surfaces {
-                [Some(surface), None, None] => cut::area_of_surface(surface),
-                _ => cut::area_of_faces(&surfaces),
-            });
+        let half_spaces = &*program.half_spaces;
+        if let Some(known) = self.literals(program, part).and_then(|literals| literals.area(half_spaces, cell)) {
+            return Some(known);
         }
         if !part.is_table() {
             return None;
         }
-        let half_spaces = Scratch::table_of(Scratch::list(program, &self.words, part)).0.iter();
-        let areas = half_spaces.map(|word| Some(cut::area_of_surface(&taylor(word.variable().1)?).upper));
-        Some(Interval::between(0.0, areas.sum::<Option<f64>>()?))
+        let variables = Scratch::table_of(Scratch::list(program, &self.words, part)).0;
+        most_area(variables.iter().map(|word| &half_spaces[word.variable().1 as usize]), cell)
     }
 }

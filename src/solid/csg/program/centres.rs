@@ -2,13 +2,13 @@
 
 use super::Program;
 use super::kleene::Kleene;
-use super::table::Table;
 use super::word::Op;
 use super::worker::{CsgPart, Scratch};
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::solid::csg::Join;
 use crate::solid::half_space::bounds::{Octants, centre};
+use crate::solid::half_space::table::Table;
 use crate::solid::{Ask, Verdict, Worker};
 
 impl Scratch {

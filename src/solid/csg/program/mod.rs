@@ -10,10 +10,8 @@ mod distinct;
 mod hierarchy;
 mod kleene;
 mod lone;
-mod moments;
 mod slabs;
 mod split;
-mod table;
 pub(crate) mod word;
 mod worker;
 

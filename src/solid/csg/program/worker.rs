@@ -4,8 +4,6 @@ use super::Program;
 use super::at_hand::AtHand;
 use super::hierarchy::Taken;
 use super::kleene::Kleene;
-use super::table;
-use super::table::Table;
 use super::word::{Op, Word};
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -15,6 +13,8 @@ use crate::solid::csg::Join;
 use crate::solid::erased::ErasedPart;
 use crate::solid::half_space::bounds::Octants;
 use crate::solid::half_space::points;
+use crate::solid::half_space::table;
+use crate::solid::half_space::table::Table;
 use crate::solid::{AnyWorker, Batch, Classifier, OCTANTS, Parts, Verdict, Worker};
 use alloc::vec::Vec;
 

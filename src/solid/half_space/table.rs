@@ -1,6 +1,6 @@
 //! What remains of an expression in a cell that few half-spaces cut: its truth table.
 
-use crate::solid::half_space::bounds::Sides;
+use super::bounds::Sides;
 
 /// Most half-spaces of a table: 2^6 combinations are the bits of one word.
 pub(crate) const MOST: usize = 6;
