@@ -756,6 +756,9 @@ pub enum Damage {
         /// Index of the value.
         index: u64,
     },
+    /// The cuts of an octree are not those that its PARTIAL cells determine, or a surface is none.
+    #[error("the cuts of the octree do not fit its cells, or a surface of theirs is none")]
+    Cuts,
     /// The level table does not describe the tree.
     #[error("the level table is wrong at level {level}")]
     LevelTable {

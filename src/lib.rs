@@ -124,7 +124,10 @@ pub use error::Error;
 pub use lattice::{Affine, Bounds, Cell, Frame, Interval};
 pub use mesh::{FillRule, TriangleMesh};
 pub use octree::{Metadata, Octree, OctreeRef, Proof, Tag};
-pub use op::{LazyOctree, Rule, build, compact, complement, dexelize, difference, intersection, union, xor};
+pub use op::{
+    LazyOctree, Rule, SurfaceOptions, build, build_extended, compact, complement, dexelize, difference,
+    intersection, union, xor,
+};
 pub use query::{
     Clearance, Interference, MassProperties, Membership, Ray, Tolerance, bounding_box, cast_rays, clearance,
     contains, interference, measure,

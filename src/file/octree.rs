@@ -67,6 +67,11 @@ impl Stored for Octree {
     }
 
     fn prepare(&self) -> Result<Option<OwnedBricks>, Error> {
+        if self.view().cuts.is_some() {
+            // (What cannot be kept is not dropped in silence.)
+            let problem = "keeps surfaces, for which files have no place yet; without_cuts leaves them out";
+            return Err(Error::Argument { name: "octree", problem });
+        }
         dictionary::encode(&self.view().bricks)
     }
 
@@ -102,7 +107,8 @@ impl Stored for Octree {
 ///
 /// # Errors
 /// [`Error::Damaged`] if the tree, or a channel of it, is a mapped one that nobody has verified, and is
-/// damaged; [`Error::Argument`] if the metadata take more than 1 MiB, or those of a channel more than 64 KiB;
+/// damaged; [`Error::Argument`] if the metadata take more than 1 MiB, or those of a channel more than 64 KiB, or the tree keeps
+/// surfaces ([`build_extended`](crate::build_extended)), for which files have no place yet;
 /// [`Error::OutOfMemory`].
 pub fn to_bytes(octree: &Octree) -> Result<Vec<u8>, Error> {
     write::to_bytes(octree)

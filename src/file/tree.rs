@@ -73,6 +73,7 @@ pub(super) fn view<'a>(
         starts: *starts,
         table: Some(sections.array(bytes, Kind::Levels)?),
         is_linked: false,
+        cuts: None,
     })
 }
 

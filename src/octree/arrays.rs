@@ -1,6 +1,7 @@
 //! The arrays of a tree in memory.
 
 use super::brick::OwnedBricks;
+use super::cuts::Cuts;
 use super::proof::Proof;
 use super::tag::Tag;
 use super::view::{MAX_ELEMENT_LEVELS, OctreeRef, element_levels};
@@ -21,6 +22,8 @@ pub(crate) struct Arrays {
     pub starts: [usize; MAX_ELEMENT_LEVELS + 1],
     /// Whether the links are those that the planes determine.
     pub is_linked: bool,
+    /// What PARTIAL cells keep of surfaces.
+    pub cuts: Option<Cuts>,
 }
 
 impl Arrays {
@@ -57,7 +60,7 @@ impl Arrays {
                 next += planes.branch().count_ones() as usize;
             }
         }
-        Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts, is_linked: true })
+        Ok(Arrays { frame, root, exterior, planes, rel, base, bricks, starts, is_linked: true, cuts: None })
     }
 
     pub(crate) fn view(&self) -> OctreeRef<'_> {
@@ -73,6 +76,7 @@ impl Arrays {
             starts: self.starts,
             table: None,
             is_linked: self.is_linked,
+            cuts: self.cuts.as_ref().map(Cuts::view),
         }
     }
 }

@@ -39,6 +39,7 @@ impl OctreeRef<'_> {
             (false, false) => return Err(Damage::NeedlessPlane.into()),
             _ => {}
         }
+        self.check_cuts()?;
         if let Some(table) = self.table {
             let counts = self.count_levels();
             let wrong =

@@ -3,6 +3,7 @@
 use super::Channel;
 use super::arrays::Arrays;
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
+use super::cuts::CutsRef;
 use super::dictionary;
 use super::metadata::Metadata;
 use super::proof::Proof;
@@ -84,6 +85,7 @@ impl Octree {
             },
             starts: tree.starts,
             is_linked: tree.is_linked,
+            cuts: tree.cuts.as_ref().map(CutsRef::copied).transpose()?,
         });
         Ok(recoded.with_proof(tree.proof))
     }
@@ -144,6 +146,14 @@ impl Octree {
     pub fn with_proof(&self, proof: Proof) -> Octree {
         let mut octree = self.clone();
         octree.arrays.with_mut(move |view| view.proof = proof);
+        octree
+    }
+
+    /// The same tree without cuts: what its planes say; the arrays are shared.
+    #[must_use]
+    pub fn without_cuts(&self) -> Octree {
+        let mut octree = self.clone();
+        octree.arrays.with_mut(|view| view.cuts = None);
         octree
     }
 
@@ -247,6 +257,7 @@ impl PartialEq for Octree {
         a.frame == b.frame
             && (a.root, a.exterior) == (b.root, b.exterior)
             && a.planes == b.planes
+            && a.cuts == b.cuts
             && a.bricks.len() == b.bricks.len()
             && (0..a.bricks.len()).all(|i| a.bricks.get(i) == b.bricks.get(i))
     }

@@ -1,6 +1,7 @@
 //! The borrowed view on which all reading code is written.
 
 use super::brick::Bricks;
+use super::cuts::CutsRef;
 use super::proof::Proof;
 use super::tag::Tag;
 use super::word::Planes;
@@ -89,6 +90,8 @@ pub struct OctreeRef<'a> {
     pub(crate) table: Option<&'a [LevelCounts]>,
     /// Whether all links are known to be sound: they were made here or checked, and nobody else can change them.
     pub(crate) is_linked: bool,
+    /// What PARTIAL cells keep of the surfaces that cross them, if they do.
+    pub(crate) cuts: Option<CutsRef<'a>>,
 }
 
 impl<'a> OctreeRef<'a> {

@@ -7,6 +7,7 @@
 
 use super::arrays::Arrays;
 use super::brick::{Brick, BrickArray, Bricks, OwnedArray, OwnedBricks};
+use super::cuts::Cuts;
 use super::links::Windows;
 use super::octree::Octree;
 use super::tag::Tag;
@@ -346,7 +347,22 @@ impl<'j> Writer<'j> {
 
     /// Makes the tree: concatenates the levels and ranks the children. `root` is what the last
     /// [`put`](Self::put) of level 0 returned.
-    pub(crate) fn finish(mut self, frame: Frame, root: Tag, exterior: Tag) -> Result<Octree, Error> {
+    pub(crate) fn finish(self, frame: Frame, root: Tag, exterior: Tag) -> Result<Octree, Error> {
+        Ok(Octree::new(self.arrays(frame, root, exterior)?))
+    }
+
+    /// The same with cuts.
+    pub(crate) fn finish_with(
+        self,
+        frame: &Frame,
+        root: Tag,
+        exterior: Tag,
+        cuts: Cuts,
+    ) -> Result<Octree, Error> {
+        Ok(Octree::new(Arrays { cuts: Some(cuts), ..self.arrays(*frame, root, exterior)? }))
+    }
+
+    fn arrays(mut self, frame: Frame, root: Tag, exterior: Tag) -> Result<Arrays, Error> {
         self.report()?;
         let mut starts = [0; MAX_ELEMENT_LEVELS + 1];
         let total = self.levels.iter().map(Chunks::len).sum();
@@ -379,7 +395,7 @@ impl<'j> Writer<'j> {
             }
         };
         starts[levels..].fill(planes.len() + bricks.len());
-        Ok(Octree::new(Arrays::link(frame, root, exterior, planes, bricks, starts)?))
+        Arrays::link(frame, root, exterior, planes, bricks, starts)
     }
 }
 

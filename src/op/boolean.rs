@@ -514,6 +514,7 @@ mod tests {
             starts,
             table: None,
             is_linked: false,
+            cuts: None,
         })
     }
 

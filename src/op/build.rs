@@ -69,13 +69,14 @@ pub(crate) fn build_on<C: Classifier>(
     })
 }
 
-/// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`].
+/// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`]. Cells are meant: what they
+/// keep of surfaces is dropped.
 ///
 /// # Errors
 /// [`Error::NotSampled`] under [`Rule::Sampled`] if a cell is PARTIAL, because a stored tree knows no more
 /// about it; and what `control` asks for.
 pub fn resolve(tree: &OctreeRef<'_>, rule: Rule, control: &Control<'_>) -> Result<Octree, Error> {
-    build(tree, tree.frame(), rule, control)
+    build(&tree.without_cuts(), tree.frame(), rule, control)
 }
 
 /// The same tree with its bricks encoded as a file would have them, through a dictionary where that is

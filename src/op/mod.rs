@@ -5,6 +5,7 @@ mod build;
 mod dexel_centres;
 mod dexel_edit;
 mod dexelize;
+mod extended;
 mod lazy;
 mod rule;
 
@@ -14,5 +15,6 @@ use build::build_on;
 pub use build::{build, compact, resolve};
 pub use dexel_centres::octree_from_dexels;
 pub use dexelize::{DexelOptions, dexelize};
+pub use extended::{SurfaceOptions, build_extended};
 pub use lazy::{LazyOctree, Refinement};
 pub use rule::Rule;

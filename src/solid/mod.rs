@@ -17,6 +17,7 @@
 //! | answers [`Question::Enclosure`] | second order: volume, centroid and inertia to N^-1 (plane faces: N^-2), a bounding box in some hundred splits, rays and vertices to a curvature times a cell's square, octrees that end where the surface is known to a tolerance ([`Adaptive`]) |
 //! | answers [`Question::Moments`], [`Question::Area`] | third order: volume and moments to N^-1.5, areas |
 //! | answers [`Question::Crossing`] | vertices of surfaces on the surface, with normals, without a search |
+//! | answers [`Question::Surfaces`], [`WholeQuestion::Surfaces`] | extended octrees that keep the surfaces, and are as exact as the solid |
 //! | answers [`Question::Chords`], writes [`fill`](Worker::fill) | nothing but speed: tri-dexel models, octrees |
 //! | writes [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for functions that take long; points without a descent ([`Batch::inside`]); cells without the way to them ([`Batch::recall`]) |
 //! | writes [`Parts`] in place of [`FreeParts`] | parts that are lists in scratch memory, so that children look only at what cut their parent |
@@ -44,7 +45,7 @@ mod subtree;
 // Producers: none knows another one. (Half-spaces are no solid by themselves; expressions are made of them.)
 mod callback;
 mod csg;
-mod half_space;
+pub(crate) mod half_space;
 mod mesh;
 pub(crate) mod stored;
 mod volume;
@@ -67,7 +68,7 @@ pub use csg::{Csg, Touch};
 pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};
 pub use erased::{AnyClassifier, AnySolid, AnyWorker, Erasable};
 pub use fingerprint::{Fingerprint, Fingerprinter};
-pub use half_space::HalfSpace;
+pub use half_space::{HalfSpace, OpenSurfaces, PlacedHalfSpace};
 pub use mesh::MeshSolid;
 pub use motion::Motion;
 pub use parts::{FreeParts, Parts};

@@ -1,10 +1,11 @@
 //! What may be asked of a solid beside its cells.
 
-use super::{Classifier, Crossing, Enclosure, Segment, Worker};
+use super::{Classifier, Crossing, Enclosure, OpenSurfaces, PlacedHalfSpace, Segment, Worker};
 use crate::control::Control;
 use crate::dexel::Beam;
 use crate::error::Error;
 use crate::lattice::{Cell, CellMoments, Interval, VolumeMoments};
+use alloc::vec::Vec;
 
 /// A question about one PARTIAL cell, with the place for the answer, in which nothing is to be before. Nothing is put there where
 /// nothing is known.
@@ -35,8 +36,11 @@ pub enum Question<'q> {
     /// Where rays through the centres of finest cells enter and leave the solid in the cell, if that is known for all rays that
     /// the beam asks for.
     Chords(Chords<'q>),
-    // The next thing to be known of a cell has its place here: which surfaces cross it, and which function of their signs the
-    // solid is.
+
+    /// Which surfaces of the classifier's list ([`WholeQuestion::Surfaces`]) cross the cell, and which function of their signs the
+    /// solid is, by the law that [`OpenSurfaces`] states. Nothing if there are too many, the solid is made otherwise, or nobody has
+    /// asked for the list yet.
+    Surfaces(&'q mut Option<OpenSurfaces>),
 }
 
 /// The place for intervals of rays.
@@ -67,6 +71,7 @@ impl<'q> Question<'q> {
             Question::Enclosure(known) => *known = known.map(|known| known.complement()),
             Question::Moments(known) => *known = known.map(|known| known.complement()),
             Question::Area(_) => {}
+            Question::Surfaces(known) => *known = known.map(|known| known.complement()),
             Question::Crossing(_, known) => *known = known.map(|known| known.complement()),
             Question::Chords(Chords { beam, found, first }) => {
                 if *found {
@@ -88,6 +93,7 @@ impl<'q> Question<'q> {
             Question::Chords(Chords { beam, found, first }) => {
                 Question::Chords(Chords { beam, found, first: *first })
             }
+            Question::Surfaces(known) => Question::Surfaces(known),
         }
     }
 }
@@ -164,6 +170,17 @@ pub trait Ask: Worker {
         self.answer(cell, part, Question::chords(beam, &mut found))?;
         Ok(found)
     }
+
+    /// Which surfaces cross a PARTIAL cell, and which function of them the solid is: [`Question::Surfaces`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline(always)]
+    fn surfaces(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<OpenSurfaces>, Error> {
+        let mut known = None;
+        self.answer(cell, part, Question::Surfaces(&mut known))?;
+        Ok(known)
+    }
 }
 
 impl<W: Worker + ?Sized> Ask for W {}
@@ -181,6 +198,10 @@ pub enum WholeQuestion<'q> {
     /// Whether no piece of the boundary lies in a plane of the lattice, so that all area of the boundary lies in open PARTIAL
     /// cells. The flag is set if that is known.
     OffLattice(&'q mut bool),
+
+    /// The surfaces that cells are crossed by, which [`Question::Surfaces`] tells by their places in this list. Surfaces may be
+    /// equal.
+    Surfaces(&'q mut Option<Vec<PlacedHalfSpace>>),
 }
 
 /// The questions about whole shapes as functions. Every classifier has them, and none can change them: they ask
@@ -203,6 +224,16 @@ pub trait AskWhole: Classifier {
     fn area(&self, control: &Control<'_>) -> Result<Option<Interval>, Error> {
         let mut known = None;
         self.answer_whole(WholeQuestion::Area(&mut known), control)?;
+        Ok(known)
+    }
+
+    /// The surfaces that cells are crossed by, if the shape is made of such: [`WholeQuestion::Surfaces`].
+    ///
+    /// # Errors
+    /// As [`moments`](Self::moments).
+    fn surfaces(&self, control: &Control<'_>) -> Result<Option<Vec<PlacedHalfSpace>>, Error> {
+        let mut known = None;
+        self.answer_whole(WholeQuestion::Surfaces(&mut known), control)?;
         Ok(known)
     }
 

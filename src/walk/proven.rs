@@ -157,7 +157,11 @@ impl<W: Worker> Worker for ProvenWorker<W> {
                     }
                 }
             }
-            Question::Moments(_) | Question::Area(_) | Question::Crossing(..) | Question::Chords(_) => {}
+            Question::Moments(_)
+            | Question::Area(_)
+            | Question::Crossing(..)
+            | Question::Chords(_)
+            | Question::Surfaces(_) => {}
         }
         Ok(())
     }

@@ -19,8 +19,8 @@ use leafless::surface::DexelSolid;
 use leafless::voxel::{Symmetry, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelSolid};
 use leafless::{
     Affine, AnySolid, Bounds, Callback, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid,
-    Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Volume, build, compact, complement, dexelize,
-    difference, file, intersection, marching_cubes, union, xor,
+    Metadata, Octree, Proof, Rule, Solid, SurfaceOptions, Tag, Verdict, Volume, build, build_extended,
+    compact, complement, dexelize, difference, file, intersection, marching_cubes, union, xor,
 };
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -374,6 +374,39 @@ const WAYS: &[Way] = &[
         name: "in an expression",
         through: &["Csg", "AnySolid", "solid/csg/mod.rs solid", "solid/any.rs new"],
         make: |a| asked(&a.csg()),
+        proven: SAME,
+    },
+    Way {
+        name: "extended",
+        through: &["Octree", "op/extended.rs build_extended"],
+        make: |a| of_ball(build_extended(&a.tree, &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?),
+        proven: SAME,
+    },
+    Way {
+        name: "extended expression",
+        through: &["solid/csg/mod.rs union_of", "op/extended.rs build_extended"],
+        make: |a| {
+            let csg = Csg::union_of([a.csg(), a.other_csg()])?;
+            of(build_extended(&csg, &frame(DEPTH), &SurfaceOptions { tolerance: Some(0.01) }, &CONTROL)?, or)
+        },
+        proven: SAME,
+    },
+    Way {
+        name: "extended without cuts",
+        through: &["octree/octree.rs without_cuts"],
+        make: |a| {
+            let tree = build_extended(&a.csg(), &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?;
+            of_ball(tree.without_cuts())
+        },
+        proven: SAME,
+    },
+    Way {
+        name: "built of extended",
+        through: &["op/extended.rs build_extended", "op/build.rs build"],
+        make: |a| {
+            let tree = build_extended(&a.csg(), &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?;
+            of_ball(build(&tree, &frame(DEPTH), Rule::Certified, &CONTROL)?)
+        },
         proven: SAME,
     },
     Way {

@@ -100,9 +100,9 @@ fn many_small_bodies_on_a_mesh_are_walked_depth_first() {
         let cube = Csg::solid(unit_cube());
         let of = |csg: &Csg| build(csg, &around_cube(7), Rule::Certified, &alone()).unwrap();
         let both = of(&Csg::intersection_of([cube.clone(), balls.clone()]).unwrap());
-        let apart = intersection(&of(&cube).view(), &of(&balls).view(), &alone()).unwrap();
-        let lies = difference(&both.view(), &apart.view(), &alone()).unwrap().statistics().volume().lower
-            + difference(&apart.view(), &both.view(), &alone()).unwrap().statistics().volume().lower;
+        let apart = intersection(of(&cube).view(), of(&balls).view(), &alone()).unwrap();
+        let lies = difference(both.view(), apart.view(), &alone()).unwrap().statistics().volume().lower
+            + difference(apart.view(), both.view(), &alone()).unwrap().statistics().volume().lower;
         assert_eq!(lies, 0.0);
         assert!(both.statistics().volume().width() <= apart.statistics().volume().width());
     }

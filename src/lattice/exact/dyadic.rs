@@ -1,6 +1,7 @@
 //! Integers times powers of two. Every double is one, and so are sums and products of them. All of it is
 //! cold.
 
+use crate::memory;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -111,6 +112,56 @@ impl Dyadic {
         if self.sign() < 0 { -magnitude } else { magnitude }
     }
 
+    /// Doubles whose sum is exactly this, the largest first, each at most 2^-53 of the one before; none for zero. `None` if
+    /// there are more than `most`, or the number reaches beyond the doubles.
+    pub(crate) fn expansion(&self, most: usize) -> Option<Vec<f64>> {
+        let mut terms = Vec::new();
+        let mut rest = self.clone();
+        while !rest.is_zero() {
+            // The nearest of the doubles on both sides.
+            let inner = rest.rounded();
+            let outer = if inner > 0.0 { inner.next_up() } else { inner.next_down() };
+            if terms.len() == most || !outer.is_finite() || inner == 0.0 {
+                return None;
+            }
+            let [to_inner, to_outer] = [inner, outer].map(|term| &rest - &Dyadic::new(term));
+            let is_outer = (&to_inner + &to_outer).sign() == rest.sign();
+            memory::push(&mut terms, if is_outer { outer } else { inner }).ok()?;
+            rest = if is_outer { to_outer } else { to_inner };
+        }
+        Some(terms)
+    }
+
+    /// The exact sum of doubles.
+    pub(crate) fn sum(terms: &[f64]) -> Dyadic {
+        terms.iter().fold(Dyadic::zero(), |sum, &term| &sum + &Dyadic::new(term))
+    }
+
+    /// Divides numbers by what they have in common, so that they are integers without a common factor, of which the first that
+    /// is not zero is positive; whether that changed the signs. Numbers are proportional just if the same comes of them.
+    pub(crate) fn make_primitive(numbers: &mut [Dyadic]) -> bool {
+        let grain = numbers.iter().filter_map(Dyadic::grain).min().unwrap_or(0);
+        let whole = |number: &Dyadic| &number.mantissa << (number.exponent - grain).max(0) as u64;
+        let mut common = BigInt::zero();
+        for number in numbers.iter().filter(|number| !number.is_zero()) {
+            let mut rest = whole(number);
+            while !rest.is_zero() {
+                (common, rest) = (rest.clone(), &common % &rest);
+            }
+        }
+        let first = numbers.iter().find(|number| !number.is_zero()).map_or(1, Dyadic::sign);
+        if common.is_zero() {
+            return false;
+        }
+        if (common.sign() == Sign::Minus) != (first < 0) {
+            common = -common;
+        }
+        for number in numbers.iter_mut().filter(|number| !number.is_zero()) {
+            *number = Dyadic::normal(whole(number) / &common, 0);
+        }
+        first < 0
+    }
+
     /// The double that this is, if it is one.
     pub(crate) fn exactly(&self) -> Option<f64> {
         let value = self.rounded();
@@ -204,6 +255,43 @@ mod tests {
         for value in [0.0, 1.0, -0.1, 1e300, -5e-324, f64::MAX, f64::MIN_POSITIVE, 0.5f64.next_up()] {
             assert_eq!(Dyadic::new(value).exactly(), Some(value));
         }
+    }
+
+    #[test]
+    fn numbers_are_sums_of_doubles() {
+        let d = Dyadic::new;
+        let numbers = [d(0.0), d(-0.1), &d(0.1) * &d(0.3), d(0.7).pow(5), &d(1e200) - &d(1e-200)];
+        for (number, count) in numbers.iter().zip([0, 1, 2, 5, 2]) {
+            assert_eq!(number.expansion(7).map(|terms| terms.len()), Some(count));
+            let terms = number.expansion(7).unwrap();
+            assert_eq!(&Dyadic::sum(&terms), number);
+            assert!(
+                terms.len() == count
+                    && terms.windows(2).all(|pair| pair[1].abs() < pair[0].abs() * f64::EPSILON)
+            );
+            assert_eq!(number.expansion(count.saturating_sub(1)).is_some(), count == 0);
+        }
+        // Beyond the doubles on either side.
+        assert_eq!((d(1e300).pow(2).expansion(7), d(1e-300).pow(2).expansion(7)), (None, None));
+    }
+
+    #[test]
+    fn proportional_numbers_have_one_form() {
+        let primitive = |numbers: [f64; 4], times: f64| {
+            let mut numbers = numbers.map(|c| &Dyadic::new(c) * &Dyadic::new(times));
+            let turned = Dyadic::make_primitive(&mut numbers);
+            (numbers, turned)
+        };
+        let given = [0.0, -0.3, 1.7, 1e-9];
+        let (one, turned) = primitive(given, 1.0);
+        assert!(turned && one[1].sign() > 0);
+        for times in [0.1, 3.0, -7.25, 1e30, -1e-30] {
+            assert_eq!(primitive(given, times), (one.clone(), times > 0.0), "{times}");
+        }
+        let whole = [6.0, -9.0, 0.0, 1.5].map(Dyadic::new);
+        assert_eq!(primitive([6.0, -9.0, 0.0, 1.5], 1.0).0, [4.0, -6.0, 0.0, 1.0].map(Dyadic::new));
+        assert_ne!(primitive(given, 1.0).0, whole);
+        assert!(!primitive([0.0; 4], 1.0).1);
     }
 
     #[test]

@@ -76,6 +76,8 @@ impl HalfSpace {
             Surface::Torus(Torus { major, square, scale, shift }) => [major, square, scale, shift]
                 .iter()
                 .fold(Fingerprinter::new("torus"), |all, c| c.taken_in(all)),
+            // (Slabs are in stored octrees, and no expression has one.)
+            Surface::Slab(_) => return None,
             Surface::Host(host) => Fingerprinter::new("host half-space").part(host.fingerprint?),
         };
         Some(all.finish())

@@ -7,12 +7,15 @@ use crate::cut;
 use crate::cut::{Enclosure, Slab, SlabJoin};
 use crate::lattice::{Cell, CellMoments, Interval};
 
+/// Up to three half-spaces, or their complements.
+type Chosen = [Option<(u32, bool)>; 3];
+
 /// The intersection of up to three half-spaces, or of their complements, that is a solid in a cell or contains it; or that is the
 /// solid's complement or contains that. (A union is the complement of an intersection, so that complements have the same bits.)
 #[derive(Clone, Copy)]
 pub(crate) struct Literals {
     /// Which half-spaces, and whether their complements are meant.
-    literals: [Option<(u32, bool)>; 3],
+    literals: Chosen,
     /// Whether the solid, or its complement, may be less than the intersection.
     one_sided: bool,
     /// Whether the solid's complement is meant.
@@ -128,10 +131,7 @@ pub(crate) fn most_area<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell:
 
 /// Half-spaces, or their complements, in all of which the points of a table lie; with `false` if it is their
 /// intersection. `None` if there is no such half-space.
-fn around(
-    variables: impl Iterator<Item = (usize, u32)>,
-    table: Table,
-) -> Option<([Option<(u32, bool)>; 3], bool)> {
+fn around(variables: impl Iterator<Item = (usize, u32)>, table: Table) -> Option<(Chosen, bool)> {
     let mut literals = [None; MOST];
     let (mut all, mut count) = (Table::FULL, 0);
     for (i, index) in variables {

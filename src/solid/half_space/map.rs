@@ -25,7 +25,6 @@ pub(crate) struct ExactMap {
 
 impl ExactMap {
     /// The map that moves nothing.
-    #[cfg(feature = "scene")]
     pub(crate) fn identity() -> ExactMap {
         let rows = axes(|i| [0, 1, 2, 3].map(|j| Dyadic::new(if i == j { 1.0 } else { 0.0 })));
         ExactMap { rows, w: Dyadic::new(1.0) }

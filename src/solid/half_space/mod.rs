@@ -6,10 +6,14 @@ pub(crate) mod linear;
 pub(crate) mod lines;
 pub(crate) mod literals;
 pub(crate) mod map;
+mod open;
 mod plane;
 pub(crate) mod points;
+pub(crate) mod possible;
 pub(crate) mod power;
 pub(crate) mod quadric;
+pub(crate) mod record;
+mod slab;
 pub(crate) mod table;
 pub(crate) mod tangent;
 pub(crate) mod torus;
@@ -24,9 +28,11 @@ use alloc::sync::Arc;
 use bounds::{Octants, Sides, mask};
 use host::{Host, PlacedHost};
 use map::ExactMap;
+pub use open::{OpenSurfaces, PlacedHalfSpace};
 use plane::Plane;
 use power::{PlacedPowers, Powers};
 use quadric::{Coefficients, Quadric};
+use slab::{PlacedSlab, ThickPlane};
 use tangent::Tangent;
 use torus::{PlacedTorus, Torus};
 use wide::f64x4;
@@ -47,6 +53,7 @@ pub(crate) enum Surface {
     Powers(Powers),
     Torus(Torus),
     Host(Arc<Host>),
+    Slab(ThickPlane),
 }
 
 /// The largest exponent of a power.
@@ -188,6 +195,11 @@ impl HalfSpace {
         HalfSpace(Arc::new(Surface::Host(Arc::new(host))))
     }
 
+    /// The points of which `normal` · p ≤ `inner` holds, and perhaps others with `normal` · p ≤ `outer`.
+    pub(crate) fn slab(normal: [f64; 3], inner: f64, outer: f64) -> HalfSpace {
+        HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer })))
+    }
+
     /// Of coefficients in the order of [`quadric`](Self::quadric) that need not be doubles, of which one but
     /// the last is not zero.
     pub(crate) fn exactly(coefficients: Coefficients) -> HalfSpace {
@@ -218,6 +230,7 @@ pub(crate) enum Placed {
     Powers(Box<PlacedPowers>),
     Torus(Box<PlacedTorus>),
     Host(Box<PlacedHost>),
+    Slab(Box<PlacedSlab>),
 }
 
 impl Surface {
@@ -231,6 +244,7 @@ impl Surface {
             Surface::Powers(powers) => Placed::Powers(Box::new(PlacedPowers::new(powers, map))),
             Surface::Torus(torus) => Placed::Torus(Box::new(PlacedTorus::new(torus, map))),
             Surface::Host(host) => Placed::Host(Box::new(PlacedHost::new(host, map, frame))),
+            Surface::Slab(slab) => Placed::Slab(Box::new(PlacedSlab::new(slab, map))),
         }
     }
 }
@@ -258,6 +272,7 @@ impl Placed {
                 *evaluations -= wanted.count_ones() as u64;
                 host.sides(at, wanted, evaluations)?
             }
+            Placed::Slab(slab) => slab.sides(at),
             Placed::Plane(_) | Placed::Quadric(_) => Sides { inside: 0, outside: 0 },
         })
     }
@@ -271,11 +286,13 @@ impl Placed {
             Placed::Quadric(quadric) => quadric.tangent(centre, half),
             Placed::Powers(powers) => powers.tangent(centre, half),
             Placed::Torus(torus) => torus.tangent(centre, half),
+            Placed::Slab(slab) => slab.tangent(centre, half),
             Placed::Host(_) => return None,
         })
     }
 
-    /// f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of functions of the host.
+    /// f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of functions of the host, and of
+    /// slabs, whose surface has normals of which nothing is known.
     #[inline]
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Option<Taylor> {
         Some(match self {
@@ -283,18 +300,18 @@ impl Placed {
             Placed::Quadric(quadric) => quadric.taylor(centre, half),
             Placed::Powers(powers) => powers.taylor(centre, half),
             Placed::Torus(torus) => torus.taylor(centre, half),
-            Placed::Host(_) => return None,
+            Placed::Host(_) | Placed::Slab(_) => return None,
         })
     }
 
-    /// How often a line that does not lie in the surface meets it at most; `None` of functions of the host.
+    /// How often a line that does not lie in the surface meets it at most; `None` of functions of the host and of slabs.
     pub(crate) fn degree(&self) -> Option<u32> {
         Some(match self {
             Placed::Plane(_) => 1,
             Placed::Quadric(_) => 2,
             Placed::Powers(powers) => powers.degree(),
             Placed::Torus(_) => 4,
-            Placed::Host(_) => return None,
+            Placed::Host(_) | Placed::Slab(_) => return None,
         })
     }
 
@@ -314,7 +331,7 @@ impl Placed {
             Placed::Quadric(quadric) => quadric.may_hold_lattice_plane(),
             Placed::Powers(powers) => powers.may_hold_lattice_plane(),
             Placed::Torus(_) => false,
-            Placed::Host(_) => true,
+            Placed::Host(_) | Placed::Slab(_) => true,
         }
     }
 
@@ -333,7 +350,7 @@ impl Placed {
         )
     }
 
-    /// Exact sign of f at a point of the universe; `None` if the host does not know it.
+    /// Exact sign of f at a point of the universe; `None` if the host does not know it, or the point lies in a slab.
     #[inline]
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> Result<Option<i32>, Error> {
         Ok(Some(match self {
@@ -342,6 +359,7 @@ impl Placed {
             Placed::Powers(powers) => powers.sign_at(t),
             Placed::Torus(torus) => torus.sign_at(t),
             Placed::Host(host) => return Ok(host.value_at(t)?.map(sign)),
+            Placed::Slab(slab) => return Ok(slab.sign_at(t)),
         }))
     }
 
@@ -403,7 +421,7 @@ impl Placed {
                 Placed::Powers(powers) => powers.shifted_sign_at(t),
                 Placed::Torus(torus) => torus.shifted_sign_at(t),
                 // Which way the function goes is not known.
-                Placed::Host(_) => 1,
+                Placed::Host(_) | Placed::Slab(_) => 1,
             },
             Some(sign) => sign,
             None => return Ok(None),

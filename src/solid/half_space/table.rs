@@ -31,7 +31,7 @@ impl Table {
 
     /// The function where half-space `i` holds, or does not; it does not depend on it any more.
     #[inline(always)]
-    fn with(self, i: usize, holds: bool) -> Table {
+    pub(crate) fn with(self, i: usize, holds: bool) -> Table {
         let shift = 1 << i;
         Table(if holds {
             let kept = self.0 & HOLDS[i];
@@ -58,6 +58,13 @@ impl Table {
         } else {
             self
         }
+    }
+
+    /// The function with half-space `to` in the place of half-space `i`, or (`complement`) its complement. What it says of
+    /// combinations that cannot be does not count.
+    pub(crate) fn renamed(self, i: usize, to: usize, complement: bool) -> Table {
+        let [inside, outside] = [self.with(i, !complement), self.with(i, complement)];
+        Table(inside.0 & HOLDS[to] | outside.0 & !HOLDS[to])
     }
 
     /// The function at a point, given whether half-space `i` holds there.

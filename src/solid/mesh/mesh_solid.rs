@@ -317,6 +317,7 @@ impl Classifier for MeshClassifier {
             WholeQuestion::Area(known) => {
                 *known = solid.sides(control)?.and_then(|sides| solid.mesh.boundary_area(sides));
             }
+            WholeQuestion::Surfaces(_) => {}
             WholeQuestion::OffLattice(known) => {
                 *known = self.mesh.placed.displacement == 0.0
                     && self.mesh.caps.is_empty()
@@ -480,6 +481,7 @@ impl Worker for MeshWorker {
             }
             Question::Crossing(segment, known) => *known = self.first_crossing(cell, part, segment),
             Question::Chords(chords) => *chords.found = self.find_chords(cell, part, chords.beam)?,
+            Question::Surfaces(_) => {}
         }
         Ok(())
     }

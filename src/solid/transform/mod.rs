@@ -6,7 +6,7 @@ mod slabs;
 mod splits;
 
 use super::{
-    Ask, Batch, Classifier, Enclosure, Fingerprint, Fingerprinter, Parts, Question, Solid, Verdict,
+    Ask, AskWhole, Batch, Classifier, Enclosure, Fingerprint, Fingerprinter, Parts, Question, Solid, Verdict,
     WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use crate::control::Control;
@@ -292,7 +292,13 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
         self.proof
     }
 
-    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+    /// Surfaces move along.
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
+        if let WholeQuestion::Surfaces(known) = question
+            && let Some(own) = self.inner.surfaces(control)?
+        {
+            *known = Some(memory::collected(own.iter().map(|surface| surface.placed(&self.placement)))?);
+        }
         Ok(())
     }
 }
@@ -651,6 +657,11 @@ impl<W: Worker> Worker for TransformWorker<W> {
                     && let Some(segment) = same::segment(&Inverse::of(&self.placement), segment)
                 {
                     *known = self.inner.crossing(source, &own, &segment)?.map(|known| turn.crossing(&known));
+                }
+            }
+            Question::Surfaces(known) => {
+                if let Some((_, source, own)) = self.source(cell, *part) {
+                    *known = self.inner.surfaces(source, &own)?;
                 }
             }
             Question::Chords(_) => {}

@@ -3,6 +3,7 @@
 mod costs;
 mod equals;
 mod exactness;
+mod extended;
 mod extremes;
 mod hierarchy;
 mod hostile;

@@ -59,7 +59,7 @@ pub enum Other {
     Slab(f64, f64),
     /// A tetrahedron as a mesh.
     Tetrahedron([[f64; 3]; 4]),
-    Octree(Octree),
+    Octree(Box<Octree>),
     /// Moved, on a frame of its own.
     Moved(Box<Other>, Frame, Affine),
     /// An expression behind the common face.
@@ -368,7 +368,7 @@ impl Other {
                 let mesh = TriangleMesh::new(corners.to_vec(), faces)?;
                 AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero)?)
             }
-            Other::Octree(tree) => AnySolid::new(tree.clone()),
+            Other::Octree(tree) => AnySolid::new(Octree::clone(tree)),
             Other::Moved(other, own, placement) => {
                 AnySolid::new(Transform::new(other.solid(own)?, own, placement))
             }

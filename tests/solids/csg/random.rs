@@ -253,7 +253,7 @@ impl Maker<'_> {
                 let csg = self.expression(1).csg(&own);
                 self.others = others;
                 match csg {
-                    Ok(csg) => Other::Octree(build(&csg, &own, rule, &alone()).unwrap()),
+                    Ok(csg) => Other::Octree(Box::new(build(&csg, &own, rule, &alone()).unwrap())),
                     Err(_) => self.other(),
                 }
             }

@@ -48,7 +48,9 @@ impl Scratch {
 
     fn area_of_half_spaces(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Interval> {
         let half_spaces = &*program.half_spaces;
-        if let Some(known) = self.literals(program, part).and_then(|literals| literals.area(half_spaces, cell)) {
+        if let Some(known) =
+            self.literals(program, part).and_then(|literals| literals.area(half_spaces, cell))
+        {
             return Some(known);
         }
         if !part.is_table() {

@@ -52,6 +52,7 @@ impl Hash for Exactly {
                 (powers.constant + 0.0).to_bits().hash(state);
             }
             Surface::Host(host) => Arc::as_ptr(host).hash(state),
+            Surface::Slab(_) => core::ptr::from_ref(&*self.half_space.0).hash(state),
         }
         self.map.hash(state);
     }

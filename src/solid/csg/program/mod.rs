@@ -12,6 +12,7 @@ mod kleene;
 mod lone;
 mod slabs;
 mod split;
+mod surfaces;
 pub(crate) mod word;
 mod worker;
 
@@ -19,7 +20,7 @@ use super::extent::{Extent, into_universe};
 use super::{Csg, Join, Kind, MOST, Node, Touch};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Composed, Frame};
+use crate::lattice::{Affine, Composed, Frame};
 use crate::memory;
 use crate::octree::{Proof, Tag};
 use crate::solid::half_space::map::ExactMap;
@@ -30,6 +31,7 @@ use alloc::vec::Vec;
 use distinct::Equals;
 use hashbrown::HashMap;
 use hierarchy::{Groups, Operand};
+use once_cell::race::OnceBox;
 use word::{Op, Word};
 
 /// An expression on one universe.
@@ -38,6 +40,12 @@ pub(crate) struct Program {
     /// Whether [`Touch::Paper`] holds.
     pub(crate) paper: bool,
     pub(crate) half_spaces: Vec<Placed>,
+    /// Each half-space as it was given, and which placements it stands under.
+    sources: Vec<(HalfSpace, u32)>,
+    /// Chains of placements: the last map, and the chain before it, which is one less than its number says; 0 is none.
+    chains: Vec<(u32, Affine)>,
+    /// For each of the other solids where its surfaces begin, behind the half-spaces. (Known once asked for.)
+    surfaces: OnceBox<Vec<u32>>,
     pub(crate) solids: Vec<AnyClassifier>,
     /// Operands of large operations by where they lie.
     pub(crate) groups: Groups,
@@ -76,6 +84,8 @@ enum Task<'a> {
 struct Space {
     map: Arc<ExactMap>,
     outward: Option<Arc<Composed>>,
+    /// The number of its chain of placements.
+    chain: u32,
 }
 
 /// An expression while it is written.
@@ -104,6 +114,9 @@ impl Program {
             frame: *frame,
             paper: csg.touch == Touch::Paper,
             half_spaces: Vec::new(),
+            sources: Vec::new(),
+            chains: Vec::new(),
+            surfaces: OnceBox::new(),
             solids: Vec::new(),
             groups: Groups::default(),
             words: Vec::new(),
@@ -150,7 +163,7 @@ impl Writer<'_> {
         // Which joins are pending, and whether their complements are meant.
         let mut joins: Vec<(Join, bool)> = Vec::new();
         let map = Arc::new(ExactMap::from_universe(&self.program.frame));
-        let space = Space { map, outward: None };
+        let space = Space { map, outward: None, chain: 0 };
         memory::push(&mut tasks, Task::Write { node: root, complement: false, shared: false, space })?;
         while let Some(task) = tasks.pop() {
             match task {
@@ -178,7 +191,9 @@ impl Writer<'_> {
                                         None => placement.into(),
                                     };
                                     let outward = Some(Arc::new(outward));
-                                    let inner = Space { map, outward };
+                                    let chains = &mut self.program.chains;
+                                    memory::push(chains, (space.chain, *placement))?;
+                                    let inner = Space { map, outward, chain: chains.len() as u32 };
                                     if shared {
                                         self.spaces.try_reserve(1)?;
                                         self.spaces.insert(key, inner.clone());
@@ -194,9 +209,9 @@ impl Writer<'_> {
                         Kind::HalfSpace(half_space) => {
                             self.begin(node, complement, &space)?;
                             if self.program.paper {
-                                self.primitive([half_space], complement, shared, &space.map)?;
+                                self.primitive([half_space], complement, shared, &space)?;
                             } else {
-                                self.half_space(half_space, complement, shared, &space.map)?;
+                                self.half_space(half_space, complement, shared, &space)?;
                             }
                         }
                         Kind::Solid(solid) => {
@@ -216,7 +231,7 @@ impl Writer<'_> {
                         {
                             self.begin(node, complement, &space)?;
                             let half_spaces = parts.iter().filter_map(|part| part.half_space());
-                            self.primitive(half_spaces, complement, shared, &space.map)?;
+                            self.primitive(half_spaces, complement, shared, &space)?;
                         }
                         Kind::Join(join, parts) => {
                             // By De Morgan; of a parity the complement remains.
@@ -291,8 +306,9 @@ impl Writer<'_> {
         half_space: &HalfSpace,
         complement: bool,
         shared: bool,
-        map: &Arc<ExactMap>,
+        space: &Space,
     ) -> Result<(), Error> {
+        let map = &space.map;
         let key = (Arc::as_ptr(&half_space.0) as usize, Arc::as_ptr(map) as usize);
         let index = match self.seen_half_spaces.get(&key) {
             Some(&index) => index,
@@ -302,6 +318,7 @@ impl Writer<'_> {
                     return Err(Error::Cancelled);
                 }
                 memory::push(&mut self.program.half_spaces, half_space.0.on(map, &self.program.frame))?;
+                memory::push(&mut self.program.sources, (half_space.clone(), space.chain))?;
                 self.equals.note(half_space, map)?;
                 if shared {
                     self.seen_half_spaces.try_reserve(1)?;
@@ -318,11 +335,11 @@ impl Writer<'_> {
         half_spaces: impl IntoIterator<Item = &'h HalfSpace>,
         complement: bool,
         shared: bool,
-        map: &Arc<ExactMap>,
+        space: &Space,
     ) -> Result<(), Error> {
         let before = self.program.words.len();
         for half_space in half_spaces {
-            self.half_space(half_space, false, shared, map)?;
+            self.half_space(half_space, false, shared, space)?;
         }
         let count = (self.program.words.len() - before) as u32;
         memory::push(&mut self.program.words, Word::new(Op::Primitive { count }))?;

@@ -111,6 +111,10 @@ impl Classifier for CsgClassifier {
                     && !program.half_spaces.iter().any(|half_space| half_space.may_hold_lattice_plane(depth));
                 Ok(())
             }
+            WholeQuestion::Surfaces(known) => {
+                *known = Some(program.surfaces(control)?);
+                Ok(())
+            }
             question => program.sole().map_or(Ok(()), |solid| solid.answer_whole(question, control)),
         }
     }
@@ -207,6 +211,10 @@ impl Worker for CsgWorker {
             *inside = scratch.contains(program, part, cell)?;
             return Ok(());
         }
+        if let Question::Surfaces(known) = question {
+            *known = scratch.open_surfaces(program, cell, part)?;
+            return Ok(());
+        }
         if scratch.may_be_lone(program, part) && scratch.answer_of_lone(program, cell, part, &mut question)? {
             return Ok(());
         }
@@ -217,7 +225,7 @@ impl Worker for CsgWorker {
             Question::Chords(chords) => {
                 *chords.found = self.rays.find(program, scratch, cell, part, chords.beam)?;
             }
-            Question::Centre(_) | Question::Crossing(..) => {}
+            Question::Centre(_) | Question::Crossing(..) | Question::Surfaces(_) => {}
         }
         Ok(())
     }

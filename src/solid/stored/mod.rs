@@ -1,18 +1,23 @@
 //! A stored octree as a solid.
 
+mod cuts;
+
 use super::forward::forward_solid;
 use super::{
-    Classifier, Fingerprint, Fingerprinter, FreeParts, OCTANTS, OneByOne, Question, Solid, Subtree, Verdict,
-    WholeQuestion, Worker, split_twice,
+    Batch, Classifier, Fingerprint, Fingerprinter, FreeParts, OCTANTS, Question, Solid, Subtree, Verdict,
+    WholeQuestion, Worker, sample_one_by_one, split_one_by_one, split_twice,
 };
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Frame};
 use crate::memory;
+use crate::octree::cuts::{CellCut, CutsRef};
 use crate::octree::links::Step;
 use crate::octree::view::starts_half_way;
 use crate::octree::{Octree, OctreeRef, Planes, Proof, Tag};
+use alloc::sync::Arc;
 use alloc::vec::Vec;
+use cuts::PlacedCuts;
 
 /// Where a cut cell of a stored octree is described.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +37,15 @@ pub enum StoredPart {
         index: usize,
         /// The octant.
         octant: u8,
+    },
+    /// By a record of a PARTIAL cell.
+    Record(u32),
+    /// By a record of a PARTIAL cell that this one is a part of, of whose function this one remains.
+    Cut {
+        /// The record.
+        record: u32,
+        /// The truth table.
+        table: u8,
     },
 }
 
@@ -83,6 +97,7 @@ impl OctreeRef<'_> {
                 let planes = self.described(level, index);
                 OCTANTS.map(|k| self.verdict(level, index, planes, (8 * (octant & 7) + k) as u32))
             }
+            StoredPart::Record(_) | StoredPart::Cut { .. } => [Verdict::Undecided; 8],
         }
     }
 
@@ -118,6 +133,7 @@ impl Tree for Octree {
 pub struct StoredOnFrame<T> {
     tree: T,
     frame: Frame,
+    cuts: Option<Arc<PlacedCuts>>,
 }
 
 #[allow(private_bounds)]
@@ -129,7 +145,11 @@ impl<T: Tree> StoredOnFrame<T> {
         // A descent remembers nothing, so elements with shared children would be visited again and again:
         // 64^10 times in a file of a few kilobytes.
         tree.tree().ensure_links()?;
-        Ok(StoredOnFrame { tree, frame: *frame })
+        let cuts = match &tree.tree().cuts {
+            Some(cuts) => PlacedCuts::new(cuts, tree.tree().frame())?.map(Arc::new),
+            None => None,
+        };
+        Ok(StoredOnFrame { tree, frame: *frame, cuts })
     }
 }
 
@@ -153,7 +173,10 @@ impl<T: Tree> Classifier for StoredOnFrame<T> {
         self.tree.tree().proof()
     }
 
-    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+    fn answer_whole(&self, question: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
+        if let (WholeQuestion::Surfaces(known), Some(cuts)) = (question, &self.cuts) {
+            *known = Some(memory::collected(cuts.surfaces().iter().cloned())?);
+        }
         Ok(())
     }
 }
@@ -164,7 +187,61 @@ impl<T: Tree> FreeParts for StoredOnFrame<T> {
 }
 
 #[allow(private_bounds)]
-impl<T: Tree> OneByOne for StoredOnFrame<T> {}
+impl<T: Tree> StoredOnFrame<T> {
+    /// The cuts, if there are any that are not damaged.
+    fn cuts(&self) -> Option<(&PlacedCuts, &CutsRef<'_>)> {
+        Some((self.cuts.as_deref()?, self.tree.tree().cuts.as_ref()?))
+    }
+
+    /// What the record of a PARTIAL cell leaves to be found out.
+    fn settled(&self, cuts: &CutsRef<'_>, verdict: Verdict<StoredPart>) -> Verdict<StoredPart> {
+        let Verdict::Partial(StoredPart::Record(record)) = verdict else { return verdict };
+        match cuts.at(record as usize) {
+            CellCut::None => Verdict::Undecided,
+            CellCut::Table { table, .. } => Verdict::Partial(StoredPart::Cut { record, table }),
+            CellCut::Split(_) => verdict,
+        }
+    }
+}
+
+/// Points of trees with cuts are decided by exact signs.
+#[allow(private_bounds)]
+impl<T: Tree> Batch for StoredOnFrame<T> {
+    fn likes_many(&self) -> bool {
+        false
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, StoredPart)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<StoredPart>; 8]>,
+    ) -> Result<(), Error> {
+        split_one_by_one(self, cells, control, verdicts)
+    }
+
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, StoredPart)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        sample_one_by_one(self, cells, control, inside)
+    }
+
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        if let Some((placed, cuts)) = self.cuts() {
+            for (&point, answer) in points.iter().zip(answers) {
+                *answer = placed.inside(self.tree.tree(), cuts, point)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn recall(&mut self, _: Cell) -> Option<StoredPart> {
+        None
+    }
+}
 
 #[allow(private_bounds)]
 impl<T: Tree> Worker for StoredOnFrame<T> {
@@ -173,14 +250,25 @@ impl<T: Tree> Worker for StoredOnFrame<T> {
     }
 
     fn root(&mut self) -> Result<Verdict<StoredPart>, Error> {
-        Ok(self.tree.tree().root_verdict())
+        let tree = self.tree.tree();
+        Ok(match self.cuts() {
+            Some((_, cuts)) => self.settled(cuts, tree.root_with(Some(cuts))),
+            None => tree.root_verdict(),
+        })
     }
 
-    fn split(&mut self, _: Cell, part: &StoredPart) -> Result<[Verdict<StoredPart>; 8], Error> {
-        Ok(self.tree.tree().child_verdicts(part))
+    fn split(&mut self, cell: Cell, part: &StoredPart) -> Result<[Verdict<StoredPart>; 8], Error> {
+        let Some((placed, cuts)) = self.cuts() else { return Ok(self.tree.tree().child_verdicts(part)) };
+        if let StoredPart::Cut { record, table } = *part {
+            return placed.split(cuts, cell, record, table);
+        }
+        Ok(self.tree.tree().verdicts_with(Some(cuts), part).map(|verdict| self.settled(cuts, verdict)))
     }
 
-    fn answer(&mut self, _: Cell, _: &StoredPart, _: Question<'_>) -> Result<(), Error> {
+    fn answer(&mut self, cell: Cell, part: &StoredPart, question: Question<'_>) -> Result<(), Error> {
+        if let (StoredPart::Cut { record, table }, Some((placed, cuts))) = (*part, self.cuts()) {
+            placed.answer(cuts, cell, (record, table), question)?;
+        }
         Ok(())
     }
 
@@ -194,6 +282,9 @@ impl<T: Tree> Worker for StoredOnFrame<T> {
         let StoredPart::Element { level, index } = *part else { return split_twice(self, cell, part, parts) };
         let tree = self.tree.tree();
         let planes = tree.described(level, index);
+        if planes.partial() != 0 && self.cuts().is_some() {
+            return split_twice(self, cell, part, parts);
+        }
         for c in (0..64).filter(|c| planes.branch() >> c & 1 != 0) {
             if let Verdict::Partial(part) = tree.verdict(level, index, planes, c) {
                 memory::push(parts, (c as u8, part))?;
@@ -206,7 +297,8 @@ impl<T: Tree> Worker for StoredOnFrame<T> {
     fn subtree(&self, part: &StoredPart) -> Option<Subtree<'_>> {
         let tree = self.tree.tree();
         match *part {
-            StoredPart::Element { level, index } if *tree.frame() == self.frame => {
+            // (What cuts decide is not in the planes.)
+            StoredPart::Element { level, index } if *tree.frame() == self.frame && self.cuts.is_none() => {
                 Some(Subtree { tree, level: level.into(), index, flip: false })
             }
             _ => None,
@@ -251,7 +343,10 @@ impl<'a> Solid for OctreeRef<'a> {
             .integers(&[frame.depth().into(), self.root_tag() as u64, self.exterior() as u64])
             .words(count(self.planes.len()), self.planes.iter().copied().flat_map(words))
             .words(count(self.bricks.len()), bricks.flat_map(words));
-        Some(all.finish())
+        Some(match &self.cuts {
+            Some(cuts) => cuts.taken_in(all).finish(),
+            None => all.finish(),
+        })
     }
 }
 
@@ -264,4 +359,17 @@ impl Solid for Octree {
     }
 
     forward_solid!(@description self => self.view());
+}
+
+impl CutsRef<'_> {
+    /// A fingerprint that has taken in the cuts.
+    fn taken_in(&self, all: Fingerprinter) -> Fingerprinter {
+        let ids = self.ids.iter().map(|&id| u64::from(id));
+        let surfaces = &self.surfaces;
+        all.bytes(self.heads)
+            .words(self.ids.len() as u64, ids)
+            .bytes(bytemuck::cast_slice(surfaces.records))
+            .numbers(surfaces.doubles)
+            .bytes(bytemuck::cast_slice(surfaces.placements))
+    }
 }

@@ -1,0 +1,177 @@
+//! Cuts: what a PARTIAL cell keeps of the surfaces that cross it.
+//!
+//! An octree with cuts is an *extended octree* (Carlbom, Chakravarty and Vanderschel 1985, *polytrees*; Brunet and Navazo, *Solid
+//! representation and operation using extended octrees*, ACM Transactions on Graphics 9 (2), 1990), here with curved surfaces and
+//! exact signs. The planes of the tree stay what they are without the cuts.
+//!
+//! - `record`: one byte for each PARTIAL cell: a truth table of up to three surfaces, nothing, or a split into eight records.
+//! - `surfaces`: the table of surfaces, in numbers that are exact.
+//! - `writer`: how cuts are gathered and put in order.
+
+mod record;
+mod surfaces;
+mod writer;
+
+pub(crate) use record::Head;
+pub(crate) use surfaces::{MOST_TERMS, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};
+pub(crate) use writer::{Cut, CutWriter};
+
+use super::word::Planes;
+use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
+use bytemuck::{Pod, Zeroable};
+
+/// Records that share a [`Block`].
+pub(crate) const BLOCK: usize = 32;
+
+/// What lies before the records of a block.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Block {
+    /// Ids of surfaces.
+    pub ids: u32,
+    /// Records that are splits.
+    pub splits: u32,
+}
+
+/// The cuts of an octree in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Cuts {
+    /// One byte for each record. The first belong to the PARTIAL cells of the planes, in their order; groups of eight follow, one
+    /// for each split, in the order of the splits.
+    pub heads: Vec<u8>,
+    /// Surfaces of the records, one after the other.
+    pub ids: Vec<u32>,
+    pub blocks: Vec<Block>,
+    /// For each element and brick the records before its own; one more is the number of records of the planes.
+    pub first: Vec<u32>,
+    pub surfaces: Surfaces,
+}
+
+/// The cuts of an octree, borrowed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CutsRef<'a> {
+    pub heads: &'a [u8],
+    pub ids: &'a [u32],
+    pub blocks: &'a [Block],
+    pub first: &'a [u32],
+    pub surfaces: SurfacesRef<'a>,
+}
+
+impl Cuts {
+    pub(crate) fn view(&self) -> CutsRef<'_> {
+        CutsRef {
+            heads: &self.heads,
+            ids: &self.ids,
+            blocks: &self.blocks,
+            first: &self.first,
+            surfaces: self.surfaces.view(),
+        }
+    }
+}
+
+impl CutsRef<'_> {
+    pub(crate) fn copied(&self) -> Result<Cuts, Error> {
+        Ok(Cuts {
+            heads: memory::copied(self.heads)?,
+            ids: memory::copied(self.ids)?,
+            blocks: memory::copied(self.blocks)?,
+            first: memory::copied(self.first)?,
+            surfaces: Surfaces {
+                records: memory::copied(self.surfaces.records)?,
+                doubles: memory::copied(self.surfaces.doubles)?,
+                placements: memory::copied(self.surfaces.placements)?,
+            },
+        })
+    }
+}
+
+/// What the PARTIAL cells of an extended octree keep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CutCounts {
+    /// Cells of which it is known which function of surfaces the solid is. Cells count that are parts of cells of the planes.
+    pub cells: u64,
+    /// Cells of which nothing is known.
+    pub given_up: u64,
+    /// PARTIAL cells that are split, and have no node, because all of their parts are PARTIAL.
+    pub splits: u64,
+    /// Surfaces.
+    pub surfaces: u64,
+    /// Bytes of all of this in memory.
+    pub bytes: u64,
+}
+
+/// What is known of a PARTIAL cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum CellCut<'a> {
+    /// Nothing.
+    None,
+    /// The solid is a function of the signs of up to three surfaces: bit m of the table is its value where the surfaces are
+    /// positive whose bits are set in m.
+    Table { ids: &'a [u32], table: u8 },
+    /// What is known of the children: the first of eight records.
+    Split(usize),
+}
+
+impl<'a> CutsRef<'a> {
+    /// Records of the planes' cells.
+    fn of_planes(&self) -> usize {
+        self.first.last().map_or(1, |&count| count as usize)
+    }
+
+    /// The record of the universe, if that is one PARTIAL cell.
+    pub(crate) const ROOT: usize = 0;
+
+    /// The record of the PARTIAL cell `c` of an element, whose cells are `planes`; of an octant that is PARTIAL as a whole the
+    /// octant's. A wild number where the cuts are damaged.
+    pub(crate) fn record(&self, element: usize, planes: Planes, c: u32) -> usize {
+        let first = self.first.get(element).map_or(usize::MAX, |&first| first as usize);
+        first.saturating_add(rank(planes, c) as usize)
+    }
+
+    /// What a record says; nothing where the cuts are damaged.
+    pub(crate) fn at(&self, record: usize) -> CellCut<'a> {
+        self.checked(record).unwrap_or(CellCut::None)
+    }
+
+    fn checked(&self, record: usize) -> Option<CellCut<'a>> {
+        let head = Head(*self.heads.get(record)?);
+        let before = &self.heads[record - record % BLOCK..record];
+        let block = self.blocks.get(record / BLOCK)?;
+        Some(if head.is_split() {
+            let splits = before.iter().filter(|&&head| Head(head).is_split()).count();
+            let first = self.of_planes() + 8 * (block.splits as usize + splits);
+            // (Children come after their parent, so that every way ends.)
+            if first <= record || first + 8 > self.heads.len() {
+                return None;
+            }
+            CellCut::Split(first)
+        } else if head.surfaces() == 0 {
+            CellCut::None
+        } else {
+            let ids = before.iter().map(|&head| Head(head).surfaces()).sum::<usize>();
+            let first = block.ids as usize + ids;
+            let ids = self.ids.get(first..first + head.surfaces())?;
+            CellCut::Table { ids, table: head.0 }
+        })
+    }
+}
+
+/// The records of an element's cells before cell `c`.
+fn rank(planes: Planes, c: u32) -> u32 {
+    let partial = planes.partial();
+    let [.., whole] = planes.octants();
+    // An octant that is PARTIAL as a whole has one record.
+    let eights = whole * 0xFF;
+    let octant = c & !7;
+    let below = |bits: u64, c: u32| (bits & ((1u64 << c) - 1)).count_ones();
+    let inside = if whole >> octant & 1 != 0 { octant } else { c };
+    below(whole, octant) + below(partial & !eights, inside)
+}
+
+/// Records that an element's cells have.
+pub(crate) fn records(planes: Planes) -> u32 {
+    let [.., whole] = planes.octants();
+    whole.count_ones() + (planes.partial() & !(whole * 0xFF)).count_ones()
+}

@@ -1,0 +1,74 @@
+//! One byte for each PARTIAL cell.
+
+/// What a record says in one byte: the truth table of three surfaces, whether there are three or not. A table that does not
+/// depend on the last of them is one of two surfaces, or of one. So the table tells how many there are; those that depend on
+/// none have a meaning of their own: nothing is known, or the cell is split. (Tables that depend on a surface, and not on one
+/// before it, are not used.)
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Head(pub(crate) u8);
+
+impl Head {
+    /// Nothing is known.
+    pub(crate) const NONE: Head = Head(0);
+    /// Eight records follow elsewhere.
+    pub(crate) const SPLIT: Head = Head(0xFF);
+
+    /// Where each surface is positive.
+    const HOLDS: [u8; 3] = [0xAA, 0xCC, 0xF0];
+
+    /// Whether a table depends on a surface.
+    const fn depends_on(table: u8, i: usize) -> bool {
+        (table & Head::HOLDS[i]) >> (1 << i) != table & !Head::HOLDS[i]
+    }
+
+    const fn count(table: u8) -> u8 {
+        let depends = [Head::depends_on(table, 0), Head::depends_on(table, 1), Head::depends_on(table, 2)];
+        match depends {
+            [true, true, true] => 3,
+            [true, true, false] => 2,
+            [true, false, false] => 1,
+            [false, false, false] => 0,
+            _ => Head::INVALID,
+        }
+    }
+
+    const INVALID: u8 = 8;
+
+    const COUNTS: [u8; 256] = {
+        let mut counts = [0; 256];
+        let mut table = 0;
+        while table < 256 {
+            counts[table] = Head::count(table as u8);
+            table += 1;
+        }
+        counts
+    };
+
+    pub(crate) fn is_split(self) -> bool {
+        self == Head::SPLIT
+    }
+
+    pub(crate) fn is_valid(self) -> bool {
+        Head::COUNTS[usize::from(self.0)] != Head::INVALID
+    }
+
+    /// How many surfaces the record has; none of a damaged one.
+    pub(crate) fn surfaces(self) -> usize {
+        usize::from(Head::COUNTS[usize::from(self.0)] & 3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_tell_how_many_surfaces_there_are() {
+        let count = |n: u8| (0..=255).filter(|&table| Head::COUNTS[table as usize] == n).count();
+        // Functions of n bits that depend on all of them: 2, 2, 10, 218.
+        assert_eq!([count(0), count(1), count(2), count(3)], [2, 2, 10, 218]);
+        assert_eq!(count(Head::INVALID), 24);
+        assert_eq!((Head(0xAA).surfaces(), Head(0x88).surfaces(), Head(0xF0).surfaces()), (1, 2, 0));
+        assert!(!Head(0xF0).is_valid() && Head::NONE.is_valid() && Head::SPLIT.surfaces() == 0);
+    }
+}

@@ -1,0 +1,93 @@
+//! Which surfaces cross a cell, and which function of their signs the solid is.
+
+use super::HalfSpace;
+use super::table::{self, Table};
+use crate::lattice::Affine;
+use alloc::sync::Arc;
+
+/// A half-space under placements.
+#[derive(Clone)]
+pub struct PlacedHalfSpace {
+    /// The half-space in the space in which it was given.
+    pub half_space: HalfSpace,
+    /// What moves it into model space, the last map first.
+    pub placements: Arc<[Affine]>,
+}
+
+impl PlacedHalfSpace {
+    /// The same, moved once more.
+    #[must_use]
+    pub(crate) fn placed(&self, placement: &Affine) -> PlacedHalfSpace {
+        let placements = core::iter::once(placement).chain(&*self.placements).copied().collect();
+        PlacedHalfSpace { half_space: self.half_space.clone(), placements }
+    }
+}
+
+/// Up to six surfaces that cross a PARTIAL cell, and the function of their signs that the solid is.
+///
+/// # Law
+/// At a point of the open cell at which no function of the surfaces is zero, the solid is what the table says of the signs there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OpenSurfaces {
+    indices: [u32; OpenSurfaces::MOST],
+    count: u8,
+    table: Table,
+}
+
+impl OpenSurfaces {
+    /// Most surfaces of a cell.
+    pub const MOST: usize = table::MOST;
+
+    /// None yet: nothing at all, or everything.
+    pub(crate) fn constant(inside: bool) -> OpenSurfaces {
+        let table = if inside { Table::FULL } else { Table::EMPTY };
+        OpenSurfaces { indices: [0; OpenSurfaces::MOST], count: 0, table }
+    }
+
+    /// The function `table` of surfaces that all differ; `None` if they are too many.
+    pub(crate) fn new(of: impl IntoIterator<Item = u32>, table: Table) -> Option<OpenSurfaces> {
+        let mut open = OpenSurfaces { table, ..OpenSurfaces::constant(false) };
+        for index in of {
+            open.number(index)?;
+        }
+        Some(open)
+    }
+
+    /// The number of a surface in the table, which it gets if it has none yet; `None` if there is no room.
+    pub(crate) fn number(&mut self, index: u32) -> Option<usize> {
+        if let Some(i) = self.indices().iter().position(|&known| known == index) {
+            return Some(i);
+        }
+        let i = usize::from(self.count);
+        *self.indices.get_mut(i)? = index;
+        self.count += 1;
+        Some(i)
+    }
+
+    /// The surfaces, by their numbers in the classifier's list ([`WholeQuestion::Surfaces`](crate::solid::WholeQuestion::Surfaces)).
+    pub fn indices(&self) -> &[u32] {
+        &self.indices[..usize::from(self.count)]
+    }
+
+    /// Whether the solid is where the surfaces' functions are positive whose bits are set in `signs`, and negative those of the
+    /// others.
+    pub fn inside(&self, signs: u8) -> bool {
+        self.table.0 >> (signs & 63) & 1 != 0
+    }
+
+    pub(crate) fn table(&self) -> Table {
+        self.table
+    }
+
+    /// The same surfaces with another function.
+    #[must_use]
+    pub(crate) fn with_table(self, table: Table) -> OpenSurfaces {
+        OpenSurfaces { table, ..self }
+    }
+
+    /// What is known of the complement.
+    #[must_use]
+    pub fn complement(self) -> OpenSurfaces {
+        self.with_table(Table(!self.table.0))
+    }
+}

@@ -1,0 +1,99 @@
+//! Which combinations of signs occur in a cell.
+
+use super::Placed;
+use super::bounds::{centre, half_edge};
+use super::table::{MOST, Table};
+use super::tangent::Tangent;
+use crate::lattice::{Cell, axes};
+
+/// The combinations of signs that functions may have in a cell: bit m is for those that are positive whose bits are set in m. A
+/// combination is left out if two functions are proven not to have these signs at one point: a positive multiple of the one, added
+/// to the other, would be positive there, and is nowhere so.
+pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Table {
+    let mut tangents = [None; MOST];
+    for (tangent, half_space) in tangents.iter_mut().zip(half_spaces) {
+        *tangent = half_space.tangent(centre(cell), half_edge(cell));
+    }
+    let mut possible = !0;
+    for (i, a) in tangents.iter().enumerate() {
+        for (j, b) in tangents.iter().enumerate().skip(i + 1) {
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            for (negative_a, negative_b) in [(false, false), (true, false), (false, true), (true, true)] {
+                if exclude(a, negative_a, b, negative_b) {
+                    possible &= !(Table::of(i, negative_a).0 & Table::of(j, negative_b).0);
+                }
+            }
+        }
+    }
+    Table(possible)
+}
+
+/// Whether no point of the cell has both functions positive, or, if so said, negative.
+fn exclude(a: &Tangent, negative_a: bool, b: &Tangent, negative_b: bool) -> bool {
+    // A linear function above each.
+    let above = |t: &Tangent, negative: bool| {
+        if negative { (t.gradient.map(|c| -c), -t.low) } else { (t.gradient, t.high) }
+    };
+    let ((n, p), (m, q)) = (above(a, negative_a), above(b, negative_b));
+    let dot = |u: &[f64; 3], v: &[f64; 3]| (u[0] * v[0] + u[1] * v[1]) + u[2] * v[2];
+    let share = -dot(&n, &m) / dot(&m, &m);
+    if !(share > 0.0 && share.is_finite()) {
+        return false;
+    }
+    let rest: f64 = axes(|k| (n[k] + share * m[k]).abs()).iter().sum();
+    let most = (p + share * q) + rest;
+    // Each term is rounded at most eight times.
+    let size: f64 = p.abs() + share * q.abs() + axes(|k| n[k].abs() + share * m[k].abs()).iter().sum::<f64>();
+    // (What is no number is not less.)
+    most + 16.0 * f64::EPSILON * size <= 0.0
+}
+
+impl Table {
+    /// The function on the combinations that are possible, of as few half-spaces as the following rule finds: in the order of
+    /// their numbers, one on which the values do not depend where both of its signs are possible is left out; what the function
+    /// says of combinations that are not possible follows from those that are.
+    pub(crate) fn simplified(self, mut possible: Table) -> Table {
+        let mut table = self.0;
+        for i in 0..MOST {
+            let [positive, negative] = [Table::of(i, false).0, Table::of(i, true).0];
+            let shift = 1 << i;
+            // Values and possibilities of both signs, at the places of the negative one.
+            let (on, off) = ((table & positive) >> shift, table & negative);
+            let (can_on, can_off) = ((possible.0 & positive) >> shift, possible.0 & negative);
+            if (on ^ off) & can_on & can_off != 0 {
+                continue;
+            }
+            let value = on & can_on | off & can_off;
+            let can = can_on | can_off;
+            table = value | value << shift;
+            possible = Table(can | can << shift);
+        }
+        // Where nothing is possible any value is right; all is possible of what is constant.
+        if table & possible.0 == possible.0 { Table::FULL } else { Table(table) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_of_as_few_half_spaces_as_there_are() {
+        let [a, b, c] = [0, 1, 2].map(|i| Table::of(i, false).0);
+        // a within b: a ∧ b is a, a ∨ b is b, and ¬a ∨ b all.
+        let within = Table(!(a & !b));
+        assert_eq!(Table(a & b).simplified(within), Table(a));
+        assert_eq!(Table(a | b).simplified(within), Table(b));
+        assert_eq!(Table(!a | b).simplified(within), Table::FULL);
+        assert_eq!(Table(a & !b).simplified(within), Table::EMPTY);
+        assert_eq!(Table(a & b & c).simplified(within), Table(a & c));
+        // What is possible is said as before, whatever it is.
+        for bits in 0..=255u64 {
+            for can in 1..=255u64 {
+                let wide = |bits: u64| bits * 0x0101_0101_0101_0101;
+                let simple = Table(wide(bits)).simplified(Table(wide(can)));
+                assert_eq!((simple.0 ^ wide(bits)) & wide(can), 0, "{bits:b} {can:b}");
+            }
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Half-spaces as they are stored: in exact numbers, each surface once.
+
+use super::map::ExactMap;
+use super::power::Powers;
+use super::quadric::substitute;
+use super::slab::ThickPlane;
+use super::torus::Torus;
+use super::{HalfSpace, PlacedHalfSpace, Surface};
+use crate::error::Error;
+use crate::lattice::exact::Dyadic;
+use crate::lattice::{Affine, Frame};
+use crate::memory;
+use crate::octree::cuts::{MOST_TERMS, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use hashbrown::HashMap;
+
+/// What surfaces are known by: two are one if these are equal. Of planes and quadrics it is the polynomial in model space, up to a
+/// factor; of others the figure and its place.
+#[derive(PartialEq, Eq, Hash)]
+enum Identity {
+    Polynomial(Vec<Dyadic>),
+    Figure(SurfaceKind, Vec<Dyadic>, Vec<Dyadic>),
+}
+
+impl PlacedHalfSpace {
+    /// The exact map from another space into that of the half-space.
+    pub(crate) fn map(&self, from: ExactMap) -> Result<ExactMap, Error> {
+        self.placements.iter().try_fold(from, |map, placement| map.of_placed(placement))
+    }
+
+    /// What the surface is known by, and whether the function is negative where that of the identity is positive. `None` of what
+    /// has no exact numbers.
+    fn identity(&self) -> Result<Option<(Identity, bool)>, Error> {
+        let map = || self.map(ExactMap::identity());
+        let polynomial = |mut numbers: Vec<Dyadic>| {
+            let turned = Dyadic::make_primitive(&mut numbers);
+            (Identity::Polynomial(numbers), turned)
+        };
+        Ok(Some(match &*self.half_space.0 {
+            Surface::Plane(plane) => {
+                let map = map()?;
+                let (numbers, turned) = (map.linear(plane).to_vec(), map.w.sign() < 0);
+                let (identity, negative) = polynomial(numbers);
+                (identity, negative != turned)
+            }
+            Surface::Quadric(quadric) => polynomial(substitute(quadric, &map()?).to_vec()),
+            Surface::Powers(_) | Surface::Torus(_) => {
+                let map = map()?;
+                let mut place = map.rows.into_iter().flatten().chain([map.w]).collect::<Vec<_>>();
+                Dyadic::make_primitive(&mut place);
+                let Some((kind, numbers)) = self.half_space.numbers() else { return Ok(None) };
+                (Identity::Figure(kind, numbers, place), false)
+            }
+            Surface::Host(_) | Surface::Slab(_) => return Ok(None),
+        }))
+    }
+
+    /// The same half-space with those of its first placements in its numbers that take fewer doubles there.
+    fn shortened(&self) -> Result<PlacedHalfSpace, Error> {
+        let (mut half_space, mut left) = (self.half_space.clone(), self.placements.len());
+        while let Some(placement) = left.checked_sub(1).map(|last| &self.placements[last]) {
+            let moved = match &*half_space.0 {
+                Surface::Plane(plane) => {
+                    let map = ExactMap::identity().of_placed(placement)?;
+                    let numbers = map.linear(plane);
+                    HalfSpace::linear(if map.w.sign() < 0 { numbers.map(|c| -&c) } else { numbers })
+                }
+                Surface::Quadric(quadric) => {
+                    HalfSpace::exactly(substitute(quadric, &ExactMap::identity().of_placed(placement)?))
+                }
+                _ => break,
+            };
+            match (moved.doubles(), half_space.doubles()) {
+                (Some(moved), Some(own)) if moved <= own + 12 => {}
+                _ => break,
+            }
+            (half_space, left) = (moved, left - 1);
+        }
+        Ok(PlacedHalfSpace { half_space, placements: self.placements[..left].into() })
+    }
+}
+
+impl HalfSpace {
+    /// The kind of the surface, and its numbers; `None` of functions of the host.
+    fn numbers(&self) -> Option<(SurfaceKind, Vec<Dyadic>)> {
+        Some(match &*self.0 {
+            Surface::Plane(plane) => (SurfaceKind::Plane, plane.to_vec()),
+            Surface::Quadric(quadric) => (SurfaceKind::Quadric, quadric.to_vec()),
+            Surface::Powers(Powers { terms, constant }) => {
+                let terms = terms
+                    .iter()
+                    .flat_map(|&(coefficient, centre, exponent)| [coefficient, centre, f64::from(exponent)]);
+                (SurfaceKind::Powers, terms.chain([*constant]).map(Dyadic::new).collect())
+            }
+            Surface::Torus(Torus { major, square, scale, shift }) => {
+                (SurfaceKind::Torus, [major, square, scale, shift].map(Clone::clone).to_vec())
+            }
+            Surface::Slab(ThickPlane { normal: [x, y, z], inner, outer }) => {
+                (SurfaceKind::Slab, [*x, *y, *z, *inner, *outer].map(Dyadic::new).to_vec())
+            }
+            Surface::Host(_) => return None,
+        })
+    }
+
+    /// How many doubles the numbers take.
+    fn doubles(&self) -> Option<usize> {
+        let (_, numbers) = self.numbers()?;
+        numbers.iter().map(|number| Some(number.expansion(MOST_TERMS)?.len())).sum()
+    }
+
+    /// The half-space of stored numbers; `None` if they make none.
+    fn stored(kind: SurfaceKind, numbers: &[Dyadic]) -> Option<HalfSpace> {
+        let is_constant = |linear: &[Dyadic]| linear.iter().all(Dyadic::is_zero);
+        Some(match (kind, numbers) {
+            (SurfaceKind::Plane, [a, b, c, d]) => {
+                let plane = [a, b, c, d].map(Clone::clone);
+                if is_constant(&plane[..3]) {
+                    return None;
+                }
+                HalfSpace::linear(plane)
+            }
+            (SurfaceKind::Quadric, numbers) => {
+                let quadric: [Dyadic; 10] = numbers.to_vec().try_into().ok()?;
+                if is_constant(&quadric[..9]) {
+                    return None;
+                }
+                HalfSpace::exactly(quadric)
+            }
+            (SurfaceKind::Powers, numbers) => {
+                let n: Vec<f64> = numbers.iter().map(Dyadic::exactly).collect::<Option<_>>()?;
+                let exponent =
+                    |n: f64| ((1.0..=64.0).contains(&n) && n == f64::from(n as u32)).then_some(n as u32);
+                let term = |i: usize| Some((n[3 * i], n[3 * i + 1], exponent(n[3 * i + 2])?));
+                HalfSpace::power([term(0)?, term(1)?, term(2)?], n[9]).ok()?
+            }
+            (SurfaceKind::Torus, [major, square, scale, shift]) => {
+                if [major, square, scale].iter().any(|number| number.sign() <= 0) {
+                    return None;
+                }
+                let [major, square, scale, shift] = [major, square, scale, shift].map(Clone::clone);
+                HalfSpace::ring(Torus { major, square, scale, shift })
+            }
+            (SurfaceKind::Slab, [x, y, z, inner, outer]) => {
+                let all = [x, y, z, inner, outer].map(Dyadic::exactly);
+                let [Some(x), Some(y), Some(z), Some(inner), Some(outer)] = all else { return None };
+                if [x, y, z] == [0.0; 3] || inner > outer {
+                    return None;
+                }
+                HalfSpace::slab([x, y, z], inner, outer)
+            }
+            _ => return None,
+        })
+    }
+
+    /// The points where the function is negative.
+    fn negated(&self) -> HalfSpace {
+        match &*self.0 {
+            Surface::Plane(plane) => HalfSpace::linear(plane.each_ref().map(|c| -c)),
+            Surface::Quadric(quadric) => HalfSpace::exactly(quadric.each_ref().map(|c| -c)),
+            _ => self.clone(),
+        }
+    }
+}
+
+/// Surfaces that differ: those that are equal have one number.
+#[derive(Default)]
+pub(crate) struct Pool {
+    known: HashMap<Identity, u32>,
+    pub(crate) surfaces: Vec<PlacedHalfSpace>,
+}
+
+impl Pool {
+    /// The number of a surface, and whether the function of that is positive where this one's is negative. `None` of what has no
+    /// exact numbers.
+    pub(crate) fn number(&mut self, surface: &PlacedHalfSpace) -> Result<Option<(u32, bool)>, Error> {
+        let Some((identity, turned)) = surface.identity()? else { return Ok(None) };
+        self.known.try_reserve(1)?;
+        let next = self.surfaces.len() as u32;
+        let number = *self.known.entry(identity).or_insert(next);
+        let mut short = surface.shortened()?;
+        if turned {
+            short.half_space = short.half_space.negated();
+        }
+        if number == next {
+            memory::push(&mut self.surfaces, short)?;
+        } else if let Some(before) = self.surfaces.get_mut(number as usize)
+            && short.size() < before.size()
+        {
+            *before = short;
+        }
+        Ok(Some((number, turned)))
+    }
+}
+
+impl PlacedHalfSpace {
+    /// What is compared where two records tell of one surface: doubles, and then the doubles themselves.
+    fn size(&self) -> (usize, Vec<u64>) {
+        let doubles = self.half_space.numbers().and_then(|(_, numbers)| {
+            let terms =
+                numbers.iter().map(|number| number.expansion(MOST_TERMS)).collect::<Option<Vec<_>>>()?;
+            Some(terms.concat())
+        });
+        let maps = self.placements.iter().flat_map(|map| map.rows().as_flattened().iter().copied());
+        let bits: Vec<u64> = doubles.unwrap_or_default().into_iter().chain(maps).map(f64::to_bits).collect();
+        (bits.len(), bits)
+    }
+
+    /// Writes surfaces one after the other; maps that several share stand once.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if a number is the sum of more than seven doubles, or there are too many; [`Error::OutOfMemory`].
+    pub(crate) fn write<'s>(
+        surfaces: impl ExactSizeIterator<Item = &'s PlacedHalfSpace>,
+    ) -> Result<Surfaces, Error> {
+        let mut all = Surfaces { records: memory::with_capacity(surfaces.len())?, ..Surfaces::default() };
+        let mut places: HashMap<(u64, [[u64; 4]; 3]), u64> = HashMap::new();
+        for surface in surfaces {
+            let mut outer = 0;
+            for placement in &*surface.placements {
+                let rows = placement.rows();
+                places.try_reserve(1)?;
+                let next = all.placements.len() as u64 + 1;
+                let place = *places.entry((outer, rows.map(|row| row.map(f64::to_bits)))).or_insert(next);
+                if place == next {
+                    memory::push(&mut all.placements, Placement { rows: *rows, outer })?;
+                }
+                outer = place;
+            }
+            let too_long = || Error::Limit {
+                what: "doubles for an exact number of a surface",
+                limit: MOST_TERMS as u64,
+            };
+            let (kind, numbers) = surface.half_space.numbers().ok_or_else(too_long)?;
+            let (first, mut terms) = (all.doubles.len() as u32, 0);
+            for (i, number) in numbers.iter().enumerate() {
+                let own = number.expansion(MOST_TERMS).ok_or_else(too_long)?;
+                terms |= (own.len() as u32) << (3 * i);
+                all.doubles.try_reserve(own.len())?;
+                all.doubles.extend(own);
+            }
+            all.records.push(SurfaceRecord { kind: kind as u32, terms, first, placement: outer as u32 });
+        }
+        Ok(all)
+    }
+
+    /// A stored surface; `None` if it is damaged.
+    pub(crate) fn read(surfaces: &SurfacesRef<'_>, id: usize) -> Option<PlacedHalfSpace> {
+        let (kind, numbers) = surfaces.get(id)?;
+        let numbers: Vec<Dyadic> = numbers.map(Dyadic::sum).collect();
+        let mut placements =
+            surfaces.placements(id).map(|rows| Affine::new(*rows).ok()).collect::<Option<Vec<_>>>()?;
+        placements.reverse();
+        Some(PlacedHalfSpace {
+            half_space: HalfSpace::stored(kind, &numbers)?,
+            placements: Arc::from(placements),
+        })
+    }
+
+    /// The half-space on the universe of a frame.
+    pub(crate) fn on(&self, frame: &Frame) -> Result<super::Placed, Error> {
+        Ok(self.half_space.0.on(&self.map(ExactMap::from_universe(frame))?, frame))
+    }
+}

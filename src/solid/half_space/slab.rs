@@ -1,0 +1,83 @@
+//! Planes with a width: what is known of a surface where nothing exact is known.
+
+use super::bounds::{Octants, Sides};
+use super::linear;
+use super::map::ExactMap;
+use super::tangent::Tangent;
+use crate::lattice::axes;
+use crate::lattice::exact::Dyadic;
+
+/// A point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer` is not; of others nothing is known.
+pub(crate) struct ThickPlane {
+    pub(crate) normal: [f64; 3],
+    pub(crate) inner: f64,
+    pub(crate) outer: f64,
+}
+
+/// A plane with a width on a universe, in unit coordinates.
+pub(crate) struct PlacedSlab {
+    normal: [f64; 3],
+    /// The offsets, moved outward by more than all that is rounded on the universe.
+    inner: f64,
+    outer: f64,
+}
+
+impl PlacedSlab {
+    pub(crate) fn new(given: &ThickPlane, map: &ExactMap) -> PlacedSlab {
+        let [x, y, z] = given.normal.map(Dyadic::new);
+        let [a, b, c, d] = map.linear(&[x, y, z, Dyadic::zero()]);
+        // With w positive, the inequalities stay as they are.
+        let turned = |c: Dyadic| if map.w.sign() < 0 { -&c } else { c };
+        let [a, b, c, d, w] = [a, b, c, d, map.w.clone()].map(turned);
+        let scale = -linear::magnitude([&a, &b, &c]);
+        let [inner, outer] = [given.inner, given.outer].map(|offset| {
+            // An offset is infinite where one side alone is known.
+            let exact =
+                offset.is_finite().then(|| (&(&Dyadic::new(offset) * &w) - &d).shifted(scale).rounded());
+            exact.unwrap_or(offset)
+        });
+        let normal = [a, b, c].map(|c| c.shifted(scale).rounded());
+        // A term is rounded at most eight times on [−1, 2]³.
+        let slack = |offset: f64| {
+            let size: f64 = normal.iter().map(|c| 2.0 * c.abs()).sum::<f64>() + offset.abs();
+            if size.is_finite() { 16.0 * f64::EPSILON * size } else { 0.0 }
+        };
+        PlacedSlab { normal, inner: inner - slack(inner), outer: outer + slack(outer) }
+    }
+
+    fn at(&self, t: [f64; 3]) -> f64 {
+        let [a, b, c] = self.normal;
+        (a * t[0] + b * t[1]) + c * t[2]
+    }
+
+    /// For which of the eight cells all points are inside, and for which all are outside.
+    pub(crate) fn sides(&self, at: &Octants) -> Sides {
+        let mut sides = Sides { inside: 0, outside: 0 };
+        for k in 0..8 {
+            let (low, high) = at.octant(k);
+            let corner =
+                |upper: bool| axes(|i| if (self.normal[i] > 0.0) == upper { high[i] } else { low[i] });
+            sides.inside |= u8::from(self.at(corner(true)) <= self.inner) << k;
+            sides.outside |= u8::from(self.at(corner(false)) >= self.outer) << k;
+        }
+        sides
+    }
+
+    pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
+        let value = self.at(centre);
+        let gradient = self.normal.map(|c| -c * half);
+        Tangent { gradient, low: (self.inner - value).next_down(), high: (self.outer - value).next_up() }
+    }
+
+    /// The side on which a point lies, unless that is not known.
+    pub(crate) fn sign_at(&self, t: [f64; 3]) -> Option<i32> {
+        let value = self.at(t);
+        if value < self.inner {
+            Some(1)
+        } else if value > self.outer {
+            Some(-1)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! What the cuts of a stored octree say: cells below its own, and points.
+
+use super::StoredPart;
+use crate::error::Error;
+use crate::lattice::{Cell, Frame};
+use crate::memory;
+use crate::octree::cuts::{CellCut, CutsRef};
+use crate::octree::{OctreeRef, Planes, Tag};
+use crate::solid::half_space::Placed;
+use crate::solid::half_space::bounds::{Octants, centre};
+use crate::solid::half_space::literals::{Literals, most_area};
+use crate::solid::half_space::table::Table;
+use crate::solid::{OCTANTS, OpenSurfaces, PlacedHalfSpace, Question, Verdict};
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use once_cell::race::OnceBox;
+
+/// The surfaces of a tree on its universe.
+pub(super) struct PlacedCuts {
+    surfaces: Vec<PlacedHalfSpace>,
+    /// In unit coordinates, for cells.
+    cells: Vec<Placed>,
+    /// The least cube around the origin that holds the universe and whose edge is a power of two: points of the model are exact
+    /// in its unit coordinates, too.
+    around: Frame,
+    /// In those coordinates; made when the first point is asked for.
+    points: OnceBox<Vec<Placed>>,
+}
+
+impl core::fmt::Debug for PlacedCuts {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("PlacedCuts").field("surfaces", &self.surfaces.len()).finish_non_exhaustive()
+    }
+}
+
+/// The table of a record, as a function of six half-spaces.
+fn widened(table: u8) -> Table {
+    Table(u64::from(table) * 0x0101_0101_0101_0101)
+}
+
+impl PlacedCuts {
+    /// Of a tree with cuts; `None` if a surface is damaged. O(surfaces).
+    pub(super) fn new(cuts: &CutsRef<'_>, frame: &Frame) -> Result<Option<PlacedCuts>, Error> {
+        let mut surfaces = memory::with_capacity(cuts.surfaces.len())?;
+        let mut cells = memory::with_capacity(cuts.surfaces.len())?;
+        for id in 0..cuts.surfaces.len() {
+            let Some(surface) = PlacedHalfSpace::read(&cuts.surfaces, id) else { return Ok(None) };
+            cells.push(surface.on(frame)?);
+            surfaces.push(surface);
+        }
+        let far =
+            frame.origin().into_iter().flat_map(|c| [c.abs(), (c + frame.edge()).abs()]).fold(0.0, f64::max);
+        let (mut edge, half) = (1.0, 0.5);
+        while edge < far {
+            edge *= 2.0;
+        }
+        while edge * half >= far {
+            edge *= half;
+        }
+        let around = Frame::new([0.0; 3], edge, 1)?;
+        Ok(Some(PlacedCuts { surfaces, cells, around, points: OnceBox::new() }))
+    }
+
+    pub(super) fn surfaces(&self) -> &[PlacedHalfSpace] {
+        &self.surfaces
+    }
+
+    /// The surfaces on which a table depends, with their numbers in it; nothing if one is not there.
+    fn variables<'c>(&self, cuts: &CutsRef<'c>, record: u32, table: Table) -> Option<Variables<'c>> {
+        let CellCut::Table { ids, .. } = cuts.at(record as usize) else { return None };
+        ids.iter().all(|&id| (id as usize) < self.cells.len()).then_some(Variables { ids, table })
+    }
+
+    /// The children of a cell of which a table is known.
+    pub(super) fn split(
+        &self,
+        cuts: &CutsRef<'_>,
+        cell: Cell,
+        record: u32,
+        table: u8,
+    ) -> Result<[Verdict<StoredPart>; 8], Error> {
+        let table = widened(table);
+        let Some(variables) = self.variables(cuts, record, table) else { return Ok([Verdict::Undecided; 8]) };
+        let at = Octants::of(cell);
+        let mut tables = [table; 8];
+        for (i, id) in variables.each() {
+            let sides = self.cells[id as usize].sides(&at, 0xFF, &mut 0)?;
+            for (k, table) in (0..).zip(&mut tables) {
+                *table = table.known(i, sides, k);
+            }
+        }
+        Ok(tables.map(|table| match table {
+            Table::EMPTY => Verdict::Empty,
+            Table::FULL => Verdict::Full,
+            table => Verdict::Partial(StoredPart::Cut { record, table: table.0 as u8 }),
+        }))
+    }
+
+    /// What is known of a cell of which a table is known.
+    pub(super) fn answer(
+        &self,
+        cuts: &CutsRef<'_>,
+        cell: Cell,
+        (record, table): (u32, u8),
+        question: Question<'_>,
+    ) -> Result<(), Error> {
+        let table = widened(table);
+        let Some(variables) = self.variables(cuts, record, table) else { return Ok(()) };
+        let literals = || Literals::of_table(variables.each(), table);
+        match question {
+            Question::Centre(inside) => {
+                *inside = variables.inside(|id| self.cells[id].contains(centre(cell)))?
+            }
+            Question::Enclosure(known) => {
+                *known = literals().and_then(|own| own.enclosure(&self.cells, cell))
+            }
+            Question::Moments(known) => *known = literals().and_then(|own| own.moments(&self.cells, cell)),
+            Question::Area(known) => {
+                let all = variables.each().map(|(_, id)| &self.cells[id as usize]);
+                let one = literals().and_then(|own| own.area(&self.cells, cell));
+                *known = one.or_else(|| most_area(all, cell));
+            }
+            Question::Surfaces(known) => {
+                let (mut open, mut dense) = (OpenSurfaces::constant(false), table);
+                for (i, id) in variables.each() {
+                    let Some(to) = open.number(id) else { return Ok(()) };
+                    dense = dense.renamed(i, to, false);
+                }
+                *known = Some(open.with_table(dense));
+            }
+            Question::Crossing(..) | Question::Chords(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Whether a point of the universe (model units) is inside, by exact signs; `None` if nothing is known of it there.
+    pub(super) fn inside(
+        &self,
+        tree: &OctreeRef<'_>,
+        cuts: &CutsRef<'_>,
+        point: [f64; 3],
+    ) -> Result<Option<bool>, Error> {
+        let Some(at) = tree.frame().cell_of(point) else { return Ok(None) };
+        let mut record = match tree.record_at(cuts, at) {
+            Place::Settled(tag) => {
+                return Ok(match tag {
+                    Tag::Empty => Some(false),
+                    Tag::Full => Some(true),
+                    _ => None,
+                });
+            }
+            Place::Record { record, level } => (record, level),
+        };
+        let finest = Cell { level: tree.frame().depth(), at };
+        while let CellCut::Split(first) = cuts.at(record.0) {
+            if record.1 == finest.level {
+                return Ok(None);
+            }
+            let child = finest.ancestor(record.1 + 1);
+            record = (first + usize::from(child.octant()), record.1 + 1);
+        }
+        let CellCut::Table { table, .. } = cuts.at(record.0) else { return Ok(None) };
+        let Some(variables) = self.variables(cuts, record.0 as u32, widened(table)) else { return Ok(None) };
+        let exact = match self.points.get() {
+            Some(exact) => exact,
+            None => {
+                let mut exact = memory::with_capacity(self.surfaces.len())?;
+                for surface in &self.surfaces {
+                    exact.push(surface.on(&self.around)?);
+                }
+                self.points.get_or_init(|| Box::new(exact))
+            }
+        };
+        let t = point.map(|c| c / self.around.edge());
+        variables.inside(|id| exact[id].contains_off_lattice(t))
+    }
+}
+
+/// The surfaces of a record, and a function of them that remains.
+struct Variables<'c> {
+    ids: &'c [u32],
+    table: Table,
+}
+
+impl Variables<'_> {
+    fn each(&self) -> impl Iterator<Item = (usize, u32)> + Clone {
+        self.ids.iter().copied().enumerate().filter(|&(i, _)| self.table.depends_on(i))
+    }
+
+    /// The value of the function where surfaces have these sides; `None` if it depends on one that has not.
+    fn inside(&self, side: impl Fn(usize) -> Result<Option<bool>, Error>) -> Result<Option<bool>, Error> {
+        let mut table = self.table;
+        for (i, id) in self.each() {
+            // What was found before may make it not matter.
+            if table.depends_on(i) {
+                table = table.at(i, side(id as usize)?);
+            }
+        }
+        Ok(match table {
+            Table::FULL => Some(true),
+            Table::EMPTY => Some(false),
+            _ => None,
+        })
+    }
+}
+
+/// Where a finest cell lies.
+enum Place {
+    /// In a cell that is decided, or of which nothing is known.
+    Settled(Tag),
+    /// In a PARTIAL cell of a level, of which there is a record.
+    Record { record: usize, level: u8 },
+}
+
+impl OctreeRef<'_> {
+    fn record_at(&self, cuts: &CutsRef<'_>, at: [u32; 3]) -> Place {
+        let finest = Cell { level: self.frame().depth(), at };
+        let (mut part, mut level) = (self.root_with(Some(cuts)), 0);
+        loop {
+            match part {
+                Verdict::Empty => return Place::Settled(Tag::Empty),
+                Verdict::Full => return Place::Settled(Tag::Full),
+                Verdict::Undecided => return Place::Settled(Tag::Partial),
+                Verdict::Partial(StoredPart::Record(record)) => {
+                    return Place::Record { record: record as usize, level };
+                }
+                Verdict::Partial(own) => {
+                    level += 1;
+                    let octant = finest.ancestor(level).octant();
+                    part = self.verdicts_with(Some(cuts), &own)[usize::from(octant)];
+                }
+            }
+        }
+    }
+
+    /// The universe, with its cut if it is one PARTIAL cell.
+    pub(super) fn root_with(&self, cuts: Option<&CutsRef<'_>>) -> Verdict<StoredPart> {
+        match (self.root_tag(), cuts) {
+            (Tag::Partial, Some(_)) => Verdict::Partial(StoredPart::Record(CutsRef::ROOT as u32)),
+            _ => self.root_verdict(),
+        }
+    }
+
+    /// The children of a cell that the planes describe, with records of those that are PARTIAL.
+    pub(super) fn verdicts_with(
+        &self,
+        cuts: Option<&CutsRef<'_>>,
+        part: &StoredPart,
+    ) -> [Verdict<StoredPart>; 8] {
+        let Some(cuts) = cuts else { return self.child_verdicts(part) };
+        let known = |index: usize, planes: Planes, c: u32| {
+            u32::try_from(cuts.record(index, planes, c))
+                .map_or(Verdict::Undecided, |record| Verdict::Partial(StoredPart::Record(record)))
+        };
+        let mut verdicts = self.child_verdicts(part);
+        match *part {
+            StoredPart::Element { level, index } => {
+                let planes = self.described(level, index);
+                for k in OCTANTS {
+                    if planes.octant(k.into()) == Tag::Partial {
+                        verdicts[usize::from(k)] = known(index, planes, 8 * u32::from(k));
+                    }
+                }
+            }
+            StoredPart::Octant { level, index, octant } => {
+                let planes = self.described(level, index);
+                for k in OCTANTS {
+                    let c = 8 * u32::from(octant & 7) + u32::from(k);
+                    if planes.tag(c) == Tag::Partial {
+                        verdicts[usize::from(k)] = known(index, planes, c);
+                    }
+                }
+            }
+            StoredPart::Record(record) => {
+                if let CellCut::Split(first) = cuts.at(record as usize) {
+                    verdicts =
+                        OCTANTS.map(|k| Verdict::Partial(StoredPart::Record(first as u32 + u32::from(k))));
+                }
+            }
+            StoredPart::Cut { .. } => {}
+        }
+        verdicts
+    }
+}

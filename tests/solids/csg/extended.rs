@@ -1,0 +1,309 @@
+//! Extended octrees: what they keep of surfaces against exact arithmetic.
+
+use super::model::Model;
+use super::oracle::frames;
+use super::points::{Found, Judge};
+use crate::common::exact::Exact;
+use crate::common::{Random, alone};
+use crate::random::Maker;
+use leafless::{
+    Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid,
+    SurfaceOptions, Tag, TriangleMesh, build, build_extended, contains, measure,
+};
+
+fn extended(csg: &Csg, frame: &Frame) -> Octree {
+    let tree = build_extended(csg, frame, &SurfaceOptions::default(), &alone()).unwrap();
+    tree.view().check().unwrap();
+    tree
+}
+
+/// Which side of a model a point of doubles is on.
+fn sign(model: &Model, p: [f64; 3]) -> i32 {
+    let [x, y, z] = p.map(Exact::from);
+    model.sign(&[x, y, z, Exact::from(1.0)])
+}
+
+/// Points anywhere, and ever closer to the surface between two that are on different sides of it; with their sides.
+fn points(model: &Model, frame: &Frame, count: usize, random: &mut Random) -> Vec<([f64; 3], i32)> {
+    let mut found = Vec::new();
+    let mut last: [Option<[f64; 3]>; 2] = [None; 2];
+    while found.len() < count {
+        let p = frame.origin().map(|origin| origin + frame.edge() * random.unit());
+        let own = sign(model, p);
+        found.push((p, own));
+        if own != 0 {
+            last[(own > 0) as usize] = Some(p);
+        }
+        let [Some(mut outside), Some(mut inside)] = last else { continue };
+        last = [None; 2];
+        loop {
+            let middle = [0, 1, 2].map(|axis| 0.5 * outside[axis] + 0.5 * inside[axis]);
+            if middle == outside || middle == inside {
+                break;
+            }
+            let own = sign(model, middle);
+            found.push((middle, own));
+            match own {
+                1 => inside = middle,
+                -1 => outside = middle,
+                _ => break,
+            }
+        }
+    }
+    found
+}
+
+/// Random points in `models` random models each, made by `make`: what was found out of points in the universe.
+fn no_lies(models: u64, count: usize, make: impl Fn(&mut Maker<'_>) -> Model) {
+    let (mut decided, mut undecided, mut made, mut kept, mut given_up) = (0u64, 0u64, 0, 0, 0);
+    let (mut compared, mut ratios) = (0, 0.0);
+    let mut found = Found::default();
+    for seed in 0.. {
+        let mut random = Random(seed ^ 0xE47E);
+        let frame = frames(2 + random.below(5) as u8)[random.below(5) as usize];
+        let aligned = random.below(2) == 0;
+        let mut maker = Maker { random: &mut random, frame, aligned, others: false };
+        let model = make(&mut maker);
+        let Ok(csg) = model.csg(&frame) else { continue };
+        let tree = match build_extended(&csg, &frame, &SurfaceOptions::default(), &alone()) {
+            Ok(tree) => tree,
+            // Numbers of placements within placements may become too long.
+            Err(leafless::Error::Limit { .. }) => continue,
+            Err(error) => panic!("{error}"),
+        };
+        tree.view().check().unwrap();
+        let cuts = tree.view().cuts().unwrap();
+        (kept, given_up) = (kept + cuts.cells, given_up + cuts.given_up);
+        // The planes, and those of a tree that is made of it.
+        let plain = build(&tree, &frame, Rule::Certified, &alone()).unwrap();
+        let direct = build(&csg, &frame, Rule::Certified, &alone()).unwrap();
+        for tree in [&tree, &plain] {
+            let mut judge = Judge { model: &model, tree, bounds: csg.bounds(), found };
+            judge.ask(count as u64 / 4, &mut random);
+            found = judge.found;
+        }
+        // Cells are decided by the same surfaces; groups of an expression may decide some by the boxes around them.
+        let width = |tree: &Octree| tree.statistics().volume().width();
+        if cuts.given_up == 0 && width(&direct) > 0.0 {
+            (compared, ratios) = (compared + 1, ratios + width(&plain) / width(&direct));
+        }
+        // Points, by exact signs.
+        let asked = points(&model, &frame, count, &mut random);
+        let places: Vec<[f64; 3]> = asked.iter().map(|&(p, _)| p).collect();
+        let mut answers = vec![Membership::Undecided; places.len()];
+        contains(&tree, &frame, &places, &mut answers, &alone()).unwrap();
+        for (&(p, sign), answer) in asked.iter().zip(answers) {
+            match answer {
+                Membership::Inside => assert!(sign >= 0, "{p:?} is outside\n{frame:?}\n{model:#?}"),
+                Membership::Outside => assert!(sign <= 0, "{p:?} is inside\n{frame:?}\n{model:#?}"),
+                Membership::Undecided => {
+                    assert!(cuts.given_up > 0 || frame.cell_of(p).is_none(), "{p:?}\n{frame:?}\n{model:#?}");
+                    undecided += 1;
+                    continue;
+                }
+            }
+            decided += 1;
+        }
+        made += 1;
+        if made == models {
+            assert!(seed < 2 * models, "most models are refused");
+            break;
+        }
+    }
+    println!(
+        "{models} models: {decided} points decided, {undecided} not; {kept} cells, {given_up} given up; plain trees {} times as wide; {found:?}",
+        ratios / f64::from(compared)
+    );
+    assert!(undecided < decided / 4 && ratios < 1.01 * f64::from(compared));
+}
+
+#[test]
+fn extended_primitives_do_not_lie() {
+    no_lies(150, 60, |maker| maker.primitive());
+}
+
+#[test]
+fn extended_expressions_do_not_lie() {
+    no_lies(120, 60, |maker| maker.expression(3));
+    no_lies(60, 60, |maker| {
+        let part = maker.expression(2);
+        Model::Placed(Box::new(part), maker.placement())
+    });
+}
+
+#[test]
+#[ignore = "some minutes"]
+fn a_million_points_of_extended_trees() {
+    no_lies(3000, 120, |maker| maker.primitive());
+    no_lies(3000, 120, |maker| maker.expression(4));
+    no_lies(3000, 120, |maker| {
+        let inner = Model::Placed(Box::new(maker.expression(2)), maker.placement());
+        Model::Placed(Box::new(inner), maker.placement())
+    });
+}
+
+fn plate() -> Csg {
+    let bores = (0..20).map(|k| {
+        let to = [8.0 + 16.0 * f64::from(k % 5), 7.5 + 15.0 * f64::from(k / 5), 0.0];
+        Csg::cylinder(2.5, -1.0, 11.0).unwrap().placed(&Affine::translation(to).unwrap()).unwrap()
+    });
+    Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap().difference(&Csg::union_of(bores).unwrap()).unwrap()
+}
+
+/// The example of the design: a plate of 80 × 60 × 10 with twenty bores.
+#[test]
+fn a_plate_with_twenty_bores_is_small_and_sharp() {
+    let turn = Affine::new([[0.36, 0.48, -0.8, 0.0], [-0.8, 0.6, 0.0, 0.0], [0.48, 0.64, 0.6, 0.0]]).unwrap();
+    let truth = 48_000.0 - 20.0 * core::f64::consts::PI * 6.25 * 10.0;
+    for (csg, nodes, bytes) in [(plate(), 57, 4000), (plate().placed(&turn).unwrap(), 130, 8000)] {
+        let bounds = csg.bounds().unwrap();
+        let frame = Frame::around(bounds.min, bounds.max, 20).unwrap();
+        let tree = extended(&csg, &frame);
+        let (cuts, planes) = (tree.view().cuts().unwrap(), tree.statistics());
+        assert!(planes.nodes() <= nodes, "{}", planes.nodes());
+        // Six planes and twenty cylinders: the ends of those lie outside.
+        assert_eq!((cuts.surfaces, cuts.given_up), (26, 0));
+        assert!(cuts.bytes < bytes, "{cuts:?}");
+        assert!(planes.volume().contains(truth));
+        let [own, source] = [measure(&tree, &frame, 1e-4, &alone()), measure(&csg, &frame, 1e-4, &alone())]
+            .map(Result::unwrap);
+        assert!(own.volume.contains(truth) && own.volume.width() < 1.01e-4 * truth, "{:?}", own.volume);
+        assert!(own.splits as f64 <= 1.1 * source.splits as f64, "{} {}", own.splits, source.splits);
+    }
+}
+
+/// What is equal is one surface, however it was written.
+#[test]
+fn equal_surfaces_are_one() {
+    let frame = Frame::new([-2.0; 3], 4.0, 10).unwrap();
+    let ball = Csg::ball([0.1, 0.2, 0.3], 0.7).unwrap();
+    let to = Affine::translation([0.1, 0.2, 0.3]).unwrap();
+    let moved = Csg::ball([0.0; 3], 0.7).unwrap().placed(&to).unwrap();
+    let scaled =
+        leafless::solid::HalfSpace::quadric([-3.0, -3.0, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3.0 * 0.49]);
+    let _ = scaled;
+    for (what, count) in [
+        (ball.difference(&moved).unwrap(), 0),
+        (Csg::union_of([ball.clone(), moved.complement()]).unwrap(), 0),
+        (Csg::intersection_of([ball.clone(), moved.clone()]).unwrap(), 1),
+        (Csg::union_of([ball.complement(), ball.clone()]).unwrap(), 0),
+    ] {
+        let tree = extended(&what, &frame);
+        assert_eq!(tree.view().cuts().unwrap().surfaces, count);
+        // A universe that one surface crosses is one cell.
+        assert_eq!((tree.statistics().nodes(), tree.view().root_tag() == Tag::Partial), (0, count > 0));
+    }
+    // A plane that was given with other numbers, and on the other side.
+    let plane = |scale: f64| Csg::half_space([0.3 * scale, -0.7 * scale, 0.2 * scale], 0.25 * scale).unwrap();
+    let tree = extended(&Csg::intersection_of([plane(1.0), plane(-4.0)]).unwrap(), &frame);
+    assert!(tree.statistics().nodes() == 0 && tree.view().root_tag() == Tag::Empty);
+}
+
+/// An extended tree within an expression hands on its surfaces: the tree of that is as sharp as if it were made at once.
+#[test]
+fn trees_of_trees() {
+    let frame = Frame::new([-1.0; 3], 2.0, 12).unwrap();
+    let block = Csg::cuboid([-0.7, -0.6, -0.5], [0.7, 0.6, 0.5]).unwrap();
+    let ball = Csg::ball([0.2, 0.1, 0.3], 0.55).unwrap();
+    let at_once = extended(&block.difference(&ball).unwrap(), &frame);
+    let stored = Csg::solid(leafless::AnySolid::new(extended(&block, &frame)));
+    let after = extended(&stored.difference(&ball).unwrap(), &frame);
+    // (Two faces of the block lie in planes of the lattice: cells say all of these.)
+    let [once, later] = [&at_once, &after].map(|tree| tree.view().cuts().unwrap());
+    assert_eq!((once.given_up, later.given_up, once.surfaces, later.surfaces), (0, 0, 5, 5));
+    let [once, later] = [&at_once, &after].map(|tree| measure(tree, &frame, 1e-5, &alone()).unwrap().volume);
+    assert!(once.lower <= later.upper && later.lower <= once.upper);
+    assert!(later.width() < 1e-4);
+    // And a copy of a tree is the tree.
+    assert_eq!(extended(&Csg::solid(leafless::AnySolid::new(at_once.clone())), &frame), at_once);
+    assert_eq!(
+        build_extended(&at_once, &frame, &SurfaceOptions::default(), &Control::threads(2)).unwrap(),
+        at_once
+    );
+}
+
+/// A cube of edge 1 as a mesh, of which an extended tree keeps slabs; less a ball, whose surface is exact.
+#[test]
+fn meshes_are_kept_to_a_tolerance() {
+    let vertices = (0..8).map(|k| [0, 1, 2].map(|axis| f64::from(k >> axis & 1))).collect();
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let mesh = MeshSolid::new(TriangleMesh::new(vertices, triangles).unwrap(), FillRule::NonZero).unwrap();
+    let ball = Csg::ball([1.0, 0.9, 0.8], 0.6).unwrap();
+    let (cube, frame) = (Csg::solid(AnySolid::new(mesh)), Frame::new([-0.77; 3], 2.7, 9).unwrap());
+    let part = cube.difference(&ball).unwrap();
+    let truth = |p: [f64; 3]| {
+        // How far a point lies inside, at the least.
+        let cube = p.iter().map(|&c| c.min(1.0 - c)).fold(f64::INFINITY, f64::min);
+        let [x, y, z] = [p[0] - 1.0, p[1] - 0.9, p[2] - 0.8];
+        cube.min((x * x + y * y + z * z).sqrt() - 0.6)
+    };
+    for tolerance in [0.03, 0.01] {
+        let options = SurfaceOptions { tolerance: Some(tolerance) };
+        let tree = build_extended(&part, &frame, &options, &Control::threads(1)).unwrap();
+        assert_eq!(build_extended(&part, &frame, &options, &Control::threads(3)).unwrap(), tree);
+        tree.view().check().unwrap();
+        assert_eq!(leafless::op::compact(tree.view()).unwrap(), tree);
+        let cuts = tree.view().cuts().unwrap();
+        println!("{tolerance}: {} nodes, {cuts:?}", tree.statistics().nodes());
+        let mut random = Random(5);
+        let near = |c: f64, random: &mut Random| c + random.between(-4.0, 4.0) * tolerance;
+        let points: Vec<[f64; 3]> = (0..20_000)
+            .map(|_| {
+                let mut p = [0; 3].map(|_| random.between(-0.1, 1.1));
+                let axis = random.below(3) as usize;
+                p[axis] = near(random.below(2) as f64, &mut random);
+                p
+            })
+            .collect();
+        let mut answers = vec![Membership::Undecided; points.len()];
+        contains(&tree, &frame, &points, &mut answers, &alone()).unwrap();
+        let (mut known, mut far) = (0, 0);
+        for (&p, answer) in points.iter().zip(answers) {
+            let depth = truth(p);
+            match answer {
+                Membership::Inside => assert!(depth > -1e-12, "{p:?}: {depth}"),
+                Membership::Outside => assert!(depth < 1e-12, "{p:?}: {depth}"),
+                Membership::Undecided => {
+                    far += (depth.abs() > 2.0 * tolerance) as u32;
+                    continue;
+                }
+            }
+            known += 1;
+        }
+        // What is given up at edges is thinner than a finest cell.
+        assert!(known > 10_000 && far == 0, "{known} {far}");
+        let volume = measure(&tree, &frame, 1e-2, &alone()).unwrap().volume;
+        let source = measure(&part, &frame, 1e-2, &alone()).unwrap().volume;
+        assert!(volume.lower <= source.upper && source.lower <= volume.upper, "{volume:?} {source:?}");
+        assert!(volume.width() < 10.0 * tolerance, "{volume:?}");
+    }
+}
+
+/// What cannot be: a tolerance that is none, cancelled work, bytes that are too many, a file.
+#[test]
+fn refusals() {
+    let frame = Frame::new([-1.0; 3], 2.0, 12).unwrap();
+    let ball = Csg::ball([0.1, 0.0, 0.0], 0.7).unwrap();
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let options = SurfaceOptions { tolerance: Some(tolerance) };
+        let refused = build_extended(&ball, &frame, &options, &alone());
+        assert!(matches!(refused, Err(Error::Argument { name: "tolerance", .. })), "{tolerance}");
+    }
+    let cancel = core::sync::atomic::AtomicBool::new(true);
+    let cancelled = Control { cancel: Some(&cancel), ..alone() };
+    assert!(matches!(
+        build_extended(&ball, &frame, &SurfaceOptions::default(), &cancelled),
+        Err(Error::Cancelled)
+    ));
+    let part = plate();
+    let around = Frame::around([0.0; 3], [80.0, 60.0, 10.0], 20).unwrap();
+    let small = Control { max_bytes: Some(500), ..alone() };
+    assert!(matches!(
+        build_extended(&part, &around, &SurfaceOptions::default(), &small),
+        Err(Error::Limit { .. })
+    ));
+    let tree = extended(&ball, &frame);
+    assert!(matches!(leafless::file::to_bytes(&tree), Err(Error::Argument { name: "octree", .. })));
+    assert!(leafless::file::to_bytes(&tree.without_cuts()).is_ok());
+}
