@@ -59,6 +59,11 @@ pub fn documented(text: &str) -> Vec<String> {
         .collect()
 }
 
+/// Says that a test is skipped, past the test harness, which keeps what is printed by tests that pass.
+pub fn skipped(test: &str, reason: &str) {
+    let _ = std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("SKIPPED {test}: {reason}\n"));
+}
+
 /// A command as it could be typed, without its environment.
 fn line(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());

@@ -16,10 +16,11 @@ mod cpp;
 mod generated;
 mod header;
 mod kit;
+mod packages;
 
 use check::Check;
 use header::Header;
-use kit::{Kit, Link, Standard, kit, output};
+use kit::{Kit, Link, Standard, kit};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -437,50 +438,6 @@ fn examples() {
     }
 }
 
-/// The command lines of `include/README.md` work word by word.
-#[test]
-fn documented_commands() {
-    let kit = kit();
-    if !kit.check.is_plain() {
-        return;
-    }
-    let folder = kit.folder("documented");
-    let libraries = kit.libraries();
-    // The repository as the commands see it.
-    std::fs::create_dir_all(folder.join("target")).unwrap();
-    for (name, place) in [
-        ("include", root().join("include")),
-        ("examples", root().join("examples")),
-        ("target/release", libraries.clone()),
-    ] {
-        let link = folder.join(name);
-        let _ = std::fs::remove_file(&link);
-        std::os::unix::fs::symlink(place, link).unwrap();
-    }
-    let mut compiled = 0;
-    for line in kit::documented(&text("include/README.md")) {
-        if line.starts_with("cargo ") {
-            continue;
-        }
-        let shell = |line: &str| {
-            let mut shell = Command::new("sh");
-            shell.arg("-c").arg(line).current_dir(&folder).env_remove("LD_LIBRARY_PATH").output().unwrap()
-        };
-        let made = shell(&line);
-        assert!(made.status.success(), "{line}\n{}", String::from_utf8_lossy(&made.stderr));
-        if line.starts_with("gcc ") || line.starts_with("g++ ") {
-            assert!(made.stderr.is_empty(), "{line}\n{}", String::from_utf8_lossy(&made.stderr));
-            let program = line.split_whitespace().last().unwrap();
-            let ran = shell(&format!("./{program}"));
-            assert!(ran.status.success(), "{line}\n{}", String::from_utf8_lossy(&ran.stderr));
-            assert!(!ran.stdout.is_empty());
-            compiled += 1;
-        }
-    }
-    // A C program with each library, and a C++ program.
-    assert!(compiled >= 3, "{compiled}");
-}
-
 // --- The libraries
 // ----------------------------------------------------------------------------------------------
 
@@ -569,57 +526,6 @@ fn elf_symbols(archive: &Path) -> Vec<String> {
         })
         .filter_map(|mut words| words.pop())
         .collect()
-}
-
-/// What `cargo cinstall` puts into a prefix is all that programs in C and C++ need.
-#[test]
-#[cfg(target_os = "linux")]
-fn installed_by_cargo_c() {
-    let kit = kit();
-    let has = |program: &mut Command| program.output().is_ok_and(|told| told.status.success());
-    if !kit.check.is_plain() {
-        return;
-    }
-    if !has(kit.rust("cargo").args(["cinstall", "--version"]))
-        || !has(Command::new("pkg-config").arg("--version"))
-    {
-        eprintln!("SKIPPED installed_by_cargo_c: cargo-c or pkg-config is not installed");
-        return;
-    }
-    let folder = kit.folder("installed");
-    let prefix = folder.join("prefix");
-    let _ = std::fs::remove_dir_all(&prefix);
-    let documented = kit::documented(&text("include/README.md"));
-    let line = documented.iter().find(|line| line.starts_with("cargo cinstall")).expect("a documented line");
-    let words = line
-        .split_whitespace()
-        .skip(1)
-        .map(|word| if word.starts_with('/') { prefix.as_os_str() } else { word.as_ref() });
-    output(kit.rust("cargo").args(words).arg("--libdir").arg("lib"))
-        .unwrap_or_else(|problem| panic!("{problem}"));
-    assert_eq!(text(prefix.join("include/leafless.h")), text("include/leafless.h"));
-    assert!(prefix.join(format!("lib/libleafless.so.{}", header_abi())).exists());
-    let mut told = Command::new("pkg-config");
-    told.args(["--cflags", "--libs", "leafless"]).env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig"));
-    let (flags, _) = output(&mut told).unwrap_or_else(|problem| panic!("{problem}"));
-    for (standard, source) in [(C99, "examples/c/fit.c"), (CPP17, "examples/cpp/cut_stock.cpp")] {
-        let program = folder.join(source.rsplit('/').next().unwrap()).with_extension("");
-        let (Standard::C(year) | Standard::Cpp(year)) = standard;
-        let mut command = kit.compiler(standard).unwrap();
-        command.current_dir(&folder).arg(format!("-std={year}")).arg(root().join(source));
-        command.args(flags.split_whitespace()).arg("-lm").arg("-o").arg(&program);
-        command.arg(format!("-Wl,-rpath,{}", prefix.join("lib").display()));
-        output(&mut command).unwrap_or_else(|problem| panic!("{problem}"));
-        kit.run(&program, &[]);
-    }
-}
-
-/// `LEAFLESS_ABI` as the header has it.
-#[cfg(target_os = "linux")]
-fn header_abi() -> String {
-    let header = text("include/leafless.h");
-    let (_, rest) = header.split_once("#define LEAFLESS_ABI ").unwrap();
-    rest.split_whitespace().next().unwrap().to_owned()
 }
 
 /// With a sanitizer, it is really there.

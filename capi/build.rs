@@ -2,8 +2,14 @@
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "linux") {
-        // The number is LEAFLESS_ABI, so that programs never meet a library that does not fit.
-        println!("cargo::rustc-cdylib-link-arg=-Wl,-soname,libleafless.so.0");
-    }
+    // The number is LEAFLESS_ABI, so that programs never meet a library that does not fit.
+    let (name, option) = match std::env::var("CARGO_CFG_TARGET_OS").as_deref() {
+        Ok("linux") => ("libleafless.so.0", "-Wl,-soname,"),
+        // Programs say where `@rpath` is.
+        Ok("macos") => ("libleafless.0.dylib", "-Wl,-install_name,@rpath/"),
+        _ => return,
+    };
+    println!("cargo::rustc-cdylib-link-arg={option}{name}");
+    // For `packaging/install.rs`.
+    println!("cargo::rustc-env=LEAFLESS_SONAME={name}");
 }
