@@ -17,6 +17,7 @@ mod generated;
 mod header;
 mod kit;
 mod packages;
+mod warnings;
 
 use check::Check;
 use header::Header;

@@ -658,7 +658,7 @@ static inline leafless_source leafless_from_file(const char *path, leafless_acce
     source.access = access;
     source.path = path;
     /* NULL is refused for what it is, and not taken for no bytes. */
-    source.path_length = path != NULL ? strlen(path) : 1;
+    source.path_length = path ? strlen(path) : 1;
     return source;
 }
 
@@ -680,7 +680,7 @@ static inline leafless_source leafless_from_bytes(const void *bytes, uint64_t le
 static inline leafless_sink leafless_to_file(const char *path) {
     leafless_sink sink = LEAFLESS_INIT(leafless_sink);
     sink.path = path;
-    sink.path_length = path != NULL ? strlen(path) : 1;
+    sink.path_length = path ? strlen(path) : 1;
     return sink;
 }
 

@@ -133,7 +133,8 @@ public:
 
 private:
     static exceptions &instance() {
-        static exceptions all;
+        // It is never destroyed: threads of the host may be at work until the program has ended.
+        static exceptions &all = *new exceptions;
         return all;
     }
 
