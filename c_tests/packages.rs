@@ -54,6 +54,22 @@ fn moved_prefix(kit: &Kit, folder: &Path, options: &[&str]) -> PathBuf {
     second
 }
 
+/// Makes a program `cargo` that runs the installing one with the kit's libraries, and builds nothing.
+fn cargo_that_installs(kit: &Kit, folder: &Path) -> PathBuf {
+    let script = format!(
+        "#!/bin/sh\nexport HOME='{}'\ntest \"$1\" = run || exit 0\nwhile test \"$1\" != --; do shift; done\nshift\n\
+         exec '{}' --libraries '{}' \"$@\"\n",
+        std::env::var("HOME").unwrap_or_default(),
+        env!("CARGO_BIN_EXE_leafless-install"),
+        kit.libraries().display()
+    );
+    let cargo = folder.join("cargo");
+    std::fs::create_dir_all(folder).unwrap();
+    std::fs::write(&cargo, script).unwrap();
+    succeed(Command::new("chmod").arg("+x").arg(&cargo));
+    cargo
+}
+
 /// Runs a consumer, which tells the volume of a bored ball.
 fn tells_the_volume(kit: &Kit, program: &Path) {
     let told = kit.run(program, &[]);
@@ -250,8 +266,7 @@ fn programs_by_pkg_config() {
     );
 }
 
-/// The command lines of `include/README.md` work word by word. A `cargo` of our own stands for the real one: it
-/// installs the libraries of these tests.
+/// The command lines of `include/README.md` work word by word, with another `cargo`.
 #[test]
 fn documented_commands() {
     let kit = kit();
@@ -262,7 +277,6 @@ fn documented_commands() {
     let elsewhere = consumers(kit, "documented_elsewhere");
     // The repository as the commands see it.
     std::fs::create_dir_all(clone.join("target")).unwrap();
-    std::fs::create_dir_all(clone.join("bin")).unwrap();
     for (name, place) in [
         ("include", root().join("include")),
         ("examples", root().join("examples")),
@@ -270,15 +284,7 @@ fn documented_commands() {
     ] {
         std::os::unix::fs::symlink(place, clone.join(name)).unwrap();
     }
-    let cargo = format!(
-        "#!/bin/sh\nexport HOME='{}'\ntest \"$1\" = run || exit 0\nwhile test \"$1\" != --; do shift; done\nshift\n\
-         exec '{}' --libraries '{}' \"$@\"\n",
-        std::env::var("HOME").unwrap_or_default(),
-        env!("CARGO_BIN_EXE_leafless-install"),
-        kit.libraries().display()
-    );
-    std::fs::write(clone.join("bin/cargo"), cargo).unwrap();
-    succeed(Command::new("chmod").arg("+x").arg(clone.join("bin/cargo")));
+    cargo_that_installs(kit, &clone.join("bin"));
     let path = format!("{}:{}", clone.join("bin").display(), std::env::var("PATH").unwrap());
     let shell = |script: &str, folder: &Path| {
         let mut shell = Command::new("sh");
@@ -316,10 +322,124 @@ fn documented_commands() {
     }
     // A C program with each library, and a C++ program; a C++ program elsewhere with each library.
     assert!(compiled >= 5, "{compiled}");
-    // From a fresh clone to a program elsewhere it takes few commands.
+    // From a fresh clone to a program elsewhere it takes three commands.
     let lines = kit::documented(installed);
     let count = |start: &str| lines.iter().filter(|line| line.starts_with(start)).count();
     assert_eq!([count("cargo run"), count("cmake"), count("export"), count("g++")], [1, 2, 1, 2]);
+}
+
+/// A plugin exports its own functions only, as `include/README.md` says, and works.
+#[test]
+#[cfg(target_os = "linux")]
+fn plugin() {
+    let kit = kit();
+    if !kit.check.is_plain() {
+        return;
+    }
+    let folder = fresh(kit, "plugin");
+    let mut command = kit.compiler(Standard::C("c99")).unwrap();
+    command.args(["-std=c99", "-fPIC", "-shared", "-o", "libplugin.so", "-I"]).arg(root().join("include"));
+    command.arg(root().join("packaging/consumers/plugin.c")).arg(kit.libraries().join("libleafless.a"));
+    command.arg("-Wl,--exclude-libs,ALL").args(kit.native_libraries.split_whitespace());
+    succeed(command.current_dir(&folder));
+    let exports =
+        succeed(Command::new("nm").args(["-D", "--defined-only", "libplugin.so"]).current_dir(&folder));
+    let exports: Vec<&str> = exports.lines().filter_map(|line| line.split_whitespace().last()).collect();
+    assert_eq!(exports, ["plugin_volume"]);
+    let host = "double plugin_volume(double radius);\n\
+                int main(void) { double v = plugin_volume(0.75); return !(1.5 < v && v < 2.0); }\n";
+    std::fs::write(folder.join("host.c"), host).unwrap();
+    let mut command = kit.compiler(Standard::C("c99")).unwrap();
+    command.args(["host.c", "-o", "host", "-L.", "-lplugin"]).arg(format!("-Wl,-rpath,{}", folder.display()));
+    succeed(command.current_dir(&folder));
+    kit.run(&folder.join("host"), &[]);
+}
+
+/// A program may hold another static library that the same rustc made, and with the shared library any other.
+#[test]
+#[cfg(target_os = "linux")]
+fn beside_another_library_of_rust() {
+    let kit = kit();
+    if !kit.check.is_plain() {
+        return;
+    }
+    let folder = fresh(kit, "two_of_rust");
+    // It starts a thread and catches a panic, so that both libraries need the same of Rust's.
+    let other = "#[unsafe(no_mangle)]
+pub extern \"C\" fn other_caught() -> bool { std::thread::spawn(|| panic!(\"caught\")).join().is_err() }";
+    let program = "#include <leafless.h>
+#include <stdbool.h>
+bool other_caught(void);
+int main(void) { return other_caught() && leafless_test_panic() == LEAFLESS_E_PANIC ? 0 : 1; }";
+    std::fs::write(folder.join("other.rs"), other).unwrap();
+    std::fs::write(folder.join("program.c"), program).unwrap();
+    let libraries = kit.libraries();
+    let make = |options: &[&str], library: &str| {
+        let mut rustc = kit.rust("rustc");
+        rustc.args(["--edition", "2024", "--crate-type", "staticlib", "other.rs"]).args(options);
+        succeed(rustc.current_dir(&folder));
+        let mut command = kit.compiler(Standard::C("c99")).unwrap();
+        command.arg("-I").arg(root().join("include")).args(["-DLEAFLESS_TEST", "-o", "program", "program.c"]);
+        command.arg("-L.").arg(format!("-L{}", libraries.display()));
+        command.args(["-lother", library]).args(kit.native_libraries.split_whitespace());
+        command.arg(format!("-Wl,-rpath,{}", libraries.display())).current_dir(&folder);
+        output(&mut command).map(|_| kit.run(&folder.join("program"), &[])).map(|_| ())
+    };
+    assert_eq!(make(&[], "-l:libleafless.a"), Ok(()));
+    // Optimised as one with Rust's standard library it has a part of that which cannot be left out.
+    let whole = ["-Clto=fat", "-Copt-level=1"];
+    assert!(make(&whole, "-l:libleafless.a").is_err_and(|told| told.contains("rust_eh_personality")));
+    assert_eq!(make(&whole, "-lleafless"), Ok(()));
+}
+
+/// The port for vcpkg, with functions of our own in place of vcpkg's.
+#[test]
+fn vcpkg_port() {
+    let kit = kit();
+    let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
+    assert!(text("packaging/vcpkg/vcpkg.json").contains(&version));
+    if !kit.check.is_plain() || !have("vcpkg_port", &["cmake"]) {
+        return;
+    }
+    let folder = fresh(kit, "vcpkg_port");
+    let cargo = cargo_that_installs(kit, &folder);
+    for (linkage, library) in [("static", "libleafless.a"), ("dynamic", "libleafless.so")] {
+        let packages = folder.join(linkage);
+        let script = format!(
+            "cmake_minimum_required(VERSION 3.21)
+function(vcpkg_execute_required_process)
+  cmake_parse_arguments(PARSE_ARGV 0 it \"\" \"WORKING_DIRECTORY;LOGNAME\" \"COMMAND\")
+  execute_process(COMMAND ${{it_COMMAND}} WORKING_DIRECTORY ${{it_WORKING_DIRECTORY}} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+function(vcpkg_fixup_pkgconfig)
+endfunction()
+function(vcpkg_install_copyright)
+  cmake_parse_arguments(PARSE_ARGV 0 it \"\" \"\" \"FILE_LIST\")
+  file(COPY ${{it_FILE_LIST}} DESTINATION \"${{CURRENT_PACKAGES_DIR}}/share/leafless\")
+endfunction()
+set(PORT leafless)
+set(VCPKG_LIBRARY_LINKAGE {linkage})
+set(CURRENT_PACKAGES_DIR \"{}\")
+set(CARGO \"{}\")
+include(\"{}\")\n",
+            packages.display(),
+            cargo.display(),
+            root().join("packaging/vcpkg/portfile.cmake").display()
+        );
+        std::fs::write(folder.join("port.cmake"), script).unwrap();
+        succeed(Command::new("cmake").arg("-P").arg(folder.join("port.cmake")).env_remove("DESTDIR"));
+        for file in
+            ["share/leafless/leafless-config.cmake", "share/leafless/usage", "share/leafless/LICENSE-MIT"]
+        {
+            assert!(packages.join(file).is_file(), "{file}");
+        }
+        let libraries: Vec<bool> = ["libleafless.a", "libleafless.so"]
+            .iter()
+            .map(|name| packages.join("lib").join(name).exists())
+            .collect();
+        assert_eq!(libraries, [library.ends_with(".a"), library.ends_with(".so")]);
+        assert!(!packages.join("share/licenses").exists() && !packages.join("lib/cmake").exists());
+    }
 }
 
 /// What `cargo cinstall` puts into a prefix is all that programs in C and C++ need.
