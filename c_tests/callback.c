@@ -634,11 +634,11 @@ static void distance_gives_up(void) {
             CHECK(lazy == NULL);
         } else {
             OK(leafless_lazy_new(solid, &frame, &lazy));
-            fails_with(leafless_lazy_refine(lazy, 6, &options, NULL), "code -23");
+            fails_with(leafless_lazy_refine(lazy, NULL, 6, &options, NULL), "code -23");
             CHECK(h.calls == last);
             /* What failed is asked again. */
             h.fails_at = 0;
-            OK(leafless_lazy_refine(lazy, 6, &options, NULL));
+            OK(leafless_lazy_refine(lazy, NULL, 6, &options, NULL));
             leafless_lazy_free(lazy);
         }
         /* The solid is as good as ever. */

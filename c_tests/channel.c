@@ -448,15 +448,9 @@ static leafless_octree *bearing(leafless_octree *octree, double value, const cha
     return result;
 }
 
-static uint64_t channel_count(const leafless_octree *octree) {
-    uint64_t count = 0;
-    OK(leafless_octree_channel_count(octree, &count));
-    return count;
-}
-
 /* Both channels of `bearing` are there. */
 static void keeps(leafless_octree *octree) {
-    CHECK(channel_count(octree) == 2);
+    CHECK(check_channels(octree) == 2);
     CHECK(first_at(octree, "heat", 0, 0, 0) == 20.5 && first_at(octree, "material", 0, 0, 0) == 3);
     leafless_octree_free(octree);
 }
@@ -470,7 +464,7 @@ static void octrees(void) {
     leafless_channel *channel = NULL;
     leafless_frame elsewhere = {{0, 0, 0}, 1, 4};
     int i;
-    CHECK(channel_count(octree) == 2);
+    CHECK(check_channels(octree) == 2);
     /* In the order of their names. */
     OK(leafless_octree_channel_at(octree, 0, &channel));
     CHECK(is_named(channel, "name", "heat"));
@@ -479,12 +473,12 @@ static void octrees(void) {
     CHECK(channel == NULL);
     /* Cells are what counts. */
     OK(leafless_octree_without_channel(octree, "heat", 4, &bare));
-    CHECK(channel_count(bare) == 1 && check_same(bare, octree));
+    CHECK(check_channels(bare) == 1 && check_same(bare, octree));
     leafless_octree_free(bare);
     OK(leafless_octree_without_channel(octree, NULL, 0, &bare));
-    CHECK(channel_count(bare) == 0);
+    CHECK(check_channels(bare) == 0);
     octree = bearing(octree, 30.5, "heat");
-    CHECK(channel_count(octree) == 2 && first_at(octree, "heat", 0, 0, 0) == 30.5);
+    CHECK(check_channels(octree) == 2 && first_at(octree, "heat", 0, 0, 0) == 30.5);
     octree = bearing(octree, 20.5, "heat");
 
     /* What has the same cells, or the same solid, keeps the channels. */
@@ -500,10 +494,10 @@ static void octrees(void) {
     keeps(result);
     /* What makes another solid has none. */
     OK(leafless_octree_complement(octree, NULL, &result));
-    CHECK(channel_count(result) == 0);
+    CHECK(check_channels(result) == 0);
     leafless_octree_free(result);
     OK(check_octrees(LEAFLESS_OPERATION_UNION, octree, octree, NULL, &result));
-    CHECK(channel_count(result) == 0);
+    CHECK(check_channels(result) == 0);
     leafless_octree_free(result);
     result = NULL;
 
@@ -583,7 +577,7 @@ static void carried(void) {
     both = bearing(both, 7, "own");
     for (i = 0; i < 4; i++) {
         OK(leafless_octree_carry_channels(both, operands, 2, all[i].carry, NULL, 0, NULL, &result));
-        CHECK(channel_count(result) == 5 && check_same(result, both));
+        CHECK(check_channels(result) == 5 && check_same(result, both));
         CHECK(first_at(result, "heat", -0.4, -0.4, -0.4) == 10 && first_at(result, "heat", 0.4, 0.4, 0.4) == 30);
         CHECK(first_at(result, "heat", 0.1, 0.1, 0.1) == all[i].expected);
         CHECK(first_at(result, "only a", 0.1, 0.1, 0.1) == 1 && first_at(result, "only b", 0.1, 0.1, 0.1) == 2);

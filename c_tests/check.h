@@ -166,4 +166,39 @@ static inline uint8_t *check_read(const char *path, size_t *length) {
     return bytes;
 }
 
+/* The zone of a point, of a box, and of a ray. */
+static inline leafless_zone check_zone_point(const double *point) {
+    leafless_zone zone = LEAFLESS_INIT(leafless_zone);
+    zone.kind = LEAFLESS_ZONE_POINT;
+    memcpy(zone.point_model, point, sizeof zone.point_model);
+    return zone;
+}
+
+static inline leafless_zone check_zone_box(const double *min, const double *max) {
+    leafless_zone zone = LEAFLESS_INIT(leafless_zone);
+    zone.kind = LEAFLESS_ZONE_BOX;
+    memcpy(zone.min_model, min, sizeof zone.min_model);
+    memcpy(zone.max_model, max, sizeof zone.max_model);
+    return zone;
+}
+
+static inline leafless_zone check_zone_ray(const double *origin, const double *direction, double from, double to) {
+    leafless_zone zone = check_zone_point(origin);
+    zone.kind = LEAFLESS_ZONE_RAY;
+    memcpy(zone.direction_model, direction, sizeof zone.direction_model);
+    zone.from = from;
+    zone.to = to;
+    return zone;
+}
+
+static inline leafless_status check_refine(leafless_lazy *lazy, leafless_zone zone, uint32_t level, bool *done) {
+    return leafless_lazy_refine(lazy, &zone, level, NULL, done);
+}
+
+static inline uint64_t check_channels(const leafless_octree *octree) {
+    leafless_octree_info info;
+    OK(leafless_octree_describe(octree, &info));
+    return info.channels;
+}
+
 #endif

@@ -74,13 +74,13 @@ static leafless_attribute *host_attribute(leafless_attribute_values_fn values) {
 
 static int32_t uses_the_octree(void *ctx, const double *min, const double *max) {
     leafless_lazy *const lazy = *(leafless_lazy **)ctx;
-    leafless_lazy_counts counts;
+    leafless_lazy_info counts;
     (void)min;
     (void)max;
     if (lazy == NULL) {
         return LEAFLESS_TAG_PARTIAL;
     }
-    FAILS(LEAFLESS_E_BUSY, leafless_lazy_count(lazy, &counts));
+    FAILS(LEAFLESS_E_BUSY, leafless_lazy_describe(lazy, &counts));
     failed(LEAFLESS_E_BUSY, "LEAFLESS_E_BUSY", "lazy: is in use");
     return -LEAFLESS_E_BUSY;
 }
@@ -271,7 +271,7 @@ static leafless_status scanned_ball(void) {
     write.format = LEAFLESS_MESH_FORMAT_PLY;
     OK(leafless_init(&options, sizeof options));
     options.threads = 1;
-    status = leafless_volume_new(&layout, samples, sizeof samples, &volume);
+    status = volume_of_array(&layout, samples, sizeof samples, &volume);
     if (status != LEAFLESS_OK) {
         return volume == (leafless_volume *)UNTOUCHED ? status : LEAFLESS_E_PANIC;
     }
@@ -733,7 +733,7 @@ int main(int argc, char **argv) {
         FAILS(LEAFLESS_E_FRAME, check_tridexels(LEAFLESS_OPERATION_UNION, model, other, NULL, &result));
         failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [-1");
         failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "origin [0");
-        FAILS(LEAFLESS_E_FRAME, leafless_tridexel_editor_subtract(editor, other, NULL));
+        FAILS(LEAFLESS_E_FRAME, leafless_tridexel_editor_combine(editor, LEAFLESS_OPERATION_DIFFERENCE, other, NULL, NULL));
         failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [-1");
         FAILS(LEAFLESS_E_ARGUMENT, check_tridexels(LEAFLESS_OPERATION_XOR, model, column, NULL, &result));
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "must have rays in the same directions");
@@ -767,7 +767,7 @@ int main(int argc, char **argv) {
             FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_check(viewed));
             failed(LEAFLESS_E_DAMAGED, "LEAFLESS_E_DAMAGED", "the tri-dexel model is damaged: its rays along axis 0");
             FAILS(LEAFLESS_E_DAMAGED, check_tridexels(LEAFLESS_OPERATION_UNION, model, viewed, NULL, &result));
-            FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_editor_subtract(editor, viewed, NULL));
+            FAILS(LEAFLESS_E_DAMAGED, leafless_tridexel_editor_combine(editor, LEAFLESS_OPERATION_DIFFERENCE, viewed, NULL, NULL));
             FAILS(LEAFLESS_E_DAMAGED, tridexel_save(viewed, "damaged.lfl", 11));
             leafless_tridexel_free(viewed);
             free(file);
@@ -778,7 +778,7 @@ int main(int argc, char **argv) {
         failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "100 bytes");
         options.max_bytes = 0;
         options.control = control;
-        FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_subtract_solid(editor, solid, &options));
+        FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_combine_solid(editor, LEAFLESS_OPERATION_DIFFERENCE, solid, &options, NULL));
         failed(LEAFLESS_E_CANCELLED, "LEAFLESS_E_CANCELLED", "cancelled");
         options.control = NULL;
         CHECK(result == (leafless_tridexel *)UNTOUCHED && count == 77 && offset_count == 77);
@@ -808,7 +808,7 @@ int main(int argc, char **argv) {
         callbacks.ctx = &lazy;
         OK(leafless_solid_new_callbacks(&callbacks, &host));
         OK(leafless_lazy_new(host, &frame, &lazy));
-        FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, 1, NULL, NULL));
+        FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, NULL, 1, NULL, NULL));
         failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-20");
         leafless_lazy_free(lazy);
         leafless_solid_free(host);

@@ -39,7 +39,7 @@ volume_ptr view(const std::vector<uint16_t> &samples) {
     layout.sample_type = LEAFLESS_SAMPLE_U16;
     for (uint32_t &extent : layout.extents) extent = SIDE;
     leafless_volume *volume = nullptr;
-    OK(leafless_volume_view(&layout, samples.data(), 2 * samples.size(), &volume));
+    OK(volume_in_place(&layout, samples.data(), 2 * samples.size(), &volume));
     return volume_ptr(volume);
 }
 

@@ -158,4 +158,35 @@ static inline leafless_status verify_bytes(const uint8_t *bytes, uint64_t length
     return leafless_file_verify(&source);
 }
 
+/* Pictures, and arrays of samples. */
+static inline leafless_status picture_save(const uint8_t *colours, uint32_t width, uint32_t height, const char *path,
+                                           size_t path_length) {
+    const leafless_sink sink = sink_path(path, path_length);
+    return leafless_picture_write(colours, width, height, &sink);
+}
+
+static inline leafless_status picture_to_bytes(const uint8_t *colours, uint32_t width, uint32_t height, uint8_t *bytes,
+                                               uint64_t capacity, uint64_t *length) {
+    const leafless_sink sink = leafless_to_buffer(bytes, capacity, length);
+    return leafless_picture_write(colours, width, height, &sink);
+}
+
+static inline leafless_status volume_of_array(const leafless_volume_layout *layout, const void *samples, uint64_t length,
+                                              leafless_volume **volume) {
+    const leafless_source source = leafless_from_bytes(samples, length, LEAFLESS_ACCESS_COPY);
+    return leafless_volume_new(layout, &source, volume);
+}
+
+static inline leafless_status volume_in_place(const leafless_volume_layout *layout, const void *samples, uint64_t length,
+                                              leafless_volume **volume) {
+    const leafless_source source = leafless_from_bytes(samples, length, LEAFLESS_ACCESS_MAP);
+    return leafless_volume_new(layout, &source, volume);
+}
+
+static inline leafless_status volume_open_raw(const char *path, size_t path_length, const leafless_volume_layout *layout,
+                                              leafless_volume **volume) {
+    const leafless_source source = source_path(path, path_length, LEAFLESS_ACCESS_COPY);
+    return leafless_volume_new(layout, &source, volume);
+}
+
 #endif

@@ -20,9 +20,9 @@ static bool is_built(const leafless_lazy *lazy) {
     return same;
 }
 
-static leafless_lazy_counts counts_of(const leafless_lazy *lazy) {
-    leafless_lazy_counts counts;
-    OK(leafless_lazy_count(lazy, &counts));
+static leafless_lazy_info counts_of(const leafless_lazy *lazy) {
+    leafless_lazy_info counts;
+    OK(leafless_lazy_describe(lazy, &counts));
     return counts;
 }
 
@@ -38,6 +38,7 @@ static void cell_by_cell(const leafless_solid *solid) {
     leafless_lazy *lazy = NULL;
     uint32_t (*queue)[4] = (uint32_t (*)[4])malloc(sizeof *queue << 18);
     uint64_t first = 0, end = 1, splits[DEPTH], count = 0, sum = 0, i;
+    leafless_lazy_info info;
     leafless_statistics levels[DEPTH + 1], all, of_octree[DEPTH + 1];
     CHECK(queue != NULL);
     memset(queue[0], 0, sizeof queue[0]);
@@ -84,7 +85,9 @@ static void cell_by_cell(const leafless_solid *solid) {
         CHECK(levels[i].volume_model.lower == of_octree[i].volume_model.lower);
         CHECK(levels[i].nodes >= of_octree[i].nodes);
     }
-    OK(leafless_lazy_statistics(lazy, &all));
+    OK(leafless_lazy_describe(lazy, &info));
+    all = info.statistics;
+    CHECK(info.frame.depth == DEPTH && info.frame.edge == frame.edge && info.frame.origin[2] == frame.origin[2]);
     CHECK(all.lower_cells == of_octree[DEPTH].lower_cells && all.upper_cells == of_octree[DEPTH].upper_cells);
     CHECK(all.nodes == sum);
     leafless_lazy_free(lazy);
@@ -98,21 +101,21 @@ static void zones(const leafless_solid *solid) {
     leafless_lazy *lazy = NULL;
     leafless_tag tags[8], tag = LEAFLESS_TAG_FULL;
     bool done = false, can_split = true;
-    leafless_statistics before, after;
+    leafless_lazy_info before, after;
 
     OK(leafless_lazy_new(solid, &frame, &lazy));
     CHECK(at(lazy, 0, 0, 0) == LEAFLESS_MEMBERSHIP_UNDECIDED);
-    OK(leafless_lazy_refine_point(lazy, edge, DEPTH, NULL, &done));
+    OK(check_refine(lazy, check_zone_point(edge), DEPTH, &done));
     CHECK(done && counts_of(lazy).splits <= DEPTH && counts_of(lazy).replays == 0);
-    OK(leafless_lazy_refine_ray(lazy, origin, along, 0, INFINITY, DEPTH, NULL, &done));
+    OK(check_refine(lazy, check_zone_ray(origin, along, 0, INFINITY), DEPTH, &done));
     CHECK(done && at(lazy, 0, 0.1, 0.2) == LEAFLESS_MEMBERSHIP_INSIDE);
     CHECK(at(lazy, -0.9, 0.1, 0.2) == LEAFLESS_MEMBERSHIP_OUTSIDE);
-    OK(leafless_lazy_refine_box(lazy, min, middle, DEPTH, NULL, NULL));
-    OK(leafless_lazy_statistics(lazy, &before));
-    OK(leafless_lazy_refine_box(lazy, min, middle, DEPTH, NULL, &done));
-    OK(leafless_lazy_statistics(lazy, &after));
+    OK(check_refine(lazy, check_zone_box(min, middle), DEPTH, NULL));
+    OK(leafless_lazy_describe(lazy, &before));
+    OK(check_refine(lazy, check_zone_box(min, middle), DEPTH, &done));
+    OK(leafless_lazy_describe(lazy, &after));
     CHECK(done && memcmp(&before, &after, sizeof before) == 0);
-    OK(leafless_lazy_refine(lazy, DEPTH, NULL, &done));
+    OK(leafless_lazy_refine(lazy, NULL, DEPTH, NULL, &done));
     CHECK(done && is_built(lazy));
 
     OK(leafless_lazy_tag(lazy, outside, 1, &tag, NULL));
@@ -122,12 +125,12 @@ static void zones(const leafless_solid *solid) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_split(lazy, outside, 1, tags));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_split(lazy, finest, DEPTH, tags));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_split(lazy, universe, 256, tags));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine(lazy, DEPTH + 1, NULL, &done));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine(lazy, 256, NULL, &done));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine_box(lazy, middle, min, DEPTH, NULL, &done));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine_ray(lazy, origin, nowhere, 0, 1, DEPTH, NULL, &done));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine_ray(lazy, origin, along, 1, 0, DEPTH, NULL, &done));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine_ray(lazy, origin, along, NAN, 0, DEPTH, NULL, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine(lazy, NULL, DEPTH + 1, NULL, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_refine(lazy, NULL, 256, NULL, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, check_refine(lazy, check_zone_box(middle, min), DEPTH, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, check_refine(lazy, check_zone_ray(origin, nowhere, 0, 1), DEPTH, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, check_refine(lazy, check_zone_ray(origin, along, 1, 0), DEPTH, &done));
+    FAILS(LEAFLESS_E_ARGUMENT, check_refine(lazy, check_zone_ray(origin, along, NAN, 0), DEPTH, &done));
     leafless_lazy_free(lazy);
 }
 
@@ -142,9 +145,9 @@ static void evaluations(void) {
     CHECK(before == 0);
     OK(leafless_lazy_new(solid, &frame, &lazy));
     OK(leafless_solid_evaluations(solid, &before));
-    OK(leafless_lazy_refine_point(lazy, here, DEPTH, NULL, NULL));
-    OK(leafless_lazy_refine_point(lazy, there, DEPTH, NULL, NULL));
-    OK(leafless_lazy_refine_point(lazy, here, DEPTH, NULL, NULL));
+    OK(check_refine(lazy, check_zone_point(here), DEPTH, NULL));
+    OK(check_refine(lazy, check_zone_point(there), DEPTH, NULL));
+    OK(check_refine(lazy, check_zone_point(here), DEPTH, NULL));
     CHECK(counts_of(lazy).splits >= 2 * DEPTH - 1);
     OK(leafless_solid_evaluations(solid, &during));
     CHECK(during == before);
@@ -153,7 +156,7 @@ static void evaluations(void) {
     CHECK(after > before);
     /* The solid is on this frame already: what is asked again is counted again, and no more. */
     OK(leafless_lazy_new(solid, &frame, &lazy));
-    OK(leafless_lazy_refine_point(lazy, here, DEPTH, NULL, NULL));
+    OK(check_refine(lazy, check_zone_point(here), DEPTH, NULL));
     leafless_lazy_free(lazy);
     OK(leafless_solid_evaluations(solid, &again));
     CHECK(again > after && again - after < after);
@@ -178,7 +181,7 @@ static void limits(const leafless_solid *solid) {
     OK(leafless_init(&options, sizeof options));
     options.max_splits = 100;
     for (;;) {
-        OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
+        OK(leafless_lazy_refine(lazy, NULL, DEPTH, &options, &done));
         if (done) {
             break;
         }
@@ -191,11 +194,11 @@ static void limits(const leafless_solid *solid) {
     OK(leafless_lazy_new(solid, &frame, &lazy));
     options.max_splits = 0;
     options.max_nodes = 50;
-    OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
+    OK(leafless_lazy_refine(lazy, NULL, DEPTH, &options, &done));
     CHECK(!done && counts_of(lazy).splits == 50);
     options.max_nodes = 0;
     options.max_bytes = 6400;
-    OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
+    OK(leafless_lazy_refine(lazy, NULL, DEPTH, &options, &done));
     CHECK(!done && counts_of(lazy).bytes <= 6400 && counts_of(lazy).splits > 50);
     options.max_bytes = 0;
 
@@ -204,12 +207,12 @@ static void limits(const leafless_solid *solid) {
     options.control = control;
     options.progress = stops;
     options.progress_ctx = &reports;
-    FAILS(LEAFLESS_E_CANCELLED, leafless_lazy_refine(lazy, DEPTH, &options, &done));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_lazy_refine(lazy, NULL, DEPTH, &options, &done));
     FAILS(LEAFLESS_E_CANCELLED, leafless_lazy_freeze(lazy, &options, &octree));
     CHECK(octree == NULL);
     OK(leafless_control_reset(control));
     options.progress = NULL;
-    OK(leafless_lazy_refine(lazy, DEPTH, &options, &done));
+    OK(leafless_lazy_refine(lazy, NULL, DEPTH, &options, &done));
     CHECK(done && is_built(lazy));
     leafless_lazy_free(lazy);
     leafless_control_free(control);
@@ -253,8 +256,8 @@ static void taken_up(const leafless_solid *ball) {
     OK(leafless_solid_new_callbacks(&callbacks, &other));
 
     OK(leafless_lazy_new(solid, &frame, &lazy));
-    OK(leafless_lazy_refine(lazy, 3, NULL, NULL));
-    OK(leafless_lazy_refine_point(lazy, point, 6, NULL, NULL));
+    OK(leafless_lazy_refine(lazy, NULL, 3, NULL, NULL));
+    OK(check_refine(lazy, check_zone_point(point), 6, NULL));
     /* No cell is asked about twice: the host needs no way to a cell. */
     CHECK(counts_of(lazy).replays == 0 && asked == 1 + 8 * counts_of(lazy).splits);
     octree = frozen(lazy);
@@ -278,7 +281,7 @@ static void taken_up(const leafless_solid *ball) {
     deep = check_frame(20);
     CHECK(never == NULL);
     OK(leafless_lazy_resume(loaded, solid, &deep, NULL, &never));
-    OK(leafless_lazy_refine_point(never, point, 20, NULL, NULL));
+    OK(check_refine(never, check_zone_point(point), 20, NULL));
     CHECK(at(never, 0.7, 0.1, 0.1) == LEAFLESS_MEMBERSHIP_INSIDE);
     leafless_lazy_free(never);
     never = NULL;
@@ -287,8 +290,8 @@ static void taken_up(const leafless_solid *ball) {
     /* The octree shares its solid. */
     leafless_solid_free(solid);
     leafless_octree_free(loaded);
-    OK(leafless_lazy_refine(lazy, DEPTH, NULL, NULL));
-    OK(leafless_lazy_refine(never, DEPTH, NULL, NULL));
+    OK(leafless_lazy_refine(lazy, NULL, DEPTH, NULL, NULL));
+    OK(leafless_lazy_refine(never, NULL, DEPTH, NULL, NULL));
     CHECK(counts_of(never).splits < counts_of(lazy).splits);
     CHECK(counts_of(never).replays == 0 && counts_of(lazy).replays == 0);
     direct = frozen(lazy);
@@ -306,8 +309,8 @@ static void taken_up(const leafless_solid *ball) {
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
     asked = 0;
     OK(leafless_lazy_new(solid, &frame, &lazy));
-    FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, DEPTH, NULL, NULL));
-    FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, DEPTH, NULL, NULL));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, NULL, DEPTH, NULL, NULL));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_lazy_refine(lazy, NULL, DEPTH, NULL, NULL));
     CHECK(counts_of(lazy).splits > 0 && counts_of(lazy).replays == 0);
     asked = 0;
     octree = frozen(lazy);

@@ -969,8 +969,8 @@ static void lazy_octrees(void) {
     const uint32_t universe[4] = {0, 0, 0, 0};
     const double room[4] = {0, 0, 0, 0}, *numbers = (const double *)WRONG(room);
     const uint32_t *cell = (const uint32_t *)WRONG(universe);
-    leafless_lazy_counts *counts = (leafless_lazy_counts *)out;
-    leafless_statistics *statistics = (leafless_statistics *)out;
+    leafless_lazy_info *info = (leafless_lazy_info *)out;
+    leafless_zone zone = check_zone_point(point);
     leafless_membership *membership = (leafless_membership *)out;
     leafless_octree *frozen = NULL;
 
@@ -985,27 +985,15 @@ static void lazy_octrees(void) {
     NULL_POINTER(leafless_lazy_split, lazy, leafless_lazy_split(NULL, universe, 0, tags));
     NULL_POINTER(leafless_lazy_split, cell, leafless_lazy_split(lazy, NULL, 0, tags));
     NULL_POINTER(leafless_lazy_split, tags, leafless_lazy_split(lazy, universe, 0, NULL));
-    NULL_POINTER(leafless_lazy_refine, lazy, leafless_lazy_refine(NULL, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_refine_box, lazy, leafless_lazy_refine_box(NULL, point, above, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_refine_box, min_model, leafless_lazy_refine_box(lazy, NULL, above, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_refine_box, max_model, leafless_lazy_refine_box(lazy, point, NULL, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_refine_point, lazy, leafless_lazy_refine_point(NULL, point, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_refine_point, point_model, leafless_lazy_refine_point(lazy, NULL, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_refine_ray, lazy, leafless_lazy_refine_ray(NULL, point, above, 0, 1, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_refine_ray, origin_model,
-                 leafless_lazy_refine_ray(lazy, NULL, above, 0, 1, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_refine_ray, direction_model,
-                 leafless_lazy_refine_ray(lazy, point, NULL, 0, 1, 1, NULL, flag));
+    NULL_POINTER(leafless_lazy_refine, lazy, leafless_lazy_refine(NULL, &zone, 1, NULL, flag));
     NULL_POINTER(leafless_lazy_tag, lazy, leafless_lazy_tag(NULL, universe, 0, tags, flag));
     NULL_POINTER(leafless_lazy_tag, cell, leafless_lazy_tag(lazy, NULL, 0, tags, flag));
     NULL_POINTER(leafless_lazy_tag, tag, leafless_lazy_tag(lazy, universe, 0, NULL, flag));
     NULL_POINTER(leafless_lazy_contains, lazy, leafless_lazy_contains(NULL, point, membership));
     NULL_POINTER(leafless_lazy_contains, point_model, leafless_lazy_contains(lazy, NULL, membership));
     NULL_POINTER(leafless_lazy_contains, membership, leafless_lazy_contains(lazy, point, NULL));
-    NULL_POINTER(leafless_lazy_statistics, lazy, leafless_lazy_statistics(NULL, statistics));
-    NULL_POINTER(leafless_lazy_statistics, statistics, leafless_lazy_statistics(lazy, NULL));
-    NULL_POINTER(leafless_lazy_count, lazy, leafless_lazy_count(NULL, counts));
-    NULL_POINTER(leafless_lazy_count, counts, leafless_lazy_count(lazy, NULL));
+    NULL_POINTER(leafless_lazy_describe, lazy, leafless_lazy_describe(NULL, info));
+    NULL_POINTER(leafless_lazy_describe, info, leafless_lazy_describe(lazy, NULL));
     NULL_POINTER(leafless_lazy_levels, lazy, leafless_lazy_levels(NULL, NULL, 0, count));
     NULL_POINTER(leafless_lazy_levels, levels, leafless_lazy_levels(lazy, NULL, 5, count));
     NULL_POINTER(leafless_lazy_levels, count, leafless_lazy_levels(lazy, NULL, 0, NULL));
@@ -1019,40 +1007,37 @@ static void lazy_octrees(void) {
     MISALIGNED(leafless_lazy_split, lazy, leafless_lazy_split((leafless_lazy *)WRONG(lazy), universe, 0, tags));
     MISALIGNED(leafless_lazy_split, cell, leafless_lazy_split(lazy, cell, 0, tags));
     MISALIGNED(leafless_lazy_refine, options,
-               leafless_lazy_refine(lazy, 1, (const leafless_options *)WRONG(&options), flag));
-    MISALIGNED(leafless_lazy_refine_box, min_model, leafless_lazy_refine_box(lazy, numbers, above, 1, NULL, flag));
-    MISALIGNED(leafless_lazy_refine_box, max_model, leafless_lazy_refine_box(lazy, point, numbers, 1, NULL, flag));
-    MISALIGNED(leafless_lazy_refine_point, point_model, leafless_lazy_refine_point(lazy, numbers, 1, NULL, flag));
-    MISALIGNED(leafless_lazy_refine_ray, origin_model,
-               leafless_lazy_refine_ray(lazy, numbers, above, 0, 1, 1, NULL, flag));
-    MISALIGNED(leafless_lazy_refine_ray, direction_model,
-               leafless_lazy_refine_ray(lazy, point, numbers, 0, 1, 1, NULL, flag));
+               leafless_lazy_refine(lazy, &zone, 1, (const leafless_options *)WRONG(&options), flag));
+    MISALIGNED(leafless_lazy_refine, zone, leafless_lazy_refine(lazy, (const leafless_zone *)WRONG(&zone), 1, NULL, flag));
     MISALIGNED(leafless_lazy_tag, cell, leafless_lazy_tag(lazy, cell, 0, tags, flag));
     MISALIGNED(leafless_lazy_contains, point_model, leafless_lazy_contains(lazy, numbers, membership));
-    MISALIGNED(leafless_lazy_statistics, statistics,
-               leafless_lazy_statistics(lazy, (leafless_statistics *)WRONG(out)));
-    MISALIGNED(leafless_lazy_count, counts, leafless_lazy_count(lazy, (leafless_lazy_counts *)WRONG(out)));
+    MISALIGNED(leafless_lazy_describe, info, leafless_lazy_describe(lazy, (leafless_lazy_info *)WRONG(out)));
     MISALIGNED(leafless_lazy_levels, levels, leafless_lazy_levels(lazy, (leafless_statistics *)WRONG(out), 5, count));
     MISALIGNED(leafless_lazy_splits, splits, leafless_lazy_splits(lazy, (uint64_t *)WRONG(out), 4, count));
     MISALIGNED(leafless_lazy_freeze, octree, leafless_lazy_freeze(lazy, NULL, (leafless_octree **)WRONG(out)));
 
     BAD_NUMBER(leafless_lazy_split, cell, leafless_lazy_split(lazy, universe, 4, tags));
     BAD_NUMBER(leafless_lazy_split, cell, leafless_lazy_split(lazy, universe, UINT32_MAX, tags));
-    BAD_NUMBER(leafless_lazy_refine, level, leafless_lazy_refine(lazy, 5, NULL, flag));
-    BAD_NUMBER(leafless_lazy_refine_box, max, leafless_lazy_refine_box(lazy, above, point, 1, NULL, flag));
-    BAD_NUMBER(leafless_lazy_refine_ray, direction, leafless_lazy_refine_ray(lazy, above, point, 0, 1, 1, NULL, flag));
-    BAD_NUMBER(leafless_lazy_refine_ray, to, leafless_lazy_refine_ray(lazy, point, above, 1, NAN, 1, NULL, flag));
+    BAD_NUMBER(leafless_lazy_refine, level, leafless_lazy_refine(lazy, &zone, 5, NULL, flag));
+    zone.kind = 4;
+    BAD_NUMBER(leafless_lazy_refine, zone.kind, leafless_lazy_refine(lazy, &zone, 1, NULL, flag));
+    zone.kind = UINT32_MAX;
+    BAD_NUMBER(leafless_lazy_refine, zone.kind, leafless_lazy_refine(lazy, &zone, 1, NULL, flag));
+    zone = check_zone_box(above, point);
+    BAD_NUMBER(leafless_lazy_refine, max, leafless_lazy_refine(lazy, &zone, 1, NULL, flag));
+    zone = check_zone_ray(above, point, 0, 1);
+    BAD_NUMBER(leafless_lazy_refine, direction, leafless_lazy_refine(lazy, &zone, 1, NULL, flag));
+    zone = check_zone_ray(point, above, 1, NAN);
+    BAD_NUMBER(leafless_lazy_refine, to, leafless_lazy_refine(lazy, &zone, 1, NULL, flag));
+    zone.struct_size = 3;
+    BAD_NUMBER(leafless_lazy_refine, zone, leafless_lazy_refine(lazy, &zone, 1, NULL, flag));
+    zone = check_zone_point(point);
     untouched();
     CHECK(never == UNTOUCHED);
 
-    MAY_BE_NULL(leafless_lazy_refine, options, leafless_lazy_refine(lazy, 1, NULL, &done));
-    MAY_BE_NULL(leafless_lazy_refine, done, leafless_lazy_refine(lazy, 1, &options, NULL));
-    MAY_BE_NULL(leafless_lazy_refine_box, options, leafless_lazy_refine_box(lazy, point, above, 1, NULL, &done));
-    MAY_BE_NULL(leafless_lazy_refine_box, done, leafless_lazy_refine_box(lazy, point, above, 1, &options, NULL));
-    MAY_BE_NULL(leafless_lazy_refine_point, options, leafless_lazy_refine_point(lazy, point, 1, NULL, &done));
-    MAY_BE_NULL(leafless_lazy_refine_point, done, leafless_lazy_refine_point(lazy, point, 1, &options, NULL));
-    MAY_BE_NULL(leafless_lazy_refine_ray, options, leafless_lazy_refine_ray(lazy, point, above, 0, 1, 1, NULL, &done));
-    MAY_BE_NULL(leafless_lazy_refine_ray, done, leafless_lazy_refine_ray(lazy, point, above, 0, 1, 1, &options, NULL));
+    MAY_BE_NULL(leafless_lazy_refine, zone, leafless_lazy_refine(lazy, NULL, 1, &options, &done));
+    MAY_BE_NULL(leafless_lazy_refine, options, leafless_lazy_refine(lazy, &zone, 1, NULL, &done));
+    MAY_BE_NULL(leafless_lazy_refine, done, leafless_lazy_refine(lazy, &zone, 1, &options, NULL));
     MAY_BE_NULL(leafless_lazy_tag, can_split, leafless_lazy_tag(lazy, universe, 0, &tag, NULL));
     MAY_BE_NULL(leafless_lazy_levels, levels, leafless_lazy_levels(lazy, NULL, 0, &number));
     MAY_BE_NULL(leafless_lazy_splits, splits, leafless_lazy_splits(lazy, NULL, 0, &number));
@@ -1092,15 +1077,15 @@ static void volumes_and_surfaces(void) {
     OK(leafless_init(&surface, sizeof surface));
     write.format = LEAFLESS_MESH_FORMAT_PLY;
     layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
-    NULL_POINTER(leafless_volume_new, layout, leafless_volume_new(NULL, samples, 8, made));
-    NULL_POINTER(leafless_volume_new, samples, leafless_volume_new(&layout, NULL, 8, made));
-    NULL_POINTER(leafless_volume_new, volume, leafless_volume_new(&layout, samples, 8, NULL));
-    NULL_POINTER(leafless_volume_view, layout, leafless_volume_view(NULL, samples, 8, made));
-    NULL_POINTER(leafless_volume_view, samples, leafless_volume_view(&layout, NULL, 8, made));
-    NULL_POINTER(leafless_volume_view, volume, leafless_volume_view(&layout, samples, 8, NULL));
-    BAD_NUMBER(leafless_volume_new, length, leafless_volume_new(&layout, NULL, 0, made));
-    BAD_NUMBER(leafless_volume_view, length, leafless_volume_view(&layout, NULL, 0, made));
-    OK(leafless_volume_new(&layout, samples, 8, &volume));
+    NULL_POINTER(leafless_volume_new, layout, volume_of_array(NULL, samples, 8, made));
+    NULL_POINTER(leafless_volume_new, source, leafless_volume_new(&layout, NULL, made));
+    NULL_POINTER(leafless_volume_new, source.bytes, volume_of_array(&layout, NULL, 8, made));
+    NULL_POINTER(leafless_volume_new, source.bytes, volume_in_place(&layout, NULL, 8, made));
+    NULL_POINTER(leafless_volume_new, volume, volume_of_array(&layout, samples, 8, NULL));
+    NULL_POINTER(leafless_volume_new, source.path, volume_open_raw(NULL, 1, &layout, made));
+    BAD_NUMBER(leafless_volume_new, source.length, volume_of_array(&layout, NULL, 0, made));
+    BAD_NUMBER(leafless_volume_new, source.length, volume_in_place(&layout, NULL, 0, made));
+    OK(volume_of_array(&layout, samples, 8, &volume));
     NULL_POINTER(leafless_volume_ref, volume, leafless_volume_ref(NULL, made));
     NULL_POINTER(leafless_volume_ref, reference, leafless_volume_ref(volume, NULL));
     NULL_POINTER(leafless_volume_describe, volume, leafless_volume_describe(NULL, info));
@@ -1123,9 +1108,6 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_volume_data_file, name, leafless_volume_data_file(header, length, NULL, 9, count));
     NULL_POINTER(leafless_volume_data_file, name_length,
                  leafless_volume_data_file(header, length, (char *)out, 9, NULL));
-    NULL_POINTER(leafless_volume_open_raw, path, leafless_volume_open_raw(NULL, 1, &layout, made));
-    NULL_POINTER(leafless_volume_open_raw, layout, leafless_volume_open_raw("x", 1, NULL, made));
-    NULL_POINTER(leafless_volume_open_raw, volume, leafless_volume_open_raw("x", 1, &layout, NULL));
     NULL_POINTER(leafless_octree_bitmap, octree,
                  leafless_octree_bitmap(NULL, 4, low, high, NULL, NULL, NULL, 0, count));
     NULL_POINTER(leafless_octree_bitmap, min_cell,
@@ -1154,12 +1136,10 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_mesh_written_form, kept, leafless_mesh_written_form(mesh, &write, NULL));
 
     MISALIGNED(leafless_volume_new, layout,
-               leafless_volume_new((leafless_volume_layout *)WRONG(&layout), samples, 8, made));
-    MISALIGNED(leafless_volume_new, volume, leafless_volume_new(&layout, samples, 8, (leafless_volume **)WRONG(out)));
+               volume_of_array((leafless_volume_layout *)WRONG(&layout), samples, 8, made));
+    MISALIGNED(leafless_volume_new, volume, volume_of_array(&layout, samples, 8, (leafless_volume **)WRONG(out)));
     layout.sample_type = LEAFLESS_SAMPLE_U16;
-    MISALIGNED(leafless_volume_view, samples, leafless_volume_view(&layout, WRONG(samples), 16, made));
-    MISALIGNED(leafless_volume_view, volume,
-               leafless_volume_view(&layout, samples, 16, (leafless_volume **)WRONG(out)));
+    MISALIGNED(leafless_volume_new, source.bytes, volume_in_place(&layout, WRONG(samples), 16, made));
     MISALIGNED(leafless_volume_describe, volume, leafless_volume_describe((leafless_volume *)WRONG(volume), info));
     MISALIGNED(leafless_volume_describe, info,
                leafless_volume_describe(volume, (leafless_volume_info *)WRONG(out)));
@@ -1214,7 +1194,7 @@ static void volumes_and_surfaces(void) {
                leafless_octree_bitmap(octree, 5, low, high, NULL, NULL, NULL, 0, count));
     BAD_NUMBER(leafless_octree_bitmap, level,
                leafless_octree_bitmap(octree, UINT32_MAX, low, high, NULL, NULL, NULL, 0, count));
-    CHECK(leafless_volume_open_raw("a\xff", 2, &layout, made) == LEAFLESS_E_UTF8);
+    CHECK(volume_open_raw("a\xff", 2, &layout, made) == LEAFLESS_E_UTF8);
     refused(LEAFLESS_E_VOLUME_FILE, "leafless_volume_data_file", "", leafless_volume_data_file(NULL, 0, NULL, 0, count));
     untouched();
     CHECK(never == UNTOUCHED);
@@ -1872,7 +1852,7 @@ static void summaries(const leafless_channel *channel) {
 
     OK(leafless_init(&layout, sizeof layout));
     layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
-    OK(leafless_volume_new(&layout, samples, sizeof samples, &volume));
+    OK(volume_of_array(&layout, samples, sizeof samples, &volume));
     NULL_POINTER(leafless_channel_summarise, channel, leafless_channel_summarise(NULL, octree, point, above, NULL, summary));
     NULL_POINTER(leafless_channel_summarise, min_model,
                  leafless_channel_summarise(channel, octree, NULL, above, NULL, summary));
@@ -1931,7 +1911,7 @@ static void attributes_and_channels(void) {
     const char **text = (const char **)out;
     size_t *text_length = (size_t *)out + 1;
     double *values = (double *)out;
-    uint64_t *count = (uint64_t *)out, number;
+    uint64_t *count = (uint64_t *)out;
     leafless_value_range *range = (leafless_value_range *)out;
     leafless_channel_info *info = (leafless_channel_info *)out;
     leafless_attribute_callbacks callbacks;
@@ -2082,10 +2062,7 @@ static void attributes_and_channels(void) {
     NULL_POINTER(leafless_octree_without_channel, octree, leafless_octree_without_channel(NULL, "a", 1, result));
     NULL_POINTER(leafless_octree_without_channel, result, leafless_octree_without_channel(bearing, "a", 1, NULL));
     MAY_BE_NULL(leafless_octree_without_channel, name, leafless_octree_without_channel(bearing, NULL, 0, &bare));
-    NULL_POINTER(leafless_octree_channel_count, octree, leafless_octree_channel_count(NULL, count));
-    NULL_POINTER(leafless_octree_channel_count, count, leafless_octree_channel_count(bare, NULL));
-    OK(leafless_octree_channel_count(bare, &number));
-    CHECK(number == 0);
+    CHECK(check_channels(bare) == 0);
     NULL_POINTER(leafless_octree_channel_at, octree, leafless_octree_channel_at(NULL, 0, channel_result));
     NULL_POINTER(leafless_octree_channel_at, channel, leafless_octree_channel_at(bearing, 0, NULL));
     BAD_NUMBER(leafless_octree_channel_at, index, leafless_octree_channel_at(bearing, 1, channel_result));
@@ -2130,8 +2107,6 @@ static void attributes_and_channels(void) {
                leafless_channel_value_of_cell(channel, (const uint32_t *)WRONG(cell), values));
     MISALIGNED(leafless_channel_with_value_in, value,
                leafless_channel_with_value_in(channel, octree, (const double *)WRONG(one), NULL, channel_result));
-    MISALIGNED(leafless_octree_channel_count, count,
-               leafless_octree_channel_count(octree, (uint64_t *)WRONG(out)));
     MISALIGNED(leafless_octree_carry_channels, rules,
                leafless_octree_carry_channels(octree, operands, 1, 0, (leafless_carry_rule *)WRONG(rules), 1, NULL, result));
     untouched();
@@ -2145,8 +2120,7 @@ static void attributes_and_channels(void) {
     bare = NULL;
     MAY_BE_NULL(leafless_octree_carry_channels, options,
                 leafless_octree_carry_channels(octree, operands, 1, 0, NULL, 0, NULL, &bare));
-    OK(leafless_octree_channel_count(bare, &number));
-    CHECK(number == 1);
+    CHECK(check_channels(bare) == 1);
     leafless_octree_free(bare);
     leafless_octree_free(bearing);
     summaries(channel);

@@ -212,12 +212,8 @@ static void pictures(void) {
     shot.width = 0;
     BAD_NUMBER(leafless_shot_line_of_sight, width,
                leafless_shot_line_of_sight(&shot, 0, 0, (double *)out, (double *)out + 3));
-    NULL_POINTER(leafless_picture_save, colours, leafless_picture_save(NULL, 16, 16, PATH, sizeof PATH - 1));
-    NULL_POINTER(leafless_picture_save, path, leafless_picture_save(colours, 16, 16, NULL, 1));
-    BAD_NUMBER(leafless_picture_save, path, leafless_picture_save(colours, 16, 16, PATH, 0));
-    NULL_POINTER(leafless_picture_to_bytes, colours, leafless_picture_to_bytes(NULL, 16, 16, NULL, 0, (uint64_t *)out));
-    NULL_POINTER(leafless_picture_to_bytes, bytes, leafless_picture_to_bytes(colours, 16, 16, NULL, 5, (uint64_t *)out));
-    NULL_POINTER(leafless_picture_to_bytes, length, leafless_picture_to_bytes(colours, 16, 16, NULL, 0, NULL));
+    NULL_POINTER(leafless_picture_write, colours, picture_save(NULL, 16, 16, PATH, sizeof PATH - 1));
+    NULL_POINTER(leafless_picture_write, sink, leafless_picture_write(colours, 16, 16, NULL));
     OK(leafless_init(&transfer, sizeof transfer));
     BAD_NUMBER(leafless_picture_draw_bar, range,
                leafless_picture_draw_bar(colours, 16, 16, "x", 1, &transfer, 0, box));

@@ -99,6 +99,12 @@ static leafless_status writes_volume(const leafless_sink *sink) {
     return leafless_volume_write(volume, LEAFLESS_VOLUME_FORMAT_NRRD, sink);
 }
 
+static leafless_status writes_picture(const leafless_sink *sink) {
+    static const uint8_t COLOURS[4 * 8 * 8] = {0};
+    return leafless_picture_write(COLOURS, 8, 8, sink);
+}
+
+/* What is read again comes first, in the order of READERS. */
 static const struct {
     const char *name;
     leafless_status (*write)(const leafless_sink *sink);
@@ -107,6 +113,7 @@ static const struct {
     {"leafless_tridexel_write", writes_tridexel},
     {"leafless_mesh_write", writes_mesh},
     {"leafless_volume_write", writes_volume},
+    {"leafless_picture_write", writes_picture},
 };
 
 /* What a function was given, one piece after the other. */
@@ -569,7 +576,7 @@ static void large_files(void) {
     }
     layout.sample_type = LEAFLESS_SAMPLE_U8;
     layout.extents[0] = layout.extents[1] = layout.extents[2] = SIDE;
-    OK(leafless_volume_new(&layout, samples, SIDE * SIDE * SIDE, &large));
+    OK(volume_of_array(&layout, samples, SIDE * SIDE * SIDE, &large));
     OK(leafless_volume_write(large, LEAFLESS_VOLUME_FORMAT_RAW, &sink));
     CHECK(to.length == to.capacity && memcmp(to.bytes, samples, (size_t)to.length) == 0);
     CHECK(to.calls == 4 && to.largest == 1 << 20);
@@ -583,18 +590,33 @@ int main(void) {
     static const uint8_t SAMPLES[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     leafless_volume_layout layout = LEAFLESS_INIT(leafless_volume_layout);
     leafless_solid *solid = check_ball_solid();
+    uint64_t picture_length = 0;
     size_t i, length;
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
     OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
     layout.sample_type = LEAFLESS_SAMPLE_U8;
     layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
-    OK(leafless_volume_new(&layout, SAMPLES, sizeof SAMPLES, &volume));
+    OK(volume_of_array(&layout, SAMPLES, sizeof SAMPLES, &volume));
+    for (i = 1; i < 3; i++) {
+        /* What lies in a file can only be copied; what lies in memory can be used there. */
+        const leafless_source file = leafless_from_file("source.raw", (leafless_access)i);
+        const leafless_source bytes = leafless_from_bytes(SAMPLES, sizeof SAMPLES, (leafless_access)i);
+        leafless_volume *viewed = NULL;
+        const void *samples = NULL;
+        uint64_t count = 0;
+        refused(LEAFLESS_E_ARGUMENT, "leafless_volume_new", "source.access", leafless_volume_new(&layout, &file, &viewed));
+        OK(leafless_volume_new(&layout, &bytes, &viewed));
+        OK(leafless_volume_peek_samples(viewed, &samples, &count));
+        CHECK(samples == (const void *)SAMPLES && count == sizeof SAMPLES);
+        leafless_volume_free(viewed);
+    }
     memset(&probe, 0x5a, sizeof probe);
 
-    for (i = 0; i < COUNT(WRITERS); i++) {
+    for (i = 0; i + 1 < COUNT(WRITERS); i++) {
         READERS[i].bytes = written(WRITERS[i].write, READERS[i].path, &READERS[i].length);
     }
+    free(written(writes_picture, "source.png", &picture_length));
     check_write("source.csg", "cube(2);", 8);
     for (; i < COUNT(READERS); i++) {
         READERS[i].bytes = check_read(READERS[i].path, &length);

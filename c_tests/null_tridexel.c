@@ -336,37 +336,37 @@ static void arrays(void) {
 
 static void editors(void) {
     void *out = fresh(), *never = UNTOUCHED;
+    leafless_dexel_change *change = (leafless_dexel_change *)out;
     leafless_tridexel *other = NULL;
     NULL_POINTER(leafless_tridexel_editor_new, tridexel, leafless_tridexel_editor_new(NULL, (leafless_tridexel_editor **)&never));
     NULL_POINTER(leafless_tridexel_editor_new, editor, leafless_tridexel_editor_new(model, NULL));
-    NULL_POINTER(leafless_tridexel_editor_frame, editor, leafless_tridexel_editor_frame(NULL, (leafless_frame *)out));
-    NULL_POINTER(leafless_tridexel_editor_frame, frame, leafless_tridexel_editor_frame(editor, NULL));
-    NULL_POINTER(leafless_tridexel_editor_bytes, editor, leafless_tridexel_editor_bytes(NULL, (uint64_t *)out));
-    NULL_POINTER(leafless_tridexel_editor_bytes, bytes, leafless_tridexel_editor_bytes(editor, NULL));
-    NULL_POINTER(leafless_tridexel_editor_unite, editor, leafless_tridexel_editor_unite(NULL, model, NULL));
-    NULL_POINTER(leafless_tridexel_editor_unite, tridexel, leafless_tridexel_editor_unite(editor, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_editor_unite, options, leafless_tridexel_editor_unite(editor, model, NULL));
-    NULL_POINTER(leafless_tridexel_editor_subtract, editor, leafless_tridexel_editor_subtract(NULL, model, NULL));
-    NULL_POINTER(leafless_tridexel_editor_subtract, tridexel, leafless_tridexel_editor_subtract(editor, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_editor_subtract, options, leafless_tridexel_editor_subtract(editor, model, NULL));
-    NULL_POINTER(leafless_tridexel_editor_intersect, editor, leafless_tridexel_editor_intersect(NULL, model, NULL));
-    NULL_POINTER(leafless_tridexel_editor_intersect, tridexel, leafless_tridexel_editor_intersect(editor, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_editor_intersect, options, leafless_tridexel_editor_intersect(editor, model, NULL));
-    NULL_POINTER(leafless_tridexel_editor_unite_solid, editor, leafless_tridexel_editor_unite_solid(NULL, solid, NULL));
-    NULL_POINTER(leafless_tridexel_editor_unite_solid, solid, leafless_tridexel_editor_unite_solid(editor, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_editor_unite_solid, options, leafless_tridexel_editor_unite_solid(editor, solid, NULL));
-    NULL_POINTER(leafless_tridexel_editor_subtract_solid, editor,
-                 leafless_tridexel_editor_subtract_solid(NULL, solid, NULL));
-    NULL_POINTER(leafless_tridexel_editor_subtract_solid, solid,
-                 leafless_tridexel_editor_subtract_solid(editor, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_editor_subtract_solid, options,
-                leafless_tridexel_editor_subtract_solid(editor, solid, NULL));
-    NULL_POINTER(leafless_tridexel_editor_intersect_solid, editor,
-                 leafless_tridexel_editor_intersect_solid(NULL, solid, NULL));
-    NULL_POINTER(leafless_tridexel_editor_intersect_solid, solid,
-                 leafless_tridexel_editor_intersect_solid(editor, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_editor_intersect_solid, options,
-                leafless_tridexel_editor_intersect_solid(editor, solid, NULL));
+    NULL_POINTER(leafless_tridexel_editor_describe, editor,
+                 leafless_tridexel_editor_describe(NULL, (leafless_tridexel_info *)out));
+    NULL_POINTER(leafless_tridexel_editor_describe, info, leafless_tridexel_editor_describe(editor, NULL));
+    MISALIGNED(leafless_tridexel_editor_describe, info,
+               leafless_tridexel_editor_describe(editor, (leafless_tridexel_info *)WRONG(out)));
+#define COMBINE(editor, operation, model, change) leafless_tridexel_editor_combine(editor, operation, model, NULL, change)
+    NULL_POINTER(leafless_tridexel_editor_combine, editor, COMBINE(NULL, 0, model, change));
+    NULL_POINTER(leafless_tridexel_editor_combine, tridexel, COMBINE(editor, 0, NULL, change));
+    BAD_NUMBER(leafless_tridexel_editor_combine, operation, COMBINE(editor, 4, model, change));
+    BAD_NUMBER(leafless_tridexel_editor_combine, operation, COMBINE(editor, UINT32_MAX, model, change));
+    MISALIGNED(leafless_tridexel_editor_combine, change, COMBINE(editor, 0, model, (leafless_dexel_change *)WRONG(out)));
+#undef COMBINE
+#define COMBINE(editor, operation, solid, change)                                                                        \
+    leafless_tridexel_editor_combine_solid(editor, operation, solid, NULL, change)
+    NULL_POINTER(leafless_tridexel_editor_combine_solid, editor, COMBINE(NULL, 0, solid, change));
+    NULL_POINTER(leafless_tridexel_editor_combine_solid, solid, COMBINE(editor, 0, NULL, change));
+    BAD_NUMBER(leafless_tridexel_editor_combine_solid, operation, COMBINE(editor, 4, solid, change));
+    BAD_NUMBER(leafless_tridexel_editor_combine_solid, operation, COMBINE(editor, UINT32_MAX, solid, change));
+    MISALIGNED(leafless_tridexel_editor_combine_solid, change,
+               COMBINE(editor, 0, solid, (leafless_dexel_change *)WRONG(out)));
+#undef COMBINE
+    MAY_BE_NULL(leafless_tridexel_editor_combine, options, leafless_tridexel_editor_combine(editor, 0, model, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_combine, change, leafless_tridexel_editor_combine(editor, 0, model, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_combine_solid, options,
+                leafless_tridexel_editor_combine_solid(editor, 1, solid, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_editor_combine_solid, change,
+                leafless_tridexel_editor_combine_solid(editor, 1, solid, NULL, NULL));
     NULL_POINTER(leafless_tridexel_editor_freeze, editor,
                  leafless_tridexel_editor_freeze(NULL, NULL, (leafless_tridexel **)&never));
     NULL_POINTER(leafless_tridexel_editor_freeze, tridexel, leafless_tridexel_editor_freeze(editor, NULL, NULL));

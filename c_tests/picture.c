@@ -474,20 +474,20 @@ static void files(void) {
     OK(leafless_picture_draw_names(colours, SIDE, SIDE, "tags", 4, names, 2, 0, &box));
     CHECK(box.width == 0 && box.height == 0);
     /* In memory and in a file. */
-    OK(leafless_picture_to_bytes(large, WIDE, HIGH, NULL, 0, &length));
+    OK(picture_to_bytes(large, WIDE, HIGH, NULL, 0, &length));
     bytes = (uint8_t *)malloc(length);
     read = (uint8_t *)malloc(length + 1);
     CHECK(bytes && read);
-    FAILS(LEAFLESS_E_BUFFER, leafless_picture_to_bytes(large, WIDE, HIGH, bytes, length - 1, &again));
-    OK(leafless_picture_to_bytes(large, WIDE, HIGH, bytes, length, &again));
+    FAILS(LEAFLESS_E_BUFFER, picture_to_bytes(large, WIDE, HIGH, bytes, length - 1, &again));
+    OK(picture_to_bytes(large, WIDE, HIGH, bytes, length, &again));
     CHECK(again == length && memcmp(bytes, START, 8) == 0 && bytes[19] == WIDE && bytes[23] == HIGH);
-    OK(leafless_picture_save(large, WIDE, HIGH, PATH, sizeof PATH - 1));
+    OK(picture_save(large, WIDE, HIGH, PATH, sizeof PATH - 1));
     file = fopen(PATH, "rb");
     CHECK(file && fread(read, 1, length + 1, file) == length && memcmp(read, bytes, length) == 0);
     (void)fclose(file);
     (void)remove(PATH);
-    FAILS(LEAFLESS_E_IO, leafless_picture_save(large, WIDE, HIGH, "no/such/folder/x.png", 20));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_picture_to_bytes(large, 0, HIGH, NULL, 0, &length));
+    FAILS(LEAFLESS_E_IO, picture_save(large, WIDE, HIGH, "no/such/folder/x.png", 20));
+    FAILS(LEAFLESS_E_ARGUMENT, picture_to_bytes(large, 0, HIGH, NULL, 0, &length));
     free(read);
     free(bytes);
 }

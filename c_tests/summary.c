@@ -131,7 +131,7 @@ static void volumes(void) {
     layout.sample_type = LEAFLESS_SAMPLE_U8;
     layout.extents[0] = 4;
     layout.extents[1] = layout.extents[2] = 2;
-    OK(leafless_volume_new(&layout, samples, sizeof samples, &volume));
+    OK(volume_of_array(&layout, samples, sizeof samples, &volume));
     OK(leafless_volume_as_attribute(volume, LEAFLESS_INTERPOLATION_TRILINEAR, NULL, &smooth));
     OK(leafless_volume_as_attribute(volume, LEAFLESS_INTERPOLATION_NEAREST, NULL, &steps));
     leafless_volume_free(volume);

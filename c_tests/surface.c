@@ -389,7 +389,7 @@ static void volumes(void) {
     layout.extents[0] = 4;
     layout.extents[1] = 5;
     layout.extents[2] = 6;
-    OK(leafless_volume_view(&layout, samples, sizeof samples, &volume));
+    OK(volume_in_place(&layout, samples, sizeof samples, &volume));
     OK(leafless_volume_frame(volume, &frame));
     CHECK(frame.depth == 3);
     /* Where samples cross 100, and half-way where the grid ends: three octahedra again. */

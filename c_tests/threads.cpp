@@ -401,7 +401,7 @@ void on_frames(const Make &solid_of) {
     OK(leafless_lazy_new(solid, &frames[0], &lazy));
     CHECK(ask(solid, frames[1], 1) == expected[1]);
     leafless_solid_free(solid);
-    OK(leafless_lazy_refine(lazy, 5, nullptr, nullptr));
+    OK(leafless_lazy_refine(lazy, nullptr, 5, nullptr, nullptr));
     leafless_octree *octree = nullptr;
     OK(leafless_lazy_freeze(lazy, nullptr, &octree));
     leafless_lazy_free(lazy);
@@ -457,10 +457,10 @@ struct Asking {
 // A ball of radius 0.75 that meanwhile uses the octree which is being split.
 int32_t asks_back(void *ctx, const double *min, const double *max) {
     Asking *const asking = static_cast<Asking *>(ctx);
-    leafless_lazy_counts counts;
+    leafless_lazy_info counts;
     if (asking->lazy != nullptr) {
-        FAILS(LEAFLESS_E_BUSY, leafless_lazy_count(asking->lazy, &counts));
-        FAILS(LEAFLESS_E_BUSY, leafless_lazy_refine(asking->lazy, 2, nullptr, nullptr));
+        FAILS(LEAFLESS_E_BUSY, leafless_lazy_describe(asking->lazy, &counts));
+        FAILS(LEAFLESS_E_BUSY, leafless_lazy_refine(asking->lazy, nullptr, 2, nullptr, nullptr));
         asking->busy++;
     }
     double near = 0, far = 0;
@@ -485,13 +485,13 @@ void lazy_at_once() {
         for (int i = 0; i < 400; i++) {
             leafless_tag tags[8];
             leafless_membership membership;
-            leafless_statistics statistics;
+            leafless_lazy_info statistics;
             leafless_octree *octree = nullptr;
-            done += is_done_or_busy(leafless_lazy_refine_point(lazy, at, uint32_t(1 + i % 6), nullptr, nullptr));
-            done += is_done_or_busy(leafless_lazy_refine_ray(lazy, from, along, 0, 3, uint32_t(1 + i % 6), nullptr, nullptr));
+            done += is_done_or_busy(check_refine(lazy, check_zone_point(at), uint32_t(1 + i % 6), nullptr));
+            done += is_done_or_busy(check_refine(lazy, check_zone_ray(from, along, 0, 3), uint32_t(1 + i % 6), nullptr));
             done += is_done_or_busy(leafless_lazy_split(lazy, root, 0, tags));
             done += is_done_or_busy(leafless_lazy_contains(lazy, at, &membership));
-            done += is_done_or_busy(leafless_lazy_statistics(lazy, &statistics));
+            done += is_done_or_busy(leafless_lazy_describe(lazy, &statistics));
             if (i % 50 == number && is_done_or_busy(leafless_lazy_freeze(lazy, nullptr, &octree))) {
                 OK(leafless_octree_check(octree));
                 leafless_octree_free(octree);
@@ -502,7 +502,7 @@ void lazy_at_once() {
     // As if one thread had done all of it.
     leafless_octree *found = nullptr, *expected = check_ball(6, LEAFLESS_RULE_CERTIFIED);
     leafless_statistics statistics[2];
-    OK(leafless_lazy_refine(lazy, 6, nullptr, nullptr));
+    OK(leafless_lazy_refine(lazy, nullptr, 6, nullptr, nullptr));
     OK(leafless_lazy_freeze(lazy, nullptr, &found));
     OK(leafless_octree_check(found));
     OK(leafless_octree_statistics(found, &statistics[0]));
@@ -523,10 +523,10 @@ void lazy_at_once() {
     OK(leafless_solid_new_callbacks(&callbacks, &host));
     OK(leafless_lazy_new(host, &frame, &lazy));
     asking.lazy = lazy;
-    OK(leafless_lazy_refine(lazy, 3, nullptr, nullptr));
+    OK(leafless_lazy_refine(lazy, nullptr, 3, nullptr, nullptr));
     CHECK(asking.busy > 8);
-    leafless_lazy_counts counts;
-    OK(leafless_lazy_count(lazy, &counts));
+    leafless_lazy_info counts;
+    OK(leafless_lazy_describe(lazy, &counts));
     CHECK(counts.splits > 0);
     leafless_lazy_free(lazy);
     leafless_solid_free(host);

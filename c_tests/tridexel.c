@@ -586,24 +586,38 @@ static void cuts(void) {
     const leafless_tridexel_format format = format_of(LEAFLESS_DEXEL_ENDS_FIXED, LEAFLESS_DEXEL_NORMALS_16, 1, 0);
     leafless_tridexel *block = made_of(box_between(-0.6875, 0.6875), DEPTH, &format), *steps[STEPS], *path = NULL, *part, *early;
     leafless_tridexel_editor *by_solids = NULL, *by_models = NULL;
-    leafless_frame frame;
-    uint64_t bytes = 0;
+    leafless_tridexel_info info, of_block;
+    leafless_dexel_change change, other;
+    double removed[3] = {0, 0, 0};
     uint32_t axis;
     int i;
     OK(leafless_tridexel_editor_new(block, &by_solids));
     OK(leafless_tridexel_editor_new(block, &by_models));
-    OK(leafless_tridexel_editor_frame(by_solids, &frame));
-    CHECK(frame.depth == DEPTH && frame.edge == 2 && frame.origin[0] == -1);
-    OK(leafless_tridexel_editor_bytes(by_solids, &bytes));
-    CHECK(bytes >= 3 * 12 * 64 * 64);
+    OK(leafless_tridexel_editor_describe(by_solids, &info));
+    OK(leafless_tridexel_describe(block, &of_block));
+    CHECK(info.frame.depth == DEPTH && info.frame.edge == 2 && info.frame.origin[0] == -1);
+    CHECK(info.directions == LEAFLESS_AXES_ALL && info.ends == of_block.ends && info.normals == of_block.normals);
+    CHECK(info.has_surfaces == 1 && info.has_materials == 0 && info.bytes_per_interval == of_block.bytes_per_interval);
+    CHECK(info.interval_count == of_block.interval_count && info.bytes >= 3 * 12 * 64 * 64);
     CHECK(same_and_free(frozen(by_solids), both(LEAFLESS_OPERATION_UNION, block, block)));
     early = frozen(by_solids);
     for (i = 0; i < STEPS; i++) {
         leafless_solid *ball = step_of_tool(i);
-        OK(leafless_tridexel_editor_subtract_solid(by_solids, ball, NULL));
+        OK(leafless_tridexel_editor_combine_solid(by_solids, LEAFLESS_OPERATION_DIFFERENCE, ball, NULL, &change));
         steps[i] = made_of(ball, DEPTH, &format);
-        OK(leafless_tridexel_editor_subtract(by_models, steps[i], NULL));
+        OK(leafless_tridexel_editor_combine(by_models, LEAFLESS_OPERATION_DIFFERENCE, steps[i], NULL, &other));
+        CHECK(memcmp(&change, &other, sizeof change) == 0 && change.rays > 0);
+        for (axis = 0; axis < 3; axis++) {
+            /* Less than the ball, in the box around it. */
+            CHECK(change.added_model[axis] == 0 && change.removed_model[axis] > 0);
+            CHECK(change.removed_model[axis] < 1.1 * 4.0 / 3 * PI * pow(0.2, 3));
+            CHECK(change.max_cell[axis] > change.min_cell[axis] && change.max_cell[axis] - change.min_cell[axis] <= 14);
+            removed[axis] += change.removed_model[axis];
+        }
     }
+    /* The same step again finds nothing to take away. */
+    OK(leafless_tridexel_editor_combine(by_models, LEAFLESS_OPERATION_DIFFERENCE, steps[STEPS - 1], NULL, &other));
+    CHECK(other.rays == 0 && other.removed_model[0] == 0 && other.max_cell[0] == 0 && other.min_cell[2] == 0);
     part = frozen(by_solids);
     CHECK(same_and_free(part, frozen(by_models)));
     /* What was frozen stays. */
@@ -623,26 +637,50 @@ static void cuts(void) {
     for (axis = 0; axis < 3; axis++) {
         CHECK(volume(part, axis) < volume(block, axis) - 0.05);
         CHECK(fabs(volume(part, axis) - volume(part, 2)) < 2e-3);
+        CHECK(fabs(volume(block, axis) - volume(part, axis) - removed[axis]) < 1e-12);
     }
     /* All that is missing is filled in again, and nothing else. */
     for (i = 0; i < STEPS; i++) {
         leafless_solid *ball = step_of_tool(i);
-        OK(leafless_tridexel_editor_unite_solid(by_solids, ball, NULL));
-        OK(leafless_tridexel_editor_unite(by_models, steps[i], NULL));
+        OK(leafless_tridexel_editor_combine_solid(by_solids, LEAFLESS_OPERATION_UNION, ball, NULL, NULL));
+        OK(leafless_tridexel_editor_combine(by_models, LEAFLESS_OPERATION_UNION, steps[i], NULL, NULL));
         leafless_solid_free(ball);
     }
     CHECK(same_and_free(frozen(by_solids), frozen(by_models)));
     {
         leafless_solid *box = box_between(-0.6875, 0.6875);
-        OK(leafless_tridexel_editor_intersect_solid(by_solids, box, NULL));
-        OK(leafless_tridexel_editor_intersect(by_models, block, NULL));
+        OK(leafless_tridexel_editor_combine_solid(by_solids, LEAFLESS_OPERATION_INTERSECTION, box, NULL, NULL));
+        OK(leafless_tridexel_editor_combine(by_models, LEAFLESS_OPERATION_INTERSECTION, block, NULL, NULL));
         leafless_solid_free(box);
     }
     CHECK(same_and_free(frozen(by_solids), frozen(by_models)));
     {
-        leafless_tridexel *again = frozen(by_models);
+        leafless_tridexel *again = frozen(by_models), *xor_made;
         CHECK(fabs(volume(again, 0) - volume(block, 0)) < 1e-12 && fabs(volume(again, 2) - volume(block, 2)) < 1e-12);
         leafless_tridexel_free(again);
+        /* Once with, once without: twice is nothing. */
+        xor_made = both(LEAFLESS_OPERATION_XOR, block, steps[0]);
+        OK(leafless_tridexel_editor_combine(by_models, LEAFLESS_OPERATION_INTERSECTION, block, NULL, NULL));
+        OK(leafless_tridexel_editor_combine(by_models, LEAFLESS_OPERATION_XOR, steps[0], NULL, &change));
+        again = frozen(by_models);
+        for (axis = 0; axis < 3; axis++) {
+            CHECK(change.removed_model[axis] > 0 && change.added_model[axis] > 0);
+            CHECK(fabs(volume(again, axis) - volume(xor_made, axis)) < 1e-12);
+            CHECK(fabs(volume(block, axis) - change.removed_model[axis] + change.added_model[axis] - volume(again, axis)) <
+                  1e-12);
+        }
+        leafless_tridexel_free(xor_made);
+        leafless_tridexel_free(again);
+        {
+            leafless_solid *ball = step_of_tool(0);
+            OK(leafless_tridexel_editor_combine_solid(by_models, LEAFLESS_OPERATION_XOR, ball, NULL, &other));
+            leafless_solid_free(ball);
+        }
+        for (axis = 0; axis < 3; axis++) {
+            CHECK(fabs(change.removed_model[axis] - other.added_model[axis]) < 1e-12);
+            CHECK(fabs(change.added_model[axis] - other.removed_model[axis]) < 1e-12);
+            CHECK(change.min_cell[axis] == other.min_cell[axis] && change.max_cell[axis] == other.max_cell[axis]);
+        }
     }
     for (i = 0; i < STEPS; i++) {
         leafless_tridexel_free(steps[i]);
@@ -657,7 +695,7 @@ static void cuts(void) {
         leafless_tridexel *box = made_of(box_between(-0.5, 0.5), 7, NULL);
         leafless_solid *ball = ball_at(0, 0, 0.5, 0.375);
         OK(leafless_tridexel_editor_new(box, &by_solids));
-        OK(leafless_tridexel_editor_subtract_solid(by_solids, ball, NULL));
+        OK(leafless_tridexel_editor_combine_solid(by_solids, LEAFLESS_OPERATION_DIFFERENCE, ball, NULL, NULL));
         part = frozen(by_solids);
         for (axis = 0; axis < 3; axis++) {
             CHECK(fabs(volume(part, axis) - (1 - 2.0 / 3 * PI * pow(0.375, 3))) < 5e-4);
@@ -672,10 +710,11 @@ static void cuts(void) {
 /* A shape whose function uses the editor that it is subtracted from. */
 static int32_t meddles(void *ctx, const double *min, const double *max) {
     leafless_tridexel_editor *const editor = *(leafless_tridexel_editor **)ctx;
-    uint64_t bytes = 77;
+    leafless_tridexel_info info;
     (void)min, (void)max;
-    FAILS(LEAFLESS_E_BUSY, leafless_tridexel_editor_bytes(editor, &bytes));
-    CHECK(bytes == 77);
+    info.bytes = 77;
+    FAILS(LEAFLESS_E_BUSY, leafless_tridexel_editor_describe(editor, &info));
+    CHECK(info.bytes == 77);
     return -4713;
 }
 
@@ -699,11 +738,11 @@ static void refused(void) {
     OK(leafless_control_new(&control));
     OK(leafless_init(&options, sizeof options));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
-    FAILS(LEAFLESS_E_CALLBACK, leafless_tridexel_editor_subtract_solid(editor, busy, NULL));
+    FAILS(LEAFLESS_E_CALLBACK, leafless_tridexel_editor_combine_solid(editor, LEAFLESS_OPERATION_DIFFERENCE, busy, NULL, NULL));
     FAILS(LEAFLESS_E_FRAME, check_tridexels(LEAFLESS_OPERATION_UNION, model, finer, NULL, &result));
-    FAILS(LEAFLESS_E_FRAME, leafless_tridexel_editor_subtract(editor, finer, NULL));
+    FAILS(LEAFLESS_E_FRAME, leafless_tridexel_editor_combine(editor, LEAFLESS_OPERATION_DIFFERENCE, finer, NULL, NULL));
     FAILS(LEAFLESS_E_ARGUMENT, check_tridexels(LEAFLESS_OPERATION_DIFFERENCE, model, columns, NULL, &result));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_editor_unite(editor, columns, NULL));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_editor_combine(editor, LEAFLESS_OPERATION_UNION, columns, NULL, NULL));
     options.max_bytes = 1000;
     FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
     FAILS(LEAFLESS_E_LIMIT, check_tridexels(LEAFLESS_OPERATION_UNION, model, model, &options, &result));
@@ -714,8 +753,8 @@ static void refused(void) {
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, check_tridexels(LEAFLESS_OPERATION_XOR, model, model, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_with_material(model, 1, &options, &result));
-    FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_subtract_solid(editor, ball, &options));
-    FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_subtract(editor, model, &options));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_combine_solid(editor, LEAFLESS_OPERATION_DIFFERENCE, ball, &options, NULL));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_combine(editor, LEAFLESS_OPERATION_DIFFERENCE, model, &options, NULL));
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_freeze(editor, &options, &result));
     CHECK(result == NULL);
     result = frozen(editor);

@@ -148,12 +148,12 @@ static void arrays(void) {
                                                                       : LEAFLESS_BYTE_ORDER_BIG;
                 }
                 if (in_place) {
-                    OK(leafless_volume_view(&layout, bytes, length, &volume));
+                    OK(volume_in_place(&layout, bytes, length, &volume));
                 } else {
-                    OK(leafless_volume_new(&layout, bytes, length + skip, &volume));
+                    OK(volume_of_array(&layout, bytes, length + skip, &volume));
                 }
-                FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_new(&layout, bytes, length + skip - 1, &volume));
-                FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_new(&layout, bytes, length + skip + 1, &volume));
+                FAILS(LEAFLESS_E_ARGUMENT, volume_of_array(&layout, bytes, length + skip - 1, &volume));
+                FAILS(LEAFLESS_E_ARGUMENT, volume_of_array(&layout, bytes, length + skip + 1, &volume));
                 OK(leafless_volume_describe(volume, &info));
                 CHECK(info.extents[0] == NX && info.extents[1] == NY && info.extents[2] == NZ);
                 CHECK(info.sample_type == TYPES[i][1] && info.file_type == TYPES[i][0]);
@@ -206,11 +206,11 @@ static void bits(void) {
             words[y + NY * z] |= (uint64_t)0xabc << 40;
         }
     }
-    OK(leafless_volume_view(&layout, words, sizeof words, &in_place));
-    OK(leafless_volume_new(&layout, words, sizeof words, &copied));
+    OK(volume_in_place(&layout, words, sizeof words, &in_place));
+    OK(volume_of_array(&layout, words, sizeof words, &copied));
     layout.sample_type = LEAFLESS_SAMPLE_BITS_IN_BYTES;
-    OK(leafless_volume_new(&layout, bytes, sizeof bytes, &packed));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_view(&layout, bytes, sizeof bytes, &packed));
+    OK(volume_of_array(&layout, bytes, sizeof bytes, &packed));
+    FAILS(LEAFLESS_E_ARGUMENT, volume_in_place(&layout, bytes, sizeof bytes, &packed));
     OK(leafless_volume_describe(packed, &info));
     CHECK(info.sample_type == LEAFLESS_SAMPLE_BITS && info.file_type == LEAFLESS_SAMPLE_BITS_IN_BYTES);
     CHECK(info.default_threshold == 0.5);
@@ -322,7 +322,7 @@ static leafless_volume *bytes_volume(const double corner[3], const double spacin
     leafless_volume *volume = NULL;
     memcpy(layout.corner_model, corner, sizeof layout.corner_model);
     memcpy(layout.spacing_model, spacing, sizeof layout.spacing_model);
-    OK(leafless_volume_new(&layout, samples, fill(samples, LEAFLESS_SAMPLE_U8, false), &volume));
+    OK(volume_of_array(&layout, samples, fill(samples, LEAFLESS_SAMPLE_U8, false), &volume));
     return volume;
 }
 
@@ -437,15 +437,15 @@ static void files(void) {
     free(bytes);
     memcpy(layout.corner_model, corner, sizeof corner);
     memcpy(layout.spacing_model, spacing, sizeof spacing);
-    OK(leafless_volume_open_raw("volume.raw", 10, &layout, &back));
+    OK(volume_open_raw("volume.raw", 10, &layout, &back));
     again = same_voxels(back, &band);
     CHECK(check_same(again, octree));
     leafless_octree_free(again);
     leafless_volume_free(back);
     back = NULL;
     layout.extents[2]++;
-    FAILS(LEAFLESS_E_VOLUME_FILE, leafless_volume_open_raw("volume.raw", 10, &layout, &back));
-    FAILS(LEAFLESS_E_IO, leafless_volume_open_raw("no/such/file", 12, &layout, &back));
+    FAILS(LEAFLESS_E_VOLUME_FILE, volume_open_raw("volume.raw", 10, &layout, &back));
+    FAILS(LEAFLESS_E_IO, volume_open_raw("no/such/file", 12, &layout, &back));
     FAILS(LEAFLESS_E_IO, volume_open("no/such/file", 12, &back));
     FAILS(LEAFLESS_E_IO, volume_save(volume, LEAFLESS_VOLUME_FORMAT_RAW, "no/such/file", 12));
     FAILS(LEAFLESS_E_VOLUME_FILE, volume_open("volume.raw", 10, &back));
@@ -554,7 +554,7 @@ static void not_numbers(void) {
     leafless_frame frame;
     samples[place(3, 4, 5)] = NAN;
     samples[place(0, 0, 0)] = INFINITY;
-    OK(leafless_volume_view(&layout, samples, sizeof samples, &volume));
+    OK(volume_in_place(&layout, samples, sizeof samples, &volume));
     OK(leafless_volume_range(volume, NULL, &range));
     CHECK(range.lower == -INFINITY && range.upper == INFINITY);
     OK(leafless_volume_frame(volume, &frame));
@@ -575,8 +575,8 @@ static void refused_layouts(void) {
 #define REFUSED(change)                                                                                          \
     layout = layout_of(LEAFLESS_SAMPLE_U16);                                                                     \
     change;                                                                                                      \
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_new(&layout, samples, 2 * COUNT_ALL, &volume));                   \
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_view(&layout, samples, 2 * COUNT_ALL, &volume))
+    FAILS(LEAFLESS_E_ARGUMENT, volume_of_array(&layout, samples, 2 * COUNT_ALL, &volume));                   \
+    FAILS(LEAFLESS_E_ARGUMENT, volume_in_place(&layout, samples, 2 * COUNT_ALL, &volume))
     for (axis = 0; axis < 3; axis++) {
         REFUSED(layout.extents[axis] = 0);
         REFUSED(layout.extents[axis] = (1 << 20) + 1);
@@ -598,8 +598,8 @@ static void refused_layouts(void) {
     REFUSED(layout.struct_size = 0);
     REFUSED(layout.struct_size = UINT32_MAX);
     layout = layout_of(LEAFLESS_SAMPLE_U16);
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_view(&layout, samples, 2 * COUNT_ALL - 1, &volume));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_view(&layout, (char *)samples + 1, 2 * COUNT_ALL, &volume));
+    FAILS(LEAFLESS_E_ARGUMENT, volume_in_place(&layout, samples, 2 * COUNT_ALL - 1, &volume));
+    FAILS(LEAFLESS_E_ARGUMENT, volume_in_place(&layout, (char *)samples + 1, 2 * COUNT_ALL, &volume));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_init(&layout, 3));
     CHECK(volume == NULL);
 }

@@ -273,7 +273,7 @@ void hosts() {
     // A picture that is too small for its size.
     std::vector<std::uint8_t> small(4 * 8 * 8 - 1);
     try {
-        leafless::picture_save(small, 8, 8, "wrapper.png");
+        leafless::picture_write(small, 8, 8, leafless_to_file("wrapper.png"));
         CHECK(false);
     } catch (const std::invalid_argument &) {
     }

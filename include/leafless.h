@@ -573,8 +573,8 @@ leafless_status leafless_frame_plane(const leafless_frame *frame, uint32_t axis,
 
 /* ---- 6. Sources and sinks ----------------------------------------------------------------------------- */
 
-/// How a source is used. Octrees and tri-dexel models can be used where they lie; everything else is read
-/// with LEAFLESS_ACCESS_COPY.
+/// How a source is used. Octrees, tri-dexel models and samples in memory can be used where they lie;
+/// everything else is read with LEAFLESS_ACCESS_COPY.
 LEAFLESS_ENUM(leafless_access, uint32_t) {
     /// It is read into memory, and all of it is verified: the plain way, and the one for files that may not
     /// be trusted. Later changes of the file or of the bytes do not matter. Bytes may lie on any address.
@@ -1756,8 +1756,8 @@ leafless_status leafless_volume_describe(const leafless_volume *volume, leafless
 ///
 /// - Buffers: `samples` and `length`, one each.
 /// - Result: `*samples`, the address of the first one; `*length`, their bytes.
-/// - Ownership: the samples belong to the volume, or to the host that made it by leafless_volume_view, and
-///   live as long as the reference `volume`.
+/// - Ownership: the samples belong to the volume, or to the host if it uses the host's array, and live as
+///   long as the reference `volume`.
 leafless_status leafless_volume_peek_samples(const leafless_volume *volume, const void **samples,
     uint64_t *length);
 
@@ -1837,30 +1837,28 @@ typedef struct leafless_volume_layout {
     double spacing_model[3];  ///< The edges of a voxel, 2^-256 to 2^256; all three 0 means 1.
 } leafless_volume_layout;
 
-/// Makes a volume of an array, which is copied. O(n).
+/// Makes a volume of an array of samples without a header, in memory or in a file.
 ///
-/// - Buffers: `layout`, one struct; `samples`, `length` bytes, on any address; `volume`, one pointer.
+/// With LEAFLESS_ACCESS_COPY the samples are copied: O(n); bytes may lie on any address. With
+/// LEAFLESS_ACCESS_MAP, which is for bytes only, they are used where they lie: O(1). The layout's type is
+/// then LEAFLESS_SAMPLE_U8, _U16, _I16, _F32 or _BITS, its byte order is this machine's, it has nothing to
+/// skip, and the bytes are aligned for their type. LEAFLESS_ACCESS_MAP_VERIFIED is the same: any samples are
+/// a volume.
+///
+/// - Buffers: `layout`, one struct; `source`, one struct; `volume`, one pointer.
 /// - Result: `*volume`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none,
-///   or if `length` is not that of the samples and the bytes to skip; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the samples may be freed after the call; give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any layout, any bytes.
-leafless_status leafless_volume_new(const leafless_volume_layout *layout, const void *samples,
-    uint64_t length, leafless_volume **volume);
-
-/// Makes a volume of an array, which is used where it lies, without a copy. O(1).
-///
-/// - Buffers: `layout`, one struct, whose type is LEAFLESS_SAMPLE_U8, _U16, _I16, _F32 or _BITS, whose byte
-///   order is this machine's, and which has nothing to skip; `samples`, `length` bytes, aligned for their
-///   type; `volume`, one pointer.
-/// - Result: `*volume`.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_volume_new, and if the layout is not of that kind.
-/// - Ownership: the samples stay the host's. They must stay, unchanged, until the last reference is given
-///   back to the volume, to every solid that is made of it, and to what is made of these, but for octrees and
-///   meshes, which have all of their own. Give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any layout, any bytes.
-leafless_status leafless_volume_view(const leafless_volume_layout *layout, const void *samples,
-    uint64_t length, leafless_volume **volume);
+///   if the layout or the source is not as the access demands, or if the number of bytes is not that of the
+///   samples and those to skip; LEAFLESS_E_VOLUME_FILE if that is so of a file; LEAFLESS_E_IO;
+///   LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: samples that are copied may be freed after the call. Others stay the host's. They must stay,
+///   unchanged, until the last reference is given back to the volume, to every solid that is made of it, and
+///   to what is made of these, but for octrees and meshes, which have all of their own. Give `*volume` back
+///   with leafless_volume_free.
+/// - Untrusted input: any layout, any bytes, any file; memory is at most the file's length and as much again
+///   for the samples, twice as much for int8_t.
+leafless_status leafless_volume_new(const leafless_volume_layout *layout, const leafless_source *source,
+    leafless_volume **volume);
 
 /// Reads a volume file, NRRD or MetaImage; the content tells which. If it names another file for its samples,
 /// that is read from the same folder or below it, or given as `data`.
@@ -1896,18 +1894,6 @@ leafless_status leafless_volume_read(const leafless_source *source, const leafle
 /// - Untrusted input: any bytes.
 leafless_status leafless_volume_data_file(const uint8_t *bytes, uint64_t length, char *name,
     uint64_t capacity, uint64_t *name_length);
-
-/// Reads an array of samples without a header. O(n). (In memory, leafless_volume_new does the same.)
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `layout`, one struct; `volume`, one pointer.
-/// - Result: `*volume`.
-/// - Errors: LEAFLESS_E_VOLUME_FILE if the file is longer or shorter than the layout says;
-///   LEAFLESS_E_ARGUMENT as leafless_volume_new; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any file, any layout; memory is at most the file's length and as much again for the
-///   samples, twice as much for int8_t.
-leafless_status leafless_volume_open_raw(const char *path, size_t path_length,
-    const leafless_volume_layout *layout, leafless_volume **volume);
 
 /// Writes a volume file.
 ///
@@ -2074,6 +2060,7 @@ typedef struct leafless_octree_info {
     leafless_frame frame;  ///< Where it lies, and its depth.
     uint64_t elements;  ///< Array elements without bricks; each holds two levels.
     uint64_t bricks;  ///< Array elements of the deepest level.
+    uint64_t channels;  ///< Channels, 0 to 256: leafless_octree_channel_at returns each.
     leafless_proof proof;  ///< What the cells prove.
     leafless_tag root;  ///< The tag of the whole universe; BRANCH if it is cut.
     leafless_tag exterior;  ///< What is known of the space outside of the universe; never BRANCH.
@@ -2672,8 +2659,7 @@ leafless_status leafless_faces_next(leafless_faces *faces, leafless_boundary_fac
 ///
 /// The bit of the cell min_cell + (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx /
 /// 64⌉, and nx, ny and nz are max_cell - min_cell: x is fastest, each row begins with a word of its own, and
-/// bits beyond a row are 0. That is LEAFLESS_SAMPLE_BITS, from which leafless_volume_new and
-/// leafless_volume_view make a volume again.
+/// bits beyond a row are 0. That is LEAFLESS_SAMPLE_BITS, of which leafless_volume_new makes a volume again.
 ///
 /// Time is linear in the words and the array elements in the box.
 ///
@@ -3385,13 +3371,15 @@ leafless_status leafless_solid_clearance(const leafless_solid *a, const leafless
 
 /* ---- 19. Octrees that are split on demand ------------------------------------------------------------- */
 
-/// What the work on an octree came to.
-typedef struct leafless_lazy_counts {
+/// What can be said of a lazy octree at once.
+typedef struct leafless_lazy_info {
+    leafless_frame frame;  ///< The universe, and how deep cells may be split.
+    leafless_statistics statistics;  ///< Counts over all levels, and the certified volume.
     /// Cells that were split, as it happened: also those that were merged again. Nothing is counted twice.
     uint64_t splits;
     uint64_t replays;  ///< Splits that the solid was asked for anew, because cells below were to be split.
     uint64_t bytes;  ///< Bytes that the split cells take.
-} leafless_lazy_counts;
+} leafless_lazy_info;
 
 /// An octree of which only the universe is known. No cell will ever be finer than the frame's depth, which
 /// costs nothing until they are asked for.
@@ -3441,56 +3429,47 @@ void leafless_lazy_free(leafless_lazy *lazy);
 leafless_status leafless_lazy_split(leafless_lazy *lazy, const uint32_t cell[3], uint32_t level,
     leafless_tag tags[8]);
 
-/// Splits all cells down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and
-/// `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells are then split
-/// before finer ones.
-///
-/// - Buffers: `options`, one struct or NULL; `done`, one truth value, or NULL.
-/// - Result: `*done`, whether no limit was reached first.
-/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid
-///   contradicts what the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What
-///   was split before stays so.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
-/// - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
-leafless_status leafless_lazy_refine(leafless_lazy *lazy, uint32_t level, const leafless_options *options,
-    bool *done);
+/// Which cells are refined.
+LEAFLESS_ENUM(leafless_zone_kind, uint32_t) {
+    LEAFLESS_ZONE_EVERYTHING = 0,  ///< All of the universe.
+    /// The cells that have more than their surface in common with the box from `min_model` to `max_model`; of
+    /// a box without thickness, those that it lies in.
+    LEAFLESS_ZONE_BOX = 1,
+    LEAFLESS_ZONE_POINT = 2,  ///< The cells that contain `point_model`: one of each level.
+    /// All cells that the points `point_model` + t · `direction_model` with `from` ≤ t ≤ `to` touch.
+    LEAFLESS_ZONE_RAY = 3,
+};
 
-/// As leafless_lazy_refine, for the cells that have more than their surface in common with the box [min,
-/// max]; of a box without thickness, for those that it lies in.
+/// A part of model space, in which cells are refined. Fields that its kind does not name do not matter.
+typedef struct leafless_zone {
+    uint32_t struct_size;  ///< sizeof(leafless_zone).
+    leafless_zone_kind kind;  ///< Which of the fields below count.
+    double min_model[3];  ///< A box's lower corner.
+    double max_model[3];  ///< A box's upper corner.
+    /// A point, or a point of a ray; of a ray each coordinate is 0 or of a magnitude between 2^-256 and
+    /// 2^256.
+    double point_model[3];
+    /// A ray's direction, of any length but zero; each coordinate is as that of its point.
+    double direction_model[3];
+    double from;  ///< Where a ray begins; may be -INFINITY.
+    double to;  ///< Where a ray ends; may be INFINITY.
+} leafless_zone;
+
+/// Splits the cells of a zone down to `level`, those that can be. Limits in `options` (`max_splits`;
+/// `max_nodes` and `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells
+/// are then split before finer ones, and along a ray those that it comes to first.
 ///
-/// - Buffers: `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth
+/// - Buffers: `zone`, one struct, or NULL for everything; `options`, one struct or NULL; `done`, one truth
 ///   value, or NULL.
 /// - Result: `*done`, whether no limit was reached first.
-/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is
-///   not a number.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth, a box has min > max on an axis, a
+///   number is not as leafless_zone says, or not from ≤ to; LEAFLESS_E_SOURCE if the solid contradicts what
+///   the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What was split before
+///   stays so.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
 /// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
-leafless_status leafless_lazy_refine_box(leafless_lazy *lazy, const double min_model[3],
-    const double max_model[3], uint32_t level, const leafless_options *options, bool *done);
-
-/// As leafless_lazy_refine, for the cells that contain a point: one of each level.
-///
-/// - Buffers: `point_model`, 3 numbers; `options`, one struct or NULL; `done`, one truth value, or NULL.
-/// - Result: `*done`, whether no limit was reached first.
-/// - Errors: as leafless_lazy_refine.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
-/// - Untrusted input: any solid, any numbers.
-leafless_status leafless_lazy_refine_point(leafless_lazy *lazy, const double point_model[3], uint32_t level,
+leafless_status leafless_lazy_refine(leafless_lazy *lazy, const leafless_zone *zone, uint32_t level,
     const leafless_options *options, bool *done);
-
-/// As leafless_lazy_refine, for all cells that the points origin + t·direction with from ≤ t ≤ to touch.
-/// Limits leave those unsplit that the ray comes to last.
-///
-/// - Buffers: `origin_model` and `direction_model`, 3 numbers each; `options`, one struct or NULL; `done`,
-///   one truth value, or NULL.
-/// - Result: `*done`, whether no limit was reached first.
-/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a
-///   magnitude between 2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
-/// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
-leafless_status leafless_lazy_refine_ray(leafless_lazy *lazy, const double origin_model[3],
-    const double direction_model[3], double from, double to, uint32_t level, const leafless_options *options,
-    bool *done);
 
 /// What is known of a cell. In a cell that is decided, or was not split yet, there are only cells like it.
 ///
@@ -3514,19 +3493,12 @@ leafless_status leafless_lazy_tag(const leafless_lazy *lazy, const uint32_t cell
 leafless_status leafless_lazy_contains(const leafless_lazy *lazy, const double point_model[3],
     leafless_membership *membership);
 
-/// Counts over all levels, and the certified volume, as far as cells have been split. O(depth).
+/// What can be said of a lazy octree at once, as far as cells have been split. O(depth).
 ///
-/// - Buffers: `statistics`, one struct.
-/// - Result: `*statistics`. A cell counts as a node also if its eight children are PARTIAL.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`. A cell counts as a node also if its eight children are PARTIAL.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
-leafless_status leafless_lazy_statistics(const leafless_lazy *lazy, leafless_statistics *statistics);
-
-/// What the work came to so far.
-///
-/// - Buffers: `counts`, one struct.
-/// - Result: `*counts`.
-/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
-leafless_status leafless_lazy_count(const leafless_lazy *lazy, leafless_lazy_counts *counts);
+leafless_status leafless_lazy_describe(const leafless_lazy *lazy, leafless_lazy_info *info);
 
 /// Counts of each level, and the certified volumes of the octree cut there. Entry 0 is the universe, entry
 /// `depth` the finest cells.
@@ -4120,13 +4092,6 @@ leafless_status leafless_octree_with_channel(const leafless_octree *octree, cons
 /// - Untrusted input: any octree, any text.
 leafless_status leafless_octree_without_channel(const leafless_octree *octree, const char *name,
     size_t name_length, leafless_octree **result);
-
-/// How many channels an octree has.
-///
-/// - Buffers: `count`, one number.
-/// - Result: `*count`, 0 to 256.
-/// - Untrusted input: any octree.
-leafless_status leafless_octree_channel_count(const leafless_octree *octree, uint64_t *count);
 
 /// A channel of an octree by its place among all, which stand in ascending order of their names.
 ///
@@ -4821,6 +4786,21 @@ leafless_status leafless_tridexel_to_format(const leafless_tridexel *tridexel,
 leafless_status leafless_tridexel_with_material(const leafless_tridexel *tridexel, uint32_t material,
     const leafless_options *options, leafless_tridexel **result);
 
+/// What a change of an editor did to its rays.
+///
+/// Volumes are sums of the lengths along the rays of one axis, each times the area of a cell's face. So they
+/// are estimates, not bounds, and differ from axis to axis by what rays beside each other do not see.
+typedef struct leafless_dexel_change {
+    uint64_t rays;  ///< Rays of all directions whose intervals begin or end elsewhere than before.
+    /// The volume that the rays along x, y and z lost, in cubic model units; 0 for an axis without rays.
+    double removed_model[3];
+    double added_model[3];  ///< The volume that the rays along x, y and z gained.
+    /// The box of finest cells that the changed parts of rays run through: its first cell.
+    uint32_t min_cell[3];
+    /// The first cell beyond that box on each axis; both corners are zero if no ray changed.
+    uint32_t max_cell[3];
+} leafless_dexel_change;
+
 /// A copy of a tri-dexel model that can be changed. O(rays of the universe + intervals).
 ///
 /// - Buffers: `editor`, one pointer.
@@ -4839,97 +4819,48 @@ leafless_status leafless_tridexel_editor_new(const leafless_tridexel *tridexel,
 /// - Threads: no other call may use the handle.
 void leafless_tridexel_editor_free(leafless_tridexel_editor *editor);
 
-/// The lattice of an editor.
+/// What can be said of an editor at once. O(rays of the universe).
 ///
-/// - Buffers: `frame`, one struct.
-/// - Result: `*frame`, that of the model which was copied.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`; `bytes` are those that the editor takes.
 /// - Errors: LEAFLESS_E_BUSY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
-leafless_status leafless_tridexel_editor_frame(const leafless_tridexel_editor *editor, leafless_frame *frame);
+leafless_status leafless_tridexel_editor_describe(const leafless_tridexel_editor *editor,
+    leafless_tridexel_info *info);
 
-/// Bytes that an editor takes.
+/// Makes the editor what a set operation makes of it and of a tri-dexel model: LEAFLESS_OPERATION_DIFFERENCE
+/// takes the model away. O(rays of the model's window + intervals there), for LEAFLESS_OPERATION_INTERSECTION
+/// O(rays of the universe). What the model stores beyond what the editor does is left out.
 ///
-/// - Buffers: `bytes`, one number.
-/// - Result: `*bytes`.
-/// - Errors: LEAFLESS_E_BUSY.
-/// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
-leafless_status leafless_tridexel_editor_bytes(const leafless_tridexel_editor *editor, uint64_t *bytes);
-
-/// Adds the points of a tri-dexel model. O(rays of its window + intervals there). What the model stores
-/// beyond what the editor does is left out.
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT if the model has rays along other
-///   axes; LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32
-///   intervals along one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. After
+/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a
+///   leafless_operation.
+/// - Result: the editor is changed; `*change`, what was removed and added.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT also if the model has rays along
+///   other axes; LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for
+///   2^32 intervals along one axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. After
 ///   LEAFLESS_E_LIMIT, LEAFLESS_E_CANCELLED and LEAFLESS_E_NO_MEMORY some rays may be changed and others not;
-///   the same call can be made again.
+///   the same call can be made again, but for LEAFLESS_OPERATION_XOR.
 /// - Ownership: nothing is kept of `tridexel`.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
 /// - Untrusted input: any model.
-leafless_status leafless_tridexel_editor_unite(leafless_tridexel_editor *editor,
-    const leafless_tridexel *tridexel, const leafless_options *options);
+leafless_status leafless_tridexel_editor_combine(leafless_tridexel_editor *editor,
+    leafless_operation operation, const leafless_tridexel *tridexel, const leafless_options *options,
+    leafless_dexel_change *change);
 
-/// Takes away the points of a tri-dexel model. O(rays of its window + intervals there).
+/// As leafless_tridexel_editor_combine, with a solid: LEAFLESS_OPERATION_DIFFERENCE is one step of a tool.
+/// The solid's intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED, in the directions
+/// and with the contents of the editor. Only rays through the solid's bounding box are looked at.
 ///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_editor_unite.
-/// - Ownership: nothing is kept of `tridexel`.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
-/// - Untrusted input: any model.
-leafless_status leafless_tridexel_editor_subtract(leafless_tridexel_editor *editor,
-    const leafless_tridexel *tridexel, const leafless_options *options);
-
-/// Keeps only the points that lie in a tri-dexel model, too. O(rays of the universe).
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_editor_unite.
-/// - Ownership: nothing is kept of `tridexel`.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
-/// - Untrusted input: any model.
-leafless_status leafless_tridexel_editor_intersect(leafless_tridexel_editor *editor,
-    const leafless_tridexel *tridexel, const leafless_options *options);
-
-/// Adds a solid. Its intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED, in the
-/// directions and with the contents of the editor. Only rays through the solid's bounding box are looked at.
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
+/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a
+///   leafless_operation.
+/// - Result: the editor is changed; `*change`, what was removed and added.
+/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_combine.
 /// - Ownership: nothing is kept of the solid.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
 /// - Untrusted input: any solid.
-leafless_status leafless_tridexel_editor_unite_solid(leafless_tridexel_editor *editor,
-    const leafless_solid *solid, const leafless_options *options);
-
-/// Takes a solid away: one step of a tool. Its intervals are those of leafless_tridexel_make under
-/// LEAFLESS_RULE_SAMPLED, in the directions and with the contents of the editor. Only rays through the
-/// solid's bounding box are looked at.
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
-/// - Ownership: nothing is kept of the solid.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
-/// - Untrusted input: any solid.
-leafless_status leafless_tridexel_editor_subtract_solid(leafless_tridexel_editor *editor,
-    const leafless_solid *solid, const leafless_options *options);
-
-/// Keeps only the points that lie in a solid, too. Its intervals are those of leafless_tridexel_make under
-/// LEAFLESS_RULE_SAMPLED, in the directions and with the contents of the editor. O(rays of the universe), and
-/// the rays through the solid's bounding box.
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
-/// - Ownership: nothing is kept of the solid.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
-/// - Untrusted input: any solid.
-leafless_status leafless_tridexel_editor_intersect_solid(leafless_tridexel_editor *editor,
-    const leafless_solid *solid, const leafless_options *options);
+leafless_status leafless_tridexel_editor_combine_solid(leafless_tridexel_editor *editor,
+    leafless_operation operation, const leafless_solid *solid, const leafless_options *options,
+    leafless_dexel_change *change);
 
 /// The tri-dexel model as it is now. O(rays of the universe + intervals). The editor can be changed further.
 ///
@@ -5521,30 +5452,16 @@ leafless_status leafless_picture_render(const leafless_shot *shot, const leafles
     uint64_t layer_count, const leafless_options *options, uint8_t *colours, uint64_t colour_capacity,
     float *depths, uint64_t depth_capacity);
 
-/// Saves a picture as a PNG file: without opacity if all pixels are opaque. At any moment there is the old
-/// file or the new one, each complete, as leafless_sink tells. The same picture makes the same bytes.
+/// Writes a picture as a PNG file: without opacity if all pixels are opaque. The same picture makes the same
+/// bytes.
 ///
-/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `path`,
-///   `path_length` bytes of UTF-8.
-/// - Result: LEAFLESS_OK once the file is on the disk.
-/// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
-///   LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails, synchronising
-///   the directory, the new one is in place.
+/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `sink`, one
+///   struct.
+/// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any bytes.
-leafless_status leafless_picture_save(const uint8_t *colours, uint32_t width, uint32_t height,
-    const char *path, size_t path_length);
-
-/// The bytes of a picture's PNG file, in memory: those that leafless_picture_save writes. Asking for the
-/// length takes as long as filling.
-///
-/// - Buffers: `colours` as leafless_picture_save; `bytes`, room for `capacity` bytes, or NULL to ask for the
-///   length only; `length`, one number.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT unless the sides are 1 to
-///   16384 pixels; LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any bytes.
-leafless_status leafless_picture_to_bytes(const uint8_t *colours, uint32_t width, uint32_t height,
-    uint8_t *bytes, uint64_t capacity, uint64_t *length);
+leafless_status leafless_picture_write(const uint8_t *colours, uint32_t width, uint32_t height,
+    const leafless_sink *sink);
 
 /// At which side of a picture a legend lies.
 LEAFLESS_ENUM(leafless_legend_side, uint32_t) {

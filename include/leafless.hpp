@@ -469,14 +469,10 @@ public:
     [[nodiscard]] returns<std::tuple<point, point>> bounds() const;
     [[nodiscard]] returns<leafless_interval> range(const leafless_options *options = nullptr) const;
     [[nodiscard]] static returns<leafless::volume> make(const leafless_volume_layout &layout,
-        span<const std::byte> samples);
-    [[nodiscard]] static returns<leafless::volume> view(const leafless_volume_layout &layout,
-        span<const std::byte> samples);
+        const leafless_source &source);
     [[nodiscard]] static returns<leafless::volume> read(const leafless_source &source,
         const leafless_source &data);
     [[nodiscard]] static returns<std::vector<char>> data_file(span<const uint8_t> bytes);
-    [[nodiscard]] static returns<leafless::volume> open_raw(std::string_view path,
-        const leafless_volume_layout &layout);
     returns<void> write(leafless_volume_format format, const leafless_sink &sink) const;
     [[nodiscard]] returns<leafless::attribute> as_attribute(leafless_interpolation interpolation,
         const leafless_options *options = nullptr) const;
@@ -556,7 +552,6 @@ public:
         const leafless_options *options, span<float> field) const;
     [[nodiscard]] returns<leafless::octree> with_channel(const leafless::channel &channel) const;
     [[nodiscard]] returns<leafless::octree> without_channel(std::string_view name) const;
-    [[nodiscard]] returns<uint64_t> channel_count() const;
     [[nodiscard]] returns<leafless::channel> channel_at(uint64_t index) const;
     [[nodiscard]] returns<leafless::channel> channel(std::string_view name) const;
     [[nodiscard]] returns<leafless::octree> carry_channels(span<const leafless_octree *const> operands,
@@ -646,17 +641,11 @@ public:
     [[nodiscard]] static returns<leafless::lazy> resume(const leafless::octree &octree,
         const leafless::solid &solid, const leafless_frame &frame, const leafless_options *options = nullptr);
     returns<std::array<leafless_tag,8>> split(const cell_index &cell, uint32_t level);
-    returns<bool> refine(uint32_t level, const leafless_options *options = nullptr);
-    returns<bool> refine_box(const point &min_model, const point &max_model, uint32_t level,
+    returns<bool> refine(const leafless_zone *zone, uint32_t level,
         const leafless_options *options = nullptr);
-    returns<bool> refine_point(const point &point_model, uint32_t level,
-        const leafless_options *options = nullptr);
-    returns<bool> refine_ray(const point &origin_model, const point &direction_model, double from, double to,
-        uint32_t level, const leafless_options *options = nullptr);
     [[nodiscard]] returns<std::tuple<leafless_tag, bool>> tag(const cell_index &cell, uint32_t level) const;
     [[nodiscard]] returns<leafless_membership> contains(const point &point_model) const;
-    [[nodiscard]] returns<leafless_statistics> statistics() const;
-    [[nodiscard]] returns<leafless_lazy_counts> count() const;
+    [[nodiscard]] returns<leafless_lazy_info> describe() const;
     [[nodiscard]] returns<std::vector<leafless_statistics>> levels() const;
     [[nodiscard]] returns<std::vector<uint64_t>> splits() const;
     [[nodiscard]] returns<leafless::octree> freeze(const leafless_options *options = nullptr) const;
@@ -758,14 +747,11 @@ class tridexel_editor : public detail::owner<leafless_tridexel_editor, leafless_
 public:
     using owner::owner;
     [[nodiscard]] static returns<leafless::tridexel_editor> make(const leafless::tridexel &tridexel);
-    [[nodiscard]] returns<leafless_frame> frame() const;
-    [[nodiscard]] returns<uint64_t> bytes() const;
-    returns<void> unite(const leafless::tridexel &tridexel, const leafless_options *options = nullptr);
-    returns<void> subtract(const leafless::tridexel &tridexel, const leafless_options *options = nullptr);
-    returns<void> intersect(const leafless::tridexel &tridexel, const leafless_options *options = nullptr);
-    returns<void> unite_solid(const leafless::solid &solid, const leafless_options *options = nullptr);
-    returns<void> subtract_solid(const leafless::solid &solid, const leafless_options *options = nullptr);
-    returns<void> intersect_solid(const leafless::solid &solid, const leafless_options *options = nullptr);
+    [[nodiscard]] returns<leafless_tridexel_info> describe() const;
+    returns<leafless_dexel_change> combine(leafless_operation operation, const leafless::tridexel &tridexel,
+        const leafless_options *options = nullptr);
+    returns<leafless_dexel_change> combine_solid(leafless_operation operation, const leafless::solid &solid,
+        const leafless_options *options = nullptr);
     [[nodiscard]] returns<leafless::tridexel> freeze(const leafless_options *options = nullptr) const;
 };
 
@@ -837,10 +823,8 @@ returns<void> voxels_solid_parts(const leafless_frame &lattice, span<const uint6
     double y);
 returns<void> picture_render(const leafless_shot &shot, span<const leafless_layer *const> layers,
     const leafless_options *options, span<uint8_t> colours, span<float> depths);
-returns<void> picture_save(span<const uint8_t> colours, uint32_t width, uint32_t height,
-    std::string_view path);
-[[nodiscard]] returns<std::vector<uint8_t>> picture_to_bytes(span<const uint8_t> colours, uint32_t width,
-    uint32_t height);
+returns<void> picture_write(span<const uint8_t> colours, uint32_t width, uint32_t height,
+    const leafless_sink &sink);
 [[nodiscard]] returns<leafless_legend_box> picture_draw_bar(span<uint8_t> colours, uint32_t width,
     uint32_t height, std::string_view title, const leafless_transfer &transfer, leafless_legend_side side);
 [[nodiscard]] returns<leafless_legend_box> picture_draw_names(span<uint8_t> colours, uint32_t width,
@@ -1480,18 +1464,9 @@ inline returns<leafless_interval> volume::range(const leafless_options *options)
 }
 
 inline returns<leafless::volume> volume::make(const leafless_volume_layout &layout,
-    span<const std::byte> samples) {
+    const leafless_source &source) {
     leafless_volume *volume_handle = nullptr;
-    const leafless_status status = leafless_volume_new(&layout, samples.data(), samples.size(),
-        &volume_handle);
-    return detail::finish(status, leafless::volume(volume_handle));
-}
-
-inline returns<leafless::volume> volume::view(const leafless_volume_layout &layout,
-    span<const std::byte> samples) {
-    leafless_volume *volume_handle = nullptr;
-    const leafless_status status = leafless_volume_view(&layout, samples.data(), samples.size(),
-        &volume_handle);
+    const leafless_status status = leafless_volume_new(&layout, &source, &volume_handle);
     return detail::finish(status, leafless::volume(volume_handle));
 }
 
@@ -1511,14 +1486,6 @@ inline returns<std::vector<char>> volume::data_file(span<const uint8_t> bytes) {
             &name_length);
     }
     return detail::finish(status, std::move(name));
-}
-
-inline returns<leafless::volume> volume::open_raw(std::string_view path,
-    const leafless_volume_layout &layout) {
-    leafless_volume *volume_handle = nullptr;
-    const leafless_status status = leafless_volume_open_raw(path.data(), path.size(), &layout,
-        &volume_handle);
-    return detail::finish(status, leafless::volume(volume_handle));
 }
 
 inline returns<void> volume::write(leafless_volume_format format, const leafless_sink &sink) const {
@@ -1877,12 +1844,6 @@ inline returns<leafless::octree> octree::without_channel(std::string_view name) 
     return detail::finish(status, leafless::octree(result_handle));
 }
 
-inline returns<uint64_t> octree::channel_count() const {
-    uint64_t count{};
-    const leafless_status status = leafless_octree_channel_count(get(), &count);
-    return detail::finish(status, count);
-}
-
 inline returns<leafless::channel> octree::channel_at(uint64_t index) const {
     leafless_channel *channel_handle = nullptr;
     const leafless_status status = leafless_octree_channel_at(get(), index, &channel_handle);
@@ -2108,33 +2069,10 @@ inline returns<std::array<leafless_tag,8>> lazy::split(const cell_index &cell, u
     return detail::finish(status, tags);
 }
 
-inline returns<bool> lazy::refine(uint32_t level, const leafless_options *options) {
-    bool done{};
-    const leafless_status status = leafless_lazy_refine(get(), level, options, &done);
-    return detail::finish(status, done);
-}
-
-inline returns<bool> lazy::refine_box(const point &min_model, const point &max_model, uint32_t level,
+inline returns<bool> lazy::refine(const leafless_zone *zone, uint32_t level,
     const leafless_options *options) {
     bool done{};
-    const leafless_status status = leafless_lazy_refine_box(get(), min_model.data(), max_model.data(), level,
-        options, &done);
-    return detail::finish(status, done);
-}
-
-inline returns<bool> lazy::refine_point(const point &point_model, uint32_t level,
-    const leafless_options *options) {
-    bool done{};
-    const leafless_status status = leafless_lazy_refine_point(get(), point_model.data(), level, options,
-        &done);
-    return detail::finish(status, done);
-}
-
-inline returns<bool> lazy::refine_ray(const point &origin_model, const point &direction_model, double from,
-    double to, uint32_t level, const leafless_options *options) {
-    bool done{};
-    const leafless_status status = leafless_lazy_refine_ray(get(), origin_model.data(),
-        direction_model.data(), from, to, level, options, &done);
+    const leafless_status status = leafless_lazy_refine(get(), zone, level, options, &done);
     return detail::finish(status, done);
 }
 
@@ -2151,16 +2089,10 @@ inline returns<leafless_membership> lazy::contains(const point &point_model) con
     return detail::finish(status, membership);
 }
 
-inline returns<leafless_statistics> lazy::statistics() const {
-    leafless_statistics statistics{};
-    const leafless_status status = leafless_lazy_statistics(get(), &statistics);
-    return detail::finish(status, statistics);
-}
-
-inline returns<leafless_lazy_counts> lazy::count() const {
-    leafless_lazy_counts counts{};
-    const leafless_status status = leafless_lazy_count(get(), &counts);
-    return detail::finish(status, counts);
+inline returns<leafless_lazy_info> lazy::describe() const {
+    leafless_lazy_info info{};
+    const leafless_status status = leafless_lazy_describe(get(), &info);
+    return detail::finish(status, info);
 }
 
 inline returns<std::vector<leafless_statistics>> lazy::levels() const {
@@ -2564,52 +2496,26 @@ inline returns<leafless::tridexel_editor> tridexel_editor::make(const leafless::
     return detail::finish(status, leafless::tridexel_editor(editor_handle));
 }
 
-inline returns<leafless_frame> tridexel_editor::frame() const {
-    leafless_frame frame{};
-    const leafless_status status = leafless_tridexel_editor_frame(get(), &frame);
-    return detail::finish(status, frame);
+inline returns<leafless_tridexel_info> tridexel_editor::describe() const {
+    leafless_tridexel_info info{};
+    const leafless_status status = leafless_tridexel_editor_describe(get(), &info);
+    return detail::finish(status, info);
 }
 
-inline returns<uint64_t> tridexel_editor::bytes() const {
-    uint64_t bytes{};
-    const leafless_status status = leafless_tridexel_editor_bytes(get(), &bytes);
-    return detail::finish(status, bytes);
+inline returns<leafless_dexel_change> tridexel_editor::combine(leafless_operation operation,
+    const leafless::tridexel &tridexel, const leafless_options *options) {
+    leafless_dexel_change change{};
+    const leafless_status status = leafless_tridexel_editor_combine(get(), operation, tridexel.get(), options,
+        &change);
+    return detail::finish(status, change);
 }
 
-inline returns<void> tridexel_editor::unite(const leafless::tridexel &tridexel,
-    const leafless_options *options) {
-    const leafless_status status = leafless_tridexel_editor_unite(get(), tridexel.get(), options);
-    return detail::finish(status);
-}
-
-inline returns<void> tridexel_editor::subtract(const leafless::tridexel &tridexel,
-    const leafless_options *options) {
-    const leafless_status status = leafless_tridexel_editor_subtract(get(), tridexel.get(), options);
-    return detail::finish(status);
-}
-
-inline returns<void> tridexel_editor::intersect(const leafless::tridexel &tridexel,
-    const leafless_options *options) {
-    const leafless_status status = leafless_tridexel_editor_intersect(get(), tridexel.get(), options);
-    return detail::finish(status);
-}
-
-inline returns<void> tridexel_editor::unite_solid(const leafless::solid &solid,
-    const leafless_options *options) {
-    const leafless_status status = leafless_tridexel_editor_unite_solid(get(), solid.get(), options);
-    return detail::finish(status);
-}
-
-inline returns<void> tridexel_editor::subtract_solid(const leafless::solid &solid,
-    const leafless_options *options) {
-    const leafless_status status = leafless_tridexel_editor_subtract_solid(get(), solid.get(), options);
-    return detail::finish(status);
-}
-
-inline returns<void> tridexel_editor::intersect_solid(const leafless::solid &solid,
-    const leafless_options *options) {
-    const leafless_status status = leafless_tridexel_editor_intersect_solid(get(), solid.get(), options);
-    return detail::finish(status);
+inline returns<leafless_dexel_change> tridexel_editor::combine_solid(leafless_operation operation,
+    const leafless::solid &solid, const leafless_options *options) {
+    leafless_dexel_change change{};
+    const leafless_status status = leafless_tridexel_editor_combine_solid(get(), operation, solid.get(),
+        options, &change);
+    return detail::finish(status, change);
 }
 
 inline returns<leafless::tridexel> tridexel_editor::freeze(const leafless_options *options) const {
@@ -2865,26 +2771,11 @@ inline returns<void> picture_render(const leafless_shot &shot, span<const leafle
     return detail::finish(status);
 }
 
-inline returns<void> picture_save(span<const uint8_t> colours, uint32_t width, uint32_t height,
-    std::string_view path) {
+inline returns<void> picture_write(span<const uint8_t> colours, uint32_t width, uint32_t height,
+    const leafless_sink &sink) {
     detail::at_least(std::size_t{4} * width * height, colours.size());
-    const leafless_status status = leafless_picture_save(colours.data(), width, height, path.data(),
-        path.size());
+    const leafless_status status = leafless_picture_write(colours.data(), width, height, &sink);
     return detail::finish(status);
-}
-
-inline returns<std::vector<uint8_t>> picture_to_bytes(span<const uint8_t> colours, uint32_t width,
-    uint32_t height) {
-    detail::at_least(std::size_t{4} * width * height, colours.size());
-    std::uint64_t length = 0;
-    std::vector<uint8_t> bytes;
-    leafless_status status = leafless_picture_to_bytes(colours.data(), width, height, nullptr, 0, &length);
-    if (status == LEAFLESS_OK) {
-        bytes.resize(static_cast<std::size_t>(length));
-        status = leafless_picture_to_bytes(colours.data(), width, height, bytes.data(), bytes.size(),
-            &length);
-    }
-    return detail::finish(status, std::move(bytes));
 }
 
 inline returns<leafless_legend_box> picture_draw_bar(span<uint8_t> colours, uint32_t width, uint32_t height,

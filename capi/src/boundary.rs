@@ -320,15 +320,6 @@ pub(super) unsafe fn text<'a>(
 ///
 /// # Safety
 /// As [`slice`].
-pub(super) unsafe fn path<'a>(pointer: *const c_char, length: usize) -> Result<&'a str, Failure> {
-    // SAFETY: the caller's promise.
-    unsafe { named_path(pointer, length, "path") }
-}
-
-/// As [`path`], for one that has another name.
-///
-/// # Safety
-/// As [`slice`].
 pub(super) unsafe fn named_path<'a>(
     pointer: *const c_char,
     length: usize,

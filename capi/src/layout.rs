@@ -111,9 +111,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_material { value, measures }
         leafless_carry_rule { name, name_length, carry }
         leafless_proof { displacement_model, full, empty }
-        leafless_octree_info { frame, elements, bricks, proof, root, exterior, is_binary, is_clipped }
+        leafless_octree_info { frame, elements, bricks, channels, proof, root, exterior, is_binary, is_clipped }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
-        leafless_lazy_counts { splits, replays, bytes }
+        leafless_zone { struct_size, kind, min_model, max_model, point_model, direction_model, from, to }
+        leafless_lazy_info { frame, statistics, splits, replays, bytes }
         leafless_interference {
             volume_model, proof_a, proof_b, splits_a, splits_b, verdict, level, witness, witness_level, is_clipped
         }
@@ -147,6 +148,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_dexel_end { at_model, at_cells, normal, surface }
         leafless_dexel { start, end, material }
+        leafless_dexel_change { rays, removed_model, added_model, min_cell, max_cell }
         leafless_ray_arrays {
             axis, reserved, first, end, offsets, interval_count, ends_model, normals, surfaces, materials, ends_cells
         }
@@ -188,6 +190,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_touch { LEAFLESS_TOUCH_EXACT, LEAFLESS_TOUCH_PAPER }
         leafless_motion { LEAFLESS_MOTION_EXACT, LEAFLESS_MOTION_VERTICES, LEAFLESS_MOTION_CONSERVATIVE }
+        leafless_zone_kind {
+            LEAFLESS_ZONE_EVERYTHING, LEAFLESS_ZONE_BOX, LEAFLESS_ZONE_POINT, LEAFLESS_ZONE_RAY
+        }
         leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
         leafless_measured {
             LEAFLESS_MEASURED_TOLERANCE, LEAFLESS_MEASURED_BUDGET, LEAFLESS_MEASURED_EXHAUSTED

@@ -1,9 +1,10 @@
 //! Octrees that are split on demand.
 
-use super::boundary::{Failure, array, buffer, discard, guard, out, shared};
+use super::boundary::{Failure, Sized32, array, buffer, discard, guard, out, shared, sized};
 use super::contains::leafless_membership;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
+use super::number::{Number, enumeration};
 use super::octree::{give, leafless_octree, leafless_statistics, leafless_tag};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
@@ -51,10 +52,14 @@ fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
     }
 }
 
-/// What the work on an octree came to.
+/// What can be said of a lazy octree at once.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_lazy_counts {
+pub struct leafless_lazy_info {
+    /// The universe, and how deep cells may be split.
+    pub frame: leafless_frame,
+    /// Counts over all levels, and the certified volume.
+    pub statistics: leafless_statistics,
     /// Cells that were split, as it happened: also those that were merged again. Nothing is counted twice.
     pub splits: u64,
     /// Splits that the solid was asked for anew, because cells below were to be split.
@@ -173,128 +178,92 @@ pub unsafe extern "C" fn leafless_lazy_split(
     })
 }
 
-/// # Safety
-/// As the functions below.
-unsafe fn refine(
+/// Which cells are refined.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_zone_kind {
+    /// All of the universe.
+    LEAFLESS_ZONE_EVERYTHING = 0,
+    /// The cells that have more than their surface in common with the box from `min_model` to `max_model`; of a box without
+    /// thickness, those that it lies in.
+    LEAFLESS_ZONE_BOX = 1,
+    /// The cells that contain `point_model`: one of each level.
+    LEAFLESS_ZONE_POINT = 2,
+    /// All cells that the points `point_model` + t · `direction_model` with `from` ≤ t ≤ `to` touch.
+    LEAFLESS_ZONE_RAY = 3,
+}
+use leafless_zone_kind::*;
+
+enumeration! {
+    leafless_zone_kind => leafless_zone_kind {
+        LEAFLESS_ZONE_EVERYTHING => LEAFLESS_ZONE_EVERYTHING,
+        LEAFLESS_ZONE_BOX => LEAFLESS_ZONE_BOX,
+        LEAFLESS_ZONE_POINT => LEAFLESS_ZONE_POINT,
+        LEAFLESS_ZONE_RAY => LEAFLESS_ZONE_RAY,
+    }
+}
+
+/// A part of model space, in which cells are refined. Fields that its kind does not name do not matter.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_zone {
+    /// sizeof(leafless_zone).
+    pub struct_size: u32,
+    /// Which of the fields below count.
+    pub kind: Number<leafless_zone_kind>,
+    /// A box's lower corner.
+    pub min_model: [f64; 3],
+    /// A box's upper corner.
+    pub max_model: [f64; 3],
+    /// A point, or a point of a ray; of a ray each coordinate is 0 or of a magnitude between 2^-256 and 2^256.
+    pub point_model: [f64; 3],
+    /// A ray's direction, of any length but zero; each coordinate is as that of its point.
+    pub direction_model: [f64; 3],
+    /// Where a ray begins; may be -INFINITY.
+    pub from: f64,
+    /// Where a ray ends; may be INFINITY.
+    pub to: f64,
+}
+
+// SAFETY: numbers.
+unsafe impl Sized32 for leafless_zone {}
+
+/// Splits the cells of a zone down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and
+/// `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells are then split before
+/// finer ones, and along a ray those that it comes to first.
+///
+/// - Buffers: `zone`, one struct, or NULL for everything; `options`, one struct or NULL; `done`, one truth value, or NULL.
+/// - Result: `*done`, whether no limit was reached first.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth, a box has min > max on an axis, a number is not as
+///   leafless_zone says, or not from ≤ to; LEAFLESS_E_SOURCE if the solid contradicts what the octree holds;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What was split before stays so.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
+/// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_lazy_refine(
     lazy: *mut leafless_lazy,
-    zone: impl FnOnce() -> Result<Zone, Failure>,
+    zone: *const leafless_zone,
     level: u32,
     options: *const leafless_options,
     done: *mut bool,
 ) -> leafless_status {
     guard(|| unsafe {
         let mut lazy = change(lazy)?;
-        let zone = zone()?;
+        let zone = sized(zone, "zone")?;
+        let zone = match zone.kind.known("zone.kind")? {
+            LEAFLESS_ZONE_EVERYTHING => Zone::Whole,
+            LEAFLESS_ZONE_BOX => Zone::Box { min: zone.min_model, max: zone.max_model },
+            LEAFLESS_ZONE_POINT => Zone::Point(zone.point_model),
+            LEAFLESS_ZONE_RAY => {
+                let (origin, direction) = (zone.point_model, zone.direction_model);
+                Zone::Ray { origin, direction, from: zone.from, to: zone.to }
+            }
+        };
         let done = if done.is_null() { None } else { Some(out(done, "done")?) };
         let level = self::level(level);
         let refined = controlled(options, |control| lazy.refine(&zone, level, control))?;
         done.map_or(Ok(()), |done| done.write(refined == Refinement::Done))
     })
-}
-
-/// Splits all cells down to `level`, those that can be. Limits in `options` (`max_splits`; `max_nodes` and
-/// `max_bytes` of all that the octree then holds) end the work, not the octree; coarser cells are then split
-/// before finer ones.
-///
-/// - Buffers: `options`, one struct or NULL; `done`, one truth value, or NULL.
-/// - Result: `*done`, whether no limit was reached first.
-/// - Errors: LEAFLESS_E_ARGUMENT if `level` is beyond the frame's depth; LEAFLESS_E_SOURCE if the solid
-///   contradicts what the octree holds; LEAFLESS_E_CALLBACK; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY. What
-///   was split before stays so.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
-/// - Untrusted input: any solid; set limits where the level or the solid is not your own choice.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_lazy_refine(
-    lazy: *mut leafless_lazy,
-    level: u32,
-    options: *const leafless_options,
-    done: *mut bool,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { refine(lazy, || Ok(Zone::Whole), level, options, done) }
-}
-
-/// As leafless_lazy_refine, for the cells that have more than their surface in common with the box [min,
-/// max]; of a box without thickness, for those that it lies in.
-///
-/// - Buffers: `min_model` and `max_model`, 3 numbers each; `options`, one struct or NULL; `done`, one truth
-///   value, or NULL.
-/// - Result: `*done`, whether no limit was reached first.
-/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if min > max on an axis, or a coordinate is
-///   not a number.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
-/// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
-///
-/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_lazy_refine_box(
-    lazy: *mut leafless_lazy,
-    min_model: *const f64,
-    max_model: *const f64,
-    level: u32,
-    options: *const leafless_options,
-    done: *mut bool,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let zone =
-            || Ok(Zone::Box { min: array(min_model, "min_model")?, max: array(max_model, "max_model")? });
-        refine(lazy, zone, level, options, done)
-    }
-}
-
-/// As leafless_lazy_refine, for the cells that contain a point: one of each level.
-///
-/// - Buffers: `point_model`, 3 numbers; `options`, one struct or NULL; `done`, one truth value, or NULL.
-/// - Result: `*done`, whether no limit was reached first.
-/// - Errors: as leafless_lazy_refine.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
-/// - Untrusted input: any solid, any numbers.
-///
-/// cbindgen:ptrs-as-arrays=[[point_model; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_lazy_refine_point(
-    lazy: *mut leafless_lazy,
-    point_model: *const f64,
-    level: u32,
-    options: *const leafless_options,
-    done: *mut bool,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { refine(lazy, || Ok(Zone::Point(array(point_model, "point_model")?)), level, options, done) }
-}
-
-/// As leafless_lazy_refine, for all cells that the points origin + t·direction with from ≤ t ≤ to touch.
-/// Limits leave those unsplit that the ray comes to last.
-///
-/// - Buffers: `origin_model` and `direction_model`, 3 numbers each; `options`, one struct or NULL; `done`,
-///   one truth value, or NULL.
-/// - Result: `*done`, whether no limit was reached first.
-/// - Errors: as leafless_lazy_refine; LEAFLESS_E_ARGUMENT also if a coordinate is neither 0 nor of a
-///   magnitude between 2^-256 and 2^256, the direction is zero, or not from ≤ to (both may be infinite).
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the handle; uses the calling thread alone.
-/// - Untrusted input: any solid, any numbers; set limits where the level or the solid is not your own choice.
-///
-/// cbindgen:ptrs-as-arrays=[[origin_model; 3], [direction_model; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_lazy_refine_ray(
-    lazy: *mut leafless_lazy,
-    origin_model: *const f64,
-    direction_model: *const f64,
-    from: f64,
-    to: f64,
-    level: u32,
-    options: *const leafless_options,
-    done: *mut bool,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe {
-        let zone = || {
-            let origin = array(origin_model, "origin_model")?;
-            Ok(Zone::Ray { origin, direction: array(direction_model, "direction_model")?, from, to })
-        };
-        refine(lazy, zone, level, options, done)
-    }
 }
 
 /// What is known of a cell. In a cell that is decided, or was not split yet, there are only cells like it.
@@ -348,35 +317,21 @@ pub unsafe extern "C" fn leafless_lazy_contains(
     })
 }
 
-/// Counts over all levels, and the certified volume, as far as cells have been split. O(depth).
+/// What can be said of a lazy octree at once, as far as cells have been split. O(depth).
 ///
-/// - Buffers: `statistics`, one struct.
-/// - Result: `*statistics`. A cell counts as a node also if its eight children are PARTIAL.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`. A cell counts as a node also if its eight children are PARTIAL.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_lazy_statistics(
+pub unsafe extern "C" fn leafless_lazy_describe(
     lazy: *const leafless_lazy,
-    statistics: *mut leafless_statistics,
+    info: *mut leafless_lazy_info,
 ) -> leafless_status {
     guard(|| unsafe {
         let lazy = read(lazy)?;
-        out(statistics, "statistics")?.write((&lazy.statistics()).into())
-    })
-}
-
-/// What the work came to so far.
-///
-/// - Buffers: `counts`, one struct.
-/// - Result: `*counts`.
-/// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_lazy_count(
-    lazy: *const leafless_lazy,
-    counts: *mut leafless_lazy_counts,
-) -> leafless_status {
-    guard(|| unsafe {
-        let lazy = read(lazy)?;
-        out(counts, "counts")?.write(leafless_lazy_counts {
+        out(info, "info")?.write(leafless_lazy_info {
+            frame: lazy.frame().into(),
+            statistics: (&lazy.statistics()).into(),
             splits: lazy.splits(),
             replays: lazy.replays(),
             bytes: lazy.bytes(),

@@ -107,6 +107,8 @@ pub struct leafless_octree_info {
     pub elements: u64,
     /// Array elements of the deepest level.
     pub bricks: u64,
+    /// Channels, 0 to 256: leafless_octree_channel_at returns each.
+    pub channels: u64,
     /// What the cells prove.
     pub proof: leafless_proof,
     /// The tag of the whole universe; BRANCH if it is cut.
@@ -232,11 +234,13 @@ pub unsafe extern "C" fn leafless_octree_describe(
     info: *mut leafless_octree_info,
 ) -> leafless_status {
     guard(|| unsafe {
-        let view = shared(octree, "octree")?.octree.view();
+        let octree = &shared(octree, "octree")?.octree;
+        let view = octree.view();
         out(info, "info")?.write(leafless_octree_info {
             frame: view.frame().into(),
             elements: view.element_count(),
             bricks: view.brick_count(),
+            channels: octree.channels().len() as u64,
             proof: view.proof().into(),
             root: view.root_tag().into(),
             exterior: view.exterior().into(),

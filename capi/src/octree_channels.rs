@@ -94,22 +94,6 @@ pub unsafe extern "C" fn leafless_octree_without_channel(
     })
 }
 
-/// How many channels an octree has.
-///
-/// - Buffers: `count`, one number.
-/// - Result: `*count`, 0 to 256.
-/// - Untrusted input: any octree.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_channel_count(
-    octree: *const leafless_octree,
-    count: *mut u64,
-) -> leafless_status {
-    guard(|| unsafe {
-        let octree = &shared(octree, "octree")?.octree;
-        out(count, "count")?.write(octree.channels().len() as u64)
-    })
-}
-
 /// A channel of an octree by its place among all, which stand in ascending order of their names.
 ///
 /// - Buffers: `channel`, one pointer.

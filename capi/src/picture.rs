@@ -1,20 +1,18 @@
 //! Pictures: taken of layers into the host's buffers, written as PNG, with legends.
 
-use super::boundary::{Failure, Out, Sized32, buffer, guard, out, path, shared, sized, slice, text};
+use super::boundary::{Failure, Out, Sized32, buffer, guard, out, shared, sized, slice, text};
 use super::camera::leafless_camera;
 use super::control::{controlled, leafless_options};
 use super::layer::{clip, leafless_layer, leafless_transfer};
 use super::number::{Number, enumeration};
+use super::source::{leafless_sink, sink};
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::exchange::write_png;
-use leafless::file::replace;
 use leafless::memory;
 use leafless::render::{
     Clip, ClippedLayer, Layer, LegendBox, LegendSide, Picture, Shot, draw_colour_bar, draw_names, render,
 };
-use std::io::Write;
-use std::path::Path;
 
 /// How a picture is taken. The size and the camera must be set; all other fields but the first may be zero, which is
 /// their default.
@@ -165,57 +163,23 @@ unsafe fn picture(colours: *const u8, width: u32, height: u32) -> Result<Picture
     Ok(Picture::of_colours([width, height], memory::copied(colours)?)?)
 }
 
-/// Saves a picture as a PNG file: without opacity if all pixels are opaque. At any moment there is the old file or the
-/// new one, each complete, as leafless_sink tells. The same picture makes the same bytes.
+/// Writes a picture as a PNG file: without opacity if all pixels are opaque. The same picture makes the same bytes.
 ///
-/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `path`,
-///   `path_length` bytes of UTF-8.
-/// - Result: LEAFLESS_OK once the file is on the disk.
-/// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_UTF8;
-///   LEAFLESS_E_NO_MEMORY. The old file is then as it was; only if the very last step fails, synchronising the directory,
-///   the new one is in place.
+/// - Buffers: `colours`, 4 · `width` · `height` bytes, as leafless_picture_render writes them; `sink`, one struct.
+/// - Errors: LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any bytes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_picture_save(
+pub unsafe extern "C" fn leafless_picture_write(
     colours: *const u8,
     width: u32,
     height: u32,
-    path: *const c_char,
-    path_length: usize,
+    sink: *const leafless_sink,
 ) -> leafless_status {
     guard(|| unsafe {
         let picture = picture(colours, width, height)?;
-        let path = Path::new(self::path(path, path_length)?);
-        let bytes = write_png(&picture)?;
-        Ok(replace(path, |file| Ok(file.write_all(&bytes)?))?)
-    })
-}
-
-/// The bytes of a picture's PNG file, in memory: those that leafless_picture_save writes. Asking for the length takes as
-/// long as filling.
-///
-/// - Buffers: `colours` as leafless_picture_save; `bytes`, room for `capacity` bytes, or NULL to ask for the length only;
-///   `length`, one number.
-/// - Result: `*length`, the length of the file; the file in `bytes`.
-/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT unless the sides are 1 to 16384 pixels;
-///   LEAFLESS_E_NO_MEMORY.
-/// - Untrusted input: any bytes.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_picture_to_bytes(
-    colours: *const u8,
-    width: u32,
-    height: u32,
-    bytes: *mut u8,
-    capacity: u64,
-    length: *mut u64,
-) -> leafless_status {
-    guard(|| unsafe {
-        let picture = picture(colours, width, height)?;
-        let bytes = buffer(bytes, capacity, "bytes")?;
-        let length = out(length, "length")?;
-        let file = write_png(&picture)?;
-        bytes.fill(&file)?;
-        length.write(file.len() as u64)
+        let sink = self::sink(sink)?;
+        sink.put_whole(&write_png(&picture)?)
     })
 }
 

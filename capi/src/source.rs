@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// How a source is used. Octrees and tri-dexel models can be used where they lie; everything else is
+/// How a source is used. Octrees, tri-dexel models and samples in memory can be used where they lie; everything else is
 /// read with LEAFLESS_ACCESS_COPY.
 #[derive(Clone, Copy, PartialEq)]
 #[repr(u32)]

@@ -9,6 +9,7 @@ use super::op::leafless_rule;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use core::ffi::c_char;
+use leafless::Frame;
 use leafless::TriDexel;
 use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
 use leafless::dexelize;
@@ -252,19 +253,29 @@ pub unsafe extern "C" fn leafless_tridexel_describe(
     guard(|| unsafe {
         let view = shared(tridexel, "tridexel")?.model.view();
         let info = out(info, "info")?;
-        let format = view.format();
-        info.write(leafless_tridexel_info {
-            frame: view.frame().into(),
-            directions: axes(view.directions()),
-            ends: format.ends.into(),
-            normals: format.normals.into(),
-            has_surfaces: format.surfaces.into(),
-            has_materials: format.materials.into(),
-            bytes_per_interval: format.bytes_per_interval() as u32,
-            interval_count: view.interval_count(),
-            bytes: view.bytes(),
-        })
+        let (format, count) = (view.format(), view.interval_count());
+        info.write(described(view.frame(), format, view.directions(), count, view.bytes()))
     })
+}
+
+pub(super) fn described(
+    frame: &Frame,
+    format: DexelFormat,
+    directions: [bool; 3],
+    interval_count: u64,
+    bytes: u64,
+) -> leafless_tridexel_info {
+    leafless_tridexel_info {
+        frame: frame.into(),
+        directions: axes(directions),
+        ends: format.ends.into(),
+        normals: format.normals.into(),
+        has_surfaces: format.surfaces.into(),
+        has_materials: format.materials.into(),
+        bytes_per_interval: format.bytes_per_interval() as u32,
+        interval_count,
+        bytes,
+    }
 }
 
 /// Checks that a tri-dexel model is well-formed: intervals are in order, disjoint and inside of the universe. O(n).

@@ -2,14 +2,14 @@
 
 use super::boundary::{Failure, discard, guard, out, shared};
 use super::control::{controlled, leafless_options};
-use super::frame::leafless_frame;
+use super::number::Number;
+use super::operation::{leafless_operation, leafless_operation::*};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
-use super::tridexel::{give, leafless_tridexel};
+use super::tridexel::{described, give, leafless_tridexel, leafless_tridexel_info};
 use leafless::Control;
 use leafless::Error;
-use leafless::dexel::{DexelEditor, TriDexelRef};
-use leafless::solid::Prepared;
+use leafless::dexel::{DexelChange, DexelEditor};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError, TryLockResult};
 
 /// A copy of a tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch: for
@@ -51,37 +51,51 @@ fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
     }
 }
 
-type Change = fn(&mut DexelEditor, &TriDexelRef<'_>, &Control<'_>) -> Result<(), Error>;
-type ChangeBySolid = fn(&mut DexelEditor, &Prepared, &Control<'_>) -> Result<(), Error>;
+/// What a change of an editor did to its rays.
+///
+/// Volumes are sums of the lengths along the rays of one axis, each times the area of a cell's face. So they are
+/// estimates, not bounds, and differ from axis to axis by what rays beside each other do not see.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_dexel_change {
+    /// Rays of all directions whose intervals begin or end elsewhere than before.
+    pub rays: u64,
+    /// The volume that the rays along x, y and z lost, in cubic model units; 0 for an axis without rays.
+    pub removed_model: [f64; 3],
+    /// The volume that the rays along x, y and z gained.
+    pub added_model: [f64; 3],
+    /// The box of finest cells that the changed parts of rays run through: its first cell.
+    pub min_cell: [u32; 3],
+    /// The first cell beyond that box on each axis; both corners are zero if no ray changed.
+    pub max_cell: [u32; 3],
+}
 
-/// # Safety
-/// As the functions below.
-unsafe fn change_by(
-    operation: Change,
-    editor: *mut leafless_tridexel_editor,
-    tridexel: *const leafless_tridexel,
-    options: *const leafless_options,
-) -> leafless_status {
-    guard(|| unsafe {
-        let mut editor = change(editor)?;
-        let other = shared(tridexel, "tridexel")?.model.view();
-        controlled(options, |control| operation(&mut editor, other, control))
-    })
+impl From<DexelChange> for leafless_dexel_change {
+    fn from(change: DexelChange) -> leafless_dexel_change {
+        let [min_cell, max_cell] = change.cells.unwrap_or_default();
+        leafless_dexel_change {
+            rays: change.rays,
+            removed_model: change.removed,
+            added_model: change.added,
+            min_cell,
+            max_cell,
+        }
+    }
 }
 
 /// # Safety
-/// As the functions below.
-unsafe fn change_by_solid(
-    operation: ChangeBySolid,
-    editor: *mut leafless_tridexel_editor,
-    solid: *const leafless_solid,
+/// `options` and `change` are as the functions below demand.
+unsafe fn changed(
     options: *const leafless_options,
-) -> leafless_status {
-    guard(|| unsafe {
-        let mut editor = change(editor)?;
-        let solid = &shared(solid, "solid")?.solid;
-        controlled(options, |control| operation(&mut editor, solid, control))
-    })
+    change: *mut leafless_dexel_change,
+    operation: impl FnOnce(&Control<'_>) -> Result<DexelChange, Error>,
+) -> Result<(), Failure> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let change = if change.is_null() { None } else { Some(out(change, "change")?) };
+        let done = controlled(options, operation)?;
+        change.map_or(Ok(()), |change| change.write(done.into()))
+    }
 }
 
 /// A copy of a tri-dexel model that can be changed. O(rays of the universe + intervals).
@@ -116,155 +130,89 @@ pub unsafe extern "C" fn leafless_tridexel_editor_free(editor: *mut leafless_tri
     unsafe { discard(editor) }
 }
 
-/// The lattice of an editor.
+/// What can be said of an editor at once. O(rays of the universe).
 ///
-/// - Buffers: `frame`, one struct.
-/// - Result: `*frame`, that of the model which was copied.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`; `bytes` are those that the editor takes.
 /// - Errors: LEAFLESS_E_BUSY.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_editor_frame(
+pub unsafe extern "C" fn leafless_tridexel_editor_describe(
     editor: *const leafless_tridexel_editor,
-    frame: *mut leafless_frame,
+    info: *mut leafless_tridexel_info,
 ) -> leafless_status {
     guard(|| unsafe {
         let editor = read(editor)?;
-        out(frame, "frame")?.write(editor.frame().into())
+        let info = out(info, "info")?;
+        let (format, count) = (editor.format(), editor.interval_count());
+        info.write(described(editor.frame(), format, editor.directions(), count, editor.bytes()))
     })
 }
 
-/// Bytes that an editor takes.
+/// Makes the editor what a set operation makes of it and of a tri-dexel model: LEAFLESS_OPERATION_DIFFERENCE takes the
+/// model away. O(rays of the model's window + intervals there), for LEAFLESS_OPERATION_INTERSECTION O(rays of the
+/// universe). What the model stores beyond what the editor does is left out.
 ///
-/// - Buffers: `bytes`, one number.
-/// - Result: `*bytes`.
-/// - Errors: LEAFLESS_E_BUSY.
-/// - Threads: any; LEAFLESS_E_BUSY while another call changes the editor.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_editor_bytes(
-    editor: *const leafless_tridexel_editor,
-    bytes: *mut u64,
-) -> leafless_status {
-    guard(|| unsafe {
-        let editor = read(editor)?;
-        out(bytes, "bytes")?.write(editor.bytes())
-    })
-}
-
-/// Adds the points of a tri-dexel model. O(rays of its window + intervals there). What the model stores beyond what the
-/// editor does is left out.
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT if the model has rays along other axes;
+/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a leafless_operation.
+/// - Result: the editor is changed; `*change`, what was removed and added.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_ARGUMENT also if the model has rays along other axes;
 ///   LEAFLESS_E_DAMAGED if the model was mapped unverified and is damaged; LEAFLESS_E_LIMIT for 2^32 intervals along one
 ///   axis; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
 ///   After LEAFLESS_E_LIMIT, LEAFLESS_E_CANCELLED and LEAFLESS_E_NO_MEMORY some rays may be changed and others not; the
-///   same call can be made again.
+///   same call can be made again, but for LEAFLESS_OPERATION_XOR.
 /// - Ownership: nothing is kept of `tridexel`.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
 /// - Untrusted input: any model.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_editor_unite(
+pub unsafe extern "C" fn leafless_tridexel_editor_combine(
     editor: *mut leafless_tridexel_editor,
+    operation: Number<leafless_operation>,
     tridexel: *const leafless_tridexel,
     options: *const leafless_options,
+    change: *mut leafless_dexel_change,
 ) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { change_by(DexelEditor::unite, editor, tridexel, options) }
+    guard(|| unsafe {
+        let mut editor = self::change(editor)?;
+        let operation = operation.known("operation")?;
+        let model = shared(tridexel, "tridexel")?.model.view();
+        changed(options, change, |control| match operation {
+            LEAFLESS_OPERATION_UNION => editor.unite(model, control),
+            LEAFLESS_OPERATION_INTERSECTION => editor.intersect(model, control),
+            LEAFLESS_OPERATION_DIFFERENCE => editor.subtract(model, control),
+            LEAFLESS_OPERATION_XOR => editor.xor(model, control),
+        })
+    })
 }
 
-/// Takes away the points of a tri-dexel model. O(rays of its window + intervals there).
+/// As leafless_tridexel_editor_combine, with a solid: LEAFLESS_OPERATION_DIFFERENCE is one step of a tool. The
+/// solid's intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED, in the directions and with the
+/// contents of the editor. Only rays through the solid's bounding box are looked at.
 ///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_editor_unite.
-/// - Ownership: nothing is kept of `tridexel`.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
-/// - Untrusted input: any model.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_editor_subtract(
-    editor: *mut leafless_tridexel_editor,
-    tridexel: *const leafless_tridexel,
-    options: *const leafless_options,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { change_by(DexelEditor::subtract, editor, tridexel, options) }
-}
-
-/// Keeps only the points that lie in a tri-dexel model, too. O(rays of the universe).
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_editor_unite.
-/// - Ownership: nothing is kept of `tridexel`.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses the calling thread alone.
-/// - Untrusted input: any model.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_editor_intersect(
-    editor: *mut leafless_tridexel_editor,
-    tridexel: *const leafless_tridexel,
-    options: *const leafless_options,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { change_by(DexelEditor::intersect, editor, tridexel, options) }
-}
-
-/// Adds a solid. Its intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED, in the directions and
-/// with the contents of the editor. Only rays through the solid's bounding box are looked at.
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
+/// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a leafless_operation.
+/// - Result: the editor is changed; `*change`, what was removed and added.
+/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_combine.
 /// - Ownership: nothing is kept of the solid.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_editor_unite_solid(
+pub unsafe extern "C" fn leafless_tridexel_editor_combine_solid(
     editor: *mut leafless_tridexel_editor,
+    operation: Number<leafless_operation>,
     solid: *const leafless_solid,
     options: *const leafless_options,
+    change: *mut leafless_dexel_change,
 ) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { change_by_solid(DexelEditor::unite_solid, editor, solid, options) }
-}
-
-/// Takes a solid away: one step of a tool. Its intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED,
-/// in the directions and with the contents of the editor. Only rays through the solid's bounding box are looked at.
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
-/// - Ownership: nothing is kept of the solid.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
-/// - Untrusted input: any solid.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_editor_subtract_solid(
-    editor: *mut leafless_tridexel_editor,
-    solid: *const leafless_solid,
-    options: *const leafless_options,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { change_by_solid(DexelEditor::subtract_solid, editor, solid, options) }
-}
-
-/// Keeps only the points that lie in a solid, too. Its intervals are those of leafless_tridexel_make under
-/// LEAFLESS_RULE_SAMPLED, in the directions and with the contents of the editor. O(rays of the universe), and
-/// the rays through the solid's bounding box.
-///
-/// - Buffers: `options`, one struct or NULL.
-/// - Result: the editor is changed.
-/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_unite.
-/// - Ownership: nothing is kept of the solid.
-/// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
-/// - Untrusted input: any solid.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_editor_intersect_solid(
-    editor: *mut leafless_tridexel_editor,
-    solid: *const leafless_solid,
-    options: *const leafless_options,
-) -> leafless_status {
-    // SAFETY: the caller's promise.
-    unsafe { change_by_solid(DexelEditor::intersect_solid, editor, solid, options) }
+    guard(|| unsafe {
+        let mut editor = self::change(editor)?;
+        let operation = operation.known("operation")?;
+        let solid = &shared(solid, "solid")?.solid;
+        changed(options, change, |control| match operation {
+            LEAFLESS_OPERATION_UNION => editor.unite_solid(solid, control),
+            LEAFLESS_OPERATION_INTERSECTION => editor.intersect_solid(solid, control),
+            LEAFLESS_OPERATION_DIFFERENCE => editor.subtract_solid(solid, control),
+            LEAFLESS_OPERATION_XOR => editor.xor_solid(solid, control),
+        })
+    })
 }
 
 /// The tri-dexel model as it is now. O(rays of the universe + intervals). The editor can be changed further.

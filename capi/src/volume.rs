@@ -249,7 +249,7 @@ pub unsafe extern "C" fn leafless_volume_describe(
 ///
 /// - Buffers: `samples` and `length`, one each.
 /// - Result: `*samples`, the address of the first one; `*length`, their bytes.
-/// - Ownership: the samples belong to the volume, or to the host that made it by leafless_volume_view, and
+/// - Ownership: the samples belong to the volume, or to the host if it uses the host's array, and
 ///   live as long as the reference `volume`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_peek_samples(

@@ -1,17 +1,18 @@
 //! Volumes from arrays as host programs have them.
 
 use super::boundary::{Failure, Sized32, guard, handle, out, sized, slice};
+use super::source::{Source, leafless_access::*, leafless_source, source};
 use super::status::leafless_status;
 use super::volume::leafless_sample_type::{self, *};
 use super::volume::leafless_volume_format::LEAFLESS_VOLUME_FORMAT_RAW;
 use super::volume::{TYPES, leafless_volume};
-use core::ffi::c_void;
 use leafless::Error;
 use leafless::error::VolumeFileError;
-use leafless::exchange::{RawVolume, read_raw_volume};
+use leafless::exchange::{RawVolume, read_raw_volume, read_whole};
 use leafless::memory;
 use leafless::solid::{Samples, VoxelGrid};
 use leafless_byte_order::*;
+use std::path::Path;
 use std::sync::OnceLock;
 
 /// The order of a number's bytes.
@@ -110,6 +111,47 @@ impl Layout {
         Ok((Samples::Bits(memory::collected(words.iter().map(word))?.into()), 0))
     }
 
+    /// The samples where they lie.
+    ///
+    /// # Safety
+    /// The bytes stay, unchanged, for as long as the volume or anything made of it lives.
+    unsafe fn viewed(&self, bytes: &[u8]) -> Result<Samples<'static>, Failure> {
+        /// # Safety
+        /// As [`Layout::viewed`].
+        unsafe fn elements<T>(bytes: &[u8]) -> Result<&'static [T], Failure> {
+            if !bytes.len().is_multiple_of(size_of::<T>()) {
+                return Err(wrong_length());
+            }
+            // SAFETY: the caller's promise.
+            unsafe { slice(bytes.as_ptr().cast(), (bytes.len() / size_of::<T>()) as u64, "source.bytes") }
+        }
+        if self.raw.big_endian != cfg!(target_endian = "big") {
+            let problem = "must be this machine's for samples that are used where they lie";
+            return Err(Failure::Argument { name: "layout.byte_order", problem });
+        }
+        if self.raw.skip != 0 {
+            let problem = "must be 0 for samples that are used where they lie";
+            return Err(Failure::Argument { name: "layout.skip", problem });
+        }
+        // SAFETY: the caller's promise.
+        let samples: Samples<'static> = unsafe {
+            match self.sample_type {
+                LEAFLESS_SAMPLE_BITS => Samples::Bits(elements::<u64>(bytes)?.into()),
+                LEAFLESS_SAMPLE_U8 => elements::<u8>(bytes)?.into(),
+                LEAFLESS_SAMPLE_U16 => elements::<u16>(bytes)?.into(),
+                LEAFLESS_SAMPLE_I16 => elements::<i16>(bytes)?.into(),
+                LEAFLESS_SAMPLE_F32 => elements::<f32>(bytes)?.into(),
+                _ => {
+                    let problem =
+                        "must be U8, U16, I16, F32 or BITS for samples that are used where they lie";
+                    return Err(Failure::Argument { name: "layout.sample_type", problem });
+                }
+            }
+        };
+        samples.check(&self.raw.grid).map_err(|_| wrong_length())?;
+        Ok(samples)
+    }
+
     /// The volume of samples in this layout.
     pub(super) fn volume(&self, (samples, rounded): (Samples<'static>, u64)) -> leafless_volume {
         leafless_volume {
@@ -125,90 +167,58 @@ impl Layout {
     }
 }
 
-/// Makes a volume of an array, which is copied. O(n).
+/// Makes a volume of an array of samples without a header, in memory or in a file.
 ///
-/// - Buffers: `layout`, one struct; `samples`, `length` bytes, on any address; `volume`, one pointer.
+/// With LEAFLESS_ACCESS_COPY the samples are copied: O(n); bytes may lie on any address. With LEAFLESS_ACCESS_MAP, which
+/// is for bytes only, they are used where they lie: O(1). The layout's type is then LEAFLESS_SAMPLE_U8, _U16, _I16, _F32
+/// or _BITS, its byte order is this machine's, it has nothing to skip, and the bytes are aligned for their type.
+/// LEAFLESS_ACCESS_MAP_VERIFIED is the same: any samples are a volume.
+///
+/// - Buffers: `layout`, one struct; `source`, one struct; `volume`, one pointer.
 /// - Result: `*volume`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none,
-///   or if `length` is not that of the samples and the bytes to skip; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: the samples may be freed after the call; give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any layout, any bytes.
+/// - Errors: LEAFLESS_E_ARGUMENT if the type, the byte order, an extent, the corner or the spacing is none, if the layout
+///   or the source is not as the access demands, or if the number of bytes is not that of the samples and those to skip;
+///   LEAFLESS_E_VOLUME_FILE if that is so of a file; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: samples that are copied may be freed after the call. Others stay the host's. They must stay, unchanged,
+///   until the last reference is given back to the volume, to every solid that is made of it, and to what is made of
+///   these, but for octrees and meshes, which have all of their own. Give `*volume` back with leafless_volume_free.
+/// - Untrusted input: any layout, any bytes, any file; memory is at most the file's length and as much again for the
+///   samples, twice as much for int8_t.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_volume_new(
     layout: *const leafless_volume_layout,
-    samples: *const c_void,
-    length: u64,
+    source: *const leafless_source,
     volume: *mut *mut leafless_volume,
 ) -> leafless_status {
     guard(|| unsafe {
         let layout = Layout::new(layout)?;
-        let bytes: &[u8] = slice(samples.cast(), length, "samples")?;
+        let (source, access) = self::source(source)?;
         let volume = out(volume, "volume")?;
-        let copied = layout.copied(bytes).map_err(|error| match error {
-            Error::VolumeFile(VolumeFileError::Length { .. }) => wrong_length(),
-            error => error.into(),
-        })?;
-        volume.write(handle(layout.volume(copied)))
+        let samples = match (source, access) {
+            (Source::Bytes(bytes), LEAFLESS_ACCESS_COPY) => {
+                layout.copied(bytes).map_err(|error| match error {
+                    Error::VolumeFile(VolumeFileError::Length { .. }) => wrong_length(),
+                    error => error.into(),
+                })?
+            }
+            (Source::Bytes(bytes), _) => (layout.viewed(bytes)?, 0),
+            (Source::Path(path), LEAFLESS_ACCESS_COPY) => {
+                let path = Path::new(path);
+                let bytes = read_whole(path).map_err(|error| error.of_file(path))?;
+                layout.copied(&bytes).map_err(|error| error.of_file(path))?
+            }
+            (Source::Path(_), _) => {
+                let problem = "must be LEAFLESS_ACCESS_COPY for samples in a file";
+                return Err(Failure::Argument { name: "source.access", problem });
+            }
+        };
+        volume.write(handle(layout.volume(samples)))
     })
 }
 
 fn wrong_length() -> Failure {
     Failure::Argument {
-        name: "length",
+        name: "source.length",
         problem: "must be the bytes of all samples that the layout tells of, and those to skip",
     }
-}
-
-/// Makes a volume of an array, which is used where it lies, without a copy. O(1).
-///
-/// - Buffers: `layout`, one struct, whose type is LEAFLESS_SAMPLE_U8, _U16, _I16, _F32 or _BITS, whose byte
-///   order is this machine's, and which has nothing to skip; `samples`, `length` bytes, aligned for their
-///   type; `volume`, one pointer.
-/// - Result: `*volume`.
-/// - Errors: LEAFLESS_E_ARGUMENT as leafless_volume_new, and if the layout is not of that kind.
-/// - Ownership: the samples stay the host's. They must stay, unchanged, until the last reference is given
-///   back to the volume, to every solid that is made of it, and to what is made of these, but for octrees and
-///   meshes, which have all of their own. Give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any layout, any bytes.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_volume_view(
-    layout: *const leafless_volume_layout,
-    samples: *const c_void,
-    length: u64,
-    volume: *mut *mut leafless_volume,
-) -> leafless_status {
-    /// # Safety
-    /// As [`slice`], for as long as the volume or anything made of it lives.
-    unsafe fn viewed<T>(samples: *const c_void, length: u64) -> Result<&'static [T], Failure> {
-        let size = size_of::<T>() as u64;
-        if !length.is_multiple_of(size) {
-            return Err(wrong_length());
-        }
-        // SAFETY: the caller's promise.
-        unsafe { slice(samples.cast(), length / size, "samples") }
-    }
-    guard(|| unsafe {
-        let layout = Layout::new(layout)?;
-        if layout.raw.big_endian != cfg!(target_endian = "big") {
-            let problem = "must be this machine's for samples that are used where they lie";
-            return Err(Failure::Argument { name: "layout.byte_order", problem });
-        }
-        if layout.raw.skip != 0 {
-            let problem = "must be 0 for samples that are used where they lie";
-            return Err(Failure::Argument { name: "layout.skip", problem });
-        }
-        let samples = match layout.sample_type {
-            LEAFLESS_SAMPLE_BITS => Samples::Bits(viewed::<u64>(samples, length)?.into()),
-            LEAFLESS_SAMPLE_U8 => viewed::<u8>(samples, length)?.into(),
-            LEAFLESS_SAMPLE_U16 => viewed::<u16>(samples, length)?.into(),
-            LEAFLESS_SAMPLE_I16 => viewed::<i16>(samples, length)?.into(),
-            LEAFLESS_SAMPLE_F32 => viewed::<f32>(samples, length)?.into(),
-            _ => {
-                let problem = "must be U8, U16, I16, F32 or BITS for samples that are used where they lie";
-                return Err(Failure::Argument { name: "layout.sample_type", problem });
-            }
-        };
-        samples.check(&layout.raw.grid).map_err(|_| wrong_length())?;
-        out(volume, "volume")?.write(handle(layout.volume((samples, 0))))
-    })
 }

@@ -1,18 +1,16 @@
 //! Volume files.
 
-use super::boundary::{Failure, buffer, guard, handle, out, path, shared, slice};
+use super::boundary::{Failure, buffer, guard, handle, out, shared, slice};
 use super::number::Number;
 use super::source::{Source, copy, data, leafless_sink, leafless_source, sink};
 use super::status::leafless_status;
 use super::volume::leafless_volume_format::*;
 use super::volume::{leafless_volume, leafless_volume_format, type_of};
-use super::volume_arrays::{Layout, leafless_volume_layout};
 use core::ffi::c_char;
 use leafless::exchange::{
-    NrrdEncoding, VolumeFile, VolumeFormat, open_volume, read_volume, read_whole, volume_data_file,
-    write_nrrd, write_raw_volume,
+    NrrdEncoding, VolumeFile, VolumeFormat, open_volume, read_volume, volume_data_file, write_nrrd,
+    write_raw_volume,
 };
-use std::path::Path;
 use std::sync::OnceLock;
 
 fn give(file: VolumeFile) -> *mut leafless_volume {
@@ -109,32 +107,6 @@ pub unsafe extern "C" fn leafless_volume_data_file(
         let found = volume_data_file(bytes)?.unwrap_or_default();
         name.fill(found.as_bytes())?;
         name_length.write(found.len() as u64)
-    })
-}
-
-/// Reads an array of samples without a header. O(n). (In memory, leafless_volume_new does the same.)
-///
-/// - Buffers: `path`, `path_length` bytes of UTF-8; `layout`, one struct; `volume`, one pointer.
-/// - Result: `*volume`.
-/// - Errors: LEAFLESS_E_VOLUME_FILE if the file is longer or shorter than the layout says;
-///   LEAFLESS_E_ARGUMENT as leafless_volume_new; LEAFLESS_E_IO; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*volume` back with leafless_volume_free.
-/// - Untrusted input: any file, any layout; memory is at most the file's length and as much again for the
-///   samples, twice as much for int8_t.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_volume_open_raw(
-    path: *const c_char,
-    path_length: usize,
-    layout: *const leafless_volume_layout,
-    volume: *mut *mut leafless_volume,
-) -> leafless_status {
-    guard(|| unsafe {
-        let path = Path::new(self::path(path, path_length)?);
-        let layout = Layout::new(layout)?;
-        let volume = out(volume, "volume")?;
-        let bytes = read_whole(path).map_err(|error| error.of_file(path))?;
-        let copied = layout.copied(&bytes).map_err(|error| error.of_file(path))?;
-        volume.write(handle(layout.volume(copied)))
     })
 }
 

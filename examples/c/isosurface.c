@@ -25,6 +25,8 @@ static leafless_status scan(leafless_volume **volume) {
                                            .sample_type = LEAFLESS_SAMPLE_U8,
                                            .extents = {NX, NY, NZ},
                                            .spacing_model = {0.5, 0.5, 0.5}};
+    /* The library uses the samples where they lie; they stay until the program ends. */
+    const leafless_source array = leafless_from_bytes(samples, sizeof samples, LEAFLESS_ACCESS_MAP);
     int x, y, z;
     for (z = 0; z < NZ; z++) {
         for (y = 0; y < NY; y++) {
@@ -38,8 +40,7 @@ static leafless_status scan(leafless_volume **volume) {
             }
         }
     }
-    /* The library uses the samples where they lie; they stay until the program ends. */
-    return leafless_volume_view(&layout, samples, sizeof samples, volume);
+    return leafless_volume_new(&layout, &array, volume);
 }
 
 static leafless_status print_volume(const leafless_volume *volume) {

@@ -63,7 +63,8 @@ static leafless_status take(const leafless_shot *shot, leafless_layer *const *la
 }
 
 static leafless_status save(const char *path) {
-    const leafless_status s = leafless_picture_save(colours, WIDTH, HEIGHT, path, strlen(path));
+    const leafless_sink file = leafless_to_file(path);
+    const leafless_status s = leafless_picture_write(colours, WIDTH, HEIGHT, &file);
     if (!s) printf("written   %s\n", path);
     return s;
 }

@@ -85,7 +85,7 @@ void picture(const octree &part) {
     const leafless::layer surface = leafless::layer::new_octree(part);
     std::vector<std::uint8_t> colours(std::size_t{4} * shot.width * shot.height);
     leafless::picture_render(shot, leafless::refs(surface), nullptr, colours, leafless::span<float>());
-    leafless::picture_save(colours, shot.width, shot.height, "part.png");
+    leafless::picture_write(colours, shot.width, shot.height, leafless_to_file("part.png"));
 }
 
 // What a second process does: it maps the file.
@@ -114,7 +114,11 @@ int make(const std::string &self) {
     poses(part.as_solid());
 
     leafless::lazy lazy = leafless::lazy::make(expression, FRAME);
-    lazy.refine_box({19, -1, -1}, {21, 1, 1}, 8);
+    leafless_zone seen = LEAFLESS_INIT(leafless_zone);
+    seen.kind = LEAFLESS_ZONE_BOX;
+    seen.min_model[0] = 19, seen.min_model[1] = -1, seen.min_model[2] = -1;
+    seen.max_model[0] = 21, seen.max_model[1] = 1, seen.max_model[2] = 1;
+    lazy.refine(&seen, 8);
     std::printf("refined where seen       %llu splits\n", static_cast<unsigned long long>(lazy.splits().size()));
     picture(part);
     return 0;

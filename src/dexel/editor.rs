@@ -6,13 +6,14 @@
 use super::arrays::{Form, ModelArrays, OwnedRows};
 use super::assemble::{Piece, assembled};
 use super::boolean::check_operands;
+use super::change::{DexelChange, Part, Tally, part};
 use super::columns::Columns;
 use super::format::{DexelEnds, DexelFormat};
 use super::merge::{SetOp, merge, merge_plain};
 use super::model::TriDexel;
-use super::place::{DoubleSpan, FixedSpan, Span};
-use super::view::{RowsRef, TriDexelRef, Window};
-use crate::control::Control;
+use super::place::{DoubleSpan, FixedSpan, Place, Span};
+use super::view::{Rows, RowsRef, TriDexelRef, Window};
+use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::Frame;
 use crate::memory;
@@ -29,7 +30,9 @@ use core::ops::Range;
 /// let dexels = |solid: Csg| dexelize(&solid, &frame, &DexelOptions::default(), &control);
 /// let mut part = DexelEditor::new(dexels(Csg::cuboid([2.0; 3], [62.0; 3])?)?.view())?;
 /// for x in [10.0, 20.0, 30.0] {
-///     part.subtract(dexels(Csg::ball([x, 32.0, 62.0], 4.0)?)?.view(), &control)?;
+///     let change = part.subtract(dexels(Csg::ball([x, 32.0, 62.0], 4.0)?)?.view(), &control)?;
+///     // Half a ball: 2π/3 · 4³.
+///     assert!(change.removed.iter().all(|volume| (volume - 134.0).abs() < 7.0));
 /// }
 /// let part = part.freeze(&control)?;
 /// assert!(!part.view().contains_cell([20, 32, 60]) && part.view().contains_cell([20, 32, 50]));
@@ -107,8 +110,8 @@ impl DexelEditor {
     ///
     /// # Errors
     /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are changed and others not: the
-    /// same operation can be done again, or the editor dropped.
-    pub fn unite(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<(), Error> {
+    /// same operation can be done again, or the editor dropped. (After [`xor`](Self::xor) it can only be dropped.)
+    pub fn unite(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.apply(SetOp::Union, other, control)
     }
 
@@ -116,7 +119,7 @@ impl DexelEditor {
     ///
     /// # Errors
     /// As [`unite`](Self::unite).
-    pub fn subtract(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<(), Error> {
+    pub fn subtract(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.apply(SetOp::Difference, other, control)
     }
 
@@ -124,8 +127,31 @@ impl DexelEditor {
     ///
     /// # Errors
     /// As [`unite`](Self::unite).
-    pub fn intersect(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<(), Error> {
+    pub fn intersect(
+        &mut self,
+        other: &TriDexelRef<'_>,
+        control: &Control<'_>,
+    ) -> Result<DexelChange, Error> {
         self.apply(SetOp::Intersection, other, control)
+    }
+
+    /// Takes away what lies in both, and adds the rest of `other`. O(rays of its window + intervals there).
+    ///
+    /// # Errors
+    /// As [`unite`](Self::unite).
+    pub fn xor(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
+        self.apply(SetOp::Xor, other, control)
+    }
+
+    /// How many intervals there are in all directions. O(rays).
+    pub fn interval_count(&self) -> u64 {
+        fn of<S>(all: &[Option<Slots<S>>]) -> u64 {
+            all.iter().flatten().flat_map(|slots| &slots.slots).map(|slot| u64::from(slot.count)).sum()
+        }
+        match &self.rays {
+            Rays::Fixed(all) => of(all),
+            Rays::Double(all) => of(all),
+        }
     }
 
     /// Bytes that it takes.
@@ -154,19 +180,34 @@ impl DexelEditor {
         Ok(TriDexel::new(ModelArrays { frame: self.frame, format: self.format, rays }))
     }
 
-    fn apply(&mut self, op: SetOp, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<(), Error> {
+    fn apply(
+        &mut self,
+        op: SetOp,
+        other: &TriDexelRef<'_>,
+        control: &Control<'_>,
+    ) -> Result<DexelChange, Error> {
         check_operands(&self.frame, self.directions(), other)?;
         other.sound()?;
         if other.kind() != self.format.ends {
             let format = DexelFormat { ends: self.format.ends, ..other.format };
-            let quiet = Control { progress: None, ..*control };
-            return self.apply(op, other.to_format(format, &quiet)?.view(), control);
+            let other = control.share([0.0, 0.5], |control| other.to_format(format, control))?;
+            return control.share([0.5, 1.0], |control| self.apply(op, other.view(), control));
         }
         let plain = self.format.is_plain();
-        match &mut self.rays {
-            Rays::Fixed(all) => changed(op, all, other, plain, control),
-            Rays::Double(all) => changed(op, all, other, plain, control),
+        let job = Job::new(control);
+        job.check()?;
+        let axes = self.directions().iter().filter(|&&has| has).count();
+        let mut change = DexelChange::NONE;
+        for axis in 0..3 {
+            let parts = WHOLE / axes;
+            let tally = match (&mut self.rays, &other.rays[axis]) {
+                (Rays::Fixed(all), Some(rows)) => changed(op, &mut all[axis], rows, plain, parts, &job)?,
+                (Rays::Double(all), Some(rows)) => changed(op, &mut all[axis], rows, plain, parts, &job)?,
+                _ => continue,
+            };
+            change.add(axis, &tally, &self.frame);
         }
+        Ok(change)
     }
 }
 
@@ -207,21 +248,23 @@ fn frozen<S: Form>(
     Ok(rays)
 }
 
+/// Changes the rays along one axis, which are `parts` of the work.
 fn changed<S: Form>(
     op: SetOp,
-    all: &mut [Option<Slots<S>>; 3],
-    other: &TriDexelRef<'_>,
+    slots: &mut Option<Slots<S>>,
+    rows: &Rows<'_>,
     plain: bool,
-    control: &Control<'_>,
-) -> Result<(), Error> {
-    for (slots, rows) in all.iter_mut().zip(&other.rays) {
-        control.check()?;
-        if let (Some(slots), Some(rows)) = (slots, rows.as_ref().and_then(S::rows)) {
-            slots.apply(op, &rows, plain)?;
-        }
+    parts: usize,
+    job: &Job<'_>,
+) -> Result<Tally, Error> {
+    match (slots, S::rows(rows)) {
+        (Some(slots), Some(rows)) => slots.apply(op, &rows, plain, parts, job),
+        _ => Ok(Tally::NONE),
     }
-    Ok(())
 }
+
+/// Rows of rays after which progress is told, and cancelling heard.
+const STEP: u32 = 64;
 
 impl<S: Span> Slots<S> {
     fn new(rows: &RowsRef<'_, S>, model: &TriDexelRef<'_>) -> Result<Slots<S>, Error> {
@@ -248,20 +291,40 @@ impl<S: Span> Slots<S> {
         Ok(Slots { window, slots, columns, lost: 0, scratch: Columns::new(&model.format) })
     }
 
-    fn apply(&mut self, op: SetOp, other: &RowsRef<'_, S>, plain: bool) -> Result<(), Error> {
+    fn apply(
+        &mut self,
+        op: SetOp,
+        other: &RowsRef<'_, S>,
+        plain: bool,
+        parts: usize,
+        job: &Job<'_>,
+    ) -> Result<Tally, Error> {
+        let (mut tally, depth) = (Tally::NONE, self.window.size[0].trailing_zeros() as u8);
         if op == SetOp::Intersection {
             // Nothing is left outside of the other's window.
             for v in self.window.range(1) {
                 for u in self.window.range(0) {
                     if other.ray([u, v]).is_empty()
                         && let Some(index) = self.window.index([u, v])
+                        && self.slots[index].count > 0
                     {
+                        let own = &self.columns.spans[self.slots[index].range()];
+                        if let Some(part) = part(op, own, &[], &[], depth) {
+                            tally.add([u, v], &part);
+                        }
                         self.slots[index].count = 0;
                     }
                 }
             }
         }
-        for v in other.window.range(1) {
+        let (all, mut told) = (other.window.range(1), 0);
+        for v in all.clone() {
+            if (v - all.start) % STEP == 0 {
+                job.check()?;
+                let done = parts / all.len() * (v - all.start) as usize;
+                job.advance(done - told);
+                told = done;
+            }
             let (Some(first), Some(from)) = (
                 self.window.index([other.window.first[0], v]),
                 other.window.index([other.window.first[0], v]),
@@ -274,32 +337,36 @@ impl<S: Span> Slots<S> {
                 if range.is_empty() || slot.count == 0 && !op.keeps()[1] {
                     continue;
                 }
-                if plain
-                    && op == SetOp::Difference
-                    && range.len() == 1
-                    && cut(
-                        &mut self.columns.spans,
-                        &mut self.slots[first + k],
-                        other.columns.spans[range.start].ends(),
-                    )
-                {
-                    continue;
+                let ray = [other.window.first[0] + k as u32, v];
+                if plain && op == SetOp::Difference && range.len() == 1 {
+                    let ends = other.columns.spans[range.start].ends();
+                    if let Some(done) = cut(&mut self.columns.spans, &mut self.slots[first + k], ends, depth)
+                    {
+                        if let Some(part) = done {
+                            tally.add(ray, &part);
+                        }
+                        continue;
+                    }
                 }
                 self.scratch.clear();
+                let (own, others) = (&self.columns.spans[slot.range()], &other.columns.spans[range.clone()]);
                 if plain {
-                    let own = &self.columns.spans[slot.range()];
-                    merge_plain(op, own, &other.columns.spans[range], &mut self.scratch.spans)?;
+                    merge_plain(op, own, others, &mut self.scratch.spans)?;
                 } else {
-                    let own = self.columns.view();
-                    merge(op, (&own, slot.range()), (&other.columns, range), &mut self.scratch)?;
+                    let view = self.columns.view();
+                    merge(op, (&view, slot.range()), (&other.columns, range), &mut self.scratch)?;
+                }
+                if let Some(part) = part(op, own, others, &self.scratch.spans, depth) {
+                    tally.add(ray, &part);
                 }
                 self.put(first + k)?;
             }
         }
+        job.advance(parts - told);
         if self.lost > self.columns.spans.len() / 2 + 1024 {
             self.pack()?;
         }
-        Ok(())
+        Ok(tally)
     }
 
     /// Makes what lies in the scratch memory the intervals of a ray.
@@ -341,9 +408,15 @@ impl<S: Span> Slots<S> {
     }
 }
 
-/// Takes one interval away from those in a slot; `false`, and nothing done, if there is no room for what is left.
+/// Takes one interval away from those in a slot, and says what that did; `None`, and nothing done, if there is no room for
+/// what is left.
 #[inline]
-fn cut<S: Span>(spans: &mut [S], slot: &mut Slot, [low, high]: [S::Place; 2]) -> bool {
+fn cut<S: Span>(
+    spans: &mut [S],
+    slot: &mut Slot,
+    [low, high]: [S::Place; 2],
+    depth: u8,
+) -> Option<Option<Part>> {
     let own = &mut spans[slot.first as usize..(slot.first + slot.room) as usize];
     let count = slot.count as usize;
     // The intervals that are met: `first..end`.
@@ -356,35 +429,39 @@ fn cut<S: Span>(spans: &mut [S], slot: &mut Slot, [low, high]: [S::Place; 2]) ->
         end += 1;
     }
     if first == end {
-        return true;
+        return Some(None);
     }
     let (start, stop) = (own[first].ends()[0], own[end - 1].ends()[1]);
+    let (before, behind) = (start < low, high < stop);
+    let [mut removed, from, to] =
+        [0.0, if before { low } else { start }.cells(depth), if behind { high } else { stop }.cells(depth)];
+    for span in &own[first..end] {
+        let [start, stop] = span.ends().map(|end| end.cells(depth));
+        removed += stop.min(to) - start.max(from);
+    }
+    let part = Part { removed, added: 0.0, along: [from, to] };
     let mut left = first;
-    match (start < low, high < stop) {
-        (true, true) if end - first == 1 => {
-            if count == own.len() {
-                return false;
-            }
-            own.copy_within(end..count, end + 1);
-            own[first] = S::new([start, low]);
-            own[first + 1] = S::new([high, stop]);
-            slot.count += 1;
-            return true;
+    if before && behind && end - first == 1 {
+        if count == own.len() {
+            return None;
         }
-        (before, behind) => {
-            if before {
-                own[left] = S::new([start, low]);
-                left += 1;
-            }
-            if behind {
-                own[left] = S::new([high, stop]);
-                left += 1;
-            }
-        }
+        own.copy_within(end..count, end + 1);
+        own[first] = S::new([start, low]);
+        own[first + 1] = S::new([high, stop]);
+        slot.count += 1;
+        return Some(Some(part));
+    }
+    if before {
+        own[left] = S::new([start, low]);
+        left += 1;
+    }
+    if behind {
+        own[left] = S::new([high, stop]);
+        left += 1;
     }
     if left < end {
         own.copy_within(end..count, left);
         slot.count -= (end - left) as u32;
     }
-    true
+    Some(Some(part))
 }

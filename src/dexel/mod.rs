@@ -12,15 +12,16 @@
 //! From the bottom up, each file uses only files named before it: `place` (positions on a ray), `normal` (unit vectors
 //! in 16 or 32 bits), `line` (places in model units), `format` (what is stored), `item` (an interval with all that it may carry), `columns` (arrays of
 //! intervals), `view` (borrowed arrays, on which all reading is written), `centres` (which centres of cells lie inside),
-//! `occupied` (in which blocks any does), //! `check` (whether arrays are sound), `arrays` (owned ones), `model` (the tri-dexel model), `assemble` (models from rows
+//! `occupied` (in which blocks any does), `check` (whether arrays are sound), `arrays` (owned ones), `model` (the tri-dexel model), `assemble` (models from rows
 //! of rays), `from_rays` (models from a host's intervals), `beam` (what a solid is asked to fill), `merge` (two rays),
-//! `boolean` (models), `editor` (changes in place), `statistics`.
+//! `boolean` (models), `change` (what a change in place did), `editor` (changes in place), `statistics`.
 
 mod arrays;
 mod assemble;
 mod beam;
 mod boolean;
 mod centres;
+mod change;
 mod check;
 mod columns;
 mod editor;
@@ -41,6 +42,7 @@ pub(crate) use assemble::{Piece, assembled};
 pub use beam::{Beam, BeamEnd};
 pub(crate) use beam::{Scratch, first_above};
 pub(crate) use centres::BLOCK;
+pub use change::DexelChange;
 pub(crate) use columns::{ColumnsRef, NormalsRef};
 pub use editor::DexelEditor;
 pub use format::{DexelEnds, DexelFormat, DexelNormals};

@@ -3,7 +3,7 @@
 use super::dexelize::{DexelOptions, dexelize};
 use super::rule::Rule;
 use crate::control::Control;
-use crate::dexel::{DexelEditor, TriDexel};
+use crate::dexel::{DexelChange, DexelEditor, TriDexel, TriDexelRef};
 use crate::error::Error;
 use crate::solid::Solid;
 
@@ -16,9 +16,8 @@ impl DexelEditor {
     ///
     /// # Errors
     /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
-    pub fn unite_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<(), Error> {
-        let model = control.share([0.0, SHARE], |control| self.dexels_of(solid, control))?;
-        control.share([SHARE, 1.0], |control| self.unite(model.view(), control))
+    pub fn unite_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<DexelChange, Error> {
+        self.with_dexels_of(solid, control, Self::unite)
     }
 
     /// Takes a solid away: one step of a tool. Only rays that cross the solid's bounding box are looked at, as far as the
@@ -30,7 +29,8 @@ impl DexelEditor {
     /// let block = dexelize(&Csg::cuboid([2.0; 3], [62.0; 3])?, &frame, &DexelOptions::default(), &control)?;
     /// let mut part = DexelEditor::new(block.view())?;
     /// for x in [10.0, 20.0, 30.0] {
-    ///     part.subtract_solid(&Csg::ball([x, 32.0, 62.0], 4.0)?, &control)?;
+    ///     let change = part.subtract_solid(&Csg::ball([x, 32.0, 62.0], 4.0)?, &control)?;
+    ///     assert!(change.removed[2] > 0.0 && change.added[2] == 0.0);
     /// }
     /// assert!(!part.freeze(&control)?.view().contains_cell([20, 32, 60]));
     /// # Ok::<(), leafless::Error>(())
@@ -38,9 +38,12 @@ impl DexelEditor {
     ///
     /// # Errors
     /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
-    pub fn subtract_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<(), Error> {
-        let model = control.share([0.0, SHARE], |control| self.dexels_of(solid, control))?;
-        control.share([SHARE, 1.0], |control| self.subtract(model.view(), control))
+    pub fn subtract_solid<S: Solid>(
+        &mut self,
+        solid: &S,
+        control: &Control<'_>,
+    ) -> Result<DexelChange, Error> {
+        self.with_dexels_of(solid, control, Self::subtract)
     }
 
     /// Keeps only the points that lie in a solid, too. O(rays of the lattice). The solid's intervals are those of [`dexelize`] with
@@ -48,15 +51,35 @@ impl DexelEditor {
     ///
     /// # Errors
     /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
-    pub fn intersect_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<(), Error> {
-        let model = control.share([0.0, SHARE], |control| self.dexels_of(solid, control))?;
-        control.share([SHARE, 1.0], |control| self.intersect(model.view(), control))
+    pub fn intersect_solid<S: Solid>(
+        &mut self,
+        solid: &S,
+        control: &Control<'_>,
+    ) -> Result<DexelChange, Error> {
+        self.with_dexels_of(solid, control, Self::intersect)
     }
 
-    /// The tri-dexel model of a solid that fits the editor.
-    fn dexels_of<S: Solid>(&self, solid: &S, control: &Control<'_>) -> Result<TriDexel, Error> {
+    /// Takes away what lies in both, and adds the rest of a solid. Its intervals are those of [`dexelize`] with
+    /// [`Rule::Sampled`], and carry what the editor stores.
+    ///
+    /// # Errors
+    /// As [`dexelize`], before anything changes, and as [`xor`](Self::xor).
+    pub fn xor_solid<S: Solid>(&mut self, solid: &S, control: &Control<'_>) -> Result<DexelChange, Error> {
+        self.with_dexels_of(solid, control, Self::xor)
+    }
+
+    /// Changes the editor by the tri-dexel model of a solid that fits it.
+    fn with_dexels_of<S: Solid>(
+        &mut self,
+        solid: &S,
+        control: &Control<'_>,
+        change: fn(&mut Self, &TriDexelRef<'_>, &Control<'_>) -> Result<DexelChange, Error>,
+    ) -> Result<DexelChange, Error> {
         let options =
             DexelOptions { directions: self.directions(), format: self.format(), rule: Rule::Sampled };
-        dexelize(solid, self.frame(), &options, control)
+        let frame = *self.frame();
+        let model: TriDexel =
+            control.share([0.0, SHARE], |control| dexelize(solid, &frame, &options, control))?;
+        control.share([SHARE, 1.0], |control| change(self, model.view(), control))
     }
 }

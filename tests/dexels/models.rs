@@ -572,6 +572,33 @@ fn a_subtraction_shows_the_other_side() {
     );
 }
 
+/// The finest cells that the intervals of models run through.
+fn box_of_differences(parts: &[TriDexel; 2]) -> Option<[[u32; 3]; 2]> {
+    let mut found: Option<[[u32; 3]; 2]> = None;
+    for model in parts {
+        for rays in (0..3).filter_map(|axis| model.view().rays(axis)) {
+            let axis = rays.axis();
+            let others = [[1, 2], [0, 2], [0, 1]][axis];
+            let [along_u, along_v] = rays.window();
+            for (u, v) in along_v.flat_map(|v| along_u.clone().map(move |u| (u, v))) {
+                for dexel in rays.dexels([u, v]) {
+                    let mut cells = [[0; 3]; 2];
+                    (cells[0][others[0]], cells[1][others[0]]) = (u, u + 1);
+                    (cells[0][others[1]], cells[1][others[1]]) = (v, v + 1);
+                    cells[0][axis] = dexel.start.cells.unwrap().floor() as u32;
+                    cells[1][axis] = dexel.end.cells.unwrap().ceil() as u32;
+                    let [first, end] = found.unwrap_or(cells);
+                    found = Some([
+                        [0, 1, 2].map(|i| first[i].min(cells[0][i])),
+                        [0, 1, 2].map(|i| end[i].max(cells[1][i])),
+                    ]);
+                }
+            }
+        }
+    }
+    found
+}
+
 #[test]
 fn changes_in_place_are_set_operations() {
     let (frame, control) = (frame(5), Control::default());
@@ -581,29 +608,53 @@ fn changes_in_place_are_set_operations() {
         let mut by_solids = DexelEditor::new(whole.view()).unwrap();
         assert_eq!(editor.directions(), options.directions);
         let mut random = common::Random(seed);
+        let volumes = |model: &TriDexel| {
+            [0, 1, 2].map(|axis| model.view().statistics(axis).map_or(0.0, |statistics| statistics.volume))
+        };
         for step in 0..40 {
+            let before = whole.clone();
             let c = [0; 3].map(|_| random.between(-1.0, 1.0));
             let radius = if step == 20 { 1.0 } else { random.between(0.03, 0.4) };
             let ball = Csg::ball(c, radius).unwrap();
             let tool = dexelize(&ball, &frame, &options, &control).unwrap();
             let (v, t) = (whole.view(), tool.view());
-            whole = match step % 5 {
+            let (changes, made) = match step % 5 {
                 _ if step == 20 => {
-                    editor.intersect(t, &control).unwrap();
-                    by_solids.intersect_solid(&ball, &control).unwrap();
-                    v.intersection(t, &control).unwrap()
+                    let change = editor.intersect(t, &control).unwrap();
+                    let other = by_solids.intersect_solid(&ball, &control).unwrap();
+                    ([change, other], v.intersection(t, &control).unwrap())
                 }
                 0 | 3 => {
-                    editor.unite(t, &control).unwrap();
-                    by_solids.unite_solid(&ball, &control).unwrap();
-                    v.union(t, &control).unwrap()
+                    let change = editor.unite(t, &control).unwrap();
+                    let other = by_solids.unite_solid(&ball, &control).unwrap();
+                    ([change, other], v.union(t, &control).unwrap())
+                }
+                4 => {
+                    let change = editor.xor(t, &control).unwrap();
+                    let other = by_solids.xor_solid(&ball, &control).unwrap();
+                    ([change, other], v.xor(t, &control).unwrap())
                 }
                 _ => {
-                    editor.subtract(t, &control).unwrap();
-                    by_solids.subtract_solid(&ball, &control).unwrap();
-                    v.difference(t, &control).unwrap()
+                    let change = editor.subtract(t, &control).unwrap();
+                    let other = by_solids.subtract_solid(&ball, &control).unwrap();
+                    ([change, other], v.difference(t, &control).unwrap())
                 }
             };
+            whole = made;
+            let [change, other] = changes;
+            assert_eq!(change, other, "step {step}");
+            // What the change says is what the models before and after it differ by.
+            let difference = |a: &TriDexel, b: &TriDexel| a.view().difference(b.view(), &control).unwrap();
+            let parts = [difference(&before, &whole), difference(&whole, &before)];
+            for (told, part) in [change.removed, change.added].iter().zip(&parts) {
+                for (told, found) in told.iter().zip(volumes(part)) {
+                    assert!((told - found).abs() < 1e-9, "step {step}: {told} {found}");
+                }
+            }
+            let differs = parts.iter().any(|part| part.view().interval_count() > 0);
+            assert_eq!(change.cells.is_some(), differs, "step {step}");
+            assert_eq!(change.rays > 0, differs, "step {step}");
+            assert_eq!(change.cells, box_of_differences(&parts), "step {step}");
             let frozen = editor.freeze(&control).unwrap();
             frozen.view().check().unwrap();
             assert_eq!(frozen, whole, "step {step}");
