@@ -2256,9 +2256,9 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree, leafless_
 leafless_status leafless_octree_compact(const leafless_octree *octree, leafless_octree **compacted);
 
 /// What a set operation makes of octrees, at least one. Exact, and the same bit for bit for any number of
-/// threads; never larger than all operands together. Operands are joined two by two: limits and progress of
-/// `options` concern each of these steps. The result has no channels: leafless_octree_carry_channels gives it
-/// those of the operands.
+/// threads; never larger than all operands together. Operands are joined two by two: limits of `options`
+/// concern each of these steps. The result has no channels: leafless_octree_carry_channels gives it those of
+/// the operands.
 ///
 /// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation`
 ///   is a leafless_operation.
@@ -4732,7 +4732,6 @@ leafless_status leafless_tridexel_copy_cells(const leafless_tridexel *tridexel, 
 /// operand does; ends are doubles if those of one operand are. An end keeps its surface and its normal,
 /// turned about where a subtraction shows its other side. Where several operands hold a place, the material
 /// of the first one counts. Operands are joined two by two: limits of `options` concern each of these steps.
-/// Where more than one operand is taken away, progress begins anew for the last step.
 ///
 /// - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation`
 ///   is a leafless_operation.

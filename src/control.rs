@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::parallel;
+use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
 /// How a long operation may proceed. The default has no limit, uses all processors and reports to nobody.
@@ -134,6 +135,26 @@ impl<'a> Job<'a> {
     /// Refuses when the caller cancelled.
     pub(crate) fn check(&self) -> Result<(), Error> {
         self.control.check()
+    }
+
+    /// Does all tasks as [`parallel::each`], which are all that there is to do.
+    ///
+    /// # Errors
+    /// As [`parallel::each`].
+    pub(crate) fn each<T: Send, R: Send>(
+        &self,
+        parallel: bool,
+        tasks: impl ExactSizeIterator<Item = T>,
+        work: impl Fn(T) -> Result<R, Error> + Sync,
+    ) -> Result<Vec<R>, Error> {
+        let count = tasks.len();
+        let each_task = WHOLE.checked_div(count).unwrap_or(0);
+        self.advance(WHOLE - each_task * count);
+        parallel::each(parallel, tasks, |task| {
+            let done = work(task)?;
+            self.advance(each_task);
+            Ok(done)
+        })
     }
 
     /// Reports `parts` of [`WHOLE`] as done.

@@ -8,7 +8,7 @@ use super::octree::{give, leafless_octree};
 use super::operation::{leafless_operation, leafless_operation::*, operands};
 use super::solid::leafless_solid;
 use super::status::leafless_status;
-use leafless::op::{intersection_of, resolve, union_of, xor_of};
+use leafless::op::{difference_of, intersection_of, resolve, union_of, xor_of};
 use leafless::{Metadata, Rule, build, compact, memory};
 
 /// What becomes of finest cells that are not decided.
@@ -113,7 +113,7 @@ pub unsafe extern "C" fn leafless_octree_compact(
 }
 
 /// What a set operation makes of octrees, at least one. Exact, and the same bit for bit for any number of threads; never
-/// larger than all operands together. Operands are joined two by two: limits and progress of `options` concern each of
+/// larger than all operands together. Operands are joined two by two: limits of `options` concern each of
 /// these steps. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
 ///
 /// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
@@ -139,14 +139,11 @@ pub unsafe extern "C" fn leafless_octree_combine(
         let octrees = operands(octrees, count, false, "octrees", |handle| &handle.octree)?;
         let result = out(result, "result")?;
         let views = memory::collected(octrees.iter().map(|octree| *octree.view()))?;
-        let made = controlled(options, |control| match (operation, &*views) {
-            (LEAFLESS_OPERATION_DIFFERENCE, [a, b]) => leafless::difference(a, b, control),
-            (LEAFLESS_OPERATION_DIFFERENCE, [a, rest @ ..]) if !rest.is_empty() => {
-                leafless::difference(a, union_of(rest, control)?.view(), control)
-            }
-            (LEAFLESS_OPERATION_UNION | LEAFLESS_OPERATION_DIFFERENCE, all) => union_of(all, control),
-            (LEAFLESS_OPERATION_INTERSECTION, all) => intersection_of(all, control),
-            (LEAFLESS_OPERATION_XOR, all) => xor_of(all, control),
+        let made = controlled(options, |control| match operation {
+            LEAFLESS_OPERATION_UNION => union_of(&views, control),
+            LEAFLESS_OPERATION_INTERSECTION => intersection_of(&views, control),
+            LEAFLESS_OPERATION_DIFFERENCE => difference_of(&views, control),
+            LEAFLESS_OPERATION_XOR => xor_of(&views, control),
         })?;
         let common = Metadata::common(octrees.iter().map(|octree| octree.metadata()))?;
         result.write(give(made.with_metadata(common)))

@@ -12,7 +12,7 @@ use leafless::{Metadata, TriDexel, memory};
 /// models), and the same bit for bit for any number of threads. The result stores what any operand does; ends are doubles if
 /// those of one operand are. An end keeps its surface and its normal, turned about where a subtraction shows its other side.
 /// Where several operands hold a place, the material of the first one counts. Operands are joined two by two: limits of
-/// `options` concern each of these steps. Where more than one operand is taken away, progress begins anew for the last step.
+/// `options` concern each of these steps.
 ///
 /// - Buffers: `tridexels`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation` is a
 ///   leafless_operation.
@@ -38,16 +38,11 @@ pub unsafe extern "C" fn leafless_tridexel_combine(
         let models = operands(tridexels, count, false, "tridexels", |handle| &handle.model)?;
         let result = out(result, "result")?;
         let views = memory::collected(models.iter().map(|model| *model.view()))?;
-        let made = controlled(options, |control| match (operation, &*views) {
-            (LEAFLESS_OPERATION_DIFFERENCE, [a, b]) => a.difference(b, control),
-            (LEAFLESS_OPERATION_DIFFERENCE, [a, rest @ ..]) if !rest.is_empty() => {
-                a.difference(TriDexel::union_of(rest, control)?.view(), control)
-            }
-            (LEAFLESS_OPERATION_UNION | LEAFLESS_OPERATION_DIFFERENCE, all) => {
-                TriDexel::union_of(all, control)
-            }
-            (LEAFLESS_OPERATION_INTERSECTION, all) => TriDexel::intersection_of(all, control),
-            (LEAFLESS_OPERATION_XOR, all) => TriDexel::xor_of(all, control),
+        let made = controlled(options, |control| match operation {
+            LEAFLESS_OPERATION_UNION => TriDexel::union_of(&views, control),
+            LEAFLESS_OPERATION_INTERSECTION => TriDexel::intersection_of(&views, control),
+            LEAFLESS_OPERATION_DIFFERENCE => TriDexel::difference_of(&views, control),
+            LEAFLESS_OPERATION_XOR => TriDexel::xor_of(&views, control),
         })?;
         let common = Metadata::common(models.iter().map(|model| model.metadata()))?;
         result.write(give(made.with_metadata(common)))

@@ -66,9 +66,9 @@ impl TriDexelRef<'_> {
     pub fn complement(&self, control: &Control<'_>) -> Result<TriDexel, Error> {
         self.sound()?;
         let depth = self.frame.depth();
-        each_direction(self.frame, self.format, self.directions(), control, |axis, job, parallel| {
+        each_direction(self.frame, self.format, self.directions(), control, |axis, lot| {
             let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
-            with_rows!(rows, rows => complemented(rows, depth, &self.format, job, parallel))
+            with_rows!(rows, rows => complemented(rows, depth, &self.format, lot))
         })
     }
 
@@ -79,11 +79,11 @@ impl TriDexelRef<'_> {
     pub fn to_format(&self, format: DexelFormat, control: &Control<'_>) -> Result<TriDexel, Error> {
         self.sound()?;
         let depth = self.frame.depth();
-        each_direction(self.frame, format, self.directions(), control, |axis, job, parallel| {
+        each_direction(self.frame, format, self.directions(), control, |axis, lot| {
             let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
             with_rows!(rows, rows => match format.ends {
-                DexelEnds::Fixed => converted::<_, FixedSpan>(rows, &format, depth, job, parallel),
-                DexelEnds::Double => converted::<_, DoubleSpan>(rows, &format, depth, job, parallel),
+                DexelEnds::Fixed => converted::<_, FixedSpan>(rows, &format, depth, lot),
+                DexelEnds::Double => converted::<_, DoubleSpan>(rows, &format, depth, lot),
             })
         })
     }
@@ -95,9 +95,9 @@ impl TriDexelRef<'_> {
     pub fn with_material(&self, material: u32, control: &Control<'_>) -> Result<TriDexel, Error> {
         self.sound()?;
         let format = DexelFormat { materials: true, ..self.format };
-        each_direction(self.frame, format, self.directions(), control, |axis, job, parallel| {
+        each_direction(self.frame, format, self.directions(), control, |axis, lot| {
             let Some(rows) = &self.rays[axis] else { unreachable!("only directions that there are") };
-            with_rows!(rows, rows => painted(rows, material, &format, job, parallel))
+            with_rows!(rows, rows => painted(rows, material, &format, lot))
         })
     }
 
@@ -142,6 +142,22 @@ impl TriDexel {
         combined_of(SetOp::Intersection, models, control)
     }
 
+    /// What lies in the first of the models, and in none of the others. Else as [`union_of`](Self::union_of).
+    ///
+    /// # Errors
+    /// As [`union_of`](Self::union_of).
+    pub fn difference_of(models: &[TriDexelRef<'_>], control: &Control<'_>) -> Result<TriDexel, Error> {
+        match models {
+            [first, others @ ..] if others.len() > 1 => {
+                check_all(models)?;
+                let share = 0.9 * others.len() as f64 / models.len() as f64;
+                let away = control.share([0.0, share], |control| TriDexel::union_of(others, control))?;
+                control.share([share, 1.0], |control| first.difference(away.view(), control))
+            }
+            _ => combined_of(SetOp::Difference, models, control),
+        }
+    }
+
     /// What lies in an odd number of the models. Else as [`union_of`](Self::union_of).
     ///
     /// # Errors
@@ -158,6 +174,7 @@ fn combined_of(op: SetOp, models: &[TriDexelRef<'_>], control: &Control<'_>) -> 
         [one] => one.to_format(one.format, control),
         [a, b] => combined(op, a, b, control),
         _ => {
+            check_all(models)?;
             let (first, second) = models.split_at(models.len().div_ceil(2));
             let share = first.len() as f64 / models.len() as f64 * 0.9;
             let a = control.share([0.0, share], |control| combined_of(op, first, control))?;
@@ -165,6 +182,11 @@ fn combined_of(op: SetOp, models: &[TriDexelRef<'_>], control: &Control<'_>) -> 
             control.share([0.9, 1.0], |control| combined(op, a.view(), b.view(), control))
         }
     }
+}
+
+/// Refuses operands that do not fit, before any work is done.
+fn check_all(models: &[TriDexelRef<'_>]) -> Result<(), Error> {
+    models.iter().try_for_each(|model| check_operands(&models[0].frame, models[0].directions(), model))
 }
 
 /// Refuses an operand that does not fit.
@@ -193,19 +215,28 @@ fn combined(
     b.sound()?;
     let format = a.format.join(b.format);
     if a.kind() != b.kind() {
-        let [a, b] = [a, b].map(|model| {
+        let double = |model: &TriDexelRef<'_>, share| {
             let format = DexelFormat { ends: DexelEnds::Double, ..model.format };
-            model.to_format(format, &Control { progress: None, ..*control })
-        });
-        return combined(op, a?.view(), b?.view(), control);
+            control.share(share, |control| model.to_format(format, control))
+        };
+        let (a, b) = (double(a, [0.0, 0.3])?, double(b, [0.3, 0.6])?);
+        return control.share([0.6, 1.0], |control| combined(op, a.view(), b.view(), control));
     }
-    each_direction(a.frame, format, a.directions(), control, |axis, job, parallel| {
+    each_direction(a.frame, format, a.directions(), control, |axis, lot| {
         match (&a.rays[axis], &b.rays[axis]) {
-            (Some(Rows::Fixed(a)), Some(Rows::Fixed(b))) => of_rows(op, a, b, &format, job, parallel),
-            (Some(Rows::Double(a)), Some(Rows::Double(b))) => of_rows(op, a, b, &format, job, parallel),
+            (Some(Rows::Fixed(a)), Some(Rows::Fixed(b))) => of_rows(op, a, b, &format, lot),
+            (Some(Rows::Double(a)), Some(Rows::Double(b))) => of_rows(op, a, b, &format, lot),
             _ => unreachable!("operands of one kind, and only directions that there are"),
         }
     })
+}
+
+/// The work on the rays of one direction.
+struct Lot<'a> {
+    job: &'a Job<'a>,
+    parallel: bool,
+    /// What it counts for in the progress.
+    parts: usize,
 }
 
 /// A model whose directions `work` makes, one after the other.
@@ -214,17 +245,18 @@ fn each_direction(
     format: DexelFormat,
     directions: [bool; 3],
     control: &Control<'_>,
-    work: impl Fn(usize, &Job<'_>, bool) -> Result<OwnedRows, Error> + Send + Sync,
+    work: impl Fn(usize, &Lot<'_>) -> Result<OwnedRows, Error> + Send + Sync,
 ) -> Result<TriDexel, Error> {
     let job = Job::new(control);
     job.check()?;
     control.run(frame.depth() > 6, |parallel| {
         let mut rays = [const { None }; 3];
-        for axis in (0..3).filter(|&axis| directions[axis]) {
-            let rows = work(axis, &job, parallel)?;
+        let count = directions.iter().filter(|&&has| has).count();
+        for (i, axis) in (0..3).filter(|&axis| directions[axis]).enumerate() {
+            let parts = WHOLE * (i + 1) / count - WHOLE * i / count;
+            let rows = work(axis, &Lot { job: &job, parallel, parts })?;
             job.spend(0, bytes(&rows, &format))?;
             rays[axis] = Some(rows);
-            job.advance(WHOLE / directions.iter().filter(|&&has| has).count());
         }
         Ok(TriDexel::new(ModelArrays { frame, format, rays }))
     })
@@ -238,14 +270,15 @@ fn bytes(rows: &OwnedRows, format: &DexelFormat) -> usize {
     4 * starts + count * format.bytes_per_interval()
 }
 
-/// The rays of a window, made by `work` for ranges of rows.
+/// The rays of a window, made row by row: `begin` is told of each range of rows before `work` makes them.
 fn by_rows<S: Form>(
     window: Window,
     format: &DexelFormat,
-    job: &Job<'_>,
-    parallel: bool,
-    work: impl Fn(Range<u32>, &mut Piece<S>) -> Result<(), Error> + Send + Sync,
+    lot: &Lot<'_>,
+    begin: impl Fn(Range<u32>, &mut Piece<S>) -> Result<(), Error> + Send + Sync,
+    work: impl Fn(u32, &mut Piece<S>) -> Result<(), Error> + Send + Sync,
 ) -> Result<OwnedRows, Error> {
+    let Lot { job, parallel, parts } = *lot;
     const MOST: u64 = u32::MAX as u64 - 1;
     if window.count() > MOST {
         return Err(Error::Limit { what: "rays in one direction", limit: MOST });
@@ -253,10 +286,16 @@ fn by_rows<S: Form>(
     // Each ray has the number of its first interval.
     job.control().afford("the rays", window.count() * size_of::<u32>() as u64)?;
     let rows = window.range(1);
+    let each_row = parts.checked_div(rows.len()).unwrap_or(0);
+    job.advance(parts - each_row * rows.len());
     let one = |range: Range<u32>| {
-        job.check()?;
         let mut piece = Piece::new(format, range.len() * window.size[0] as usize)?;
-        work(range, &mut piece)?;
+        begin(range.clone(), &mut piece)?;
+        for v in range {
+            job.check()?;
+            work(v, &mut piece)?;
+            job.advance(each_row);
+        }
         Ok::<_, Error>(piece)
     };
     if parallel && rows.len() > ROWS as usize {
@@ -272,31 +311,34 @@ fn by_rows<S: Form>(
     Ok(S::own(assembled(window, format, pieces)?))
 }
 
+/// Rows need no preparation.
+fn nothing<S: Form>(_: Range<u32>, _: &mut Piece<S>) -> Result<(), Error> {
+    Ok(())
+}
+
 fn of_rows<S: Form>(
     op: SetOp,
     a: &RowsRef<'_, S>,
     b: &RowsRef<'_, S>,
     format: &DexelFormat,
-    job: &Job<'_>,
-    parallel: bool,
+    lot: &Lot<'_>,
 ) -> Result<OwnedRows, Error> {
     let window = match op {
         SetOp::Union | SetOp::Xor => a.window.hull(&b.window),
         SetOp::Intersection => a.window.intersection(&b.window),
         SetOp::Difference => a.window,
     };
-    by_rows(window, format, job, parallel, |range, piece| {
+    let begin = |range: Range<u32>, piece: &mut Piece<S>| {
         let [most_a, most_b] = [a, b].map(|rows| rows.within(range.clone()).len());
-        piece.columns.reserve(most_a + most_b, true)?;
-        for v in range {
-            job.check()?;
-            for (run, from) in runs(window.range(0), v, a, b) {
-                match from {
-                    [true, true] => both(op, [run, v..v + 1], a, b, format, piece)?,
-                    [true, false] if op.keeps()[0] => copy(run, v, a, piece)?,
-                    [false, true] if op.keeps()[1] => copy(run, v, b, piece)?,
-                    _ => piece.skip(run.len())?,
-                }
+        piece.columns.reserve(most_a + most_b, true)
+    };
+    by_rows(window, format, lot, begin, |v, piece| {
+        for (run, from) in runs(window.range(0), v, a, b) {
+            match from {
+                [true, true] => both(op, [run, v..v + 1], a, b, format, piece)?,
+                [true, false] if op.keeps()[0] => copy(run, v, a, piece)?,
+                [false, true] if op.keeps()[1] => copy(run, v, b, piece)?,
+                _ => piece.skip(run.len())?,
             }
         }
         Ok(())
@@ -383,19 +425,16 @@ fn converted<S: Span, T: Form>(
     rows: &RowsRef<'_, S>,
     format: &DexelFormat,
     depth: u8,
-    job: &Job<'_>,
-    parallel: bool,
+    lot: &Lot<'_>,
 ) -> Result<OwnedRows, Error> {
-    by_rows(rows.window, format, job, parallel, |range, piece: &mut Piece<T>| {
-        for v in range {
-            for u in rows.window.range(0) {
-                for item in rows.items([u, v]) {
-                    // Without materials, or rounded, intervals may touch that did not.
-                    let ends = item.ends.map(|end| T::Place::rounded(end.cells(depth), depth));
-                    piece.add(&Item { ends, marks: item.marks, material: item.material })?;
-                }
-                piece.end_ray()?;
+    by_rows(rows.window, format, lot, nothing, |v, piece: &mut Piece<T>| {
+        for u in rows.window.range(0) {
+            for item in rows.items([u, v]) {
+                // Without materials, or rounded, intervals may touch that did not.
+                let ends = item.ends.map(|end| T::Place::rounded(end.cells(depth), depth));
+                piece.add(&Item { ends, marks: item.marks, material: item.material })?;
             }
+            piece.end_ray()?;
         }
         Ok(())
     })
@@ -406,15 +445,12 @@ fn complemented<S: Form>(
     rows: &RowsRef<'_, S>,
     depth: u8,
     format: &DexelFormat,
-    job: &Job<'_>,
-    parallel: bool,
+    lot: &Lot<'_>,
 ) -> Result<OwnedRows, Error> {
-    by_rows(Window::all(depth), format, job, parallel, |range, piece| {
-        for v in range {
-            for u in 0..1 << depth {
-                complement(&rows.columns, rows.ray([u, v]), depth, &mut piece.columns)?;
-                piece.end_ray()?;
-            }
+    by_rows(Window::all(depth), format, lot, nothing, |v, piece| {
+        for u in 0..1 << depth {
+            complement(&rows.columns, rows.ray([u, v]), depth, &mut piece.columns)?;
+            piece.end_ray()?;
         }
         Ok(())
     })
@@ -425,17 +461,14 @@ fn painted<S: Form>(
     rows: &RowsRef<'_, S>,
     material: u32,
     format: &DexelFormat,
-    job: &Job<'_>,
-    parallel: bool,
+    lot: &Lot<'_>,
 ) -> Result<OwnedRows, Error> {
-    by_rows(rows.window, format, job, parallel, |range, piece: &mut Piece<S>| {
-        for v in range {
-            for u in rows.window.range(0) {
-                for item in rows.items([u, v]) {
-                    piece.add(&Item { material, ..item })?;
-                }
-                piece.end_ray()?;
+    by_rows(rows.window, format, lot, nothing, |v, piece: &mut Piece<S>| {
+        for u in rows.window.range(0) {
+            for item in rows.items([u, v]) {
+                piece.add(&Item { material, ..item })?;
             }
+            piece.end_ray()?;
         }
         Ok(())
     })

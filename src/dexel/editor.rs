@@ -227,19 +227,29 @@ fn frozen<S: Form>(
     control: &Control<'_>,
 ) -> Result<[Option<OwnedRows>; 3], Error> {
     let mut rays = [const { None }; 3];
+    let job = Job::new(control);
+    let axes = all.iter().flatten().count();
+    let mut done = 0;
     for (rows, slots) in rays.iter_mut().zip(all) {
         if let Some(slots) = slots {
+            let before = WHOLE * done / axes;
+            done += 1;
+            let (parts, mut told) = (WHOLE * done / axes - before, 0);
             let mut piece = Piece::new(format, slots.slots.len())?;
             let view = slots.columns.view();
             let live = slots.slots.iter().map(|slot| slot.count as usize).sum();
             piece.columns.reserve(live, true)?;
             for (i, slot) in slots.slots.iter().enumerate() {
-                if i % (1 << 16) == 0 {
-                    control.check()?;
+                if i % (1 << 14) == 0 {
+                    job.check()?;
+                    let done = (parts as u64 * i as u64 / slots.slots.len() as u64) as usize;
+                    job.advance(done - told);
+                    told = done;
                 }
                 piece.columns.copy(&view, slot.range())?;
                 piece.end_ray()?;
             }
+            job.advance(parts - told);
             let mut pieces = memory::with_capacity(1)?;
             pieces.push(piece);
             *rows = Some(S::own(assembled(slots.window, format, pieces)?));

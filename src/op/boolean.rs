@@ -80,7 +80,7 @@ pub fn complement(a: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Er
 }
 
 /// The union of any number of trees, at least one. Combined two by two, which gives the same result as any
-/// other order; limits and progress of `control` concern each of these steps.
+/// other order; limits of `control` concern each of these steps.
 ///
 /// # Errors
 /// [`Error::Argument`] if there is no tree; else as [`union`].
@@ -96,6 +96,22 @@ pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result
     reduce(trees, intersection, control)
 }
 
+/// The points of the first of the trees, at least one, that lie in none of the others. Like [`union_of`] in all else.
+///
+/// # Errors
+/// As [`union_of`].
+pub fn difference_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
+    match trees {
+        [first, others @ ..] if others.len() > 1 => {
+            check_all(trees)?;
+            let share = LAST * others.len() as f64 / trees.len() as f64;
+            let away = control.share([0.0, share], |control| union_of(others, control))?;
+            control.share([share, 1.0], |control| difference(first, away.view(), control))
+        }
+        _ => reduce(trees, difference, control),
+    }
+}
+
 /// The points that lie in an odd number of the trees, at least one. Like [`union_of`] in all else.
 ///
 /// # Errors
@@ -106,10 +122,16 @@ pub fn xor_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, 
 
 type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
 
-fn reduce(trees: &[OctreeRef<'_>], op: Binary, control: &Control<'_>) -> Result<Octree, Error> {
-    if let Some(other) = trees.iter().find(|tree| tree.frame() != trees[0].frame()) {
-        return Err(trees[0].frame().mismatch(other.frame()));
+/// Refuses trees on different frames, before any work is done.
+fn check_all(trees: &[OctreeRef<'_>]) -> Result<(), Error> {
+    match trees.iter().find(|tree| tree.frame() != trees[0].frame()) {
+        Some(other) => Err(trees[0].frame().mismatch(other.frame())),
+        None => Ok(()),
     }
+}
+
+fn reduce(trees: &[OctreeRef<'_>], op: Binary, control: &Control<'_>) -> Result<Octree, Error> {
+    check_all(trees)?;
     match trees {
         [] => Err(Error::Argument { name: "trees", problem: "at least one is needed" }),
         [one] => {
@@ -120,11 +142,17 @@ fn reduce(trees: &[OctreeRef<'_>], op: Binary, control: &Control<'_>) -> Result<
         many => {
             // Neighbours first, so that the intermediate trees stay small; the recursion is log₂ n deep.
             let (left, right) = many.split_at(many.len().div_ceil(2));
-            let (left, right) = (reduce(left, op, control)?, reduce(right, op, control)?);
-            op(left.view(), right.view(), control)
+            // Each half has its share of the operands. (Of one tree nothing needs to be made.)
+            let share = LAST * left.len() as f64 / many.len() as f64;
+            let left = control.share([0.0, share], |control| reduce(left, op, control))?;
+            let right = control.share([share, LAST], |control| reduce(right, op, control))?;
+            control.share([LAST, 1.0], |control| op(left.view(), right.view(), control))
         }
     }
 }
+
+/// Where the last step of many begins in the progress.
+const LAST: f64 = 0.8;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Op {

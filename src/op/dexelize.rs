@@ -152,7 +152,7 @@ fn model<T: Solid, S: Form>(
     control.run(worth, |parallel| {
         let axes = options.directions.iter().filter(|&&has| has).count();
         let mut rays = [const { None }; 3];
-        for axis in (0..3).filter(|&axis| options.directions[axis]) {
+        for (i, axis) in (0..3).filter(|&axis| options.directions[axis]).enumerate() {
             let tiles = Tiles {
                 solid,
                 classifier,
@@ -162,11 +162,11 @@ fn model<T: Solid, S: Form>(
                 window: window(axis),
                 options,
                 job: &job,
+                parts: WHOLE * (i + 1) / axes - WHOLE * i / axes,
             };
             let pieces = tiles.pieces::<S>(parallel)?;
             let rows = assembled(tiles.window, &options.format, pieces)?;
             rays[axis] = Some(S::own(rows));
-            job.advance(WHOLE / axes);
         }
         Ok(TriDexel::new(ModelArrays { frame, format: options.format, rays }))
     })
@@ -183,6 +183,8 @@ struct Tiles<'a, S: Solid> {
     window: Window,
     options: &'a DexelOptions,
     job: &'a Job<'a>,
+    /// What all of them count for in the progress.
+    parts: usize,
 }
 
 /// What one thread needs.
@@ -202,6 +204,8 @@ impl<T: Solid> Tiles<'_, T> {
         // Tiles begin where blocks of cells do.
         let first = rows.start / ROWS;
         let count = rows.end.div_ceil(ROWS).saturating_sub(first);
+        let each_tile = self.parts.checked_div(count as usize).unwrap_or(0);
+        self.job.advance(self.parts - each_tile * count as usize);
         let tile = |i: u32| {
             let range = rows.start.max((first + i) * ROWS)..rows.end.min((first + i + 1) * ROWS);
             Window::of([self.window.range(0), range])
@@ -218,6 +222,7 @@ impl<T: Solid> Tiles<'_, T> {
                     };
                     let mut piece = Piece::new(&self.options.format, tile.count() as usize)?;
                     self.tile(hand, tile, &mut piece)?;
+                    self.job.advance(each_tile);
                     Ok(piece)
                 },
             );
@@ -227,6 +232,7 @@ impl<T: Solid> Tiles<'_, T> {
         let mut piece = Piece::new(&self.options.format, self.window.count() as usize)?;
         for i in 0..count {
             self.tile(&mut hand, tile(i), &mut piece)?;
+            self.job.advance(each_tile);
         }
         pieces.push(piece);
         Ok(pieces)

@@ -10,7 +10,9 @@ mod lazy;
 mod rule;
 
 pub use crate::walk::Zone;
-pub use boolean::{complement, difference, intersection, intersection_of, union, union_of, xor, xor_of};
+pub use boolean::{
+    complement, difference, difference_of, intersection, intersection_of, union, union_of, xor, xor_of,
+};
 use build::build_on;
 pub use build::{build, compact, resolve};
 pub use dexel_centres::octree_from_dexels;

@@ -5,7 +5,6 @@ use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
-use crate::parallel::each;
 use crate::solid::{Batch, Classifier, Solid};
 use crate::walk::Trail;
 use alloc::vec::Vec;
@@ -52,7 +51,7 @@ pub fn contains<S: Solid>(
     }));
     wanted.sort_unstable();
     let found = control.run(wanted.len() > CHUNK, |parallel| {
-        each(parallel, wanted.chunks(CHUNK), |chunk| locate(&classifier, chunk, points, &job))
+        job.each(parallel, wanted.chunks(CHUNK), |chunk| locate(&classifier, chunk, points, &job))
     })?;
     let proof = classifier.proof();
     for (&(.., place), answer) in wanted.iter().zip(found.into_iter().flatten()) {

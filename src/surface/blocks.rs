@@ -106,15 +106,17 @@ fn tasks(samples: &Samples<'_>) -> Result<Vec<Task>, Error> {
 
 fn run(samples: &Samples<'_>, tasks: &[Task], job: &Job<'_>, parallel: bool) -> Result<Vec<Block>, Error> {
     let share = if parallel { tasks.len().div_ceil(512).max(1) } else { tasks.len().max(1) };
+    let each_task = FINDING.checked_div(tasks.len()).unwrap_or(0);
+    job.advance(FINDING - each_task * tasks.len());
     let mut found = each(parallel, tasks.chunks(share), |tasks| {
         let mut list = Vec::new();
         for task in tasks {
             job.check()?;
             visit(samples, task, job, &mut list)?;
+            job.advance(each_task);
         }
         Ok(list)
     })?;
-    job.advance(FINDING);
     if found.len() == 1 {
         return Ok(found.remove(0));
     }

@@ -66,11 +66,12 @@ pub(super) fn cells(
     blocks: &Blocks,
     snap: Snap,
     merge: Merge,
+    weight: usize,
     job: &Job<'_>,
     parallel: bool,
 ) -> Result<Vec<Cell>, Error> {
     let list = &blocks.list;
-    let found = chunks::map(list.len(), job, parallel, |range| {
+    let found = chunks::map(list.len(), weight, job, parallel, |range| {
         let mut found = Vec::new();
         for i in range {
             let corners = Around::of(list, i).corners();

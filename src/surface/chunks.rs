@@ -45,18 +45,23 @@ pub(super) fn for_each<T: Send>(
     each(parallel, pieces.into_iter(), done).map(drop)
 }
 
-/// What `work` makes of the chunks of `blocks` blocks.
+/// What `work` makes of the chunks of `blocks` blocks; all of them count for `weight` in the progress.
 ///
 /// # Errors
 /// As [`for_each`].
 pub(super) fn map<T: Send>(
     blocks: usize,
+    weight: usize,
     job: &Job<'_>,
     parallel: bool,
     work: impl Fn(Range<usize>) -> Result<T, Error> + Sync,
 ) -> Result<Vec<T>, Error> {
-    each(parallel, 0..blocks.div_ceil(CHUNK), |chunk| {
+    let count = blocks.div_ceil(CHUNK);
+    job.advance(weight.checked_rem(count).unwrap_or(weight));
+    each(parallel, 0..count, |chunk| {
         job.check()?;
-        work(CHUNK * chunk..blocks.min(CHUNK * (chunk + 1)))
+        let made = work(CHUNK * chunk..blocks.min(CHUNK * (chunk + 1)))?;
+        job.advance(weight / count);
+        Ok(made)
     })
 }

@@ -89,12 +89,13 @@ impl Outlines {
         cells: &[Cell],
         bias: i32,
         table: &Snapped,
+        weight: usize,
         job: &Job<'_>,
         parallel: bool,
     ) -> Result<Outlines, Error> {
         let of_configuration = outlines(table);
         // Most cancel each other near by.
-        let found = chunks::map(cells.len(), job, parallel, |range| {
+        let found = chunks::map(cells.len(), weight / 2, job, parallel, |range| {
             let mut sides = Vec::new();
             for cell in &cells[range] {
                 let corner = cell.corner(bias);
@@ -117,7 +118,7 @@ impl Outlines {
         if corners.len() > u32::MAX as usize {
             return Err(MeshError::TooMany.into());
         }
-        let edges = edges(&sides, &corners, job, parallel)?;
+        let edges = edges(&sides, &corners, weight - weight / 2, job, parallel)?;
         Ok(Outlines { corners, edges })
     }
 }
@@ -161,11 +162,17 @@ fn corners(sides: &[Side], parallel: bool) -> Result<Vec<u64>, Error> {
 }
 
 /// The edges between corners.
-fn edges(sides: &[Side], corners: &[u64], job: &Job<'_>, parallel: bool) -> Result<Vec<Edge>, Error> {
+fn edges(
+    sides: &[Side],
+    corners: &[u64],
+    weight: usize,
+    job: &Job<'_>,
+    parallel: bool,
+) -> Result<Vec<Edge>, Error> {
     let mut numbers = HashMap::new();
     numbers.try_reserve(corners.len())?;
     numbers.extend(corners.iter().copied().zip(0u32..));
-    let found = chunks::map(sides.len(), job, parallel, |range| {
+    let found = chunks::map(sides.len(), weight, job, parallel, |range| {
         let mut edges = Vec::new();
         for side in &sides[range] {
             let stride = Step::stride(side.direction());

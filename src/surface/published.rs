@@ -18,11 +18,12 @@ pub(super) fn triangles(
     cells: &[Cell],
     bias: i32,
     snap: Snap,
+    weight: usize,
     job: &Job<'_>,
     parallel: bool,
 ) -> Result<(Vec<u64>, Vec<[u32; 3]>), Error> {
     let table = snap.table();
-    let found = chunks::map(cells.len(), job, parallel, |range| {
+    let found = chunks::map(cells.len(), weight, job, parallel, |range| {
         let mut found: Vec<[u64; 3]> = Vec::new();
         for cell in &cells[range] {
             let corner = cell.corner(bias);

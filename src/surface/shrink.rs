@@ -125,15 +125,14 @@ pub(super) fn extract(
             Form::Closed => Merge::Sided,
             Form::Published => Merge::Plane,
         };
-        let cells = cells(&blocks, snap, merge, &job, parallel)?;
+        let (of_cells, rest) = ((WHOLE - FINDING) / 4, WHOLE - FINDING - (WHOLE - FINDING) / 4);
+        let cells = cells(&blocks, snap, merge, of_cells, &job, parallel)?;
         drop(blocks);
-        job.advance((WHOLE - FINDING) / 4);
         let (corners, triangles) = match form {
-            Form::Closed => closed(&cells, bias, snap, &job, parallel)?,
-            Form::Published => published::triangles(&cells, bias, snap, &job, parallel)?,
+            Form::Closed => closed(&cells, bias, snap, rest, &job, parallel)?,
+            Form::Published => published::triangles(&cells, bias, snap, rest, &job, parallel)?,
         };
         drop(cells);
-        job.advance(WHOLE - FINDING - (WHOLE - FINDING) / 4);
         let vertices = memory::collected(corners.iter().map(|&corner| {
             let at = points::position(corner);
             axes(|axis| lattice.coordinate(axis, 2 * at[axis] + 1))
@@ -147,15 +146,17 @@ fn closed(
     cells: &[Cell],
     bias: i32,
     snap: Snap,
+    weight: usize,
     job: &Job<'_>,
     parallel: bool,
 ) -> Result<(Vec<u64>, Vec<[u32; 3]>), Error> {
-    let Outlines { corners, edges } = Outlines::of(cells, bias, snap.table(), job, parallel)?;
+    let of_outlines = weight * 2 / 3;
+    let Outlines { corners, edges } = Outlines::of(cells, bias, snap.table(), of_outlines, job, parallel)?;
     let mut regions = Vec::new();
     for region in edges.chunk_by(|a, b| a.plane == b.plane) {
         memory::push(&mut regions, region)?;
     }
-    let found = chunks::map(regions.len(), job, parallel, |range| {
+    let found = chunks::map(regions.len(), weight - of_outlines, job, parallel, |range| {
         let (mut sweep, mut triangles) = (Sweep::default(), Vec::new());
         for region in &regions[range] {
             triangulate(region, &corners, &mut sweep, &mut triangles)?;

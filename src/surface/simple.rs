@@ -115,8 +115,9 @@ struct Place {
 /// The samples that are vertices; blocks learn how many triangles are before theirs.
 fn places(blocks: &mut Blocks, table: &Snapped, job: &Job<'_>, parallel: bool) -> Result<Vec<Place>, Error> {
     let list = &blocks.list;
-    let found = chunks::map(list.len(), job, parallel, |range| with_popcount(Used { list, range, table }))?;
-    job.advance((WHOLE - FINDING) / 3);
+    let weight = WHOLE - FINDING - 2 * ((WHOLE - FINDING) / 3);
+    let found =
+        chunks::map(list.len(), weight, job, parallel, |range| with_popcount(Used { list, range, table }))?;
     let mut places = memory::with_capacity(found.iter().map(|(places, _)| places.len()).sum())?;
     found.iter().for_each(|(of_chunk, _)| places.extend_from_slice(of_chunk));
     merge(&mut places);

@@ -90,6 +90,9 @@ impl VoxelRecords {
                 progress(voxels.progress());
             }
         }
+        if let Some(progress) = control.progress {
+            progress(1.0);
+        }
         if voxels.boundary_is_inside() {
             records.boundary = Tag::Full;
         }

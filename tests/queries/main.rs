@@ -21,6 +21,7 @@ mod measure;
 mod measure_mixed;
 mod measure_primitives;
 mod points;
+mod progress;
 mod ray_models;
 mod rays;
 mod region;

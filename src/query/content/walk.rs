@@ -2,7 +2,7 @@
 
 use super::below;
 use super::sums::{Share, Sums};
-use crate::control::Job;
+use crate::control::{Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::octree::{Planes, Tag};
@@ -41,7 +41,8 @@ pub(super) fn walk<S: Counted, R: Worker>(
     let by_eight = job.control().max_splits.is_some() || solid.likes_many() || region.likes_many();
     let left = job.control().max_splits.unwrap_or(u64::MAX);
     let (solid_parts, region_parts) = (Vec::new(), Vec::new());
-    let mut walk = Walk { solid, region, solid_parts, region_parts, depth, by_eight, left, sums, job };
+    let mut walk =
+        Walk { solid, region, solid_parts, region_parts, depth, by_eight, left, sums, job, told: 0 };
     walk.cell(Cell::ROOT, roots.0, roots.1)?;
     Ok(walk.sums)
 }
@@ -57,11 +58,36 @@ struct Walk<'a, S: Worker, R: Worker> {
     left: u64,
     sums: Sums,
     job: &'a Job<'a>,
+    /// Parts of the work that the progress knows of.
+    told: usize,
 }
 
+/// The finest level of which the progress is told.
+const TOLD: u8 = 4;
+
 impl<S: Counted, R: Worker> Walk<'_, S, R> {
-    /// Takes in a cell. The recursion is as deep as the frame, 20 levels at the most.
+    /// Takes in a cell, and tells of it.
     fn cell(&mut self, cell: Cell, solid: Verdict<S::Part>, region: Verdict<R::Part>) -> Result<(), Error> {
+        self.take(cell, solid, region)?;
+        self.tell(cell);
+        Ok(())
+    }
+
+    /// Tells of the cells up to one, in Morton order. Of finer ones nothing is told.
+    fn tell(&mut self, cell: Cell) {
+        if cell.level <= TOLD {
+            let place = (0..cell.level).fold(0, |place, level| {
+                let octant = (0..3).fold(0, |octant, axis| octant | (cell.at[axis] >> level & 1) << axis);
+                place | (octant as usize) << (3 * level)
+            });
+            let done = (place + 1) * (WHOLE >> (3 * cell.level));
+            self.job.advance(done - self.told.min(done));
+            self.told = self.told.max(done);
+        }
+    }
+
+    /// Takes in a cell. The recursion is as deep as the frame, 20 levels at the most.
+    fn take(&mut self, cell: Cell, solid: Verdict<S::Part>, region: Verdict<R::Part>) -> Result<(), Error> {
         let height = self.depth - cell.level;
         let cells = 1u64 << (3 * height);
         match (&solid, &region) {

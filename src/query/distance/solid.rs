@@ -9,7 +9,6 @@ use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH, valid};
 use crate::memory;
 use crate::octree::Tag;
-use crate::parallel::each;
 use crate::query::StopReason;
 use crate::solid::{Ask, Classifier, Parts, Solid, Verdict, Worker};
 use crate::walk::Proven;
@@ -79,7 +78,7 @@ pub fn distances<S: Solid>(
     let classifier = Proven(solid.on(frame, control)?);
     let exterior = classifier.exterior();
     let found = control.run(points.len() > CHUNK, |parallel| {
-        each(parallel, points.chunks(CHUNK), |chunk| {
+        job.each(parallel, points.chunks(CHUNK), |chunk| {
             let mut worker = classifier.worker()?;
             let mut found = memory::with_capacity(chunk.len())?;
             for &point in chunk {

@@ -9,7 +9,6 @@ use crate::lattice::{Cell, Interval, morton};
 use crate::memory;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
-use crate::parallel::each;
 
 /// The squares of the least distances.
 struct Least {
@@ -125,7 +124,7 @@ impl OctreeRef<'_> {
         let job = Job::new(control);
         job.check()?;
         let found = control.run(points.len() > CHUNK, |parallel| {
-            each(parallel, points.chunks(CHUNK), |chunk| {
+            job.each(parallel, points.chunks(CHUNK), |chunk| {
                 job.check()?;
                 let mut found = memory::with_capacity(chunk.len())?;
                 for &point in chunk {

@@ -8,7 +8,6 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
-use crate::parallel::each;
 use crate::solid::{Ask, Classifier, Enclosure, Solid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::split_one;
@@ -58,7 +57,7 @@ pub fn cast_rays<S: Solid>(
     let job = Job::new(control);
     job.check()?;
     let found = control.run(rays.len() > CHUNK, |parallel| {
-        each(parallel, rays.chunks(CHUNK), |chunk| {
+        job.each(parallel, rays.chunks(CHUNK), |chunk| {
             let mut worker = classifier.worker()?;
             let mut hits = memory::with_capacity(chunk.len())?;
             for &ray in chunk {
