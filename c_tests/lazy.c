@@ -220,7 +220,8 @@ static void limits(const leafless_solid *solid) {
 
 /* A slab -0.3 <= z <= 0.4 of the host's, which counts what it is asked. */
 static int32_t slab(void *ctx, const double *min, const double *max) {
-    ++*(uint64_t *)ctx;
+    /* Several threads ask. (C99 has no atomics; these are those of gcc and clang.) */
+    __atomic_add_fetch((uint64_t *)ctx, 1, __ATOMIC_RELAXED);
     if (max[2] <= -0.3 || min[2] >= 0.4) {
         return LEAFLESS_TAG_EMPTY;
     }
@@ -228,7 +229,7 @@ static int32_t slab(void *ctx, const double *min, const double *max) {
 }
 
 static int32_t gives_up(void *ctx, const double *min, const double *max) {
-    if (*(uint64_t *)ctx > 100) {
+    if (__atomic_load_n((uint64_t *)ctx, __ATOMIC_RELAXED) > 100) {
         return -7;
     }
     return slab(ctx, min, max);

@@ -249,7 +249,7 @@ impl core::fmt::Debug for Octree {
     }
 }
 
-/// Equal as sets of cells with the same tags on the same frame: trees are canonical, so their arrays agree
+/// Equal as sets of cells with the same tags and cuts on the same frame: trees are canonical, so their arrays agree
 /// however the bricks are encoded. Metadata does not count, nor what the cells prove. O(n).
 impl PartialEq for Octree {
     fn eq(&self, other: &Octree) -> bool {
