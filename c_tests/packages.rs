@@ -316,16 +316,18 @@ fn documented_commands() {
             }
         }
     }
-    for program in ["build/bored_c_static", "build/bored_cpp_shared", "bored_static", "bored_shared"] {
+    let programs =
+        ["build/bored_c_static", "build/bored_cpp_shared", "bored_static", "bored_shared", "bored_by_path"];
+    for program in programs {
         tells_the_volume(kit, &elsewhere.join(program));
         assert_eq!(loads_the_library(&elsewhere.join(program)), program.ends_with("shared"), "{program}");
     }
-    // A C program with each library, and a C++ program; a C++ program elsewhere with each library.
-    assert!(compiled >= 5, "{compiled}");
-    // From a fresh clone to a program elsewhere it takes three commands.
+    // In the clone a C program with each library, and a C++ program; elsewhere a C++ program in three ways.
+    assert!(compiled >= 6, "{compiled}");
+    // After the first command two are for CMake, two for each library by pkg-config, and one is for paths.
     let lines = kit::documented(installed);
     let count = |start: &str| lines.iter().filter(|line| line.starts_with(start)).count();
-    assert_eq!([count("cargo run"), count("cmake"), count("export"), count("g++")], [1, 2, 1, 2]);
+    assert_eq!([count("cargo run"), count("cmake"), count("export"), count("g++")], [1, 2, 1, 3]);
 }
 
 /// A plugin exports its own functions only, as `include/README.md` says, and works.
@@ -396,8 +398,6 @@ int main(void) { return other_caught() && leafless_test_panic() == LEAFLESS_E_PA
 #[test]
 fn vcpkg_port() {
     let kit = kit();
-    let version = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
-    assert!(text("packaging/vcpkg/vcpkg.json").contains(&version));
     if !kit.check.is_plain() || !have("vcpkg_port", &["cmake"]) {
         return;
     }
@@ -417,14 +417,21 @@ function(vcpkg_install_copyright)
   cmake_parse_arguments(PARSE_ARGV 0 it \"\" \"\" \"FILE_LIST\")
   file(COPY ${{it_FILE_LIST}} DESTINATION \"${{CURRENT_PACKAGES_DIR}}/share/leafless\")
 endfunction()
-set(PORT leafless)
+set(port \"{}\")
+file(READ \"${{port}}/vcpkg.json\" manifest)
+string(JSON PORT GET \"${{manifest}}\" name)
+string(JSON version GET \"${{manifest}}\" version)
+if(NOT \"${{PORT}} ${{version}}\" STREQUAL \"leafless {}\")
+  message(FATAL_ERROR \"${{manifest}}\")
+endif()
 set(VCPKG_LIBRARY_LINKAGE {linkage})
 set(CURRENT_PACKAGES_DIR \"{}\")
 set(CARGO \"{}\")
-include(\"{}\")\n",
+include(\"${{port}}/portfile.cmake\")\n",
+            root().join("packaging/vcpkg").display(),
+            env!("CARGO_PKG_VERSION"),
             packages.display(),
             cargo.display(),
-            root().join("packaging/vcpkg/portfile.cmake").display()
         );
         std::fs::write(folder.join("port.cmake"), script).unwrap();
         succeed(Command::new("cmake").arg("-P").arg(folder.join("port.cmake")).env_remove("DESTDIR"));

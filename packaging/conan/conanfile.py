@@ -27,7 +27,8 @@ class Leafless(ConanFile):
 
     def export_sources(self):
         root = os.path.join(self.recipe_folder, ROOT)
-        copy(self, "*", root, self.export_sources_folder, excludes=["target/*", ".git/*", "docs/*"])
+        excludes = ["target/*", "*/target/*", ".git/*", "docs/*", "fuzz/*", "packaging/conan/test_package/build/*"]
+        copy(self, "*", root, self.export_sources_folder, excludes=excludes)
 
     def package_id(self):
         # What rustc makes depends on neither.
