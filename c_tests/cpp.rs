@@ -31,7 +31,7 @@ const DIMENSIONS: &[(&str, &str, usize)] = &[
 ];
 
 /// Functions with several arrays that may be left out. Their parameters are those of C.
-const AS_IN_C: &[&str] = &["leafless_tridexel_copy", "leafless_octree_voxels"];
+const AS_IN_C: &[&str] = &["leafless_tridexel_copy", "leafless_octree_voxels", "leafless_voxels_moved"];
 
 /// Functions whose answers have several numbers each, and how these are counted.
 const VALUES: &[(&str, &str)] = &[

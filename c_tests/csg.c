@@ -410,6 +410,8 @@ int main(void) {
     /* Half the size, turned about z, moved. */
     const double matrix[12] = {0.4, -0.3, 0, 0.2, 0.3, 0.4, 0, -0.1, 0, 0, 0.5, 0.3};
     const double singular[12] = {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0};
+    const double from[3] = {0, 0, -1}, to[3] = {0, 0, 1.5}, up[3] = {0, 0, 1};
+    const double tip[3] = {0.5, -1, 1}, tail[3] = {-0.5, 1, -1};
     leafless_solid *a = NULL, *b = NULL, *c = NULL, *deep = NULL;
     const leafless_solid *parts[3];
     leafless_statistics exact, paper;
@@ -425,12 +427,17 @@ int main(void) {
     has_volume(a, 4.0 / 3.0 * pi / sqrt(0.75));
     OK(leafless_solid_new_ellipsoid(origin, radii, &a));
     has_volume(a, 4.0 / 3.0 * pi * 0.75);
-    OK(leafless_solid_new_cylinder(1, -1, 1.5, &a));
+    OK(leafless_solid_new_cylinder(from, to, 1, &a));
     has_volume(a, pi * 2.5);
-    OK(leafless_solid_new_frustum(1.5, 0.5, -1, 1, &a));
+    OK(leafless_solid_new_frustum(from, up, 1.5, 0.5, &a));
     has_volume(a, 2.0 / 3.0 * pi * (2.25 + 0.75 + 0.25));
-    OK(leafless_solid_new_frustum(0, 1, 0, 1.5, &a));
+    OK(leafless_solid_new_frustum(to, origin, 1, 0, &a));
     has_volume(a, pi * 0.5);
+    /* Axes of any direction: these have the lengths 1.5 and 3. */
+    OK(leafless_solid_new_cylinder(tip, origin, 0.75, &a));
+    has_volume(a, pi * 0.75 * 0.75 * 1.5);
+    OK(leafless_solid_new_frustum(tip, tail, 0.5, 0.25, &a));
+    has_volume(a, pi * (0.25 + 0.125 + 0.0625));
 
     /* A box minus a ball, and the like; the operands are freed at once. */
     OK(leafless_solid_new_box(low, high, &a));
@@ -500,11 +507,11 @@ int main(void) {
     leafless_solid_free(c);
 
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_placed(b, singular, NULL, &c));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(0, 0, 1, &c));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(1, 1, 1, &c));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(NAN, 0, 1, &c));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_frustum(0, 0, 0, 1, &c));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_frustum(-1, 1, 0, 1, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(from, to, 0, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(to, to, 1, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(from, to, NAN, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_frustum(from, to, 0, 0, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_frustum(from, to, -1, 1, &c));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_ellipsoid(origin, origin, &c));
     {
         const double constant[10] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 1};

@@ -24,6 +24,7 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
                       uint64_t most) {
     leafless_interference found;
     leafless_clearance near;
+    double low[3], high[3];
     OK(leafless_solid_interfere(a, apart, &frame, INFINITY, NULL, &found));
     CHECK(found.verdict == LEAFLESS_OVERLAP_DISJOINT && !found.is_clipped && found.witness_level == 0);
     CHECK(found.volume_model.lower == 0 && found.volume_model.upper == 0);
@@ -32,6 +33,8 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
     CHECK(found.verdict == LEAFLESS_OVERLAP_OVERLAPPING && found.splits_a + found.splits_b <= most);
     CHECK(found.witness_level > 0 && found.witness_level <= found.level);
     CHECK(found.witness[0] < 1u << found.witness_level);
+    OK(leafless_frame_cell_bounds(&frame, found.witness, found.witness_level, low, high));
+    CHECK(high[0] - low[0] == ldexp(frame.edge, -(int)found.witness_level) && low[0] >= frame.origin[0]);
     CHECK(found.volume_model.lower > 0 && found.volume_model.upper > 374);
     OK(leafless_solid_interfere(a, over, &frame, 200, NULL, &found));
     CHECK(found.volume_model.lower < 375 && found.volume_model.upper > 374);

@@ -175,6 +175,7 @@ static void solids(void) {
     OK(leafless_octree_statistics(half, &statistics));
     CHECK(statistics.volume_model.lower == 5.0 && statistics.volume_model.upper == 5.0);
     OK(leafless_octree_describe(half, &info));
+    CHECK(info.bytes >= 8 * info.elements && info.bytes <= 64 * (info.elements + info.bricks) + 4096);
     CHECK(info.is_binary && info.is_clipped && info.exterior == LEAFLESS_TAG_PARTIAL);
 
     /* A stored octree is a solid again, and the solid keeps it. */

@@ -245,8 +245,16 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_new_ellipsoid, radii_model,
                  leafless_solid_new_ellipsoid(point, NULL, solid_result));
     NULL_POINTER(leafless_solid_new_ellipsoid, solid, leafless_solid_new_ellipsoid(point, above, NULL));
-    NULL_POINTER(leafless_solid_new_cylinder, solid, leafless_solid_new_cylinder(1, 0, 1, NULL));
-    NULL_POINTER(leafless_solid_new_frustum, solid, leafless_solid_new_frustum(1, 0, 0, 1, NULL));
+    NULL_POINTER(leafless_solid_new_cylinder, from_model,
+                 leafless_solid_new_cylinder(NULL, above, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_cylinder, to_model,
+                 leafless_solid_new_cylinder(point, NULL, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_cylinder, solid, leafless_solid_new_cylinder(point, above, 1, NULL));
+    NULL_POINTER(leafless_solid_new_frustum, from_model,
+                 leafless_solid_new_frustum(NULL, above, 1, 0, solid_result));
+    NULL_POINTER(leafless_solid_new_frustum, to_model,
+                 leafless_solid_new_frustum(point, NULL, 1, 0, solid_result));
+    NULL_POINTER(leafless_solid_new_frustum, solid, leafless_solid_new_frustum(point, above, 1, 0, NULL));
     NULL_POINTER(leafless_solid_new_power, coefficients,
                  leafless_solid_new_power(NULL, point, exponents, 1, solid_result));
     NULL_POINTER(leafless_solid_new_power, centre_model,
@@ -700,6 +708,14 @@ static void misaligned(void) {
     MISALIGNED(leafless_mesh_translated, mesh,
                leafless_mesh_translated((leafless_mesh *)WRONG(mesh), point, mesh_result));
     MISALIGNED(leafless_solid_new_ball, centre_model, leafless_solid_new_ball(numbers, 1, solid_result));
+    MISALIGNED(leafless_solid_new_cylinder, from_model,
+               leafless_solid_new_cylinder(numbers, point, 1, solid_result));
+    MISALIGNED(leafless_solid_new_cylinder, to_model,
+               leafless_solid_new_cylinder(point, numbers, 1, solid_result));
+    MISALIGNED(leafless_solid_new_frustum, from_model,
+               leafless_solid_new_frustum(numbers, point, 1, 0, solid_result));
+    MISALIGNED(leafless_solid_new_frustum, to_model,
+               leafless_solid_new_frustum(point, numbers, 1, 0, solid_result));
     MISALIGNED(leafless_solid_new_ball, solid, leafless_solid_new_ball(point, 1, (leafless_solid **)WRONG(out)));
     MISALIGNED(leafless_solid_interfere_many, matrices,
                leafless_solid_interfere_many(solid, solid, &frame, (const double *)WRONG(point), 1, &frame, 0, NULL,
@@ -1479,6 +1495,7 @@ static void voxels(void) {
     void *never = UNTOUCHED;
     const uint64_t codes[2] = {0, 8};
     const uint8_t levels[2] = {3, 3}, kinds[2] = {2, 1};
+    const int32_t turn[3] = {1, 2, 3}, nowhere[3] = {1, 1, 2};
     const uint32_t cell[3] = {0, 0, 0};
     const double direction[3] = {1, 0, 0}, zero[3] = {0, 0, 0};
     const leafless_frame small = {{0, 0, 0}, 1, 4};
@@ -1518,6 +1535,34 @@ static void voxels(void) {
                  leafless_voxels_order(&small, codes, levels, kinds, 2, direction, false, NULL, NULL, 2, count));
     NULL_POINTER(leafless_voxels_order, order_count,
                  leafless_voxels_order(&small, codes, levels, kinds, 2, direction, false, NULL, NULL, 0, NULL));
+    NULL_POINTER(leafless_voxels_moved, lattice,
+                 leafless_voxels_moved(NULL, codes, levels, kinds, 2, turn, turn, NULL, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_moved, codes,
+                 leafless_voxels_moved(&small, NULL, levels, kinds, 2, turn, turn, NULL, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_moved, levels,
+                 leafless_voxels_moved(&small, codes, NULL, kinds, 2, turn, turn, NULL, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_moved, kinds,
+                 leafless_voxels_moved(&small, codes, levels, NULL, 2, turn, turn, NULL, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_moved, axes,
+                 leafless_voxels_moved(&small, codes, levels, kinds, 2, NULL, turn, NULL, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_moved, offset_cells,
+                 leafless_voxels_moved(&small, codes, levels, kinds, 2, turn, NULL, NULL, NULL, NULL, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_voxels_moved, moved_count,
+                 leafless_voxels_moved(&small, codes, levels, kinds, 2, turn, turn, NULL, NULL, NULL, NULL, NULL, 0, NULL));
+    MISALIGNED(leafless_voxels_moved, axes,
+               leafless_voxels_moved(&small, codes, levels, kinds, 2, (const int32_t *)WRONG(out), turn, NULL, NULL, NULL, NULL,
+                                     NULL, 0, count));
+    MISALIGNED(leafless_voxels_moved, offset_cells,
+               leafless_voxels_moved(&small, codes, levels, kinds, 2, turn, (const int32_t *)WRONG(out), NULL, NULL, NULL, NULL,
+                                     NULL, 0, count));
+    MISALIGNED(leafless_voxels_moved, moved_codes,
+               leafless_voxels_moved(&small, codes, levels, kinds, 2, turn, turn, NULL, (uint64_t *)WRONG(out), NULL, NULL,
+                                     NULL, 4, count));
+    MISALIGNED(leafless_voxels_moved, sources,
+               leafless_voxels_moved(&small, codes, levels, kinds, 2, turn, turn, NULL, NULL, NULL, NULL,
+                                     (uint64_t *)WRONG(out), 4, count));
+    BAD_NUMBER(leafless_voxels_moved, axes,
+               leafless_voxels_moved(&small, codes, levels, kinds, 2, nowhere, turn, NULL, NULL, NULL, NULL, NULL, 0, count));
     BAD_NUMBER(leafless_voxels_order, direction,
                leafless_voxels_order(&small, codes, levels, kinds, 2, zero, false, NULL, NULL, 0, count));
     NULL_POINTER(leafless_voxels_triangles, lattice,
@@ -1560,6 +1605,13 @@ static void voxels(void) {
     MAY_BE_NULL(leafless_octree_voxels, kinds, COUNTED);
     MAY_BE_NULL(leafless_octree_voxels, corners_model, COUNTED);
     MAY_BE_NULL(leafless_octree_voxels, values, COUNTED);
+#define MOVED leafless_voxels_moved(&small, codes, levels, kinds, 2, turn, turn, NULL, NULL, NULL, NULL, NULL, 0, &number)
+    MAY_BE_NULL(leafless_voxels_moved, options, MOVED);
+    MAY_BE_NULL(leafless_voxels_moved, moved_codes, MOVED);
+    MAY_BE_NULL(leafless_voxels_moved, moved_levels, MOVED);
+    MAY_BE_NULL(leafless_voxels_moved, moved_kinds, MOVED);
+    MAY_BE_NULL(leafless_voxels_moved, sources, MOVED);
+#undef MOVED
     MAY_BE_NULL(leafless_voxels_order, options,
                 leafless_voxels_order(&small, codes, levels, kinds, 2, direction, false, NULL, NULL, 0, &number));
     MAY_BE_NULL(leafless_voxels_order, order,

@@ -350,6 +350,37 @@ static void shrink(void) {
     leafless_solid_free(solid);
 }
 
+/* Dual contouring keeps the edges and corners of a block, in one call. */
+static void sharp(void) {
+    const double min[3] = {-0.52, -0.33, -0.71}, max[3] = {0.61, 0.47, 0.29};
+    const leafless_frame frame = check_frame(4);
+    leafless_surface_options surface = defaults();
+    leafless_solid *block = NULL;
+    leafless_octree *octree = NULL;
+    leafless_mesh *mesh = NULL;
+    double low[3], high[3];
+    int axis;
+    OK(leafless_solid_new_box(min, max, &block));
+    surface.method = LEAFLESS_SURFACE_DUAL_CONTOURING;
+    OK(leafless_solid_surface(block, &frame, &surface, NULL, &mesh));
+    CHECK(told(mesh).is_manifold && fabs(volume_of(mesh) - 1.13 * 0.8) < 1e-6);
+    OK(leafless_mesh_bounds(mesh, low, high));
+    for (axis = 0; axis < 3; axis++) {
+        CHECK(fabs(low[axis] - min[axis]) < 1e-6 && fabs(high[axis] - max[axis]) < 1e-6);
+    }
+    leafless_mesh_free(mesh);
+    surface.snap = LEAFLESS_SNAP_THIN;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_surface(block, &frame, &surface, NULL, &mesh));
+    surface.snap = LEAFLESS_SNAP_FAT;
+    surface.placement = LEAFLESS_PLACEMENT_CROSSING;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_surface(block, &frame, &surface, NULL, &mesh));
+    surface.placement = LEAFLESS_PLACEMENT_MIDPOINT;
+    OK(leafless_octree_build(block, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_surface(octree, &surface, NULL, &mesh));
+    leafless_octree_free(octree);
+    leafless_solid_free(block);
+}
+
 /* A mesh's own surface: vertices on its faces, and the faces in planes of the lattice exactly. */
 static void meshes(void) {
     leafless_mesh *cube = check_cube(), *mesh = NULL;
@@ -451,7 +482,8 @@ static void refusals(void) {
     surface_refused(octree, solid, &frame, &surface, "surface." #field, of_octree, of_solid);                    \
     surface = defaults()
     surface = defaults();
-    REFUSED(method, 4, true, true);
+    REFUSED(method, 5, true, true);
+    REFUSED(method, LEAFLESS_SURFACE_DUAL_CONTOURING, true, false);
     REFUSED(method, UINT32_MAX, true, true);
     REFUSED(snap, 2, true, true);
     REFUSED(snap, LEAFLESS_SNAP_THIN, true, true);
@@ -507,6 +539,7 @@ int main(void) {
     octrees();
     solids();
     shrink();
+    sharp();
     meshes();
     volumes();
     refusals();

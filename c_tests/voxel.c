@@ -163,6 +163,57 @@ static void orders(void) {
                                                      number, &number));
 }
 
+/* Each finest cell of the octree that moved records make is the cell of the octree that it comes from. */
+static void moves(void) {
+    static uint64_t moved_codes[MOST], sources[MOST];
+    static uint8_t moved_levels[MOST], moved_kinds[MOST];
+    static const int32_t axes[][3] = {{1, 2, 3}, {2, 3, 1}, {-1, 3, 2}, {-3, -2, -1}, {1, -2, 3}};
+    static const int32_t offsets[][3] = {{0, 0, 0}, {1, 0, 0}, {-3, 5, 8}, {16, 0, 0}, {8, -8, 0}};
+    static const int32_t wrong[][3] = {{1, 2, 2}, {0, 1, 2}, {1, 2, 4}, {INT32_MIN, 1, 2}};
+    uint64_t number = 0, again = 0, i, j, k;
+    for (i = 0; i < COUNT(axes); i++) {
+        for (j = 0; j < COUNT(offsets); j++) {
+            leafless_octree *moved = NULL;
+            OK(leafless_voxels_moved(&lattice, codes, levels, kinds, count, axes[i], offsets[j], NULL, NULL, NULL, NULL,
+                                     NULL, 0, &number));
+            CHECK(number <= MOST && (number == 0) == (j == 3));
+            OK(leafless_voxels_moved(&lattice, codes, levels, kinds, count, axes[i], offsets[j], NULL, moved_codes,
+                                     moved_levels, moved_kinds, sources, number, &again));
+            CHECK(again == number && (j > 0 || number == count));
+            for (k = 0; k < number; k++) {
+                CHECK(sources[k] < count && moved_kinds[k] == kinds[sources[k]]);
+                CHECK(moved_levels[k] >= levels[sources[k]]);
+            }
+            OK(leafless_octree_from_voxels(&lattice, moved_codes, moved_levels, moved_kinds, number,
+                                           LEAFLESS_TAG_PARTIAL, NULL, &moved));
+            for (k = 0; k < 4096; k++) {
+                const uint32_t at[3] = {(uint32_t)k & 15, (uint32_t)k >> 4 & 15, (uint32_t)k >> 8};
+                uint32_t from[3];
+                leafless_tag first = LEAFLESS_TAG_EMPTY, second;
+                int axis;
+                bool inside = true;
+                for (axis = 0; axis < 3; axis++) {
+                    const int32_t old = axes[i][axis], back = (int32_t)at[axis] - offsets[j][axis];
+                    inside = inside && back >= 0 && back < 16;
+                    from[(old < 0 ? -old : old) - 1] = (uint32_t)(old < 0 ? 15 - back : back);
+                }
+                if (inside) OK(leafless_octree_tag_at(octree, from, &first));
+                OK(leafless_octree_tag_at(moved, at, &second));
+                CHECK(first == second);
+            }
+            leafless_octree_free(moved);
+        }
+    }
+    OK(leafless_voxels_moved(&lattice, codes, levels, kinds, count, axes[1], offsets[1], NULL, NULL, NULL, NULL, sources,
+                             MOST, &number));
+    FAILS(LEAFLESS_E_BUFFER, leafless_voxels_moved(&lattice, codes, levels, kinds, count, axes[1], offsets[1], NULL, NULL,
+                                                   moved_levels, NULL, NULL, number - 1, &again));
+    for (i = 0; i < COUNT(wrong); i++) {
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_voxels_moved(&lattice, codes, levels, kinds, count, wrong[i], offsets[1],
+                                                         NULL, NULL, NULL, NULL, NULL, 0, &again));
+    }
+}
+
 /* A voxel that is cut out of the cube's faces meets triangles just if it touches a face. */
 static void triangles(void) {
     static uint64_t offsets[65], offset_count, triangle_count;
@@ -214,6 +265,7 @@ int main(void) {
     leafless_octree_free(again);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_from_voxels(&lattice, codes, levels, kinds, count, LEAFLESS_TAG_BRANCH,
                                                            NULL, &again));
+    moves();
     orders();
     attributes();
     triangles();

@@ -19,14 +19,14 @@
  *
  * EXAMPLE: a bored ball, its volume, a file. (Check each status; see RULES.)
  *
- *   const double centre[3] = {0, 0, 0};
+ *   const double centre[3] = {0, 0, 0}, bottom[3] = {0, 0, -1}, top[3] = {0, 0, 1};
  *   const leafless_frame frame = {{-1, -1, -1}, 2, 8};
  *   const leafless_sink file = leafless_to_file("bored.lfl");
  *   leafless_solid *parts[2] = {NULL, NULL}, *bored = NULL;
  *   leafless_octree *octree = NULL;
  *   leafless_statistics all;
  *   leafless_solid_new_ball(centre, 0.75, &parts[0]);
- *   leafless_solid_new_cylinder(0.25, -1, 1, &parts[1]);
+ *   leafless_solid_new_cylinder(bottom, top, 0.25, &parts[1]);
  *   leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, (const leafless_solid *const *)parts, 2, &bored);
  *   leafless_octree_build(bored, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree);
  *   leafless_octree_statistics(octree, &all);
@@ -106,6 +106,9 @@
  *
  * Units. Names that end in _model are in model units; names that end in _cells are in finest cells. "3
  * numbers" are x, y and z.
+ *
+ * Cells. A cell is told by its level and by its place among the cells of that level. Level 0 is the universe.
+ * leafless_frame_cell_bounds gives the box of any cell in model units, also of witnesses and nearest cells.
  *
  * Buffers. A buffer whose size the caller cannot know is filled in two steps. With a NULL buffer and the
  * capacity 0 the function returns the number of elements; the second call fills the buffer. Capacities count
@@ -817,7 +820,7 @@ leafless_status leafless_mesh_ref(const leafless_mesh *mesh, leafless_mesh **ref
 /// - Threads: any; no other call may use this reference.
 void leafless_mesh_free(leafless_mesh *mesh);
 
-/// How many vertices and triangles a mesh has.
+/// How many vertices and triangles a mesh has. In memory a vertex takes 24 bytes, and a triangle 12.
 ///
 /// - Buffers: `vertex_count` and `triangle_count`, one number each.
 /// - Result: both.
@@ -1356,28 +1359,31 @@ leafless_status leafless_solid_new_quadric(const double coefficients[10], leafle
 leafless_status leafless_solid_new_ellipsoid(const double centre_model[3], const double radii_model[3],
     leafless_solid **solid);
 
-/// The cylinder of `radius` around the z axis between z = `low` and z = `high`. Its verdicts are exact.
+/// The cylinder of `radius` around the segment between two points, with flat ends through them. The axis may
+/// have any direction, and nothing is rounded: the surface has exact coefficients. If the axis is parallel to
+/// x, y or z, the verdicts are exact, too.
 ///
-/// - Buffers: `solid`, one pointer.
+/// - Buffers: `from_model` and `to_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of
-///   such a magnitude, or `low` not less than `high`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, the radius is not between 2^-256 and 2^256, or a
+///   coordinate neither 0 nor of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
-leafless_status leafless_solid_new_cylinder(double radius_model, double low_model, double high_model,
-    leafless_solid **solid);
+leafless_status leafless_solid_new_cylinder(const double from_model[3], const double to_model[3],
+    double radius_model, leafless_solid **solid);
 
-/// The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`. One of
-/// the radii may be 0, which makes a cone. Its verdicts are exact.
+/// The frustum of a cone around the segment between two points: it has the radius `from_radius` at `from`,
+/// and `to_radius` at `to`. One of the radii may be 0, which makes a cone. Exact as
+/// leafless_solid_new_cylinder is.
 ///
-/// - Buffers: `solid`, one pointer.
+/// - Buffers: `from_model` and `to_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate
-///   neither 0 nor of such a magnitude, or `low` not less than `high`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, if both radii are 0 or one is not between 2^-256
+///   and 2^256, or a coordinate neither 0 nor of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
-leafless_status leafless_solid_new_frustum(double bottom_model, double top_model, double low_model,
-    double high_model, leafless_solid **solid);
+leafless_status leafless_solid_new_frustum(const double from_model[3], const double to_model[3],
+    double from_radius_model, double to_radius_model, leafless_solid **solid);
 
 /// The points p with A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0. Its signs are exact.
 ///
@@ -1392,7 +1398,8 @@ leafless_status leafless_solid_new_power(const double coefficients[3], const dou
     const uint32_t exponents[3], double constant, leafless_solid **solid);
 
 /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z =
-/// 0; where `minor` is greater, there is no hollow core.
+/// 0; where `minor` is greater, there is no hollow core. leafless_solid_placed moves it elsewhere without
+/// rounding.
 ///
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
@@ -1404,6 +1411,7 @@ leafless_status leafless_solid_new_torus(double major_model, double minor_model,
 
 /// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed,
 /// or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
+/// leafless_solid_placed moves it elsewhere without rounding.
 ///
 /// - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
 /// - Result: `*solid`.
@@ -1415,7 +1423,7 @@ leafless_status leafless_solid_new_wedge(const double size_model[3], double top_
 
 /// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners
 /// are given in order, in either direction of rotation; the last is joined to the first. The planes through
-/// its edges are exact.
+/// its edges are exact. leafless_solid_placed moves it elsewhere without rounding.
 ///
 /// - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
@@ -2061,6 +2069,9 @@ typedef struct leafless_octree_info {
     uint64_t elements;  ///< Array elements without bricks; each holds two levels.
     uint64_t bricks;  ///< Array elements of the deepest level.
     uint64_t channels;  ///< Channels, 0 to 256: leafless_octree_channel_at returns each.
+    /// Bytes that its arrays and its channels take: in memory, or where a file is mapped. What octrees share
+    /// counts for each of them.
+    uint64_t bytes;
     leafless_proof proof;  ///< What the cells prove.
     leafless_tag root;  ///< The tag of the whole universe; BRANCH if it is cut.
     leafless_tag exterior;  ///< What is known of the space outside of the universe; never BRANCH.
@@ -3267,7 +3278,7 @@ typedef struct leafless_interference {
     uint32_t verdict;  ///< A leafless_overlap.
     uint32_t level;  ///< The finest level of which cells were looked at.
     /// A cell that lies in both, if they are proven to overlap: its position in cells of its level; else
-    /// zeros.
+    /// zeros. leafless_frame_cell_bounds gives its box.
     uint32_t witness[3];
     uint32_t witness_level;  ///< The level of that cell.
     /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint.
@@ -4230,6 +4241,30 @@ leafless_status leafless_voxels_order(const leafless_frame *lattice, const uint6
     const uint8_t *levels, const uint8_t *kinds, uint64_t count, const double from[3], bool is_eye,
     const leafless_options *options, uint64_t *order, uint64_t capacity, uint64_t *order_count);
 
+/// The records under one of the 48 symmetries of the universe about its centre, and then an offset of whole
+/// finest cells of the lattice. Exact: the octree of the result is the octree of the records under the same
+/// map. Call it once for the count, and then with buffers.
+///
+/// A record whose image is no cell becomes the largest cells that make its image up. What is moved out of the
+/// universe is cut off; no record speaks of what comes in. A refined voxel is left out if its image is no
+/// cell of the universe.
+///
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `axes` and `offset_cells`, 3
+///   numbers each; `options`, one struct or NULL, of which `max_bytes` counts; `moved_codes`, `moved_levels`,
+///   `moved_kinds` and `sources`, room for `capacity` elements each, each of them NULL if it is not wanted;
+///   `moved_count`, one number. `axes[i]` says which old axis becomes the new axis i: 1 for x, 2 for y, 3 for
+///   z, negative if it is turned round; 1, 2, 3 moves nothing.
+/// - Result: the arrays, sorted as those of leafless_octree_voxels; `sources`, the index of the record that
+///   each comes from; `*moved_count`, how many there are.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `axes` are not three different ones;
+///   LEAFLESS_E_BUFFER if `capacity` is too small: nothing is written then; LEAFLESS_E_LIMIT;
+///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Untrusted input: any numbers.
+leafless_status leafless_voxels_moved(const leafless_frame *lattice, const uint64_t *codes,
+    const uint8_t *levels, const uint8_t *kinds, uint64_t count, const int32_t axes[3],
+    const int32_t offset_cells[3], const leafless_options *options, uint64_t *moved_codes,
+    uint8_t *moved_levels, uint8_t *moved_kinds, uint64_t *sources, uint64_t capacity, uint64_t *moved_count);
+
 /// For each boundary voxel the triangles of a mesh that meet it, in compressed rows: those of record i are
 /// `triangles[offsets[i]]` to before `triangles[offsets[i + 1]]`, and ascend. A triangle that only touches a
 /// voxel meets it. Exact.
@@ -4280,10 +4315,14 @@ LEAFLESS_ENUM(leafless_surface_method, uint32_t) {
     /// Coplanar shrink in its published form, to compare with. It has cracks, so that the mesh is open where
     /// merged cells of several sizes meet.
     LEAFLESS_SURFACE_SHRINK_PUBLISHED = 3,
+    /// Dual contouring, of solids alone: edges and corners stay sharp. Samples are the centres of cells. It
+    /// is leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that
+    /// function also reports what the mesh does not show.
+    LEAFLESS_SURFACE_DUAL_CONTOURING = 4,
 };
 
-/// To which end of an edge between an inside and an outside sample all methods but marching cubes move the
-/// vertex.
+/// To which end of an edge between an inside and an outside sample simple marching cubes and coplanar shrink
+/// move the vertex.
 LEAFLESS_ENUM(leafless_snap, uint32_t) {
     LEAFLESS_SNAP_FAT = 0,  ///< The outer one: the mesh contains all inside samples.
     /// The inner one: inside samples are vertices. What is one cell thick has no thickness then.
@@ -4317,7 +4356,8 @@ LEAFLESS_ENUM(leafless_vertex_placement, uint32_t) {
 typedef struct leafless_surface_options {
     uint32_t struct_size;  ///< sizeof(leafless_surface_options).
     leafless_surface_method method;  ///< A leafless_surface_method.
-    leafless_snap snap;  ///< Of all methods but LEAFLESS_SURFACE_MARCHING_CUBES: a leafless_snap.
+    /// Of LEAFLESS_SURFACE_SMC and of both kinds of LEAFLESS_SURFACE_SHRINK: a leafless_snap.
+    leafless_snap snap;
     leafless_resolve resolve;  ///< Of octrees: a leafless_resolve. Solids decide all samples themselves.
     /// Of LEAFLESS_SURFACE_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
     /// their solid's surface is.
@@ -4357,7 +4397,8 @@ leafless_status leafless_octree_surface(const leafless_octree *octree,
     const leafless_surface_options *surface, const leafless_options *options, leafless_mesh **mesh);
 
 /// The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis.
-/// Else as leafless_octree_surface. What the solid has outside of the universe is cut off.
+/// Dual contouring samples at the centres. Else as leafless_octree_surface. What the solid has outside of the
+/// universe is cut off.
 ///
 /// Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
 /// and for LEAFLESS_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well. With

@@ -384,10 +384,10 @@ public:
     [[nodiscard]] static returns<leafless::solid> new_quadric(const std::array<double,10> &coefficients);
     [[nodiscard]] static returns<leafless::solid> new_ellipsoid(const point &centre_model,
         const point &radii_model);
-    [[nodiscard]] static returns<leafless::solid> new_cylinder(double radius_model, double low_model,
-        double high_model);
-    [[nodiscard]] static returns<leafless::solid> new_frustum(double bottom_model, double top_model,
-        double low_model, double high_model);
+    [[nodiscard]] static returns<leafless::solid> new_cylinder(const point &from_model, const point &to_model,
+        double radius_model);
+    [[nodiscard]] static returns<leafless::solid> new_frustum(const point &from_model, const point &to_model,
+        double from_radius_model, double to_radius_model);
     [[nodiscard]] static returns<leafless::solid> new_power(const point &coefficients,
         const point &centre_model, const cell_index &exponents, double constant);
     [[nodiscard]] static returns<leafless::solid> new_torus(double major_model, double minor_model);
@@ -805,6 +805,10 @@ returns<void> frame_check(const leafless_frame &frame);
 [[nodiscard]] returns<std::vector<uint64_t>> voxels_order(const leafless_frame &lattice,
     span<const uint64_t> codes, span<const uint8_t> levels, span<const uint8_t> kinds, const point &from,
     bool is_eye, const leafless_options *options = nullptr);
+returns<void> voxels_moved(const leafless_frame *lattice, const uint64_t *codes, const uint8_t *levels,
+    const uint8_t *kinds, uint64_t count, const int32_t *axes, const int32_t *offset_cells,
+    const leafless_options *options, uint64_t *moved_codes, uint8_t *moved_levels, uint8_t *moved_kinds,
+    uint64_t *sources, uint64_t capacity, uint64_t *moved_count);
 [[nodiscard]] returns<std::tuple<std::vector<uint64_t>,
     std::vector<uint32_t>>> voxels_triangles(const leafless_frame &lattice, span<const uint64_t> codes,
     span<const uint8_t> levels, span<const uint8_t> kinds, const leafless::mesh &mesh,
@@ -1122,19 +1126,19 @@ inline returns<leafless::solid> solid::new_ellipsoid(const point &centre_model, 
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_cylinder(double radius_model, double low_model,
-    double high_model) {
+inline returns<leafless::solid> solid::new_cylinder(const point &from_model, const point &to_model,
+    double radius_model) {
     leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_solid_new_cylinder(radius_model, low_model, high_model,
-        &solid_handle);
+    const leafless_status status = leafless_solid_new_cylinder(from_model.data(), to_model.data(),
+        radius_model, &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_frustum(double bottom_model, double top_model, double low_model,
-    double high_model) {
+inline returns<leafless::solid> solid::new_frustum(const point &from_model, const point &to_model,
+    double from_radius_model, double to_radius_model) {
     leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_solid_new_frustum(bottom_model, top_model, low_model, high_model,
-        &solid_handle);
+    const leafless_status status = leafless_solid_new_frustum(from_model.data(), to_model.data(),
+        from_radius_model, to_radius_model, &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
@@ -2694,6 +2698,15 @@ inline returns<std::vector<uint64_t>> voxels_order(const leafless_frame &lattice
             from.data(), is_eye, options, order.data(), order.size(), &order_count);
     }
     return detail::finish(status, std::move(order));
+}
+
+inline returns<void> voxels_moved(const leafless_frame *lattice, const uint64_t *codes, const uint8_t *levels,
+    const uint8_t *kinds, uint64_t count, const int32_t *axes, const int32_t *offset_cells,
+    const leafless_options *options, uint64_t *moved_codes, uint8_t *moved_levels, uint8_t *moved_kinds,
+    uint64_t *sources, uint64_t capacity, uint64_t *moved_count) {
+    const leafless_status status = leafless_voxels_moved(lattice, codes, levels, kinds, count, axes,
+        offset_cells, options, moved_codes, moved_levels, moved_kinds, sources, capacity, moved_count);
+    return detail::finish(status);
 }
 
 inline returns<std::tuple<std::vector<uint64_t>,

@@ -19,14 +19,14 @@
  *
  * EXAMPLE: a bored ball, its volume, a file. (Check each status; see RULES.)
  *
- *   const double centre[3] = {0, 0, 0};
+ *   const double centre[3] = {0, 0, 0}, bottom[3] = {0, 0, -1}, top[3] = {0, 0, 1};
  *   const leafless_frame frame = {{-1, -1, -1}, 2, 8};
  *   const leafless_sink file = leafless_to_file("bored.lfl");
  *   leafless_solid *parts[2] = {NULL, NULL}, *bored = NULL;
  *   leafless_octree *octree = NULL;
  *   leafless_statistics all;
  *   leafless_solid_new_ball(centre, 0.75, &parts[0]);
- *   leafless_solid_new_cylinder(0.25, -1, 1, &parts[1]);
+ *   leafless_solid_new_cylinder(bottom, top, 0.25, &parts[1]);
  *   leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, (const leafless_solid *const *)parts, 2, &bored);
  *   leafless_octree_build(bored, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree);
  *   leafless_octree_statistics(octree, &all);
@@ -81,6 +81,9 @@
  *
  * Units. Names that end in _model are in model units; names that end in _cells are in finest cells. "3
  * numbers" are x, y and z.
+ *
+ * Cells. A cell is told by its level and by its place among the cells of that level. Level 0 is the universe.
+ * leafless_frame_cell_bounds gives the box of any cell in model units, also of witnesses and nearest cells.
  *
  * Buffers. A buffer whose size the caller cannot know is filled in two steps. With a NULL buffer and the
  * capacity 0 the function returns the number of elements; the second call fills the buffer. Capacities count

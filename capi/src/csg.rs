@@ -161,47 +161,55 @@ pub unsafe extern "C" fn leafless_solid_new_ellipsoid(
     })
 }
 
-/// The cylinder of `radius` around the z axis between z = `low` and z = `high`. Its verdicts are exact.
+/// The cylinder of `radius` around the segment between two points, with flat ends through them. The axis may have any
+/// direction, and nothing is rounded: the surface has exact coefficients. If the axis is parallel to x, y or z, the
+/// verdicts are exact, too.
 ///
-/// - Buffers: `solid`, one pointer.
+/// - Buffers: `from_model` and `to_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the radius is not between 2^-256 and 2^256, a coordinate neither 0 nor of
-///   such a magnitude, or `low` not less than `high`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, the radius is not between 2^-256 and 2^256, or a coordinate
+///   neither 0 nor of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
+///
+/// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_cylinder(
+    from_model: *const f64,
+    to_model: *const f64,
     radius_model: f64,
-    low_model: f64,
-    high_model: f64,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
+        let (from, to) = (array(from_model, "from_model")?, array(to_model, "to_model")?);
         let solid = out(solid, "solid")?;
-        solid.write(give(Csg::cylinder(radius_model, low_model, high_model)?))
+        solid.write(give(Csg::cylinder_between(from, to, radius_model)?))
     })
 }
 
-/// The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`. One of
-/// the radii may be 0, which makes a cone. Its verdicts are exact.
+/// The frustum of a cone around the segment between two points: it has the radius `from_radius` at `from`, and
+/// `to_radius` at `to`. One of the radii may be 0, which makes a cone. Exact as leafless_solid_new_cylinder is.
 ///
-/// - Buffers: `solid`, one pointer.
+/// - Buffers: `from_model` and `to_model`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate
-///   neither 0 nor of such a magnitude, or `low` not less than `high`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, if both radii are 0 or one is not between 2^-256 and 2^256,
+///   or a coordinate neither 0 nor of such a magnitude.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
+///
+/// cbindgen:ptrs-as-arrays=[[from_model; 3], [to_model; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_frustum(
-    bottom_model: f64,
-    top_model: f64,
-    low_model: f64,
-    high_model: f64,
+    from_model: *const f64,
+    to_model: *const f64,
+    from_radius_model: f64,
+    to_radius_model: f64,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
+        let (from, to) = (array(from_model, "from_model")?, array(to_model, "to_model")?);
         let solid = out(solid, "solid")?;
-        solid.write(give(Csg::frustum(bottom_model, top_model, low_model, high_model)?))
+        solid.write(give(Csg::frustum_between(from, to, [from_radius_model, to_radius_model])?))
     })
 }
 
@@ -235,7 +243,7 @@ pub unsafe extern "C" fn leafless_solid_new_power(
 }
 
 /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z =
-/// 0; where `minor` is greater, there is no hollow core.
+/// 0; where `minor` is greater, there is no hollow core. leafless_solid_placed moves it elsewhere without rounding.
 ///
 /// - Buffers: `solid`, one pointer.
 /// - Result: `*solid`.
@@ -257,6 +265,7 @@ pub unsafe extern "C" fn leafless_solid_new_torus(
 
 /// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed,
 /// or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
+/// leafless_solid_placed moves it elsewhere without rounding.
 ///
 /// - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
 /// - Result: `*solid`.
@@ -280,7 +289,7 @@ pub unsafe extern "C" fn leafless_solid_new_wedge(
 
 /// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners
 /// are given in order, in either direction of rotation; the last is joined to the first. The planes through
-/// its edges are exact.
+/// its edges are exact. leafless_solid_placed moves it elsewhere without rounding.
 ///
 /// - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.

@@ -58,7 +58,7 @@ pub struct leafless_interference {
     /// The finest level of which cells were looked at.
     pub level: u32,
     /// A cell that lies in both, if they are proven to overlap: its position in cells of its level; else
-    /// zeros.
+    /// zeros. leafless_frame_cell_bounds gives its box.
     pub witness: [u32; 3],
     /// The level of that cell.
     pub witness_level: u32,

@@ -111,7 +111,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_material { value, measures }
         leafless_carry_rule { name, name_length, carry }
         leafless_proof { displacement_model, full, empty }
-        leafless_octree_info { frame, elements, bricks, channels, proof, root, exterior, is_binary, is_clipped }
+        leafless_octree_info {
+            frame, elements, bricks, channels, bytes, proof, root, exterior, is_binary, is_clipped
+        }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
         leafless_zone { struct_size, kind, min_model, max_model, point_model, direction_model, from, to }
         leafless_lazy_info { frame, statistics, splits, replays, bytes }
@@ -226,7 +228,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_surface_method {
             LEAFLESS_SURFACE_MARCHING_CUBES, LEAFLESS_SURFACE_SMC, LEAFLESS_SURFACE_SHRINK,
-            LEAFLESS_SURFACE_SHRINK_PUBLISHED
+            LEAFLESS_SURFACE_SHRINK_PUBLISHED, LEAFLESS_SURFACE_DUAL_CONTOURING
         }
         leafless_snap { LEAFLESS_SNAP_FAT, LEAFLESS_SNAP_THIN }
         leafless_resolve {

@@ -109,6 +109,9 @@ pub struct leafless_octree_info {
     pub bricks: u64,
     /// Channels, 0 to 256: leafless_octree_channel_at returns each.
     pub channels: u64,
+    /// Bytes that its arrays and its channels take: in memory, or where a file is mapped. What octrees share counts for
+    /// each of them.
+    pub bytes: u64,
     /// What the cells prove.
     pub proof: leafless_proof,
     /// The tag of the whole universe; BRANCH if it is cut.
@@ -241,6 +244,7 @@ pub unsafe extern "C" fn leafless_octree_describe(
             elements: view.element_count(),
             bricks: view.brick_count(),
             channels: octree.channels().len() as u64,
+            bytes: octree.bytes(),
             proof: view.proof().into(),
             root: view.root_tag().into(),
             exterior: view.exterior().into(),

@@ -11,9 +11,9 @@ use super::status::leafless_status;
 use super::volume::leafless_volume;
 use leafless::marching_cubes;
 use leafless::surface::{
-    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, marching_cubes_solid,
-    marching_cubes_volume, published_shrink, published_shrink_solid, simple_marching_cubes,
-    simple_marching_cubes_solid,
+    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, dual_contouring_solid,
+    marching_cubes_solid, marching_cubes_volume, published_shrink, published_shrink_solid,
+    simple_marching_cubes, simple_marching_cubes_solid,
 };
 use leafless_resolve::*;
 use leafless_surface_method::*;
@@ -35,6 +35,10 @@ pub enum leafless_surface_method {
     /// Coplanar shrink in its published form, to compare with. It has cracks, so that the mesh is open where
     /// merged cells of several sizes meet.
     LEAFLESS_SURFACE_SHRINK_PUBLISHED = 3,
+    /// Dual contouring, of solids alone: edges and corners stay sharp. Samples are the centres of cells. It is
+    /// leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that function also reports
+    /// what the mesh does not show.
+    LEAFLESS_SURFACE_DUAL_CONTOURING = 4,
 }
 
 enumeration! {
@@ -43,10 +47,11 @@ enumeration! {
         LEAFLESS_SURFACE_SMC => LEAFLESS_SURFACE_SMC,
         LEAFLESS_SURFACE_SHRINK => LEAFLESS_SURFACE_SHRINK,
         LEAFLESS_SURFACE_SHRINK_PUBLISHED => LEAFLESS_SURFACE_SHRINK_PUBLISHED,
+        LEAFLESS_SURFACE_DUAL_CONTOURING => LEAFLESS_SURFACE_DUAL_CONTOURING,
     }
 }
 
-/// To which end of an edge between an inside and an outside sample all methods but marching cubes move the
+/// To which end of an edge between an inside and an outside sample simple marching cubes and coplanar shrink move the
 /// vertex.
 #[derive(Clone, Copy)]
 #[repr(u32)]
@@ -117,7 +122,7 @@ pub struct leafless_surface_options {
     pub struct_size: u32,
     /// A leafless_surface_method.
     pub method: Number<leafless_surface_method>,
-    /// Of all methods but LEAFLESS_SURFACE_MARCHING_CUBES: a leafless_snap.
+    /// Of LEAFLESS_SURFACE_SMC and of both kinds of LEAFLESS_SURFACE_SHRINK: a leafless_snap.
     pub snap: Number<leafless_snap>,
     /// Of octrees: a leafless_resolve. Solids decide all samples themselves.
     pub resolve: Number<leafless_resolve>,
@@ -139,6 +144,7 @@ enum Method {
     Smc(Snap),
     Shrink(Snap),
     PublishedShrink(Snap),
+    DualContouring,
 }
 
 /// Refuses a field that should be zero, and is not.
@@ -159,6 +165,11 @@ impl leafless_surface_options {
             LEAFLESS_SURFACE_SMC => Ok(Method::Smc(snap)),
             LEAFLESS_SURFACE_SHRINK => Ok(Method::Shrink(snap)),
             LEAFLESS_SURFACE_SHRINK_PUBLISHED => Ok(Method::PublishedShrink(snap)),
+            LEAFLESS_SURFACE_DUAL_CONTOURING => {
+                let problem = "is not for dual contouring, whose vertices lie between samples";
+                zero(snap == Snap::Fat, "surface.snap", problem)?;
+                Ok(Method::DualContouring)
+            }
         }
     }
 
@@ -224,9 +235,11 @@ pub unsafe extern "C" fn leafless_octree_surface(
             "surface.placement",
             problem,
         )?;
+        let problem = "is dual contouring, which needs normals: extract the surface of the solid";
+        zero(!matches!(method, Method::DualContouring), "surface.method", problem)?;
         let mesh = out(mesh, "mesh")?;
         mesh.write(give(controlled(options, |control| match method {
-            Method::MarchingCubes => marching_cubes(octree, resolve, control),
+            Method::MarchingCubes | Method::DualContouring => marching_cubes(octree, resolve, control),
             Method::Smc(snap) => simple_marching_cubes(octree, snap, resolve, control),
             Method::Shrink(snap) => coplanar_shrink(octree, snap, resolve, control),
             Method::PublishedShrink(snap) => published_shrink(octree, snap, resolve, control),
@@ -234,7 +247,8 @@ pub unsafe extern "C" fn leafless_octree_surface(
     })
 }
 
-/// The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis.
+/// The surface of a solid, which is sampled at the corners of the cells of a frame: 2^depth + 1 to an axis. Dual
+/// contouring samples at the centres.
 /// Else as leafless_octree_surface. What the solid has outside of the universe is cut off.
 ///
 /// Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
@@ -276,7 +290,7 @@ pub unsafe extern "C" fn leafless_solid_surface(
         zero(surface.source.is_null(), "surface.source", problem)?;
         let mesh = out(mesh, "mesh")?;
         if !matches!(method, Method::MarchingCubes) {
-            let problem = "is for marching cubes only: vertices of other methods are samples";
+            let problem = "is for marching cubes only: other methods place vertices themselves";
             zero(is_midpoint, "surface.placement", problem)?;
         }
         mesh.write(give(controlled(options, |control| match method {
@@ -284,6 +298,7 @@ pub unsafe extern "C" fn leafless_solid_surface(
             Method::Smc(snap) => simple_marching_cubes_solid(solid, &frame, snap, control),
             Method::Shrink(snap) => coplanar_shrink_solid(solid, &frame, snap, control),
             Method::PublishedShrink(snap) => published_shrink_solid(solid, &frame, snap, control),
+            Method::DualContouring => Ok(dual_contouring_solid(solid, &frame, control)?.0),
         })?))
     })
 }

@@ -11,8 +11,8 @@ use super::octree::{leafless_octree, settled_tag};
 use super::status::leafless_status;
 use leafless::Octree;
 use leafless::attribute::{Attribute, Detail};
-use leafless::voxel::{Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef};
-use leafless::{Cell, Frame};
+use leafless::voxel::{Symmetry, Viewpoint, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef};
+use leafless::{Cell, Frame, memory};
 
 /// What a voxel is: a number in the array `kinds`.
 #[derive(Clone, Copy)]
@@ -286,6 +286,87 @@ pub unsafe extern "C" fn leafless_voxels_order(
         let found = controlled(options, |control| records.depth_order(&from, control))?;
         order.fill(&found)?;
         order_count.write(found.len() as u64)
+    })
+}
+
+/// The records under one of the 48 symmetries of the universe about its centre, and then an offset of whole finest cells
+/// of the lattice. Exact: the octree of the result is the octree of the records under the same map. Call it once for the
+/// count, and then with buffers.
+///
+/// A record whose image is no cell becomes the largest cells that make its image up. What is moved out of the universe is
+/// cut off; no record speaks of what comes in. A refined voxel is left out if its image is no cell of the universe.
+///
+/// - Buffers: `lattice`, `codes`, `levels` and `kinds` as leafless_voxels_find; `axes` and `offset_cells`, 3 numbers
+///   each; `options`, one struct or NULL, of which `max_bytes` counts; `moved_codes`, `moved_levels`, `moved_kinds` and
+///   `sources`, room for `capacity` elements each, each of them NULL if it is not wanted; `moved_count`, one number.
+///   `axes[i]` says which old axis becomes the new axis i: 1 for x, 2 for y, 3 for z, negative if it is turned round;
+///   1, 2, 3 moves nothing.
+/// - Result: the arrays, sorted as those of leafless_octree_voxels; `sources`, the index of the record that each comes
+///   from; `*moved_count`, how many there are.
+/// - Errors: LEAFLESS_E_ARGUMENT if the arrays are no records, or `axes` are not three different ones; LEAFLESS_E_BUFFER
+///   if `capacity` is too small: nothing is written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
+/// - Untrusted input: any numbers.
+///
+/// cbindgen:ptrs-as-arrays=[[axes; 3], [offset_cells; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_voxels_moved(
+    lattice: *const leafless_frame,
+    codes: *const u64,
+    levels: *const u8,
+    kinds: *const u8,
+    count: u64,
+    axes: *const i32,
+    offset_cells: *const i32,
+    options: *const leafless_options,
+    moved_codes: *mut u64,
+    moved_levels: *mut u8,
+    moved_kinds: *mut u8,
+    sources: *mut u64,
+    capacity: u64,
+    moved_count: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let lattice = frame_of(lattice, "lattice")?;
+        let given = records(&lattice, codes, levels, kinds, count)?;
+        let axes: [i32; 3] = array(axes, "axes")?;
+        let offset = array(offset_cells, "offset_cells")?;
+        let old = |axis: i32| (axis.unsigned_abs() as u8).wrapping_sub(1);
+        let problem = "must be 1, 2 and 3 in any order, each of them negative or not";
+        let symmetry = match axes.iter().all(|axis| (1..=3).contains(&axis.unsigned_abs())) {
+            true => Symmetry::new(axes.map(old), axes.map(|axis| axis < 0)).ok(),
+            false => None,
+        }
+        .ok_or(Failure::Argument { name: "axes", problem })?;
+        let (codes, levels, kinds, sources) = (
+            present(moved_codes, capacity, "moved_codes")?,
+            present(moved_levels, capacity, "moved_levels")?,
+            present(moved_kinds, capacity, "moved_kinds")?,
+            present(sources, capacity, "sources")?,
+        );
+        let moved_count = out(moved_count, "moved_count")?;
+        // Values tell where a record comes from. (Doubles hold more indices than there can be records.)
+        let indices = memory::collected((0..given.len()).map(|index| index as f64))?;
+        let given =
+            VoxelRecordsRef::new(&lattice, given.codes(), given.levels(), given.kinds(), 1, &indices)?;
+        let moved = controlled(options, |control| given.moved(symmetry, offset, control))?;
+        let view = moved.view();
+        for (is_wanted, name) in [
+            (codes.wanted(), "moved_codes"),
+            (levels.wanted(), "moved_levels"),
+            (kinds.wanted(), "moved_kinds"),
+            (sources.wanted(), "sources"),
+        ] {
+            if is_wanted && view.len() as u64 > capacity {
+                return Err(Failure::Buffer { name, needed: view.len() as u64, capacity });
+            }
+        }
+        codes.fill(view.codes())?;
+        levels.fill(view.levels())?;
+        kinds.fill(view.kinds())?;
+        if sources.wanted() {
+            sources.fill(&memory::collected(view.values().iter().map(|&index| index as u64))?)?;
+        }
+        moved_count.write(view.len() as u64)
     })
 }
 

@@ -132,7 +132,7 @@ int main(int argc, char **argv) {
     const leafless_sink file = leafless_to_file(path);
     const leafless_source in_place = leafless_from_file(path, LEAFLESS_ACCESS_MAP);
     const double low[3] = {-30, -30, -30}, high[3] = {30, 30, 30};
-    const double lying[12] = {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0}; /* from z to x */
+    const double left[3] = {-60, 0, 0}, right[3] = {60, 0, 0};
     gradient along_x = {20, 180, -60, 60};
     const leafless_attribute_callbacks callbacks = {.struct_size = sizeof callbacks,
                                                     .components = 1,
@@ -143,12 +143,11 @@ int main(int argc, char **argv) {
     const leafless_carry_rule rules[] = {{"material", 8, LEAFLESS_CARRY_RIGHT}};
     const leafless_octree *parts[2];
     leafless_attribute *heat = NULL;
-    leafless_solid *block = NULL, *upright = NULL, *rod = NULL;
+    leafless_solid *block = NULL, *rod = NULL;
     leafless_octree *steel = NULL, *copper = NULL, *both = NULL, *whole = NULL, *stored = NULL;
     leafless_status s = leafless_attribute_new_callbacks(&callbacks, &heat);
     if (!s) s = leafless_solid_new_box(low, high, &block);
-    if (!s) s = leafless_solid_new_cylinder(12, -60, 60, &upright);
-    if (!s) s = leafless_solid_placed(upright, lying, NULL, &rod);
+    if (!s) s = leafless_solid_new_cylinder(left, right, 12, &rod);
     if (!s) s = part(block, STEEL, heat, &steel);
     if (!s) s = part(rod, COPPER, heat, &copper);
     parts[0] = steel, parts[1] = copper;
@@ -166,7 +165,7 @@ int main(int argc, char **argv) {
     }
     leafless_octree_free(stored), leafless_octree_free(whole), leafless_octree_free(both);
     leafless_octree_free(copper), leafless_octree_free(steel);
-    leafless_solid_free(rod), leafless_solid_free(upright), leafless_solid_free(block);
+    leafless_solid_free(rod), leafless_solid_free(block);
     leafless_attribute_free(heat);
     return s ? 1 : 0;
 }

@@ -15,10 +15,11 @@ enum { POSITIONS = 9, DEPTH = 12 };
 /* A block of 120 with a bore of radius 22, and below it a narrower one for the end of the shaft. */
 static leafless_status housing(leafless_solid **result) {
     const double low[3] = {-60, -60, -60}, high[3] = {60, 60, 60};
+    const double top[3] = {0, 0, 61}, step[3] = {0, 0, -20}, bottom[3] = {0, 0, -61};
     leafless_solid *block = NULL, *bore = NULL, *seat = NULL;
     leafless_status s = leafless_solid_new_box(low, high, &block);
-    if (!s) s = leafless_solid_new_cylinder(22, -20, 61, &bore);
-    if (!s) s = leafless_solid_new_cylinder(13, -61, -20, &seat);
+    if (!s) s = leafless_solid_new_cylinder(step, top, 22, &bore);
+    if (!s) s = leafless_solid_new_cylinder(bottom, step, 13, &seat);
     if (!s) {
         const leafless_solid *const operands[] = {block, bore, seat};
         s = leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 3, result);
@@ -31,9 +32,10 @@ static leafless_status housing(leafless_solid **result) {
 static leafless_status shaft(double slope, double height, leafless_solid **result) {
     const double length = sqrt(1 + slope * slope), c = 1 / length, d = slope / length;
     const double matrix[12] = {c, 0, d, 0, 0, 1, 0, 0, -d, 0, c, height};
+    const double tip[3] = {0, 0, -35}, origin[3] = {0, 0, 0}, inner[3] = {0, 0, 1}, end[3] = {0, 0, 90};
     leafless_solid *thick = NULL, *thin = NULL, *both = NULL;
-    leafless_status s = leafless_solid_new_cylinder(20, 0, 90, &thick);
-    if (!s) s = leafless_solid_new_cylinder(11.5, -35, 1, &thin);
+    leafless_status s = leafless_solid_new_cylinder(origin, end, 20, &thick);
+    if (!s) s = leafless_solid_new_cylinder(tip, inner, 11.5, &thin);
     if (!s) {
         const leafless_solid *const parts[] = {thick, thin};
         s = leafless_solid_combine(LEAFLESS_OPERATION_UNION, parts, 2, &both);

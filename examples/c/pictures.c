@@ -18,18 +18,15 @@ static uint8_t colours[4 * WIDTH * HEIGHT];
 /* The block [-1, 1] x [-0.6, 0.6] x [-0.5, 0.5] with a bore along y. */
 static leafless_status block(leafless_solid **solid) {
     const double min[3] = {-1, -0.6, -0.5}, max[3] = {1, 0.6, 0.5};
-    /* The cylinder stands along z; its axis is laid along y, through x = 0.3. */
-    const double lay[12] = {1, 0, 0, 0.3, 0, 0, -1, 0, 0, 1, 0, 0};
-    leafless_solid *whole = NULL, *upright = NULL, *bore = NULL;
+    const double front[3] = {0.3, -1, 0}, back[3] = {0.3, 1, 0};
+    leafless_solid *whole = NULL, *bore = NULL;
     leafless_status s = leafless_solid_new_box(min, max, &whole);
-    if (!s) s = leafless_solid_new_cylinder(0.3, -1, 1, &upright);
-    if (!s) s = leafless_solid_placed(upright, lay, NULL, &bore);
+    if (!s) s = leafless_solid_new_cylinder(front, back, 0.3, &bore);
     if (!s) {
         const leafless_solid *const operands[] = {whole, bore};
         s = leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 2, solid);
     }
     leafless_solid_free(whole);
-    leafless_solid_free(upright);
     leafless_solid_free(bore);
     return s;
 }

@@ -64,7 +64,7 @@ octree cut(const octree &stock) {
 }
 
 void poses(const solid &part) {
-    const solid shaft = solid::new_cylinder(2, -4, 4);
+    const solid shaft = solid::new_cylinder({0, 0, -4}, {0, 0, 4}, 2);
     std::vector<leafless::affine> placements;
     for (int i = 0; i < 10; i++) placements.push_back({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 16.0 - i});
     std::vector<leafless_interference> found(placements.size());

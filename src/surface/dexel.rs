@@ -12,12 +12,13 @@ use super::solid::edges;
 use super::vanished::{is_kept, vanished};
 use super::weld::weld;
 use crate::control::{Control, Job, WHOLE};
-use crate::dexel::TriDexelRef;
+use crate::dexel::{DexelFormat, DexelNormals, TriDexelRef};
 use crate::error::Error;
-use crate::lattice::axes;
+use crate::lattice::{Frame, axes};
 use crate::memory;
 use crate::mesh::TriangleMesh;
-use crate::op::octree_from_dexels;
+use crate::op::{DexelOptions, dexelize, octree_from_dexels};
+use crate::solid::Solid;
 use crate::walk::Edge;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -49,6 +50,32 @@ pub struct DexelSurfaceReport {
     /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
     /// lattice there is no part of any body, and no crossing tells of it.
     pub without_centres: u64,
+}
+
+/// The surface of a solid by dual contouring, with sharp edges and corners: [`dual_contouring_dexels`] of a tri-dexel
+/// model with normals, which is made of the solid on `frame` and dropped afterwards.
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, surface::dual_contouring_solid};
+/// let frame = Frame::new([-1.0; 3], 2.0, 4)?;
+/// let block = Csg::cuboid([-0.52, -0.33, -0.71], [0.61, 0.47, 0.29])?;
+/// let (mesh, _) = dual_contouring_solid(&block, &frame, &Control::default())?;
+/// // The eight corners are vertices, and nothing is cut off.
+/// assert!((mesh.volume() - 1.13 * 0.8 * 1.0).abs() < 1e-6);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`dexelize`] and [`dual_contouring_dexels`].
+pub fn dual_contouring_solid<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    control: &Control<'_>,
+) -> Result<(TriangleMesh, DexelSurfaceReport), Error> {
+    let format = DexelFormat { normals: DexelNormals::Bits32, ..DexelFormat::default() };
+    let options = DexelOptions { format, ..DexelOptions::default() };
+    let model = control.share([0.0, 0.6], |control| dexelize(solid, frame, &options, control))?;
+    control.share([0.6, 1.0], |control| dual_contouring_dexels(model.view(), control))
 }
 
 /// The surface of a tri-dexel model by marching cubes: a closed mesh, with vertices where rays cross the solid's surface.

@@ -54,7 +54,7 @@ mod volume;
 mod weld;
 
 pub use cubes::{marching_cubes, marching_cubes_reusing};
-pub use dexel::{DexelSurfaceReport, dual_contouring_dexels, marching_cubes_dexels};
+pub use dexel::{DexelSurfaceReport, dual_contouring_dexels, dual_contouring_solid, marching_cubes_dexels};
 pub use dexel_solid::DexelSolid;
 pub use resolve::Resolve;
 pub use shrink::{coplanar_shrink, published_shrink};

@@ -11,6 +11,7 @@ mod descent;
 mod dexel;
 mod fraction;
 mod import;
+mod moved;
 mod options;
 mod order;
 mod record;

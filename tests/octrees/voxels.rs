@@ -8,7 +8,8 @@ use leafless::voxel::{
     VoxelRecordsRef, Voxels,
 };
 use leafless::{
-    Affine, Bounds, Cell, Control, Csg, Error, Frame, Interval, Octree, Proof, Rule, Tag, TriangleMesh, build,
+    Affine, AnySolid, Bounds, Cell, Control, Csg, Error, Frame, Interval, Octree, Proof, Rule, Tag,
+    TriangleMesh, build,
 };
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
@@ -487,6 +488,74 @@ proptest! {
             let inverse = Symmetry::new(axes, flipped).unwrap();
             prop_assert_eq!(bits(&turned.view().turned(inverse, &alone()).unwrap()), bits(&records));
         }
+    }
+
+    /// Against dense arrays, and against the octree as a solid under the same map.
+    #[test]
+    fn whole_cells_move_as_octrees_do(
+        shape in shapes(1..=3),
+        refined in any::<bool>(),
+        detail in details(),
+        offset in [-9..=9i32, -9..=9i32, -9..=9i32],
+        which in 0..48usize,
+        near in any::<bool>(),
+    ) {
+        let dense = shape.dense();
+        let (depth, edge) = (dense.depth, 1i32 << dense.depth);
+        let offset = if near { offset.map(|a| a % 3) } else { offset };
+        let symmetry = Symmetry::all().nth(which).unwrap();
+        let tree = dense.octree_with(Tag::Empty, &alone()).unwrap();
+        let mut options = VoxelOptions::new().outside(true).refined(refined);
+        if let Some(detail) = detail {
+            options = options.detail(detail);
+        }
+        let records = VoxelRecords::of(tree.view(), &options, Some(&slope()), &alone()).unwrap();
+        let view = records.view();
+        // The lattice of the records may be finer than the octree's.
+        let fine = view.frame().depth();
+        let scale = 1i32 << (fine - depth);
+        let moved = view.moved(symmetry, offset.map(|a| a * scale), &alone()).unwrap();
+        check_arrays(&moved);
+        // Where a cell comes from, on a lattice of so many cells.
+        let from = |at: [i32; 3], scale: i32| -> Option<[u32; 3]> {
+            let mut old = [0; 3];
+            for axis in 0..3 {
+                let back = at[axis] - offset[axis] * scale;
+                let back = if symmetry.flipped()[axis] { edge * scale - 1 - back } else { back };
+                old[symmetry.axes()[axis] as usize] = u32::try_from(back).ok()?;
+            }
+            old.iter().all(|&a| a < (edge * scale) as u32).then_some(old)
+        };
+        let tag = |at: [u32; 3]| from(at.map(|a| a as i32), 1).map_or(Tag::Empty, |old| dense.at(old));
+        let expected = Dense::from_fn(depth, tag);
+        let octree = moved.view().to_octree(Tag::Partial, &alone()).unwrap();
+        prop_assert_eq!(Dense::of(octree.view()), expected.refined(fine));
+        prop_assert_eq!(octree.proof().empty, tree.proof().empty);
+        let mut rows = [[0.0; 4]; 3];
+        for axis in 0..3 {
+            let flipped = symmetry.flipped()[axis];
+            rows[axis][symmetry.axes()[axis] as usize] = if flipped { -1.0 } else { 1.0 };
+            rows[axis][3] = f64::from(offset[axis] + if flipped { edge } else { 0 });
+        }
+        let placed = AnySolid::new(tree.clone()).placed(&Affine::new(rows).unwrap()).unwrap();
+        let built = build(&placed, tree.frame(), Rule::Certified, &alone()).unwrap();
+        prop_assert_eq!(Dense::of(built.view()), expected);
+        // Kinds and values are those of the record that a cell comes from.
+        for record in moved.view().iter().filter(|record| record.kind != VoxelKind::Refined) {
+            let at = record.cell.at.map(|a| (a << (fine - record.cell.level)) as i32);
+            let old = from(at, scale).unwrap();
+            let known = view.get(view.containing(Cell { level: fine, at: old }).unwrap()).unwrap();
+            let told = |record: &VoxelRecord| format!("{:?} {:?}", record.kind, record.value);
+            prop_assert_eq!(told(&record), told(&known));
+        }
+        if offset == [0; 3] {
+            prop_assert_eq!(bits(&moved), bits(&view.turned(symmetry, &alone()).unwrap()));
+        }
+        // What is known of the space outside.
+        let around = dense.octree_with(Tag::Full, &alone()).unwrap();
+        let records = VoxelRecords::of(around.view(), &VoxelOptions::new(), None, &alone()).unwrap();
+        let moved = records.view().moved(symmetry, [1, 0, 0], &alone()).unwrap();
+        prop_assert_eq!((moved.view().exterior(), moved.view().proof().empty), (Tag::Partial, false));
     }
 
     #[test]

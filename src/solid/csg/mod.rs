@@ -4,6 +4,7 @@
 //! Ni, *A fast decomposition algorithm of octree node in 3D-packing* (1994), with proofs in place of their
 //! approximations: see [`Csg`].
 
+mod between;
 mod extent;
 mod faceted;
 mod figure;

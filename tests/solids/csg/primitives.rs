@@ -202,6 +202,41 @@ fn shapes() -> Vec<Shape> {
             }),
         );
     }
+    for (name, from, to, radii) in [
+        ("cylinder askew", [0.1, -0.7, 0.3], [0.9, 0.5, -1.1], [0.8, 0.8]),
+        ("cylinder along x", [1.3, 0.25, -0.5], [-0.7, 0.25, -0.5], [0.6, 0.6]),
+        ("frustum askew", [-0.3, 0.2, -1.0], [0.7, 1.1, 0.4], [1.25, 0.3]),
+        ("cone askew", [0.6, 0.1, 0.0], [-0.4, 0.1, 0.75], [0.0, 0.7]),
+        ("disc", [0.2, 0.3, 0.1], [0.3, 0.3, 0.35], [1.5, 1.0]),
+    ] {
+        let ([a, b], [r, s]) = ([from, to], radii);
+        let d = [0, 1, 2].map(|i: usize| b[i] - a[i]);
+        let square = d.iter().map(|d| d * d).sum::<f64>();
+        let length = square.sqrt();
+        // Ends are discs.
+        let reach = |i: usize, radius: f64| radius * (square - d[i] * d[i]).max(0.0).sqrt() / length;
+        let low = [0, 1, 2].map(|i| (a[i] - reach(i, r)).min(b[i] - reach(i, s)) + 1e-12);
+        let high = [0, 1, 2].map(|i| (a[i] + reach(i, r)).max(b[i] + reach(i, s)) - 1e-12);
+        add(
+            name,
+            Csg::frustum_between(from, to, radii).unwrap(),
+            Some(PI * length / 3.0 * (r * r + r * s + s * s)),
+            (low, high),
+            // The distance from the axis is |(p − a) × d| / |d|, and the radius there r + (s − r) (p − a) · d / |d|².
+            Box::new(move |p| {
+                let d = [0, 1, 2].map(|i| Exact::from(b[i]).minus(&a[i].into()));
+                let q = [0, 1, 2].map(|i| p.beyond(i, a[i]));
+                let t = sum((0..3).map(|i| q[i].times(&d[i])));
+                let square = sum(d.iter().map(|d| pow(d, 2)));
+                let cross = |(i, j): (usize, usize)| q[i].times(&d[j]).minus(&q[j].times(&d[i]));
+                let distance = sum([(0, 1), (1, 2), (2, 0)].map(|pair| pow(&cross(pair), 2)));
+                let whole = p.w.times(&square);
+                let radius = whole.times(&r.into()).plus(&Exact::from(s).minus(&r.into()).times(&t));
+                let mantle = pow(&radius, 2).minus(&square.times(&distance)).sign();
+                mantle.min(t.sign()).min(whole.minus(&t).sign())
+            }),
+        );
+    }
     for (name, major, minor) in [("torus", 1.5, 0.4), ("horn torus", 0.75, 0.75), ("spindle torus", 0.5, 1.0)]
     {
         let outer = major + minor;
@@ -440,6 +475,55 @@ fn points_never_contradict_cells() {
 #[ignore = "takes minutes"]
 fn points_never_contradict_cells_at_length() {
     check_all_points(100, 10_000, 2);
+}
+
+/// Along the axes, two points make what a cylinder or frustum around z is when it is moved there.
+#[test]
+fn two_points_along_an_axis_are_as_good_as_heights() {
+    let frame = Frame::new([-2.0; 3], 4.0, 6).unwrap();
+    for (r, s) in [(0.75, 0.75), (1.1, 0.3), (0.0, 1.0)] {
+        let upright = Csg::frustum(r, s, -0.7, 1.2).unwrap();
+        for axis in 0..3 {
+            let (mut from, mut to) = ([0.25; 3], [0.25; 3]);
+            (from[axis], to[axis]) = (-0.7, 1.2);
+            let mut rows = [[0.0; 4]; 3];
+            for (i, row) in rows.iter_mut().enumerate() {
+                row[(i + 5 - axis) % 3] = 1.0;
+                row[3] = if i == axis { 0.0 } else { 0.25 };
+            }
+            let placed = upright.placed(&Affine::new(rows).unwrap()).unwrap();
+            let solid = Csg::frustum_between(from, to, [r, s]).unwrap();
+            assert!(built(&solid, &frame) == built(&placed, &frame), "{axis} {r} {s}");
+            let Bounds { min, max } = solid.bounds().unwrap();
+            let wide = r.max(s);
+            for i in 0..3 {
+                let expected = if i == axis { (-0.7, 1.2) } else { (0.25 - wide, 0.25 + wide) };
+                assert!((min[i] - expected.0).abs() < 1e-15 && (max[i] - expected.1).abs() < 1e-15);
+            }
+        }
+    }
+    let refused = |from, to, radii| Csg::frustum_between(from, to, radii).err();
+    for (from, to, radii) in [
+        ([0.5; 3], [0.5; 3], [1.0, 1.0]),
+        ([0.0; 3], [1.0; 3], [0.0, 0.0]),
+        ([0.0; 3], [1.0; 3], [-1.0, 1.0]),
+        ([0.0; 3], [f64::NAN; 3], [1.0, 1.0]),
+        ([f64::INFINITY; 3], [1.0; 3], [1.0, 1.0]),
+    ] {
+        assert!(
+            matches!(refused(from, to, radii), Some(Error::Argument { .. })),
+            "{from:?} {to:?} {radii:?}"
+        );
+    }
+    // Numbers as far apart as there may be.
+    let (small, large) = (2f64.powi(-256), 2f64.powi(256));
+    for (from, to) in [([0.0; 3], [small, 0.0, small]), ([-large; 3], [large, large, small])] {
+        for radii in [[small, large], [large, large], [0.0, small]] {
+            let solid = Csg::frustum_between(from, to, radii).unwrap();
+            let Bounds { min, max } = solid.bounds().unwrap();
+            assert!((0..3).all(|i| min[i] <= from[i].min(to[i]) && from[i].max(to[i]) <= max[i]));
+        }
+    }
 }
 
 #[test]

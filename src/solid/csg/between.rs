@@ -1,0 +1,109 @@
+//! Round primitives along an axis of any direction, which two points give.
+
+use super::{Csg, HalfSpace};
+use crate::error::Error;
+use crate::lattice::axes;
+use crate::lattice::exact::{Dyadic, dot};
+use crate::lattice::valid::{self, length};
+use crate::lattice::{Bounds, Interval};
+
+impl Csg {
+    /// The cylinder of `radius` around the segment between two points (model units), with flat ends through them.
+    ///
+    /// Nothing is rounded: the coefficients of its surface are exact for every direction of the axis. Along a
+    /// coordinate axis it is the same solid as the [`cylinder`](Self::cylinder) that is moved there.
+    ///
+    /// ```
+    /// use leafless::{Control, Csg, Frame, measure};
+    /// let hole = Csg::cylinder_between([0.1, 0.2, 0.3], [0.4, 0.6, 0.3], 0.25)?;
+    /// let found = measure(&hole, &Frame::new([-1.0; 3], 2.0, 8)?, 1e-6, &Control::default())?;
+    /// assert!(found.volume.contains(core::f64::consts::PI * 0.25 * 0.25 * 0.5));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the points are equal, the radius is not between 2^-256 and 2^256, or a coordinate not
+    /// zero and not of such a magnitude.
+    pub fn cylinder_between(from: [f64; 3], to: [f64; 3], radius: f64) -> Result<Csg, Error> {
+        length("radius", radius)?;
+        Csg::frustum_between(from, to, [radius; 2])
+    }
+
+    /// The frustum of a cone around the segment between two points (model units): of radius `radii[0]` at `from` and
+    /// `radii[1]` at `to`, with flat ends through both. One of the radii may be 0, which makes a cone.
+    ///
+    /// Nothing is rounded, as of [`cylinder_between`](Self::cylinder_between).
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the points are equal, if both radii are 0 or one is not between 2^-256 and 2^256, or a
+    /// coordinate not zero and not of such a magnitude.
+    pub fn frustum_between(from: [f64; 3], to: [f64; 3], radii: [f64; 2]) -> Result<Csg, Error> {
+        for radius in radii {
+            if radius != 0.0 || radii[0] == radii[1] {
+                length("radius", radius)?;
+            }
+        }
+        valid::numbers("from", &from)?;
+        valid::numbers("to", &to)?;
+        if from == to {
+            return Err(Error::Argument { name: "to", problem: "must be another point than from" });
+        }
+        let [a, b] = [from, to].map(|point| point.map(Dyadic::new));
+        let d = axes(|axis| &b[axis] - &a[axis]);
+        let square = dot(d.each_ref(), d.each_ref());
+        // How far along the axis a point p lies, times |d|: t = d · p − start, which is 0 to |d|² in between.
+        let start = dot(d.each_ref(), a.each_ref());
+        let [r, s] = radii.map(Dyadic::new);
+        let slope = &s - &r;
+        // The distance of p from the axis is at most r + slope t / |d|². Squared, times |d|⁴:
+        // |d|² (|d|² |p − a|² − t²) ≤ (r |d|² + slope t)². If the slope is zero, less a factor of |d|².
+        let [along, around, mixed, most] = match slope.is_zero() {
+            true => [Dyadic::new(1.0), square.clone(), Dyadic::zero(), &r.pow(2) * &square],
+            false => {
+                [&slope.pow(2) + &square, square.pow(2), &(&r * &slope) * &square, &r.pow(2) * &square.pow(2)]
+            }
+        };
+        // along t² + 2 mixed t + most − around |p − a|² ≥ 0.
+        let product = |i: usize, j: usize| &along * &(&d[i] * &d[j]);
+        let squares = axes(|i| &product(i, i) - &around);
+        let of_t = &mixed - &(&along * &start);
+        let linear = axes(|i| (&(&of_t * &d[i]) + &(&around * &a[i])).shifted(1));
+        let constant = &(&along * &start.pow(2)) - &(&mixed * &start).shifted(1);
+        let constant = &(&constant + &most) - &(&around * &dot(a.each_ref(), a.each_ref()));
+        let [xx, yy, zz] = squares;
+        let [x, y, z] = linear;
+        let [xy, yz, zx] = [product(0, 1), product(1, 2), product(2, 0)].map(|product| product.shifted(1));
+        let mantle = HalfSpace::exactly([xx, yy, zz, xy, yz, zx, x, y, z, constant]);
+        let bottom = HalfSpace::linear([d[0].clone(), d[1].clone(), d[2].clone(), -&start]);
+        let top = HalfSpace::linear([-&d[0], -&d[1], -&d[2], &square + &start]);
+        let parts = Csg::intersection_of([mantle.into(), bottom.into(), top.into()])?;
+        let Bounds { min, max } = bounds(from, to, radii);
+        Ok(parts.within(min, max))
+    }
+}
+
+/// A box around both ends, which are discs.
+fn bounds(from: [f64; 3], to: [f64; 3], radii: [f64; 2]) -> Bounds {
+    let d = axes(|axis| to[axis] - from[axis]);
+    let whole = libm::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    // The disc of a radius reaches that much times the sine between axis and normal.
+    let reach = |axis: usize, radius: f64| {
+        let (u, v) = (d[(axis + 1) % 3], d[(axis + 2) % 3]);
+        if u == 0.0 && v == 0.0 {
+            return Interval::exactly(0.0);
+        }
+        if d[axis] == 0.0 {
+            return Interval::exactly(radius);
+        }
+        // Some roundings of 2^-53 each.
+        Interval::exactly(radius * (libm::sqrt(u * u + v * v) / whole) * (1.0 + 1e-14))
+    };
+    let end = |axis: usize, k: usize| {
+        let (at, reach) = (Interval::exactly([from, to][k][axis]), reach(axis, radii[k]));
+        (at.minus(reach).lower, at.plus(reach).upper)
+    };
+    Bounds {
+        min: axes(|axis| end(axis, 0).0.min(end(axis, 1).0)),
+        max: axes(|axis| end(axis, 0).1.max(end(axis, 1).1)),
+    }
+}
