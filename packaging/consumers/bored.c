@@ -4,14 +4,14 @@
 #include <stdio.h>
 
 int main(void) {
-    const double centre[3] = {0, 0, 0};
+    const double centre[3] = {0, 0, 0}, low[3] = {0, 0, -1}, high[3] = {0, 0, 1};
     const leafless_frame frame = {{-1, -1, -1}, 2, 6};
     leafless_solid *parts[2] = {NULL, NULL}, *bored = NULL;
     leafless_octree *octree = NULL;
     leafless_statistics all;
     leafless_status s = LEAFLESS_COMPATIBLE() ? LEAFLESS_OK : LEAFLESS_E_ARGUMENT;
     if (!s) s = leafless_solid_new_ball(centre, 0.75, &parts[0]);
-    if (!s) s = leafless_solid_new_cylinder(0.25, -1, 1, &parts[1]);
+    if (!s) s = leafless_solid_new_cylinder(low, high, 0.25, &parts[1]);
     if (!s) {
         const leafless_solid *operands[2];
         operands[0] = parts[0];

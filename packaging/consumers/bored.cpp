@@ -8,7 +8,7 @@ int main() {
     try {
         const leafless_frame frame = {{-1, -1, -1}, 2, 6};
         const auto ball = leafless::solid::new_ball({0, 0, 0}, 0.75);
-        const auto bore = leafless::solid::new_cylinder(0.25, -1, 1);
+        const auto bore = leafless::solid::new_cylinder({0, 0, -1}, {0, 0, 1}, 0.25);
         const auto bored = leafless::solid::combine(LEAFLESS_OPERATION_DIFFERENCE, leafless::refs(ball, bore));
         const auto octree = leafless::octree::build(bored, frame, LEAFLESS_RULE_CERTIFIED);
         const leafless_interval volume = octree.statistics().volume_model;

@@ -42,13 +42,14 @@ impl Octree {
             .unwrap_or_else(|_: core::convert::Infallible| unreachable!())
     }
 
-    /// Bytes that the arrays of the tree and of its channels take, in memory or where a file is mapped. Arrays may be
+    /// Bytes that the arrays of the tree, its cuts and its channels take, in memory or where a file is mapped. Arrays may be
     /// shared: a clone has the same.
     pub fn bytes(&self) -> u64 {
-        let OctreeRef { planes, rel, base, bricks, table, .. } = self.arrays.get();
+        let OctreeRef { planes, rel, base, bricks, table, .. } = self.view();
         let links = size_of_val(*planes) + size_of_val(*rel) + size_of_val(*base);
         let tree = links + bricks.bytes() + table.map_or(0, size_of_val);
-        tree as u64 + self.channels.iter().map(Channel::bytes).sum::<u64>()
+        let cuts = self.view().cuts().map_or(0, |cuts| cuts.bytes);
+        tree as u64 + cuts + self.channels.iter().map(Channel::bytes).sum::<u64>()
     }
 
     /// An octree whose arrays lie in `owner`, wherever that has them.

@@ -13,7 +13,9 @@ use leafless::attribute::{
     CarryRule, ConstantAttribute, FillOptions, ScalarType, ValueRegion, ValueType, carry_channels,
     fill_channel,
 };
-use leafless::op::{DexelOptions, Zone, intersection_of, octree_from_dexels, resolve, union_of, xor_of};
+use leafless::op::{
+    DexelOptions, Zone, difference_of, intersection_of, octree_from_dexels, resolve, union_of, xor_of,
+};
 use leafless::solid::{Adaptive, Band, Prepared, Samples, SplitCounter, Transform, VoxelGrid};
 use leafless::surface::DexelSolid;
 use leafless::voxel::{Symmetry, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelSolid};
@@ -369,6 +371,21 @@ const WAYS: &[Way] = &[
         make: |a| of_ball(union_of(&[*a.tree.view()], &CONTROL)?),
         proven: SAME,
     },
+    Way {
+        name: "difference of many",
+        through: &["op/boolean.rs difference_of"],
+        make: |a| {
+            let (tree, other) = (*a.tree.view(), *a.other.view());
+            of(difference_of(&[tree, other, other], &CONTROL)?, without)
+        },
+        proven: IF_BOTH,
+    },
+    Way {
+        name: "difference of one",
+        through: &["op/boolean.rs difference_of"],
+        make: |a| of_ball(difference_of(&[*a.tree.view()], &CONTROL)?),
+        proven: SAME,
+    },
     // ---- expressions
     Way {
         name: "in an expression",
@@ -716,6 +733,17 @@ const WAYS: &[Way] = &[
         proven: ["01", "10", "01", "00"],
     },
     Way {
+        name: "records moved",
+        through: &["voxel/moved.rs moved"],
+        make: |a| {
+            let mirror = Symmetry::new([0, 1, 2], [true, false, false])?;
+            let moved = a.records(&touching()).view().moved(mirror, [0; 3], &CONTROL)?;
+            let tree = moved.view().to_octree(Tag::Full, &CONTROL)?;
+            of(tree, |[x, y, z]| ball([16.0 - x, y, z]))
+        },
+        proven: ["01", "10", "01", "00"],
+    },
+    Way {
         name: "records placed exactly",
         through: &["voxel/transform.rs placed_exactly"],
         make: |a| {
@@ -881,6 +909,7 @@ const NUMBERS: &[&str] = &[
     "solid/callback/mod.rs",
     "solid/csg/faceted.rs",
     "solid/csg/figure/sweep.rs",
+    "solid/csg/between.rs",
     "solid/csg/primitive.rs",
     "solid/mesh/mesh_solid.rs placed",
     "mesh/polyhedron",
