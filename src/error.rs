@@ -756,9 +756,36 @@ pub enum Damage {
         /// Index of the value.
         index: u64,
     },
-    /// The cuts of an octree are not those that its PARTIAL cells determine, or a surface is none.
-    #[error("the cuts of the octree do not fit its cells, or a surface of theirs is none")]
-    Cuts,
+    /// The number of cuts before an element is not the number of PARTIAL cells before it.
+    #[error("the cuts before element or brick {index} are counted wrongly")]
+    CutCount {
+        /// Index; bricks are counted on after the elements.
+        index: u64,
+    },
+    /// What is counted before a block of cuts is wrong.
+    #[error("the surfaces before block {block} of the cuts are counted wrongly")]
+    CutBlock {
+        /// Index of the block.
+        block: u64,
+    },
+    /// A cut is not legal: its table, its surfaces, or a split into cells that are too small. Or there are too few or too many.
+    #[error("cut {record} is not legal")]
+    CutRecord {
+        /// Number of the cut, the number of all cuts if it is missing.
+        record: u64,
+    },
+    /// The numbers of a surface make none, or not all of them are used.
+    #[error("surface {surface} is not legal")]
+    Surface {
+        /// Number of the surface, the number of all surfaces if more is stored than they use.
+        surface: u64,
+    },
+    /// A map that places surfaces cannot be inverted, or has entries beyond all bounds.
+    #[error("the placement {placement} of surfaces is not legal")]
+    Placement {
+        /// Number of the map.
+        placement: u64,
+    },
     /// The level table does not describe the tree.
     #[error("the level table is wrong at level {level}")]
     LevelTable {

@@ -16,7 +16,7 @@ use leafless::memory;
 /// Major version of the file format that this library writes, and the only one that it reads.
 pub const LEAFLESS_FORMAT_MAJOR: u32 = 0;
 /// Minor version of the file format that this library writes; it reads newer ones, too.
-pub const LEAFLESS_FORMAT_MINOR: u32 = 3;
+pub const LEAFLESS_FORMAT_MINOR: u32 = 4;
 const _: () = {
     assert!(LEAFLESS_FORMAT_MAJOR == file::MAJOR as u32);
     assert!(LEAFLESS_FORMAT_MINOR == file::MINOR as u32);

@@ -99,7 +99,7 @@ impl ChannelLayout {
         let value_type = value_type.map_err(|_| illegal("components", object.components))?;
         object.counts().check()?;
         let own = entries(table).filter(|entry| entry.owner == owner);
-        let sections = Sections::of(&object, MAX_METADATA, own)?;
+        let sections = Sections::of(&object, header.minor, MAX_METADATA, own)?;
         let starts = starts(&object.counts(), sections.bytes(bytes, Kind::Levels)?)?;
         Ok(ChannelLayout { object, frame, value_type, sections, starts })
     }

@@ -19,8 +19,8 @@ pub const MAGIC: [u8; 8] = *b"\x89LFL\r\n\x1a\n";
 pub const MAJOR: u16 = 0;
 
 /// The newest minor version that this library knows; part of the format. Newer ones of the same major are
-/// readable. A file has the oldest version that knows all of its objects.
-pub const MINOR: u16 = 3;
+/// readable. A file has the oldest version that knows all of its objects and sections.
+pub const MINOR: u16 = 4;
 
 /// The oldest minor version that is readable, and of files without channels: 0.0 had another section table.
 pub(super) const OLDEST_MINOR: u16 = 1;

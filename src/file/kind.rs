@@ -2,8 +2,9 @@
 
 use super::counts::ENCODING_DICTIONARY;
 use super::form::Form;
-use super::object::{CHANNEL, DEXELS, Object};
+use super::object::{CHANNEL, CUTS_MINOR, DEXELS, Object, SOLID};
 use crate::dexel::{DexelEnds, DexelNormals};
+use crate::octree::cuts::Placement;
 use crate::octree::view::LevelCounts;
 use crate::octree::word::Planes;
 
@@ -11,7 +12,7 @@ use crate::octree::word::Planes;
 pub(super) const SECTION_REQUIRED: u32 = 1;
 
 /// The sections that this library knows. The numbers are part of the format. 16 to 31 are for values (17 is
-/// reserved for those of PARTIAL cells by rank), 48 to 55 are reserved for versions, 56 to 63 for the archive;
+/// reserved for those of PARTIAL cells by rank), but for 20 to 22, 48 to 55 are reserved for versions, 56 to 63 for the archive;
 /// from 2^31 on they belong to applications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
@@ -36,12 +37,28 @@ pub(super) enum Kind {
     Entries = 9,
     /// First dictionary entry of each segment.
     Segments = 10,
+    /// One byte for each cut.
+    CutHeads = 11,
+    /// Surfaces of each cut, one after another.
+    CutIds = 12,
+    /// What is counted before every 32nd cut.
+    CutBlocks = 13,
+    /// Cuts before each element and brick, and before all splits.
+    CutFirst = 14,
+    /// Surfaces.
+    Surfaces = 15,
     /// The values of a channel.
     Values = 16,
     /// Values before each element and brick of a channel, less the base of its 1024.
     ValueRel = 18,
     /// Values before every 1024th element or brick of a channel.
     ValueBase = 19,
+    /// Doubles of the surfaces.
+    SurfaceNumbers = 20,
+    /// Maps that place surfaces.
+    Placements = 21,
+    /// What slabs were made from.
+    Origins = 22,
     /// The rays of each direction of a tri-dexel model.
     Windows = 32,
     /// First interval of each ray along x, and their number.
@@ -124,7 +141,7 @@ impl Element {
 }
 
 impl Kind {
-    pub(super) const ALL: [Kind; 29] = [
+    pub(super) const ALL: [Kind; 37] = [
         Kind::Objects,
         Kind::Metadata,
         Kind::Levels,
@@ -135,9 +152,17 @@ impl Kind {
         Kind::Indices,
         Kind::Entries,
         Kind::Segments,
+        Kind::CutHeads,
+        Kind::CutIds,
+        Kind::CutBlocks,
+        Kind::CutFirst,
+        Kind::Surfaces,
         Kind::Values,
         Kind::ValueRel,
         Kind::ValueBase,
+        Kind::SurfaceNumbers,
+        Kind::Placements,
+        Kind::Origins,
         Kind::Windows,
         Kind::StartsX,
         Kind::SpansX,
@@ -177,15 +202,32 @@ impl Kind {
         Some((place / 5, [Starts, Spans, Normals, Surfaces, Materials][place % 5]))
     }
 
-    /// The kind with this number, if the sections of such objects may be of it.
-    pub(super) fn of(number: u32, object: &Object) -> Option<Kind> {
+    /// Those of the cuts of an octree.
+    pub(super) const CUTS: [Kind; 8] = [
+        Kind::CutHeads,
+        Kind::CutIds,
+        Kind::CutBlocks,
+        Kind::CutFirst,
+        Kind::Surfaces,
+        Kind::SurfaceNumbers,
+        Kind::Placements,
+        Kind::Origins,
+    ];
+
+    /// The kind with this number, if the sections of such objects may be of it in a file of this minor version.
+    pub(super) fn of(number: u32, object: &Object, minor: u16) -> Option<Kind> {
         let owned = |&kind: &Kind| match kind {
             Kind::Metadata => true,
             Kind::Objects => object.kind != CHANNEL,
             Kind::Values | Kind::ValueRel | Kind::ValueBase => object.kind == CHANNEL,
+            kind if kind.is_of_cuts() => object.kind == SOLID && minor >= CUTS_MINOR,
             _ => (kind as u32 >= Kind::Windows as u32) == (object.kind == DEXELS),
         };
         Kind::from_number(number).filter(owned)
+    }
+
+    fn is_of_cuts(self) -> bool {
+        Kind::CUTS.contains(&self)
     }
 
     fn from_number(number: u32) -> Option<Kind> {
@@ -207,6 +249,14 @@ impl Kind {
             Kind::Values => "values",
             Kind::ValueRel => "value rel",
             Kind::ValueBase => "value base",
+            Kind::CutHeads => "cut heads",
+            Kind::CutIds => "cut ids",
+            Kind::CutBlocks => "cut blocks",
+            Kind::CutFirst => "cut first",
+            Kind::Surfaces => "surfaces",
+            Kind::SurfaceNumbers => "surface numbers",
+            Kind::Placements => "placements",
+            Kind::Origins => "origins",
             Kind::Windows => "windows",
             Kind::StartsX => "starts along x",
             Kind::SpansX => "spans along x",
@@ -226,12 +276,13 @@ impl Kind {
         }
     }
 
-    /// Only the metadata can be done without.
+    /// Metadata and cuts can be done without.
     pub(super) fn flags(self) -> u32 {
-        if self == Kind::Metadata { 0 } else { SECTION_REQUIRED }
+        if self == Kind::Metadata || self.is_of_cuts() { 0 } else { SECTION_REQUIRED }
     }
 
-    /// Type and components of an element of an object's section.
+    /// Type and components of an element of an object's section. (The surfaces of cuts may be of other types; see
+    /// [`Sections`](super::section::Sections).)
     pub(super) fn element(self, object: &Object) -> (Element, u8) {
         match self {
             Kind::Objects => (Element::Record, (size_of::<Object>() / 8) as u8),
@@ -244,7 +295,13 @@ impl Kind {
             Kind::Values => {
                 (Element::from_number(object.value_type).unwrap_or(Element::U8), object.components)
             }
-            Kind::Windows => (Element::U32, 4),
+            Kind::CutHeads | Kind::CutIds => (Element::U8, 1),
+            Kind::CutBlocks => (Element::U32, 2),
+            Kind::CutFirst => (Element::U32, 1),
+            Kind::Surfaces | Kind::Windows => (Element::U32, 4),
+            Kind::SurfaceNumbers => (Element::F64, 1),
+            Kind::Placements => (Element::Record, (size_of::<Placement>() / 8) as u8),
+            Kind::Origins => (Element::U64, 2),
             _ => self.dexel_element(object),
         }
     }
@@ -268,6 +325,7 @@ impl Kind {
         let if_coded = |count: u64| if coded { count } else { 0 };
         match self {
             Kind::Objects | Kind::Metadata => None,
+            kind if kind.is_of_cuts() => None,
             Kind::Levels => Some(object.depth as u64 + 1),
             Kind::Planes | Kind::Rel => Some(object.elements),
             Kind::Base => Some(object.elements.div_ceil(1024)),

@@ -44,7 +44,7 @@ impl Layout {
                 return Err(FormatError::Field { name: "padding", value: byte.into() }.into());
             }
             if crc32fast::hash(section(bytes, &entry.range())?) != entry.crc {
-                return Err(FormatError::Checksum { name: entry.name(&main) }.into());
+                return Err(FormatError::Checksum { name: entry.name(&main, self.head.header.minor) }.into());
             }
             end = entry.range().end;
         }

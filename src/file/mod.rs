@@ -105,6 +105,7 @@ mod buffer;
 mod channel;
 mod compose;
 mod counts;
+mod cuts;
 pub mod dexels;
 mod elements;
 mod field;

@@ -12,7 +12,7 @@ pub(super) const MAX_OBJECTS: u64 = 4096;
 
 /// The type of a solid that is an octree; part of the format. 4 is reserved for versions, 5 for values of
 /// PARTIAL cells.
-const SOLID: u32 = 1;
+pub(super) const SOLID: u32 = 1;
 
 /// The type of a channel; part of the format.
 pub(super) const CHANNEL: u32 = 2;
@@ -22,6 +22,9 @@ pub(super) const DEXELS: u32 = 3;
 
 /// The oldest minor version in which objects of that type are channels.
 pub(super) const CHANNEL_MINOR: u16 = 2;
+
+/// The oldest minor version that knows the cuts of octrees.
+pub(super) const CUTS_MINOR: u16 = 4;
 
 /// The parent of an object that has none; part of the format.
 const NO_PARENT: u32 = u32::MAX;

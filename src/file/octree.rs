@@ -1,10 +1,11 @@
 //! Files of octrees.
 
 use super::compose::Section;
+use super::cuts;
 use super::header::{Header, Model, OLDEST_MINOR};
 use super::kind::Kind;
 use super::layout::Layout;
-use super::object::{CHANNEL_MINOR, Object};
+use super::object::{CHANNEL_MINOR, CUTS_MINOR, Object};
 use super::stored::Stored;
 use super::tree::{self, Starts, starts};
 use super::{read, write};
@@ -33,7 +34,8 @@ impl Stored for Octree {
     fn view<'a>(layout: &Layout, starts: &Starts, bytes: &'a [u8]) -> Result<OctreeRef<'a>, FormatError> {
         let head = &layout.head;
         let tree = tree::view(&Object::main(&head.header), &layout.sections, head.frame, starts, bytes)?;
-        Ok(OctreeRef { root: head.root, exterior: head.exterior, proof: head.proof, ..tree })
+        let cuts = cuts::view(&layout.sections, bytes)?;
+        Ok(OctreeRef { root: head.root, exterior: head.exterior, proof: head.proof, cuts, ..tree })
     }
 
     fn checked(view: Self::View<'_>) -> Result<Self::View<'_>, Error> {
@@ -67,11 +69,6 @@ impl Stored for Octree {
     }
 
     fn prepare(&self) -> Result<Option<OwnedBricks>, Error> {
-        if self.view().cuts.is_some() {
-            // (What cannot be kept is not dropped in silence.)
-            let problem = "keeps surfaces, for which files have no place yet; without_cuts leaves them out";
-            return Err(Error::Argument { name: "octree", problem });
-        }
         dictionary::encode(&self.view().bricks)
     }
 
@@ -82,8 +79,15 @@ impl Stored for Octree {
     ) -> Header {
         let tree = self.view();
         let coding = tree::append(0, tree, self.counts(), encoded, sections);
+        if let Some(cuts) = &tree.cuts {
+            sections.extend(cuts::sections(0, cuts));
+        }
         Header {
-            minor: if self.channels().is_empty() { OLDEST_MINOR } else { CHANNEL_MINOR },
+            minor: match (&tree.cuts, self.channels()) {
+                (Some(_), _) => CUTS_MINOR,
+                (None, []) => OLDEST_MINOR,
+                (None, _) => CHANNEL_MINOR,
+            },
             root: tree.root as u8,
             exterior: tree.exterior as u8,
             proof: tree.proof.bits(),
@@ -107,8 +111,7 @@ impl Stored for Octree {
 ///
 /// # Errors
 /// [`Error::Damaged`] if the tree, or a channel of it, is a mapped one that nobody has verified, and is
-/// damaged; [`Error::Argument`] if the metadata take more than 1 MiB, or those of a channel more than 64 KiB, or the tree keeps
-/// surfaces ([`build_extended`](crate::build_extended)), for which files have no place yet;
+/// damaged; [`Error::Argument`] if the metadata take more than 1 MiB, or those of a channel more than 64 KiB;
 /// [`Error::OutOfMemory`].
 pub fn to_bytes(octree: &Octree) -> Result<Vec<u8>, Error> {
     write::to_bytes(octree)

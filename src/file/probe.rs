@@ -94,12 +94,12 @@ pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
     let head = Head::read(bytes)?;
     let raw = head.table(bytes)?;
     read_table(&head, raw)?;
-    let main = Object::main(&head.header);
+    let (main, minor) = (Object::main(&head.header), head.header.minor);
     let mut sections = memory::with_capacity(head.header.section_count as usize)?;
     sections.extend(entries(raw).map(|entry| Section {
         kind: entry.kind,
         owner: entry.owner,
-        name: entry.known(&main).map(Kind::name),
+        name: entry.known(&main, minor).map(Kind::name),
         offset: entry.offset,
         length: entry.length,
         count: entry.count,
@@ -118,7 +118,7 @@ pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
             format,
             directions,
             rays: axes(|axis| {
-                let of_kind = |entry: &Entry| entry.known(&main) == Some(Kind::along(axis, Column::Starts));
+                let of_kind = |entry: &Entry| entry.known(&main, minor) == Some(Kind::along(axis, Column::Starts));
                 entries(raw).find(of_kind).map_or(0, |entry| entry.count - 1)
             }),
             intervals: main.intervals(),

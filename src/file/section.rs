@@ -6,6 +6,7 @@ use super::kind::{Element, KINDS, Kind, SECTION_REQUIRED};
 use super::object::{MAX_OBJECTS, Object};
 use super::wire::{Wire, elements, wire_struct};
 use crate::error::FormatError;
+use crate::octree::cuts::{BLOCK, width};
 use crate::octree::metadata::MetadataLimit;
 use bytemuck::Pod;
 use core::ops::Range;
@@ -50,14 +51,14 @@ impl Entry {
     }
 
     /// The kind, if it is a section of object 0, `main`, that this library knows.
-    pub(super) fn known(&self, main: &Object) -> Option<Kind> {
-        Kind::of(self.kind, main).filter(|_| self.owner == 0)
+    pub(super) fn known(&self, main: &Object, minor: u16) -> Option<Kind> {
+        Kind::of(self.kind, main, minor).filter(|_| self.owner == 0)
     }
 
     /// Its name in error messages.
-    pub(super) fn name(&self, main: &Object) -> &'static str {
+    pub(super) fn name(&self, main: &Object, minor: u16) -> &'static str {
         let unknown = if self.owner == 0 { "an unknown section" } else { "a section of another object" };
-        self.known(main).map_or(unknown, Kind::name)
+        self.known(main, minor).map_or(unknown, Kind::name)
     }
 
     /// Checks the entry by itself.
@@ -103,7 +104,7 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
     for (index, entry) in entries(table).enumerate() {
         entry.check(newer)?;
         if index == 0 {
-            objects = if entry.known(&main) == Some(Kind::Objects) { entry.count } else { 0 };
+            objects = if entry.known(&main, head.header.minor) == Some(Kind::Objects) { entry.count } else { 0 };
             if !(1..=MAX_OBJECTS).contains(&objects) {
                 return Err(FormatError::Section { name: Kind::Objects.name() });
             }
@@ -136,7 +137,7 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
     }
     // What the sections of other objects are is known to whoever knows these objects.
     let of_main = entries(table).take_while(|entry| entry.owner == 0);
-    let sections = Sections::of(&main, MAX_METADATA, of_main)?;
+    let sections = Sections::of(&main, head.header.minor, MAX_METADATA, of_main)?;
     if end != head.header.file_length {
         return Err(FormatError::Length { expected: end, found: head.header.file_length });
     }
@@ -147,18 +148,22 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
 #[derive(Debug, Clone)]
 pub(super) struct Sections {
     ranges: [Range<u64>; KINDS],
+    /// Numbers of surfaces.
+    pub(super) ids: Element,
 }
 
 impl Sections {
     /// Checks the entries of an object's sections, of which each by itself was found right.
     pub(super) fn of(
         object: &Object,
+        minor: u16,
         most_metadata: u64,
         entries: impl Iterator<Item = Entry>,
     ) -> Result<Sections, FormatError> {
         let mut ranges = [const { 0..0 }; KINDS];
+        let mut ids = Element::U8;
         for entry in entries {
-            let Some(kind) = Kind::of(entry.kind, object) else {
+            let Some(kind) = Kind::of(entry.kind, object, minor) else {
                 if entry.flags & SECTION_REQUIRED != 0 {
                     return Err(FormatError::Required { name: "section", value: entry.kind.into() });
                 }
@@ -167,7 +172,12 @@ impl Sections {
             if entry.encoding != RAW {
                 return Err(FormatError::Required { name: "section encoding", value: entry.encoding.into() });
             }
-            let (element, components) = kind.element(object);
+            let (mut element, components) = kind.element(object);
+            if let (Kind::CutIds, Some(own @ (Element::U16 | Element::U32))) =
+                (kind, Element::from_number(entry.element_type))
+            {
+                (element, ids) = (own, own);
+            }
             let count = kind.demanded(object).unwrap_or(entry.count);
             if (entry.element_type, entry.components, entry.count) != (element as u8, components, count) {
                 return Err(FormatError::Section { name: kind.name() });
@@ -180,14 +190,45 @@ impl Sections {
             }
             ranges[kind.slot()] = entry.range();
         }
-        for kind in Kind::ALL.into_iter().filter(|&kind| Kind::of(kind as u32, object).is_some()) {
+        for kind in Kind::ALL.into_iter().filter(|&kind| Kind::of(kind as u32, object, minor).is_some()) {
             // None is empty that is there.
             let present = ranges[kind.slot()].end != 0;
             if kind.demanded(object).is_some_and(|count| present != (count != 0)) {
                 return Err(FormatError::Section { name: kind.name() });
             }
         }
-        Ok(Sections { ranges })
+        let sections = Sections { ranges, ids };
+        sections.check_cuts(object)?;
+        Ok(sections)
+    }
+
+    /// Checks that the sections of cuts are there together, and have as many elements as the others say.
+    fn check_cuts(&self, object: &Object) -> Result<(), FormatError> {
+        let count = |kind: Kind| {
+            let (element, components) = kind.element(object);
+            let element = if kind == Kind::CutIds { self.ids } else { element };
+            let range = self.range(kind);
+            (range.end - range.start) / (element.size() * u64::from(components))
+        };
+        let (heads, surfaces) = (count(Kind::CutHeads), count(Kind::Surfaces));
+        let elements = object.elements.saturating_add(object.bricks);
+        let has_ids = self.ids.size() as usize == width(usize::try_from(surfaces).unwrap_or(usize::MAX));
+        for kind in Kind::CUTS {
+            let own = count(kind);
+            let fits = match kind {
+                Kind::CutHeads => own < 1 << 32,
+                Kind::CutIds => own < 1 << 32 && has_ids && (own != 0) == (surfaces != 0),
+                Kind::CutBlocks => own == heads.div_ceil(BLOCK as u64),
+                Kind::CutFirst => own == elements.saturating_add(1),
+                Kind::SurfaceNumbers => own < 1 << 32 && (own != 0) == (surfaces != 0),
+                Kind::Surfaces => own < 1 << 32,
+                _ => own < 1 << 32 && (own == 0 || surfaces != 0),
+            };
+            if !(fits && heads != 0 || own == 0 && heads == 0) {
+                return Err(FormatError::Section { name: kind.name() });
+            }
+        }
+        Ok(())
     }
 
     /// Where a section lies; nowhere if it is absent.
@@ -197,7 +238,14 @@ impl Sections {
 
     /// Where the sections of `object` lie that are there, and what their numbers are.
     pub(super) fn numbers(&self, object: &Object) -> impl Iterator<Item = (Range<u64>, Element)> {
-        let numbers = |kind: Kind| (self.range(kind).clone(), kind.element(object).0);
+        let ids = self.ids;
+        let element = move |kind: Kind| match kind {
+            Kind::CutIds => ids,
+            // All of its numbers are of eight bytes.
+            Kind::Placements => Element::U64,
+            _ => kind.element(object).0,
+        };
+        let numbers = move |kind: Kind| (self.range(kind).clone(), element(kind));
         Kind::ALL.into_iter().map(numbers).filter(|(range, _)| !range.is_empty())
     }
 

@@ -116,7 +116,7 @@ impl Stored for TriDexel {
 
     fn append_sections<'a>(&'a self, windows: &'a Vec<[u32; 4]>, sections: &mut Vec<Section<'a>>) -> Header {
         let model = self.view();
-        sections.push((0, Kind::Windows, Elements::Windows(windows)));
+        sections.push((0, Kind::Windows, Elements::Fours32(windows)));
         for (axis, rows) in model.rays.iter().enumerate() {
             match rows {
                 Some(Rows::Fixed(rows)) => sections.extend(columns(axis, rows, Elements::Pairs32)),

@@ -1,9 +1,11 @@
 //! Octrees whose PARTIAL cells keep surfaces: what is counted, and what they promise.
 
-use super::cuts::{BLOCK, Block, CutCounts, Head, records};
+use super::cuts::{BLOCK, Block, CellIds, CutCounts, CutsRef, Head};
 use super::tag::Tag;
 use super::view::OctreeRef;
-use crate::error::Damage;
+use crate::error::{Damage, Error};
+use crate::memory;
+use alloc::vec::Vec;
 
 impl OctreeRef<'_> {
     /// What the PARTIAL cells keep of the surfaces that cross them; `None` if they keep nothing. O(records).
@@ -13,12 +15,13 @@ impl OctreeRef<'_> {
         let (given_up, splits) = (count(Head::NONE), count(Head::SPLIT));
         let surfaces = &cuts.surfaces;
         let bytes = size_of_val(cuts.heads)
-            + size_of_val(cuts.ids)
+            + cuts.ids.len() * cuts.ids.width()
             + size_of_val(cuts.blocks)
             + size_of_val(cuts.first)
             + size_of_val(surfaces.records)
             + size_of_val(surfaces.doubles)
-            + size_of_val(surfaces.placements);
+            + size_of_val(surfaces.placements)
+            + size_of_val(surfaces.origins);
         Some(CutCounts {
             cells: cuts.heads.len() as u64 - given_up - splits,
             given_up,
@@ -34,48 +37,85 @@ impl OctreeRef<'_> {
         OctreeRef { cuts: None, ..*self }
     }
 
-    /// Checks everything that cuts promise: a record for each PARTIAL cell, groups for splits, prefix counts, tables whose
-    /// surfaces are there and count, surfaces of which none is unused. O(n).
-    pub(crate) fn check_cuts(&self) -> Result<(), Damage> {
+    /// Checks the cuts as [`check_cuts`](Self::check_cuts) does, unless they are known to be sound: O(1) for trees that were made by
+    /// this library in memory. A part that several cells share would be visited as often as there are ways to it.
+    pub(crate) fn ensure_cuts(&self) -> Result<(), Error> {
+        if self.is_linked { Ok(()) } else { self.check_cuts() }
+    }
+
+    /// Checks everything that cuts promise: a record for each PARTIAL cell, groups for splits down to the finest cells at most, prefix
+    /// counts, tables whose surfaces are there and count, surfaces of which none is unused. O(n).
+    pub(crate) fn check_cuts(&self) -> Result<(), Error> {
         let Some(cuts) = &self.cuts else { return Ok(()) };
-        let wrong = |what: bool| if what { Err(Damage::Cuts) } else { Ok(()) };
-        // The planes' cells.
-        let elements = self.planes.len() + self.bricks.len();
-        wrong(cuts.first.len() != elements + 1)?;
-        let mut next = (self.root == Tag::Partial) as u32;
-        for (index, &first) in cuts.first.iter().enumerate() {
-            wrong(first != next)?;
-            if index < elements {
-                next += self.entry(index).map_or(0, records);
-            }
-        }
+        let mut levels = self.levels_of_records(cuts)?;
         // Records, and what is counted before them.
-        let (mut ids, mut splits) = (0usize, 0usize);
+        let (mut ids, mut splits, mut known) = (0, 0, 0);
         for (record, &head) in cuts.heads.iter().enumerate() {
             if record % BLOCK == 0 {
-                let block = Block { ids: ids as u32, splits: splits as u32 };
-                wrong(cuts.blocks.get(record / BLOCK) != Some(&block))?;
+                let block = Block { ids: ids as u32, splits };
+                if cuts.blocks.get(record / BLOCK) != Some(&block) {
+                    return Err(Damage::CutBlock { block: (record / BLOCK) as u64 }.into());
+                }
             }
+            let wrong = Damage::CutRecord { record: record as u64 };
             let head = Head(head);
-            wrong(!head.is_valid())?;
+            let Some(&level) = levels.get(record).filter(|_| head.is_valid()) else { return Err(wrong.into()) };
             if head.is_split() {
-                // A group comes after its split, whose level has cells below it.
-                wrong(next as usize + 8 * splits <= record)?;
+                if level >= self.frame.depth() || levels.len() + 8 > cuts.heads.len() {
+                    return Err(wrong.into());
+                }
                 splits += 1;
+                levels.try_reserve(8)?;
+                levels.extend([level + 1; 8]);
             }
-            let own = cuts.ids.get(ids..ids + head.surfaces()).ok_or(Damage::Cuts)?;
-            wrong(own.windows(2).any(|pair| pair[0] >= pair[1]))?;
-            ids += head.surfaces();
+            let Some(own) = CellIds::read(cuts.ids, ids, head.surfaces()) else { return Err(wrong.into()) };
+            ids += own.len();
+            for (i, &id) in own.iter().enumerate() {
+                // Surfaces stand in the order of their first use.
+                let is_next = id <= known && (i == 0 || own[i - 1] < id);
+                if !is_next {
+                    return Err(wrong.into());
+                }
+                known = known.max(id + 1);
+            }
         }
-        wrong(cuts.heads.len() != next as usize + 8 * splits)?;
-        wrong(cuts.ids.len() != ids || cuts.blocks.len() != cuts.heads.len().div_ceil(BLOCK))?;
-        // Surfaces in the order of their first use.
-        let mut known = 0;
-        for &id in cuts.ids {
-            wrong(id > known)?;
-            known = known.max(id + 1);
+        let is_short = levels.len() != cuts.heads.len() || ids != cuts.ids.len();
+        if is_short || known as usize != cuts.surfaces.len() {
+            return Err(Damage::CutRecord { record: cuts.heads.len() as u64 }.into());
         }
-        wrong(known as usize != cuts.surfaces.len())?;
-        cuts.surfaces.check()
+        Ok(cuts.surfaces.check()?)
+    }
+
+    /// The levels of the PARTIAL cells that the planes have, in the order of their records, whose counts are checked. (Memory for as
+    /// many levels as there are records.)
+    fn levels_of_records(&self, cuts: &CutsRef<'_>) -> Result<Vec<u8>, Error> {
+        let mut levels = memory::with_capacity(cuts.heads.len())?;
+        if self.root == Tag::Partial {
+            memory::push(&mut levels, 0)?;
+        }
+        let elements = self.planes.len() + self.bricks.len();
+        let mut e = 0;
+        for index in 0..=elements {
+            let is_counted = cuts.first.get(index).is_some_and(|&first| first as usize == levels.len());
+            if !is_counted || levels.len() > cuts.heads.len() {
+                return Err(Damage::CutCount { index: index as u64 }.into());
+            }
+            while e + 1 < self.levels() && index >= self.starts[e + 1] {
+                e += 1;
+            }
+            let Some(planes) = self.entry(index).filter(|_| index < elements) else { continue };
+            let (cells, partial) = (self.cell_level(e), planes.partial());
+            for octant in 0..8 {
+                match (partial >> (8 * octant)) as u8 {
+                    0xFF => memory::push(&mut levels, cells - 1)?,
+                    some => {
+                        for _ in 0..some.count_ones() {
+                            memory::push(&mut levels, cells)?;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(levels)
     }
 }

@@ -357,9 +357,9 @@ impl<'j> Writer<'j> {
         frame: &Frame,
         root: Tag,
         exterior: Tag,
-        cuts: Cuts,
+        cuts: Option<Cuts>,
     ) -> Result<Octree, Error> {
-        Ok(Octree::new(Arrays { cuts: Some(cuts), ..self.arrays(*frame, root, exterior)? }))
+        Ok(Octree::new(Arrays { cuts, ..self.arrays(*frame, root, exterior)? }))
     }
 
     fn arrays(mut self, frame: Frame, root: Tag, exterior: Tag) -> Result<Arrays, Error> {

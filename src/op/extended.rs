@@ -4,7 +4,7 @@ use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, Interval, axes, valid};
 use crate::memory;
-use crate::octree::cuts::{Cut, CutWriter};
+use crate::octree::cuts::{Cut, CutWriter, Origin};
 use crate::octree::view::{element_levels, starts_half_way};
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Tag};
@@ -14,7 +14,7 @@ use crate::solid::half_space::possible::possible;
 use crate::solid::half_space::record::Pool;
 use crate::solid::half_space::table::Table;
 use crate::solid::{
-    Ask, AskWhole, Classifier, Enclosure, HalfSpace, OCTANTS, OpenSurfaces, Parts, PlacedHalfSpace, Slab,
+    Ask, AskWhole, Classifier, Enclosure, Fingerprinter, HalfSpace, OCTANTS, OpenSurfaces, Parts, PlacedHalfSpace, Slab,
     SlabJoin, Solid, Verdict, Worker,
 };
 use alloc::sync::Arc;
@@ -97,8 +97,15 @@ pub fn build_extended<S: Solid>(
             Known::Ends(cut) => (Tag::Partial, cut),
             Known::Goes(part) => builder.element(0, Cell::ROOT, &part, &mut hand)?,
         };
-        let Hand { writer, cuts, slabs, .. } = hand;
+        let Hand { writer, cuts, mut slabs, .. } = hand;
         let cuts = cuts.finish((tag == Tag::Partial).then_some(cut), |used| {
+            let origin = if slabs.is_empty() { None } else { origin(solid, frame, options) };
+            // Slabs are numbered as the table of surfaces is.
+            for (number, &id) in (0..).zip(used) {
+                if let (Some(slab), Some(origin)) = (id.checked_sub(exact), origin) {
+                    slabs[slab as usize].half_space.identify(origin, number);
+                }
+            }
             PlacedHalfSpace::write(used.iter().map(|&id| match id.checked_sub(exact) {
                 None => &pool.surfaces[id as usize],
                 Some(slab) => &slabs[slab as usize],
@@ -107,6 +114,17 @@ pub fn build_extended<S: Solid>(
         job.advance(WHOLE);
         Ok(writer.finish_with(frame, tag, classifier.exterior(), cuts)?.with_proof(classifier.proof()))
     })
+}
+
+/// What tells the slabs of a build from all others; `None` if the solid cannot be told from others.
+fn origin<S: Solid>(solid: &S, frame: &Frame, options: &SurfaceOptions) -> Option<Origin> {
+    let all = Fingerprinter::new("slabs")
+        .part(solid.fingerprint()?)
+        .numbers(&frame.origin())
+        .numbers(&[frame.edge()])
+        .integers(&[frame.depth().into()])
+        .numbers(options.tolerance.as_slice());
+    Some(all.finish().halves())
 }
 
 struct Extended<'a, C> {
@@ -240,7 +258,7 @@ impl<C: Classifier> Extended<'_, C> {
         }
         let (mut ids, mut count) = ([0; MOST], 0);
         for (normal, inner, outer) in planes.into_iter().flatten() {
-            let half_space = HalfSpace::slab(normal, inner, outer);
+            let half_space = HalfSpace::slab(normal, inner, outer, None);
             ids[count] = u32::try_from(self.exact as usize + slabs.len()).map_err(|_| Error::OutOfMemory)?;
             memory::push(slabs, PlacedHalfSpace { half_space, placements: Arc::new([]) })?;
             count += 1;

@@ -20,6 +20,11 @@ impl Fingerprint {
     pub fn of_bytes(bytes: &[u8]) -> Fingerprint {
         Fingerprinter::new("host").bytes(bytes).finish()
     }
+
+    /// The lower and the upper half.
+    pub(crate) fn halves(self) -> [u64; 2] {
+        [self.0 as u64, (self.0 >> 64) as u64]
+    }
 }
 
 impl fmt::Display for Fingerprint {

@@ -4,16 +4,19 @@
 //! representation and operation using extended octrees*, ACM Transactions on Graphics 9 (2), 1990), here with curved surfaces and
 //! exact signs. The planes of the tree stay what they are without the cuts.
 //!
+//! - `ids`: the numbers of surfaces.
 //! - `record`: one byte for each PARTIAL cell: a truth table of up to three surfaces, nothing, or a split into eight records.
 //! - `surfaces`: the table of surfaces, in numbers that are exact.
 //! - `writer`: how cuts are gathered and put in order.
 
+mod ids;
 mod record;
 mod surfaces;
 mod writer;
 
+pub(crate) use ids::{CellIds, Ids, OwnedIds, width};
 pub(crate) use record::Head;
-pub(crate) use surfaces::{MOST_TERMS, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};
+pub(crate) use surfaces::{MOST_TERMS, Origin, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};
 pub(crate) use writer::{Cut, CutWriter};
 
 use super::word::Planes;
@@ -42,7 +45,7 @@ pub(crate) struct Cuts {
     /// for each split, in the order of the splits.
     pub heads: Vec<u8>,
     /// Surfaces of the records, one after the other.
-    pub ids: Vec<u32>,
+    pub ids: OwnedIds,
     pub blocks: Vec<Block>,
     /// For each element and brick the records before its own; one more is the number of records of the planes.
     pub first: Vec<u32>,
@@ -53,7 +56,7 @@ pub(crate) struct Cuts {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CutsRef<'a> {
     pub heads: &'a [u8],
-    pub ids: &'a [u32],
+    pub ids: Ids<'a>,
     pub blocks: &'a [Block],
     pub first: &'a [u32],
     pub surfaces: SurfacesRef<'a>,
@@ -63,7 +66,7 @@ impl Cuts {
     pub(crate) fn view(&self) -> CutsRef<'_> {
         CutsRef {
             heads: &self.heads,
-            ids: &self.ids,
+            ids: self.ids.view(),
             blocks: &self.blocks,
             first: &self.first,
             surfaces: self.surfaces.view(),
@@ -75,20 +78,21 @@ impl CutsRef<'_> {
     pub(crate) fn copied(&self) -> Result<Cuts, Error> {
         Ok(Cuts {
             heads: memory::copied(self.heads)?,
-            ids: memory::copied(self.ids)?,
+            ids: self.ids.copied()?,
             blocks: memory::copied(self.blocks)?,
             first: memory::copied(self.first)?,
             surfaces: Surfaces {
                 records: memory::copied(self.surfaces.records)?,
                 doubles: memory::copied(self.surfaces.doubles)?,
                 placements: memory::copied(self.surfaces.placements)?,
+                origins: memory::copied(self.surfaces.origins)?,
             },
         })
     }
 }
 
 /// What the PARTIAL cells of an extended octree keep.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CutCounts {
     /// Cells of which it is known which function of surfaces the solid is. Cells count that are parts of cells of the planes.
     pub cells: u64,
@@ -104,17 +108,17 @@ pub struct CutCounts {
 
 /// What is known of a PARTIAL cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum CellCut<'a> {
+pub(crate) enum CellCut {
     /// Nothing.
     None,
     /// The solid is a function of the signs of up to three surfaces: bit m of the table is its value where the surfaces are
     /// positive whose bits are set in m.
-    Table { ids: &'a [u32], table: u8 },
+    Table { ids: CellIds, table: u8 },
     /// What is known of the children: the first of eight records.
     Split(usize),
 }
 
-impl<'a> CutsRef<'a> {
+impl CutsRef<'_> {
     /// Records of the planes' cells.
     fn of_planes(&self) -> usize {
         self.first.last().map_or(1, |&count| count as usize)
@@ -131,11 +135,11 @@ impl<'a> CutsRef<'a> {
     }
 
     /// What a record says; nothing where the cuts are damaged.
-    pub(crate) fn at(&self, record: usize) -> CellCut<'a> {
+    pub(crate) fn at(&self, record: usize) -> CellCut {
         self.checked(record).unwrap_or(CellCut::None)
     }
 
-    fn checked(&self, record: usize) -> Option<CellCut<'a>> {
+    fn checked(&self, record: usize) -> Option<CellCut> {
         let head = Head(*self.heads.get(record)?);
         let before = &self.heads[record - record % BLOCK..record];
         let block = self.blocks.get(record / BLOCK)?;
@@ -151,8 +155,7 @@ impl<'a> CutsRef<'a> {
             CellCut::None
         } else {
             let ids = before.iter().map(|&head| Head(head).surfaces()).sum::<usize>();
-            let first = block.ids as usize + ids;
-            let ids = self.ids.get(first..first + head.surfaces())?;
+            let ids = CellIds::read(self.ids, block.ids as usize + ids, head.surfaces())?;
             CellCut::Table { ids, table: head.0 }
         })
     }
@@ -168,10 +171,4 @@ fn rank(planes: Planes, c: u32) -> u32 {
     let below = |bits: u64, c: u32| (bits & ((1u64 << c) - 1)).count_ones();
     let inside = if whole >> octant & 1 != 0 { octant } else { c };
     below(whole, octant) + below(partial & !eights, inside)
-}
-
-/// Records that an element's cells have.
-pub(crate) fn records(planes: Planes) -> u32 {
-    let [.., whole] = planes.octants();
-    whole.count_ones() + (planes.partial() & !(whole * 0xFF)).count_ones()
 }

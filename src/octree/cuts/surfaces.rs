@@ -1,6 +1,7 @@
 //! The table of surfaces: each is the boundary of the points where a function is positive, given in numbers that are exact.
 
 use crate::error::Damage;
+use crate::lattice::{Affine, valid};
 use alloc::vec::Vec;
 use bytemuck::{Pod, Zeroable};
 
@@ -16,7 +17,8 @@ pub(crate) enum SurfaceKind {
     Powers = 2,
     /// A torus: radius of its circle, square of the other one, scale and shift.
     Torus = 3,
-    /// A plane with a width: normal, and the two offsets between which the boundary lies.
+    /// A plane with a width: normal, the two offsets between which the boundary lies, and which of all slabs it is: its origin in
+    /// the table, plus one, and its number there; two zeros if it has none.
     Slab = 4,
 }
 
@@ -25,7 +27,7 @@ impl SurfaceKind {
     pub(crate) const fn numbers(self) -> u32 {
         match self {
             SurfaceKind::Plane | SurfaceKind::Torus => 4,
-            SurfaceKind::Slab => 5,
+            SurfaceKind::Slab => 7,
             SurfaceKind::Quadric | SurfaceKind::Powers => 10,
         }
     }
@@ -75,12 +77,16 @@ pub(crate) struct Placement {
     pub outer: u64,
 }
 
+/// What slabs were made from: a fingerprint of 128 bits, the lower half first.
+pub(crate) type Origin = [u64; 2];
+
 /// Surfaces in memory.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Surfaces {
     pub records: Vec<SurfaceRecord>,
     pub doubles: Vec<f64>,
     pub placements: Vec<Placement>,
+    pub origins: Vec<Origin>,
 }
 
 /// Surfaces, borrowed.
@@ -89,11 +95,17 @@ pub(crate) struct SurfacesRef<'a> {
     pub records: &'a [SurfaceRecord],
     pub doubles: &'a [f64],
     pub placements: &'a [Placement],
+    pub origins: &'a [Origin],
 }
 
 impl Surfaces {
     pub(crate) fn view(&self) -> SurfacesRef<'_> {
-        SurfacesRef { records: &self.records, doubles: &self.doubles, placements: &self.placements }
+        SurfacesRef {
+            records: &self.records,
+            doubles: &self.doubles,
+            placements: &self.placements,
+            origins: &self.origins,
+        }
     }
 }
 
@@ -129,21 +141,112 @@ impl<'a> SurfacesRef<'a> {
         })
     }
 
-    /// Checks that all is there, and that numbers are numbers.
+    /// Checks that all is there, in the order of first use, and that every surface is one. O(n).
     pub(crate) fn check(&self) -> Result<(), Damage> {
-        let wrong = |what: bool| if what { Err(Damage::Cuts) } else { Ok(()) };
-        let mut next = 0;
-        for record in self.records {
-            let kind = SurfaceKind::of(record.kind).ok_or(Damage::Cuts)?;
-            wrong(record.terms >> (3 * kind.numbers()) != 0 || record.first as usize != next)?;
-            wrong(record.placement as usize > self.placements.len())?;
-            next += record.doubles();
+        let (mut doubles, mut placements, mut origins) = (0, 0, 0);
+        for (id, record) in self.records.iter().enumerate() {
+            let wrong = Damage::Surface { surface: id as u64 };
+            let kind = SurfaceKind::of(record.kind).filter(|kind| record.terms >> (3 * kind.numbers()) == 0);
+            if kind.is_none() || record.first as usize != doubles {
+                return Err(wrong);
+            }
+            doubles += record.doubles();
+            let origin = self.get(id).and_then(|(kind, numbers)| Figure::new(kind, numbers)?.origin());
+            let Some(origin) = origin.filter(|&origin| origin <= origins + 1) else { return Err(wrong) };
+            origins = origins.max(origin);
+            // Of new maps each follows the one before.
+            let mut last = u64::from(record.placement);
+            let newest = placements.max(last);
+            while last > placements {
+                let outer = self.placements.get(last as usize - 1).map_or(u64::MAX, |map| map.outer);
+                if outer != last - 1 && (outer > placements || last != placements + 1) {
+                    return Err(wrong);
+                }
+                last = outer;
+            }
+            placements = newest;
         }
-        wrong(next != self.doubles.len() || !self.doubles.iter().all(|number| number.is_finite()))?;
-        for (index, placement) in self.placements.iter().enumerate() {
-            wrong(placement.outer > index as u64)?;
-            wrong(!placement.rows.as_flattened().iter().all(|number| number.is_finite()))?;
+        let ends = (doubles, placements, origins);
+        if ends != (self.doubles.len(), self.placements.len() as u64, self.origins.len() as u64) {
+            return Err(Damage::Surface { surface: self.records.len() as u64 });
+        }
+        for (index, Placement { rows, .. }) in self.placements.iter().enumerate() {
+            let is_negative_zero = |c: &f64| c.to_bits() == (-0.0f64).to_bits();
+            if rows.as_flattened().iter().any(is_negative_zero) || Affine::new(*rows).is_err() {
+                return Err(Damage::Placement { placement: index as u64 });
+            }
         }
         Ok(())
+    }
+}
+
+/// The numbers of a surface, of which it is known what they are.
+struct Figure<'a> {
+    kind: SurfaceKind,
+    /// Each with its doubles.
+    numbers: [&'a [f64]; 10],
+}
+
+impl<'a> Figure<'a> {
+    /// `None` if the doubles of a number are not as an exact number is written: none of them zero, each at most 2^-53 of the one
+    /// before.
+    fn new(kind: SurfaceKind, numbers: impl Iterator<Item = &'a [f64]>) -> Option<Figure<'a>> {
+        let mut own = [&[][..]; 10];
+        for (to, number) in own.iter_mut().zip(numbers) {
+            let fits = |pair: &[f64]| pair[1].abs() <= pair[0].abs() * (0.5 * f64::EPSILON);
+            let is_sum = number.iter().all(|c| c.is_finite() && *c != 0.0) && number.windows(2).all(fits);
+            if !is_sum {
+                return None;
+            }
+            *to = number;
+        }
+        Some(Figure { kind, numbers: own })
+    }
+
+    /// The sign of a number.
+    fn sign(&self, i: usize) -> i32 {
+        self.numbers[i].first().map_or(0, |c| if *c > 0.0 { 1 } else { -1 })
+    }
+
+    /// A number that is one double.
+    fn double(&self, i: usize) -> Option<f64> {
+        match *self.numbers[i] {
+            [] => Some(0.0),
+            [number] => Some(number),
+            _ => None,
+        }
+    }
+
+    /// The same that is a whole number.
+    fn whole(&self, i: usize) -> Option<u32> {
+        let number = self.double(i)?;
+        (number == f64::from(number as u32)).then_some(number as u32)
+    }
+
+    /// The origin of a slab, 0 for none; `None` if the numbers make no surface.
+    fn origin(&self) -> Option<u64> {
+        let is_constant = |linear: core::ops::Range<usize>| linear.clone().all(|i| self.sign(i) == 0);
+        let some = |is: bool, origin: u32| is.then_some(u64::from(origin));
+        match self.kind {
+            SurfaceKind::Plane => some(!is_constant(0..3), 0),
+            SurfaceKind::Quadric => some(!is_constant(0..9), 0),
+            SurfaceKind::Powers => {
+                for i in [0, 1, 3, 4, 6, 7, 9] {
+                    valid::numbers("surface", &[self.double(i)?]).ok()?;
+                }
+                let is_exponent = |i: usize| self.whole(i).is_some_and(|n| (1..=64).contains(&n));
+                let is_high = |i: usize| self.sign(i - 2) != 0 && self.whole(i) > Some(2);
+                some([2, 5, 8].into_iter().all(is_exponent) && [2, 5, 8].into_iter().any(is_high), 0)
+            }
+            SurfaceKind::Torus => some((0..3).all(|i| self.sign(i) > 0), 0),
+            SurfaceKind::Slab => {
+                for i in 0..3 {
+                    self.double(i)?;
+                }
+                let (origin, number) = (self.whole(5)?, self.whole(6)?);
+                let is_ordered = self.double(3)? <= self.double(4)?;
+                some(!is_constant(0..3) && is_ordered && (origin != 0 || number == 0), origin)
+            }
+        }
     }
 }

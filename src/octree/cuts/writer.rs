@@ -1,6 +1,6 @@
 //! How cuts are gathered while a tree is written, and put in order when it is done.
 
-use super::{BLOCK, Block, Cuts, Head, Surfaces};
+use super::{BLOCK, Block, Cuts, Head, OwnedIds, Surfaces};
 use crate::error::Error;
 use crate::memory;
 use alloc::boxed::Box;
@@ -91,7 +91,7 @@ impl CutWriter {
     }
 
     /// Puts all in order: records, what is counted before them, and of the surfaces, which `surfaces` tells by their ids so far,
-    /// those that are used, in the order of their first use. `root` is the cut of a universe that is one PARTIAL cell.
+    /// those that are used, in the order of their first use. Nothing comes of a tree without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL cell.
     ///
     /// # Errors
     /// [`Error::Limit`] if there are 2^32 records or ids, [`Error::OutOfMemory`], and what `surfaces` refuses.
@@ -99,7 +99,7 @@ impl CutWriter {
         self,
         root: Option<Cut>,
         surfaces: impl FnOnce(&[u32]) -> Result<Surfaces, Error>,
-    ) -> Result<Cuts, Error> {
+    ) -> Result<Option<Cuts>, Error> {
         let mut first =
             memory::with_capacity(self.levels.iter().map(|level| level.counts.len()).sum::<usize>() + 1)?;
         let mut queue = VecDeque::new();
@@ -162,7 +162,11 @@ impl CutWriter {
             limit(heads.len() as u64 + queue.len() as u64)?;
             limit(ids.len() as u64)?;
         }
-        Ok(Cuts { heads, ids, blocks, first, surfaces: surfaces(&used)? })
+        if heads.is_empty() {
+            return Ok(None);
+        }
+        let ids = OwnedIds::narrowed(ids, used.len())?;
+        Ok(Some(Cuts { heads, ids, blocks, first, surfaces: surfaces(&used)? }))
     }
 }
 

@@ -22,6 +22,7 @@ use crate::cut::Taylor;
 use crate::error::Error;
 use crate::lattice::exact::{DoubleDouble, Dyadic, sign};
 use crate::lattice::{Frame, Interval, valid};
+use crate::octree::cuts::Origin;
 use crate::solid::Fingerprint;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -32,7 +33,7 @@ pub use open::{OpenSurfaces, PlacedHalfSpace};
 use plane::Plane;
 use power::{PlacedPowers, Powers};
 use quadric::{Coefficients, Quadric};
-use slab::{PlacedSlab, ThickPlane};
+use slab::{PlacedSlab, SlabIdentity, ThickPlane};
 use tangent::Tangent;
 use torus::{PlacedTorus, Torus};
 use wide::f64x4;
@@ -196,8 +197,20 @@ impl HalfSpace {
     }
 
     /// The points of which `normal` · p ≤ `inner` holds, and perhaps others with `normal` · p ≤ `outer`.
-    pub(crate) fn slab(normal: [f64; 3], inner: f64, outer: f64) -> HalfSpace {
-        HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer })))
+    pub(crate) fn slab(
+        normal: [f64; 3],
+        inner: f64,
+        outer: f64,
+        identity: Option<SlabIdentity>,
+    ) -> HalfSpace {
+        HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer, identity })))
+    }
+
+    /// Says of a slab that nobody else has which one it is.
+    pub(crate) fn identify(&mut self, origin: Origin, number: u32) {
+        if let Some(Surface::Slab(slab)) = Arc::get_mut(&mut self.0) {
+            slab.identity = Some(SlabIdentity { origin, number });
+        }
     }
 
     /// Of coefficients in the order of [`quadric`](Self::quadric) that need not be doubles, of which one but

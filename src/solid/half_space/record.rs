@@ -3,14 +3,14 @@
 use super::map::ExactMap;
 use super::power::Powers;
 use super::quadric::substitute;
-use super::slab::ThickPlane;
+use super::slab::{SlabIdentity, ThickPlane};
 use super::torus::Torus;
 use super::{HalfSpace, PlacedHalfSpace, Surface};
 use crate::error::Error;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Affine, Frame};
 use crate::memory;
-use crate::octree::cuts::{MOST_TERMS, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};
+use crate::octree::cuts::{MOST_TERMS, Origin, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
@@ -21,6 +21,15 @@ use hashbrown::HashMap;
 enum Identity {
     Polynomial(Vec<Dyadic>),
     Figure(SurfaceKind, Vec<Dyadic>, Vec<Dyadic>),
+}
+
+impl ExactMap {
+    /// Its numbers, which are those of any other form of the same map.
+    fn primitive(self) -> Vec<Dyadic> {
+        let mut numbers = self.rows.into_iter().flatten().chain([self.w]).collect::<Vec<_>>();
+        Dyadic::make_primitive(&mut numbers);
+        numbers
+    }
 }
 
 impl PlacedHalfSpace {
@@ -46,13 +55,14 @@ impl PlacedHalfSpace {
             }
             Surface::Quadric(quadric) => polynomial(substitute(quadric, &map()?).to_vec()),
             Surface::Powers(_) | Surface::Torus(_) => {
-                let map = map()?;
-                let mut place = map.rows.into_iter().flatten().chain([map.w]).collect::<Vec<_>>();
-                Dyadic::make_primitive(&mut place);
                 let Some((kind, numbers)) = self.half_space.numbers() else { return Ok(None) };
-                (Identity::Figure(kind, numbers, place), false)
+                (Identity::Figure(kind, numbers, map()?.primitive()), false)
             }
-            Surface::Host(_) | Surface::Slab(_) => return Ok(None),
+            Surface::Slab(slab) => {
+                let Some(identity) = &slab.identity else { return Ok(None) };
+                (Identity::Figure(SurfaceKind::Slab, identity.numbers().collect(), map()?.primitive()), false)
+            }
+            Surface::Host(_) => return Ok(None),
         }))
     }
 
@@ -82,7 +92,7 @@ impl PlacedHalfSpace {
 }
 
 impl HalfSpace {
-    /// The kind of the surface, and its numbers; `None` of functions of the host.
+    /// The kind of the surface, and its numbers, of a slab without those that tell which it is; `None` of functions of the host.
     fn numbers(&self) -> Option<(SurfaceKind, Vec<Dyadic>)> {
         Some(match &*self.0 {
             Surface::Plane(plane) => (SurfaceKind::Plane, plane.to_vec()),
@@ -96,7 +106,7 @@ impl HalfSpace {
             Surface::Torus(Torus { major, square, scale, shift }) => {
                 (SurfaceKind::Torus, [major, square, scale, shift].map(Clone::clone).to_vec())
             }
-            Surface::Slab(ThickPlane { normal: [x, y, z], inner, outer }) => {
+            Surface::Slab(ThickPlane { normal: [x, y, z], inner, outer, .. }) => {
                 (SurfaceKind::Slab, [*x, *y, *z, *inner, *outer].map(Dyadic::new).to_vec())
             }
             Surface::Host(_) => return None,
@@ -110,7 +120,7 @@ impl HalfSpace {
     }
 
     /// The half-space of stored numbers; `None` if they make none.
-    fn stored(kind: SurfaceKind, numbers: &[Dyadic]) -> Option<HalfSpace> {
+    fn stored(kind: SurfaceKind, numbers: &[Dyadic], origins: &[Origin]) -> Option<HalfSpace> {
         let is_constant = |linear: &[Dyadic]| linear.iter().all(Dyadic::is_zero);
         Some(match (kind, numbers) {
             (SurfaceKind::Plane, [a, b, c, d]) => {
@@ -141,13 +151,24 @@ impl HalfSpace {
                 let [major, square, scale, shift] = [major, square, scale, shift].map(Clone::clone);
                 HalfSpace::ring(Torus { major, square, scale, shift })
             }
-            (SurfaceKind::Slab, [x, y, z, inner, outer]) => {
+            (SurfaceKind::Slab, [x, y, z, inner, outer, origin, number]) => {
                 let all = [x, y, z, inner, outer].map(Dyadic::exactly);
                 let [Some(x), Some(y), Some(z), Some(inner), Some(outer)] = all else { return None };
                 if [x, y, z] == [0.0; 3] || inner > outer {
                     return None;
                 }
-                HalfSpace::slab([x, y, z], inner, outer)
+                let whole = |n: &Dyadic| {
+                    let n = n.exactly()?;
+                    (n == f64::from(n as u32)).then_some(n as u32)
+                };
+                let identity = match (whole(origin)?, whole(number)?) {
+                    (0, 0) => None,
+                    (0, _) => return None,
+                    (origin, number) => {
+                        Some(SlabIdentity { origin: *origins.get(origin as usize - 1)?, number })
+                    }
+                };
+                HalfSpace::slab([x, y, z], inner, outer, identity)
             }
             _ => return None,
         })
@@ -215,6 +236,7 @@ impl PlacedHalfSpace {
     ) -> Result<Surfaces, Error> {
         let mut all = Surfaces { records: memory::with_capacity(surfaces.len())?, ..Surfaces::default() };
         let mut places: HashMap<(u64, [[u64; 4]; 3]), u64> = HashMap::new();
+        let mut origins: HashMap<Origin, u32> = HashMap::new();
         for surface in surfaces {
             let mut outer = 0;
             for placement in &*surface.placements {
@@ -231,8 +253,24 @@ impl PlacedHalfSpace {
                 what: "doubles for an exact number of a surface",
                 limit: MOST_TERMS as u64,
             };
-            let (kind, numbers) = surface.half_space.numbers().ok_or_else(too_long)?;
-            let (first, mut terms) = (all.doubles.len() as u32, 0);
+            let (kind, mut numbers) = surface.half_space.numbers().ok_or_else(too_long)?;
+            if let Surface::Slab(slab) = &*surface.half_space.0 {
+                numbers.try_reserve(2)?;
+                numbers.extend(match slab.identity {
+                    Some(SlabIdentity { origin, number }) => {
+                        origins.try_reserve(1)?;
+                        let next = all.origins.len() as u32 + 1;
+                        let place = *origins.entry(origin).or_insert(next);
+                        if place == next {
+                            memory::push(&mut all.origins, origin)?;
+                        }
+                        [place, number].map(|number| Dyadic::new(f64::from(number)))
+                    }
+                    None => [Dyadic::zero(), Dyadic::zero()],
+                });
+            }
+            let too_many = |_| Error::Limit { what: "doubles of all surfaces", limit: u32::MAX.into() };
+            let (first, mut terms) = (u32::try_from(all.doubles.len()).map_err(too_many)?, 0);
             for (i, number) in numbers.iter().enumerate() {
                 let own = number.expansion(MOST_TERMS).ok_or_else(too_long)?;
                 terms |= (own.len() as u32) << (3 * i);
@@ -252,7 +290,7 @@ impl PlacedHalfSpace {
             surfaces.placements(id).map(|rows| Affine::new(*rows).ok()).collect::<Option<Vec<_>>>()?;
         placements.reverse();
         Some(PlacedHalfSpace {
-            half_space: HalfSpace::stored(kind, &numbers)?,
+            half_space: HalfSpace::stored(kind, &numbers, surfaces.origins)?,
             placements: Arc::from(placements),
         })
     }

@@ -6,12 +6,34 @@ use super::map::ExactMap;
 use super::tangent::Tangent;
 use crate::lattice::axes;
 use crate::lattice::exact::Dyadic;
+use crate::octree::cuts::Origin;
 
 /// A point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer` is not; of others nothing is known.
 pub(crate) struct ThickPlane {
     pub(crate) normal: [f64; 3],
     pub(crate) inner: f64,
     pub(crate) outer: f64,
+    pub(crate) identity: Option<SlabIdentity>,
+}
+
+/// Which slab it is. A slab stands for a set that is not known, so that only its origin tells it from others: two with the same
+/// coefficients may stand for two sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct SlabIdentity {
+    /// What it was made from: a fingerprint of the solid and of how that was built.
+    pub(crate) origin: Origin,
+    /// Its number there.
+    pub(crate) number: u32,
+}
+
+impl SlabIdentity {
+    /// The same as numbers.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = Dyadic> {
+        let [low, high] = self.origin;
+        [low as u32, (low >> 32) as u32, high as u32, (high >> 32) as u32, self.number]
+            .into_iter()
+            .map(|number| Dyadic::new(f64::from(number)))
+    }
 }
 
 /// A plane with a width on a universe, in unit coordinates.

@@ -1,10 +1,10 @@
 //! What the cuts of a stored octree say: cells below its own, and points.
 
 use super::StoredPart;
-use crate::error::Error;
+use crate::error::{Damage, Error};
 use crate::lattice::{Cell, Frame};
 use crate::memory;
-use crate::octree::cuts::{CellCut, CutsRef};
+use crate::octree::cuts::{CellCut, CellIds, CutsRef};
 use crate::octree::{OctreeRef, Planes, Tag};
 use crate::solid::half_space::Placed;
 use crate::solid::half_space::bounds::{Octants, centre};
@@ -39,12 +39,16 @@ fn widened(table: u8) -> Table {
 }
 
 impl PlacedCuts {
-    /// Of a tree with cuts; `None` if a surface is damaged. O(surfaces).
-    pub(super) fn new(cuts: &CutsRef<'_>, frame: &Frame) -> Result<Option<PlacedCuts>, Error> {
+    /// Of a tree with cuts. O(surfaces).
+    ///
+    /// # Errors
+    /// [`Damage::Surface`] if one is none; [`Error::Limit`] if the exact map of its placements is too long.
+    pub(super) fn new(cuts: &CutsRef<'_>, frame: &Frame) -> Result<PlacedCuts, Error> {
         let mut surfaces = memory::with_capacity(cuts.surfaces.len())?;
         let mut cells = memory::with_capacity(cuts.surfaces.len())?;
         for id in 0..cuts.surfaces.len() {
-            let Some(surface) = PlacedHalfSpace::read(&cuts.surfaces, id) else { return Ok(None) };
+            let wrong = Damage::Surface { surface: id as u64 };
+            let surface = PlacedHalfSpace::read(&cuts.surfaces, id).ok_or(wrong)?;
             cells.push(surface.on(frame)?);
             surfaces.push(surface);
         }
@@ -58,7 +62,7 @@ impl PlacedCuts {
             edge *= half;
         }
         let around = Frame::new([0.0; 3], edge, 1)?;
-        Ok(Some(PlacedCuts { surfaces, cells, around, points: OnceBox::new() }))
+        Ok(PlacedCuts { surfaces, cells, around, points: OnceBox::new() })
     }
 
     pub(super) fn surfaces(&self) -> &[PlacedHalfSpace] {
@@ -66,7 +70,7 @@ impl PlacedCuts {
     }
 
     /// The surfaces on which a table depends, with their numbers in it; nothing if one is not there.
-    fn variables<'c>(&self, cuts: &CutsRef<'c>, record: u32, table: Table) -> Option<Variables<'c>> {
+    fn variables(&self, cuts: &CutsRef<'_>, record: u32, table: Table) -> Option<Variables> {
         let CellCut::Table { ids, .. } = cuts.at(record as usize) else { return None };
         ids.iter().all(|&id| (id as usize) < self.cells.len()).then_some(Variables { ids, table })
     }
@@ -177,12 +181,12 @@ impl PlacedCuts {
 }
 
 /// The surfaces of a record, and a function of them that remains.
-struct Variables<'c> {
-    ids: &'c [u32],
+struct Variables {
+    ids: CellIds,
     table: Table,
 }
 
-impl Variables<'_> {
+impl Variables {
     fn each(&self) -> impl Iterator<Item = (usize, u32)> + Clone {
         self.ids.iter().copied().enumerate().filter(|&(i, _)| self.table.depends_on(i))
     }

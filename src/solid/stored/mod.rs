@@ -145,8 +145,9 @@ impl<T: Tree> StoredOnFrame<T> {
         // A descent remembers nothing, so elements with shared children would be visited again and again:
         // 64^10 times in a file of a few kilobytes.
         tree.tree().ensure_links()?;
+        tree.tree().ensure_cuts()?;
         let cuts = match &tree.tree().cuts {
-            Some(cuts) => PlacedCuts::new(cuts, tree.tree().frame())?.map(Arc::new),
+            Some(cuts) => Some(Arc::new(PlacedCuts::new(cuts, tree.tree().frame())?)),
             None => None,
         };
         Ok(StoredOnFrame { tree, frame: *frame, cuts })
@@ -364,12 +365,13 @@ impl Solid for Octree {
 impl CutsRef<'_> {
     /// A fingerprint that has taken in the cuts.
     fn taken_in(&self, all: Fingerprinter) -> Fingerprinter {
-        let ids = self.ids.iter().map(|&id| u64::from(id));
+        let ids = self.ids.iter().map(u64::from);
         let surfaces = &self.surfaces;
         all.bytes(self.heads)
             .words(self.ids.len() as u64, ids)
             .bytes(bytemuck::cast_slice(surfaces.records))
             .numbers(surfaces.doubles)
             .bytes(bytemuck::cast_slice(surfaces.placements))
+            .bytes(bytemuck::cast_slice(surfaces.origins))
     }
 }
