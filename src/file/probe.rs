@@ -118,7 +118,8 @@ pub fn probe_bytes(bytes: &[u8]) -> Result<Probe, Error> {
             format,
             directions,
             rays: axes(|axis| {
-                let of_kind = |entry: &Entry| entry.known(&main, minor) == Some(Kind::along(axis, Column::Starts));
+                let of_kind =
+                    |entry: &Entry| entry.known(&main, minor) == Some(Kind::along(axis, Column::Starts));
                 entries(raw).find(of_kind).map_or(0, |entry| entry.count - 1)
             }),
             intervals: main.intervals(),

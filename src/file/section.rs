@@ -104,7 +104,8 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
     for (index, entry) in entries(table).enumerate() {
         entry.check(newer)?;
         if index == 0 {
-            objects = if entry.known(&main, head.header.minor) == Some(Kind::Objects) { entry.count } else { 0 };
+            objects =
+                if entry.known(&main, head.header.minor) == Some(Kind::Objects) { entry.count } else { 0 };
             if !(1..=MAX_OBJECTS).contains(&objects) {
                 return Err(FormatError::Section { name: Kind::Objects.name() });
             }

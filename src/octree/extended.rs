@@ -59,9 +59,15 @@ impl OctreeRef<'_> {
             }
             let wrong = Damage::CutRecord { record: record as u64 };
             let head = Head(head);
-            let Some(&level) = levels.get(record).filter(|_| head.is_valid()) else { return Err(wrong.into()) };
+            let Some(&level) = levels.get(record).filter(|_| head.is_valid()) else {
+                return Err(wrong.into());
+            };
             if head.is_split() {
                 if level >= self.frame.depth() || levels.len() + 8 > cuts.heads.len() {
+                    return Err(wrong.into());
+                }
+                // (The group begins where the levels that are known so far end.)
+                if cuts.heads[levels.len()..levels.len() + 8].iter().all(|&head| head == Head::NONE.0) {
                     return Err(wrong.into());
                 }
                 splits += 1;

@@ -14,8 +14,8 @@ use crate::solid::half_space::possible::possible;
 use crate::solid::half_space::record::Pool;
 use crate::solid::half_space::table::Table;
 use crate::solid::{
-    Ask, AskWhole, Classifier, Enclosure, Fingerprinter, HalfSpace, OCTANTS, OpenSurfaces, Parts, PlacedHalfSpace, Slab,
-    SlabJoin, Solid, Verdict, Worker,
+    Ask, AskWhole, Classifier, Enclosure, Fingerprinter, HalfSpace, OCTANTS, OpenSurfaces, Parts,
+    PlacedHalfSpace, Slab, SlabJoin, Solid, Verdict, Worker,
 };
 use alloc::sync::Arc;
 use alloc::vec::Vec;
