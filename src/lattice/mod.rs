@@ -19,6 +19,7 @@
 
 mod affine;
 mod axes;
+mod ball;
 mod bounds;
 mod cell;
 mod composed;
@@ -35,6 +36,7 @@ mod window;
 
 pub use affine::Affine;
 pub(crate) use axes::axes;
+pub(crate) use ball::Ball;
 pub use bounds::Bounds;
 pub use cell::Cell;
 pub(crate) use composed::Composed;

@@ -3,11 +3,12 @@
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::axes;
-use crate::lattice::{Cell, Cube, Frame, Window, morton};
+use crate::lattice::{Ball, Cell, Cube, Frame, Window, morton};
+use crate::octree::cuts::{CellCut, CellIds, CutsRef, Figure, Head};
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
-use crate::solid::{Classifier, Solid, Verdict, Worker};
+use crate::solid::{Classifier, OCTANTS, Solid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::{Step, descend};
 
@@ -109,16 +110,20 @@ impl Survey {
 impl OctreeRef<'_> {
     /// How the box `[min, max]` (model units, min ≤ max) lies to the solid; what of it lies outside of the
     /// universe is undecided. Ends as soon as the answer is known; whatever the bytes, no element is read
-    /// twice.
+    /// twice. Cuts decide in place, each by at most 64 boxes: a box that touches a surface, or comes very near to one, may be
+    /// undecided.
     ///
     /// # Errors
     /// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number.
     pub fn classify_box(&self, min: [f64; 3], max: [f64; 3]) -> Result<Region, Error> {
         let Some(survey) = Survey::new(&self.frame, min, max)? else { return Ok(Region::Undecided) };
-        let mut search = Search { tree: self, survey, windows: Windows::new(self) };
-        match self.root {
-            Tag::Branch => search.element(0, 0, [0; 3]),
-            tag => search.survey.note(Planes::uniform(tag), 1),
+        let records = self.cuts.as_ref().map_or(0, |cuts| cuts.heads.len());
+        let mut search =
+            Search { tree: self, survey, windows: Windows::new(self), asked: [min, max], records };
+        match (self.root, &self.cuts) {
+            (Tag::Branch, _) => search.element(0, 0, [0; 3]),
+            (Tag::Partial, Some(cuts)) => search.cut(cuts, CutsRef::ROOT, Cell::ROOT),
+            (tag, _) => search.survey.note(Planes::uniform(tag), 1),
         }
         Ok(search.survey.region())
     }
@@ -129,7 +134,14 @@ struct Search<'t, 'a> {
     tree: &'t OctreeRef<'a>,
     survey: Survey,
     windows: Windows,
+    /// The box, in model units.
+    asked: [[f64; 3]; 2],
+    /// Records that may still be looked at: of a damaged tree several cells may lead to one.
+    records: usize,
 }
+
+/// Most pieces that a box is cut into in a cell with a table.
+const MOST_PIECES: usize = 64;
 
 impl Search<'_, '_> {
     /// Looks at the part of element `index` of level `e` that lies in the box; `origin` is its lowest finest
@@ -148,7 +160,10 @@ impl Search<'_, '_> {
             let last = self.survey.window.last[axis].min(end) - start;
             mask &= morton::slabs(axis, first >> shift, last >> shift);
         }
-        self.survey.note(planes, mask);
+        match &self.tree.cuts {
+            Some(cuts) => self.cuts_of(cuts, e, index, planes, mask, origin),
+            None => self.survey.note(planes, mask),
+        }
         let mut branches = planes.branch() & mask;
         while branches != 0 && !(self.survey.empty && self.survey.full) {
             let c = branches.trailing_zeros();
@@ -157,6 +172,106 @@ impl Search<'_, '_> {
                 Ok(child) if e + 1 < levels => {
                     let at = morton::position(c);
                     self.element(e + 1, child, axes(|axis| origin[axis] + (at[axis] << shift)));
+                }
+                _ => self.survey.partial = true,
+            }
+        }
+    }
+}
+
+impl Search<'_, '_> {
+    /// Looks at those cells of an element that `mask` names and that are not cut.
+    fn cuts_of(
+        &mut self,
+        cuts: &CutsRef<'_>,
+        e: usize,
+        index: usize,
+        planes: Planes,
+        mask: u64,
+        origin: [u32; 3],
+    ) {
+        let partial = planes.partial() & mask;
+        self.survey.note(planes, mask & !partial);
+        let (level, depth) = (self.tree.cell_level(e), self.tree.frame.depth());
+        for octant in 0..8 {
+            let own = (partial >> (8 * octant)) as u8;
+            // An octant that is PARTIAL as a whole has one cut.
+            let whole = planes.octant(octant) == Tag::Partial;
+            for k in (0..8).filter(|k| if whole { *k == 0 && own != 0 } else { own >> k & 1 != 0 }) {
+                if self.survey.empty && self.survey.full {
+                    return;
+                }
+                let (c, level) = (8 * octant + k, level - u8::from(whole));
+                let at = morton::position(c);
+                let finest = axes(|axis| origin[axis] + (at[axis] << (depth - self.tree.cell_level(e))));
+                let cell = Cell { level, at: finest.map(|a| a >> (depth - level)) };
+                self.cut(cuts, cuts.record(index, planes, c), cell);
+            }
+        }
+    }
+
+    /// Looks at a PARTIAL cell. The recursion is as deep as the frame.
+    fn cut(&mut self, cuts: &CutsRef<'_>, record: usize, cell: Cell) {
+        let depth = self.tree.frame.depth();
+        self.records = self.records.saturating_sub(1);
+        match cuts.at(record) {
+            CellCut::Table { ids, table } => self.table(cuts, &ids, table, cell),
+            CellCut::Split(first) if cell.level < depth && self.records > 0 => {
+                for k in OCTANTS {
+                    let child = cell.child(k);
+                    let is_met = self.survey.window.meets(&Cube { frame: &self.tree.frame, cell: child });
+                    if is_met && !(self.survey.empty && self.survey.full) {
+                        self.cut(cuts, first + usize::from(k), child);
+                    }
+                }
+            }
+            _ => self.survey.partial = true,
+        }
+    }
+
+    /// Looks at what of the box lies in a cell with a table: in pieces, which are halved where they are not decided.
+    fn table(&mut self, cuts: &CutsRef<'_>, ids: &CellIds, table: u8, cell: Cell) {
+        let mut figures = [None; 3];
+        for (figure, &id) in figures.iter_mut().zip(ids.iter()) {
+            *figure = Figure::new(&cuts.surfaces, id);
+        }
+        let frame = &self.tree.frame;
+        let (lower, upper) = Cube { frame, cell }.planes();
+        let (mut low, mut high, mut slack) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let [first, last] = [lower[axis], upper[axis]].map(|i| frame.plane(axis, i));
+            low[axis] = first.lower.max(self.asked[0][axis]);
+            high[axis] = last.upper.min(self.asked[1][axis]).max(low[axis]);
+            // A piece that is thicker than this is met by the part of the box that lies in the cell.
+            slack[axis] = 64.0 * f64::EPSILON * (low[axis].abs() + high[axis].abs());
+        }
+        let mut waiting = [([0.0; 3], [0.0; 3], 0); MOST_PIECES];
+        waiting[0] = (low, high, table);
+        let (mut next, mut made) = (0, 1);
+        while next < made && !(self.survey.empty && self.survey.full) {
+            let (low, high, mut table) = waiting[next];
+            next += 1;
+            let centre = axes(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
+            let radius =
+                axes(|axis| (high[axis] - centre[axis]).max(centre[axis] - low[axis]) * (1.0 + f64::EPSILON));
+            for (i, figure) in figures.iter().enumerate().filter(|_| centre.iter().all(|c| c.is_finite())) {
+                if let (true, Some(figure)) = (Head::needs(table, i), figure)
+                    && let Some(side) = figure.side(centre.map(Ball::exactly), radius)
+                {
+                    table = Head::on_side(table, i, side);
+                }
+            }
+            let widths = axes(|axis| high[axis] - low[axis]);
+            let longest = (0..3).fold(0, |best, axis| if widths[axis] > widths[best] { axis } else { best });
+            match Head(table) {
+                Head::NOWHERE => self.survey.empty = true,
+                Head::EVERYWHERE => self.survey.full = true,
+                _ if made + 2 <= MOST_PIECES && widths[longest] > slack[longest] => {
+                    let (mut below, mut above) = (high, low);
+                    (below[longest], above[longest]) = (centre[longest], centre[longest]);
+                    waiting[made] = (low, below, table);
+                    waiting[made + 1] = (above, high, table);
+                    made += 2;
                 }
                 _ => self.survey.partial = true,
             }

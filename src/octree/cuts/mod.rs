@@ -4,16 +4,19 @@
 //! representation and operation using extended octrees*, ACM Transactions on Graphics 9 (2), 1990), here with curved surfaces and
 //! exact signs. The planes of the tree stay what they are without the cuts.
 //!
+//! - `figure`: on which side of a surface points lie, by arithmetic in doubles.
 //! - `ids`: the numbers of surfaces.
 //! - `record`: one byte for each PARTIAL cell: a truth table of up to three surfaces, nothing, or a split into eight records.
 //! - `surfaces`: the table of surfaces, in numbers that are exact.
 //! - `writer`: how cuts are gathered and put in order.
 
+mod figure;
 mod ids;
 mod record;
 mod surfaces;
 mod writer;
 
+pub(crate) use figure::{Figure, FigureLine};
 pub(crate) use ids::{CellIds, Ids, OwnedIds, width};
 pub(crate) use record::Head;
 pub(crate) use surfaces::{MOST_TERMS, Origin, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};

@@ -13,6 +13,11 @@ impl Head {
     /// Eight records follow elsewhere.
     pub(crate) const SPLIT: Head = Head(0xFF);
 
+    /// A table of no surface that is left when sides are known: the solid is nowhere.
+    pub(crate) const NOWHERE: Head = Head(0);
+    /// The same: the solid is everywhere.
+    pub(crate) const EVERYWHERE: Head = Head(0xFF);
+
     /// Where each surface is positive.
     const HOLDS: [u8; 3] = [0xAA, 0xCC, 0xF0];
 
@@ -52,6 +57,23 @@ impl Head {
         Head::COUNTS[usize::from(self.0)] != Head::INVALID
     }
 
+    /// The values of a table where the side of one of its surfaces is known; no longer a table of any surface if all are the same.
+    pub(crate) fn on_side(table: u8, surface: usize, is_positive: bool) -> u8 {
+        let (holds, shift) = (Head::HOLDS[surface], 1 << surface);
+        if is_positive {
+            let kept = table & holds;
+            kept | kept >> shift
+        } else {
+            let kept = table & !holds;
+            kept | kept << shift
+        }
+    }
+
+    /// Whether a table depends on a surface.
+    pub(crate) fn needs(table: u8, surface: usize) -> bool {
+        Head::depends_on(table, surface)
+    }
+
     /// How many surfaces the record has; none of a damaged one.
     pub(crate) fn surfaces(self) -> usize {
         usize::from(Head::COUNTS[usize::from(self.0)] & 3)
@@ -69,6 +91,16 @@ mod tests {
         assert_eq!([count(0), count(1), count(2), count(3)], [2, 2, 10, 218]);
         assert_eq!(count(Head::INVALID), 24);
         assert_eq!((Head(0xAA).surfaces(), Head(0x88).surfaces(), Head(0xF0).surfaces()), (1, 2, 0));
+        for (table, surface) in (0..=255).flat_map(|table| [0, 1, 2].map(|surface| (table, surface))) {
+            for is_positive in [false, true] {
+                let own = Head::on_side(table, surface, is_positive);
+                for m in 0..8u8 {
+                    let there = if is_positive { m | 1 << surface } else { m & !(1 << surface) };
+                    assert_eq!(own >> m & 1, table >> there & 1);
+                }
+                assert!(!Head::needs(own, surface));
+            }
+        }
         assert!(!Head(0xF0).is_valid() && Head::NONE.is_valid() && Head::SPLIT.surfaces() == 0);
     }
 }

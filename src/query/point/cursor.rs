@@ -1,8 +1,10 @@
 //! Points that lie near each other.
 
 use super::Membership;
+use super::cuts::DescendCuts;
 use super::descent::{Packed, brick, settled};
 use crate::dispatch::{Hot, with_popcount};
+use crate::octree::cuts::CutsRef;
 use crate::octree::links::{Links, levels_below};
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use crate::octree::{Planes, Tag};
@@ -39,9 +41,10 @@ impl<'a> PointCursor<'a> {
     /// As [`OctreeRef::contains`].
     #[inline]
     pub fn contains(&mut self, point: [f64; 3]) -> Membership {
-        match self.tree.frame.cell_of(point) {
-            Some(at) => self.locate(at).into(),
-            None => Membership::Undecided,
+        let Some(at) = self.tree.frame.cell_of(point) else { return Membership::Undecided };
+        match (self.locate(at), &self.tree.cuts) {
+            (Tag::Partial, Some(cuts)) => self.decide(cuts, point, at),
+            (tag, _) => tag.into(),
         }
     }
 
@@ -64,6 +67,19 @@ impl<'a> PointCursor<'a> {
             }
         }
         with_popcount(Move { cursor: self, at, changed })
+    }
+
+    /// What the cut of a PARTIAL cell says that was just located.
+    fn decide(&self, cuts: &CutsRef<'_>, point: [f64; 3], at: [u32; 3]) -> Membership {
+        let index = self.path[self.reached];
+        let way = DescendCuts { tree: &self.tree, cuts, point, at, from: (0, 0) };
+        // (A link that is damaged leads to no PARTIAL cell.)
+        let c = Packed::new(at).cell(self.shift);
+        if self.tree.root == Tag::Branch && self.planes.tag(c) == Tag::Partial {
+            way.settled(Tag::Partial, index, self.planes, c, self.shift)
+        } else {
+            way.run()
+        }
     }
 
     /// The bits in which coordinates differ from those of the last cell.

@@ -1,6 +1,7 @@
 //! Does the solid contain a point?
 
 mod cursor;
+mod cuts;
 mod descent;
 mod table;
 
@@ -46,15 +47,21 @@ const LANES: usize = 32;
 impl OctreeRef<'_> {
     /// Whether the solid contains `point` (model units). A point on the boundary may be answered either
     /// way. At most ⌈depth/2⌉ elements are read; never fails, whatever the bytes.
+    ///
+    /// Cuts decide in place, by arithmetic in doubles: the answer may be [`Undecided`](Membership::Undecided) for points that are
+    /// next to a surface, by about 10^-15 of the coordinates. Asked as a [solid](crate::contains), the tree decides these, too.
     #[inline]
     pub fn contains(&self, point: [f64; 3]) -> Membership {
+        if let Some(cuts) = &self.cuts {
+            return self.contains_by_cuts(cuts, point);
+        }
         match self.frame.cell_of(point) {
             Some(at) => Descend::from_root(self, Packed::new(at)).into(),
             None => Membership::Undecided,
         }
     }
 
-    /// The tag of the finest cell `at` (each coordinate below 2^depth, else PARTIAL).
+    /// The tag of the finest cell `at`, whatever its cut says (each coordinate below 2^depth, else PARTIAL).
     pub fn tag_at(&self, at: [u32; 3]) -> Tag {
         if at.iter().any(|&a| a >= self.frame.cells()) {
             return Tag::Partial;
@@ -72,7 +79,7 @@ impl OctreeRef<'_> {
         if points.len() != answers.len() {
             return Err(Error::Argument { name: "answers", problem: "must be as long as points" });
         }
-        if self.root != Tag::Branch {
+        if self.root != Tag::Branch || self.cuts.is_some() {
             points.iter().zip(answers).for_each(|(&point, answer)| *answer = self.contains(point));
             return Ok(());
         }

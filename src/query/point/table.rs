@@ -68,9 +68,10 @@ impl<'a> PointTable<'a> {
     /// As [`OctreeRef::contains`].
     #[inline]
     pub fn contains(&self, point: [f64; 3]) -> Membership {
-        match self.tree.frame.cell_of(point) {
-            Some(at) => self.locate(at).into(),
-            None => Membership::Undecided,
+        let Some(at) = self.tree.frame.cell_of(point) else { return Membership::Undecided };
+        match (self.locate(at), &self.tree.cuts) {
+            (Tag::Partial, Some(cuts)) => self.tree.contains_by_cuts(cuts, point),
+            (tag, _) => tag.into(),
         }
     }
 

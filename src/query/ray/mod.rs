@@ -6,6 +6,7 @@
 
 mod beam;
 mod course;
+mod cut;
 mod line;
 mod march;
 mod octree;

@@ -2,6 +2,7 @@
 
 use super::beam::{Beam, RAYS};
 use super::course::{Clear, Course};
+use super::cut::CutLine;
 use super::line::Line;
 use super::march::March;
 use super::search::{Cells, First, Stays};
@@ -10,6 +11,7 @@ use super::{Obstacle, Ray, RayHit, RaySpans};
 use crate::dispatch::{Hot, with_vectors};
 use crate::error::Error;
 use crate::lattice::Cell;
+use crate::octree::cuts::{CellCut, CutsRef};
 use crate::octree::links::Step;
 use crate::octree::view::{OctreeRef, starts_half_way};
 use crate::octree::{Octree, Planes, Tag};
@@ -17,8 +19,8 @@ use crate::solid::{Enclosure, OCTANTS, Verdict};
 use core::array;
 
 impl OctreeRef<'_> {
-    /// Where a ray first meets the octree's cells, whatever they prove of the solid that the tree was made from;
-    /// `None` if nothing stops it. What lies outside of the universe does not count. At most 3 · 2^depth cells are
+    /// Where a ray first meets the octree's cells, and the surfaces that PARTIAL cells keep, whatever they prove of the solid that
+    /// the tree was made from; `None` if nothing stops it. What lies outside of the universe does not count. At most 3 · 2^depth cells are
     /// looked at, about a dozen as a rule, whatever the bytes.
     pub fn cast_ray(&self, ray: &Ray, on: Obstacle) -> Option<RayHit> {
         cast_one(self, ray, on)
@@ -63,6 +65,9 @@ pub(super) trait Question: Copy {
     /// Whether the first FULL cell is needed, too.
     const TO_FULL: bool;
 
+    /// Whether PARTIAL cells are looked into.
+    const BY_CUTS: bool;
+
     /// The answer, given what was met.
     fn answer(self, march: &March, tree: &OctreeRef<'_>, ray: &Ray) -> Option<Self::Answer>;
 
@@ -73,6 +78,7 @@ pub(super) trait Question: Copy {
 impl Question for Obstacle {
     type Answer = RayHit;
     const TO_FULL: bool = true;
+    const BY_CUTS: bool = true;
 
     #[inline(never)]
     fn answer(self, march: &March, tree: &OctreeRef<'_>, ray: &Ray) -> Option<RayHit> {
@@ -97,13 +103,21 @@ pub(super) fn cast_all<Q: Question>(
     if rays.len() != answers.len() {
         return Err(Error::Argument { name: "hits", problem: "must be as long as rays" });
     }
-    with_vectors(CastAll { tree, rays, question, answers });
+    if Q::BY_CUTS && tree.cuts.is_some() {
+        rays.iter().zip(answers).for_each(|(ray, answer)| *answer = question.exactly(tree, ray));
+    } else {
+        with_vectors(CastAll { tree, rays, question, answers });
+    }
     Ok(())
 }
 
 /// Answers a question about a ray.
 pub(super) fn cast_one<Q: Question>(tree: &OctreeRef<'_>, ray: &Ray, question: Q) -> Option<Q::Answer> {
-    with_vectors(Cast { tree, ray, question })
+    if Q::BY_CUTS && tree.cuts.is_some() {
+        question.exactly(tree, ray)
+    } else {
+        with_vectors(Cast { tree, ray, question })
+    }
 }
 
 struct Cast<'t, 'a, Q: Question> {
@@ -169,23 +183,38 @@ fn cast<Q: Question>(
 /// A stored octree, whose cells are split as they are stored.
 struct Stored<'t, 'a>(&'t OctreeRef<'a>);
 
-/// Where a cut cell is described: element level, element, and the octant unless it is the element's own.
-type Described = (usize, usize, Option<u8>);
+/// Where a cell is described that is not decided.
+#[derive(Clone, Copy)]
+enum Described {
+    /// Element level, element, and the octant unless it is the element's own.
+    Planes(usize, usize, Option<u8>),
+    /// The record of a PARTIAL cell.
+    Record(usize),
+}
 
 impl Stored<'_, '_> {
     fn verdict(&self, e: usize, index: usize, planes: Planes, c: u32) -> Verdict<Described> {
         match self.0.step(e, index, planes, c) {
-            Step::Into(child) => Verdict::Partial((e + 1, child, None)),
-            Step::Settled(tag) => settled(tag),
+            Step::Into(child) => Verdict::Partial(Described::Planes(e + 1, child, None)),
+            Step::Settled(tag) => self.settled(tag, |cuts| cuts.record(index, planes, c)),
+        }
+    }
+
+    fn settled(&self, tag: Tag, record: impl FnOnce(&CutsRef<'_>) -> usize) -> Verdict<Described> {
+        match (tag, &self.0.cuts) {
+            (Tag::Empty, _) => Verdict::Empty,
+            (Tag::Full, _) => Verdict::Full,
+            (Tag::Partial, Some(cuts)) => recorded(cuts, record(cuts)),
+            _ => Verdict::Undecided,
         }
     }
 }
 
-fn settled<P>(tag: Tag) -> Verdict<P> {
-    match tag {
-        Tag::Empty => Verdict::Empty,
-        Tag::Full => Verdict::Full,
-        Tag::Partial | Tag::Branch => Verdict::Undecided,
+/// A PARTIAL cell with a record.
+fn recorded(cuts: &CutsRef<'_>, record: usize) -> Verdict<Described> {
+    match cuts.at(record) {
+        CellCut::None => Verdict::Undecided,
+        CellCut::Table { .. } | CellCut::Split(_) => Verdict::Partial(Described::Record(record)),
     }
 }
 
@@ -195,25 +224,38 @@ impl Cells for Stored<'_, '_> {
     fn root(&mut self) -> Result<Verdict<Described>, Error> {
         let half = starts_half_way(self.0.frame.depth());
         Ok(match self.0.root {
-            Tag::Branch => Verdict::Partial((0, 0, half.then_some(0))),
-            tag => settled(tag),
+            Tag::Branch => Verdict::Partial(Described::Planes(0, 0, half.then_some(0))),
+            tag => self.settled(tag, |_| CutsRef::ROOT),
         })
     }
 
     fn split(&mut self, _: Cell, part: &Described) -> Result<Option<[Verdict<Described>; 8]>, Error> {
-        let (e, index, octant) = *part;
+        let (e, index, octant) = match (*part, &self.0.cuts) {
+            (Described::Planes(e, index, octant), _) => (e, index, octant),
+            (Described::Record(record), Some(cuts)) => {
+                let CellCut::Split(first) = cuts.at(record) else { return Ok(None) };
+                return Ok(Some(OCTANTS.map(|k| recorded(cuts, first + usize::from(k)))));
+            }
+            (Described::Record(_), None) => return Ok(None),
+        };
         let planes = self.0.entry(index).unwrap_or(Planes::uniform(Tag::Partial));
         Ok(Some(OCTANTS.map(|k| match octant {
             Some(octant) => self.verdict(e, index, planes, (8 * octant + k).into()),
             None => match planes.octant(k.into()) {
-                Tag::Branch => Verdict::Partial((e, index, Some(k))),
-                tag => settled(tag),
+                Tag::Branch => Verdict::Partial(Described::Planes(e, index, Some(k))),
+                tag => self.settled(tag, |cuts| cuts.record(index, planes, 8 * u32::from(k))),
             },
         })))
     }
 
     fn enclosure(&mut self, _: Cell, _: &Described) -> Result<Option<Enclosure>, Error> {
         Ok(None)
+    }
+
+    fn table(&self, part: &Described, line: &Line<'_>) -> Option<CutLine<'_>> {
+        let (Described::Record(record), Some(cuts)) = (*part, &self.0.cuts) else { return None };
+        let CellCut::Table { ids, table } = cuts.at(record) else { return None };
+        Some(CutLine::new(&cuts.surfaces, &ids, table, line))
     }
 
     fn mark(&self) -> usize {

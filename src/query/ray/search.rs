@@ -1,5 +1,6 @@
 //! The cells along a ray, front to back.
 
+use super::cut::{CutLine, Piece};
 use super::line::{Line, Moment, Passage};
 use super::{Obstacle, RayHit, RaySpans};
 use crate::error::Error;
@@ -23,6 +24,11 @@ pub(super) trait Cells {
     /// As [`Ask::enclosure`](crate::solid::Ask::enclosure).
     fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error>;
 
+    /// The table of surfaces that a cell keeps, along a ray.
+    fn table(&self, _: &Self::Part, _: &Line<'_>) -> Option<CutLine<'_>> {
+        None
+    }
+
     /// As [`Parts::mark`](crate::solid::Parts::mark).
     fn mark(&self) -> usize;
 
@@ -36,14 +42,17 @@ trait Visitor {
     fn skips(&self, passage: &Passage) -> bool;
 
     /// A cell that is not EMPTY and not split further.
-    fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known) -> Result<(), Error>;
+    fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known<'_>)
+    -> Result<(), Error>;
 }
 
 /// What is known of a cell.
-enum Known {
+enum Known<'a> {
     Full,
     /// PARTIAL, perhaps with slabs.
     Partial(Option<Enclosure>),
+    /// PARTIAL, with surfaces.
+    Table(CutLine<'a>),
 }
 
 /// Shows all cells along a ray to a visitor, roughly front to back. The recursion is as deep as the frame.
@@ -79,6 +88,9 @@ fn walk<C: Cells>(
             Ok(())
         }
         None => {
+            if let Some(table) = cells.table(&part, line) {
+                return visitor.meet(line, cell, &passage, Known::Table(table));
+            }
             let enclosure = cells.enclosure(cell, &part)?;
             visitor.meet(line, cell, &passage, Known::Partial(enclosure))
         }
@@ -149,7 +161,13 @@ impl Visitor for First {
         self.inner.is_some_and(|(t, ..)| passage.entry.t.lower >= t)
     }
 
-    fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known) -> Result<(), Error> {
+    fn meet(
+        &mut self,
+        line: &Line<'_>,
+        cell: Cell,
+        passage: &Passage,
+        known: Known<'_>,
+    ) -> Result<(), Error> {
         let (entry, face) = (passage.entry.t, line.face(&passage.entry));
         match known {
             Known::Full => {
@@ -166,6 +184,24 @@ impl Visitor for First {
                 for (stay, slab) in found.certain.into_iter().flatten() {
                     keep(&mut self.inner, stay.entry.t.upper, cell, normal(slab));
                 }
+            }
+            Known::Table(table) => {
+                // The normal is that of the surface by which the ray enters what may be solid.
+                let mut normal = None;
+                table.walk(entry.lower, passage.exit.t.upper, |piece| {
+                    if piece.is_inside == Some(false) {
+                        normal = None;
+                        return true;
+                    }
+                    let own = *normal.get_or_insert_with(|| {
+                        let crossed = piece.surface.filter(|_| piece.low > entry.lower);
+                        crossed.and_then(|surface| table.normal(line, surface, piece.low)).map_or(face, unit)
+                    });
+                    keep(&mut self.outer, piece.low, cell, own);
+                    let Some(stay) = piece.certain(passage) else { return true };
+                    keep(&mut self.inner, stay.entry.t.upper, cell, own);
+                    false
+                });
             }
         }
         Ok(())
@@ -219,23 +255,43 @@ impl Enclosed {
             SlabJoin::All => [Some(spells.into_iter().flatten().fold(whole, Spell::and)), None, None],
             SlabJoin::Any => spells.map(|spell| spell.map(|spell| whole.and(spell))),
         };
-        // A spell that lasts from the cell's entry begins with it exactly, so that it goes on from the cell before.
-        let begins = |from: f64| if from <= entry.lower { passage.entry } else { Moment::exactly(from) };
-        let ends = |to: f64| if to >= exit.upper { passage.exit } else { Moment::exactly(to) };
-        let may_be = |Spell { from, to, slab }: Spell| {
-            (from <= to).then(|| (Passage { entry: begins(from), exit: ends(to) }, slab))
-        };
-        let must_be = |Spell { from, to, slab }: Spell| {
-            let late = if from > entry.lower { from.max(entry.upper) } else { from };
-            let early = if to < exit.upper { to.min(exit.lower) } else { to };
-            let stay = Passage { entry: begins(late), exit: ends(early) };
-            // Where slabs agree at a single point only, they do not prove it to be inside.
-            (stay.entry.t.upper < stay.exit.t.lower).then_some((stay, slab))
-        };
+        let may_be =
+            |Spell { from, to, slab }: Spell| (from <= to).then(|| (possible_stay(passage, from, to), slab));
+        let must_be =
+            |Spell { from, to, slab }: Spell| certain_stay(passage, from, to).map(|stay| (stay, slab));
         Enclosed {
             possible: joined(possible).map(|spell| spell.and_then(may_be)),
             certain: joined(certain).map(|spell| spell.and_then(must_be)),
         }
+    }
+}
+
+/// The stay between two times in a cell. One that lasts from the cell's entry begins with it exactly, so that it goes on from the
+/// cell before.
+fn possible_stay(passage: &Passage, from: f64, to: f64) -> Passage {
+    let entry = if from <= passage.entry.t.lower { passage.entry } else { Moment::exactly(from) };
+    let exit = if to >= passage.exit.t.upper { passage.exit } else { Moment::exactly(to) };
+    Passage { entry, exit }
+}
+
+/// The same where the ray is surely in the cell. (Where surfaces agree at a single point only, they do not prove it to be inside.)
+fn certain_stay(passage: &Passage, from: f64, to: f64) -> Option<Passage> {
+    let Passage { entry, exit } = passage;
+    let late = if from > entry.t.lower { from.max(entry.t.upper) } else { from };
+    let early = if to < exit.t.upper { to.min(exit.t.lower) } else { to };
+    let stay = possible_stay(passage, late, early);
+    (stay.entry.t.upper < stay.exit.t.lower).then_some(stay)
+}
+
+impl Piece {
+    /// When the ray may be in the solid.
+    fn possible(&self, passage: &Passage) -> Passage {
+        possible_stay(passage, self.low, self.high)
+    }
+
+    /// When the ray is in the solid.
+    fn certain(&self, passage: &Passage) -> Option<Passage> {
+        self.is_inside.filter(|&inside| inside).and_then(|_| certain_stay(passage, self.low, self.high))
     }
 }
 
@@ -319,7 +375,13 @@ impl Visitor for Stays {
         false
     }
 
-    fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known) -> Result<(), Error> {
+    fn meet(
+        &mut self,
+        line: &Line<'_>,
+        cell: Cell,
+        passage: &Passage,
+        known: Known<'_>,
+    ) -> Result<(), Error> {
         match known {
             Known::Full => {
                 add(line, &mut self.inner, passage)?;
@@ -332,6 +394,20 @@ impl Visitor for Stays {
                     add(line, &mut self.inner, stay)?;
                 }
                 possible.iter().flatten().try_for_each(|(stay, _)| add(line, &mut self.outer, stay))
+            }
+            Known::Table(table) => {
+                let mut added = Ok(());
+                table.walk(passage.entry.t.lower, passage.exit.t.upper, |piece| {
+                    if piece.is_inside == Some(false) {
+                        return true;
+                    }
+                    added = add(line, &mut self.outer, &piece.possible(passage));
+                    if let (Ok(()), Some(stay)) = (&added, piece.certain(passage)) {
+                        added = add(line, &mut self.inner, &stay);
+                    }
+                    added.is_ok()
+                });
+                added
             }
         }
     }

@@ -35,6 +35,7 @@ struct FirstCell;
 impl Question for FirstCell {
     type Answer = TouchedCell;
     const TO_FULL: bool = false;
+    const BY_CUTS: bool = false;
 
     #[inline(always)]
     fn answer(self, march: &March, _: &OctreeRef<'_>, ray: &Ray) -> Option<TouchedCell> {
@@ -47,7 +48,7 @@ impl Question for FirstCell {
     }
 
     fn exactly(self, tree: &OctreeRef<'_>, ray: &Ray) -> Option<TouchedCell> {
-        let hit = Obstacle::Upper.exactly(tree, ray)?;
+        let hit = Obstacle::Upper.exactly(&tree.without_cuts(), ray)?;
         Some(TouchedCell { t: hit.t.lower.max(0.0), cell: hit.cell, normal: hit.normal })
     }
 }

@@ -7,6 +7,7 @@ mod extended;
 mod extremes;
 mod hierarchy;
 mod hostile;
+mod in_place;
 mod laws;
 pub mod model;
 mod oracle;

@@ -1,0 +1,226 @@
+//! On which side of a surface points lie, found in place: in doubles with bounds on their errors, without memory of its own.
+//!
+//! What is next to a surface stays open; [exact signs](crate::solid) are for those who put the tree on a frame.
+
+use super::surfaces::{SurfaceKind, SurfacesRef};
+use crate::lattice::{Ball, axes};
+
+/// Most maps that a surface is placed by; of one with more nothing is found in place.
+const MOST_MAPS: usize = 8;
+
+/// A surface in its own space.
+#[derive(Clone, Copy)]
+pub(crate) struct Figure<'a> {
+    kind: SurfaceKind,
+    numbers: [Ball; 10],
+    /// Rows of the maps that place it, the outermost last.
+    maps: [Option<&'a [[f64; 4]; 3]>; MOST_MAPS],
+}
+
+/// Points on a line, in the space of a figure: `at` + t · `direction`.
+#[derive(Clone, Copy)]
+pub(crate) struct FigureLine {
+    at: [Ball; 3],
+    direction: [Ball; 3],
+}
+
+#[inline(always)]
+fn dot(a: [Ball; 3], b: [Ball; 3]) -> Ball {
+    a[0].times(b[0]).plus(a[1].times(b[1])).plus(a[2].times(b[2]))
+}
+
+/// The inverse of the linear part of a map: its adjugate, and one divided by its determinant.
+fn inverse(rows: &[[f64; 4]; 3]) -> ([[Ball; 3]; 3], Ball) {
+    let m = rows.map(|[a, b, c, _]| [a, b, c].map(Ball::exactly));
+    let minor = |i: usize, j: usize| {
+        let [r, s] = [(i + 1) % 3, (i + 2) % 3];
+        let [p, q] = [(j + 1) % 3, (j + 2) % 3];
+        m[r][p].times(m[s][q]).minus(m[r][q].times(m[s][p]))
+    };
+    let cofactors = axes(|i| axes(|j| minor(i, j)));
+    let determinant = dot(m[0], cofactors[0]);
+    (axes(|j| axes(|i| cofactors[i][j])), determinant.reciprocal())
+}
+
+impl<'a> Figure<'a> {
+    /// A surface of a table; `None` if it is damaged, or placed by too many maps.
+    pub(crate) fn new(surfaces: &SurfacesRef<'a>, id: u32) -> Option<Figure<'a>> {
+        let (kind, own) = surfaces.get(id as usize)?;
+        let mut numbers = [Ball::ZERO; 10];
+        for (to, number) in numbers.iter_mut().zip(own) {
+            *to = Ball::sum(number);
+        }
+        let mut maps = [None; MOST_MAPS];
+        for (i, rows) in surfaces.placements(id as usize).enumerate() {
+            *maps.get_mut(i)? = Some(rows);
+        }
+        Some(Figure { kind, numbers, maps })
+    }
+
+    /// The same points in the figure's space: a centre and what reaches from it.
+    #[inline]
+    fn pulled(&self, mut at: [Ball; 3], mut vectors: [Ball; 3], is_box: bool) -> ([Ball; 3], [Ball; 3]) {
+        for rows in self.maps.iter().rev().flatten() {
+            let (adjugate, scale) = inverse(rows);
+            let moved = axes(|i| at[i].minus(Ball::exactly(rows[i][3])));
+            at = axes(|i| dot(adjugate[i], moved).times(scale));
+            vectors = axes(|i| {
+                if is_box {
+                    // As far as the corners of the box reach.
+                    let reach = |j: usize| adjugate[i][j].magnitude() * vectors[j].magnitude();
+                    let all =
+                        Ball::exactly(reach(0)).plus(Ball::exactly(reach(1))).plus(Ball::exactly(reach(2)));
+                    Ball::exactly(all.times(scale).magnitude())
+                } else {
+                    dot(adjugate[i], vectors).times(scale)
+                }
+            });
+        }
+        (at, vectors)
+    }
+
+    /// The side of all points of the box `centre` ± `radius` (model units); `None` if it is not known, or not one.
+    #[inline]
+    pub(crate) fn side(&self, centre: [Ball; 3], radius: [f64; 3]) -> Option<bool> {
+        let (at, reach) = match self.maps[0] {
+            None => (centre, radius),
+            Some(_) => {
+                let (at, reach) = self.pulled(centre, radius.map(Ball::exactly), true);
+                (at, reach.map(Ball::magnitude))
+            }
+        };
+        let Some((value, gradient)) = self.polynomial(at) else {
+            return self.natural(axes(|axis| at[axis].widened(reach[axis]))).is_positive();
+        };
+        if reach == [0.0; 3] {
+            return self.of_value(value);
+        }
+        let first: f64 = (0..3).map(|axis| gradient[axis].magnitude() * reach[axis]).sum();
+        self.of_value(value.widened(bounded(first + self.second(reach))))
+    }
+
+    /// The same line in the figure's space.
+    pub(crate) fn line(&self, at: [Ball; 3], direction: [Ball; 3]) -> FigureLine {
+        let (at, direction) = self.pulled(at, direction, false);
+        FigureLine { at, direction }
+    }
+
+    /// The side of all points of a line from t = `low` to `high`; `None` if it is not known, or not one.
+    #[inline]
+    pub(crate) fn side_along(&self, line: &FigureLine, low: f64, high: f64) -> Option<bool> {
+        let middle = 0.5 * low + 0.5 * high;
+        let half = (high - middle).max(middle - low) * (1.0 + f64::EPSILON);
+        let t = Ball::exactly(middle);
+        let at = axes(|axis| line.at[axis].plus(line.direction[axis].times(t)));
+        let Some((value, gradient)) = self.polynomial(at) else {
+            let reach = |axis: usize| bounded(line.direction[axis].magnitude() * half);
+            return self.natural(axes(|axis| at[axis].widened(reach(axis)))).is_positive();
+        };
+        let slope = dot(gradient, line.direction).magnitude();
+        let bend = self.second(line.direction.map(Ball::magnitude));
+        self.of_value(value.widened(bounded(slope * half + bend * half * half)))
+    }
+
+    /// Value and gradient of a polynomial of degree two; of a slab those of its linear form.
+    #[inline(always)]
+    fn polynomial(&self, [x, y, z]: [Ball; 3]) -> Option<(Ball, [Ball; 3])> {
+        let n = &self.numbers;
+        match self.kind {
+            SurfaceKind::Plane => Some((dot([n[0], n[1], n[2]], [x, y, z]).plus(n[3]), [n[0], n[1], n[2]])),
+            SurfaceKind::Slab => Some((dot([n[0], n[1], n[2]], [x, y, z]), [n[0], n[1], n[2]])),
+            SurfaceKind::Quadric => {
+                let &[a, b, c, d, e, f, g, h, i, j] = n;
+                let along_x = a.times(x).plus(d.times(y)).plus(g);
+                let along_y = b.times(y).plus(e.times(z)).plus(h);
+                let along_z = c.times(z).plus(f.times(x)).plus(i);
+                let value = dot([x, y, z], [along_x, along_y, along_z]).plus(j);
+                let gradient = [
+                    along_x.plus(a.times(x)).plus(f.times(z)),
+                    along_y.plus(b.times(y)).plus(d.times(x)),
+                    along_z.plus(c.times(z)).plus(e.times(y)),
+                ];
+                Some((value, gradient))
+            }
+            SurfaceKind::Powers | SurfaceKind::Torus => None,
+        }
+    }
+
+    /// At most what the terms of degree two make of a vector with such components.
+    #[inline(always)]
+    fn second(&self, [x, y, z]: [f64; 3]) -> f64 {
+        if self.kind != SurfaceKind::Quadric {
+            return 0.0;
+        }
+        let [a, b, c, d, e, f, ..] = self.numbers.map(Ball::magnitude);
+        (a * x * x + b * y * y + c * z * z) + (d * x * y + e * y * z + f * z * x)
+    }
+
+    /// The side by the value of a polynomial.
+    #[inline(always)]
+    fn of_value(&self, value: Ball) -> Option<bool> {
+        if self.kind != SurfaceKind::Slab {
+            return value.is_positive();
+        }
+        let [inner, outer] = [self.numbers[3], self.numbers[4]];
+        if inner.minus(value).is_positive() == Some(true) {
+            Some(true)
+        } else if value.minus(outer).is_positive() == Some(true) {
+            Some(false)
+        } else {
+            None
+        }
+    }
+
+    /// The value of another function, each number of which stands once.
+    fn natural(&self, at: [Ball; 3]) -> Ball {
+        let n = &self.numbers;
+        if self.kind == SurfaceKind::Torus {
+            let [major, square, scale, shift] = [n[0], n[1], n[2], n[3]];
+            let [x, y, z] = at.map(|c| c.times(scale));
+            let across = x.times(x).plus(y.times(y)).root().minus(major);
+            let z = z.plus(shift);
+            return square.minus(across.times(across)).minus(z.times(z));
+        }
+        let term = |i: usize| n[3 * i].times(at[i].minus(n[3 * i + 1]).power(self.exponent(i)));
+        term(0).plus(term(1)).plus(term(2)).plus(n[9])
+    }
+
+    /// The exponent of a term; 1 where it is damaged.
+    fn exponent(&self, i: usize) -> u32 {
+        (self.numbers[3 * i + 2].value as u32).clamp(1, 64)
+    }
+
+    /// About the gradient at a point (model units), which points to the positive side.
+    pub(crate) fn gradient(&self, point: [f64; 3]) -> [f64; 3] {
+        let (at, _) = self.pulled(point.map(Ball::exactly), [Ball::ZERO; 3], false);
+        let n = &self.numbers;
+        let mut gradient = match (self.polynomial(at), self.kind) {
+            // A slab is positive where its form is less.
+            (Some((_, own)), SurfaceKind::Slab) => own.map(|c| -c.value),
+            (Some((_, own)), _) => own.map(|c| c.value),
+            (None, SurfaceKind::Torus) => {
+                let [x, y, z] = at.map(|c| c.value * n[2].value);
+                let along = Ball::exactly(x * x + y * y).root().value;
+                let across = if along > 0.0 { (n[0].value - along) / along } else { 0.0 };
+                [across * x, across * y, -(z + n[3].value)]
+            }
+            (None, _) => axes(|i| {
+                let exponent = self.exponent(i);
+                let base = at[i].value - n[3 * i + 1].value;
+                let power = if exponent == 1 { 1.0 } else { Ball::exactly(base).power(exponent - 1).value };
+                n[3 * i].value * f64::from(exponent) * power
+            }),
+        };
+        for rows in self.maps.iter().flatten() {
+            let (adjugate, scale) = inverse(rows);
+            gradient = axes(|j| (0..3).map(|i| adjugate[i][j].value * gradient[i] * scale.value).sum());
+        }
+        gradient
+    }
+}
+
+/// A sum of products of numbers that are not negative, with what rounding may have taken from it.
+#[inline(always)]
+fn bounded(sum: f64) -> f64 {
+    sum * (1.0 + 32.0 * f64::EPSILON) + f64::MIN_POSITIVE
+}

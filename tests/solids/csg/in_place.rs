@@ -1,0 +1,178 @@
+//! Cuts that are asked where they lie, without a worker: against exact arithmetic, and against the tree as a solid.
+
+use super::model::{Model, Point};
+use super::oracle::frames;
+use super::random::Maker;
+use crate::common::exact::Exact;
+use crate::common::{Random, alone};
+use leafless::query::{Obstacle, PointCursor, PointTable, Region};
+use leafless::{
+    Control, Csg, Frame, Membership, Octree, Ray, SurfaceOptions, build_extended, cast_rays, contains,
+};
+
+fn exact(p: [f64; 3]) -> Point {
+    let [x, y, z] = p.map(Exact::from);
+    [x, y, z, Exact::from(1.0)]
+}
+
+/// Random models with their extended trees, of which some PARTIAL cell keeps something.
+fn models(count: usize, seed: u64) -> impl Iterator<Item = (Model, Csg, Octree, Random)> {
+    let made = (0..).filter_map(move |k| {
+        let mut random = Random(seed ^ k);
+        let frame = frames(2 + random.below(6) as u8)[random.below(5) as usize];
+        let aligned = random.below(2) == 0;
+        let mut maker = Maker { random: &mut random, frame, aligned, others: false };
+        let model = make(&mut maker);
+        let csg = model.csg(&frame).ok()?;
+        let tree = build_extended(&csg, &frame, &SurfaceOptions::default(), &alone()).ok()?;
+        tree.view().cuts()?;
+        Some((model, csg, tree, random))
+    });
+    made.take(count)
+}
+
+fn make(maker: &mut Maker<'_>) -> Model {
+    match maker.random.below(3) {
+        0 => maker.primitive(),
+        _ => maker.expression(3),
+    }
+}
+
+/// A point anywhere in the universe, or near the surface: between an inner and an outer point that halving has brought together.
+fn point(model: &Model, frame: &Frame, random: &mut Random) -> [f64; 3] {
+    let mut any = || frame.origin().map(|origin| origin + frame.edge() * random.unit());
+    let (mut a, mut b) = (any(), any());
+    let [at_a, at_b] = [a, b].map(|p| model.sign(&exact(p)));
+    if at_a != at_b {
+        for _ in 0..random.below(50) {
+            let middle = [0, 1, 2].map(|axis| 0.5 * a[axis] + 0.5 * b[axis]);
+            if model.sign(&exact(middle)) == at_a { a = middle } else { b = middle }
+        }
+    }
+    a
+}
+
+#[test]
+fn points_in_place_do_not_lie() {
+    let (mut decided, mut undecided, mut open) = (0u64, 0u64, 0u64);
+    for (model, _, tree, mut random) in models(150, 0x91AC) {
+        let frame = *tree.frame();
+        let points: Vec<_> = (0..120).map(|_| point(&model, &frame, &mut random)).collect();
+        let mut exactly = vec![Membership::Undecided; points.len()];
+        contains(&tree, &frame, &points, &mut exactly, &alone()).unwrap();
+        let mut many = exactly.clone();
+        tree.contains_many(&points, &mut many).unwrap();
+        let mut cursor = PointCursor::new(tree.view());
+        let table = PointTable::new(tree.view(), 3).unwrap();
+        for (i, &p) in points.iter().enumerate() {
+            let answer = tree.contains(p);
+            assert_eq!([many[i], cursor.contains(p), table.contains(p)], [answer; 3], "{p:?}");
+            let sign = model.sign(&exact(p));
+            match answer {
+                Membership::Inside => assert!(sign >= 0, "{p:?}\n{model:#?}"),
+                Membership::Outside => assert!(sign <= 0, "{p:?}\n{model:#?}"),
+                // What the tree decides as a solid, rounding may leave open here.
+                Membership::Undecided => {
+                    undecided += 1;
+                    open += (exactly[i] != Membership::Undecided) as u64;
+                    continue;
+                }
+            }
+            decided += 1;
+            assert_eq!(answer, exactly[i], "{p:?}");
+        }
+    }
+    println!("{decided} decided, {undecided} not, of which {open} by rounding");
+    assert!(decided > 10_000 && 20 * open < decided, "{decided} {open}");
+}
+
+/// The point of a ray at a time, exactly.
+fn along(ray: ([f64; 3], [f64; 3]), t: f64) -> Point {
+    let [x, y, z] =
+        [0, 1, 2].map(|axis| Exact::from(ray.0[axis]).plus(&Exact::from(ray.1[axis]).times(&Exact::from(t))));
+    [x, y, z, Exact::from(1.0)]
+}
+
+#[test]
+fn rays_in_place_do_not_lie() {
+    let (mut hits, mut missed, mut sharp, mut judged) = (0, 0, 0, 0);
+    for (model, csg, tree, mut random) in models(150, 0x7A75) {
+        let frame = *tree.frame();
+        for _ in 0..12 {
+            let from = frame.origin().map(|origin| origin + frame.edge() * random.between(-0.5, 1.5));
+            let to = frame.origin().map(|origin| origin + frame.edge() * random.unit());
+            let direction = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+            let Ok(ray) = Ray::new(from, direction) else { continue };
+            let hit = tree.cast_ray(&ray, Obstacle::Upper);
+            let mut all = [None];
+            tree.cast_rays(&[ray], Obstacle::Upper, &mut all).unwrap();
+            assert_eq!(all, [hit]);
+            let spans = tree.ray_spans(&ray).unwrap();
+            // Before the first place that may be solid nothing is, and in spans that are proven everything is.
+            let is_in_universe = |t: f64| {
+                (0..3).all(|axis| {
+                    let c = from[axis] + t * direction[axis] - frame.origin()[axis];
+                    (1e-9 * frame.edge()..(1.0 - 1e-9) * frame.edge()).contains(&c)
+                })
+            };
+            for _ in 0..20 {
+                let t = 2.0 * random.unit();
+                if !is_in_universe(t) {
+                    continue;
+                }
+                let sign = model.sign(&along((from, direction), t));
+                let is_before = hit.is_none_or(|hit| t < hit.t.lower);
+                assert!(!(is_before && sign > 0), "{t} of {ray:?}: {hit:?}\n{frame:?}\n{model:#?}");
+                let is_outer = spans.outer.iter().any(|span| span.contains(t));
+                let is_inner = spans.inner.iter().any(|span| span.contains(t));
+                assert!(is_outer || sign <= 0, "{t} of {ray:?}: {spans:?}\n{frame:?}\n{model:#?}");
+                assert!(!is_inner || sign >= 0, "{t} of {ray:?}: {spans:?}\n{frame:?}\n{model:#?}");
+                judged += 1;
+            }
+            // The expression is asked on a finer frame, within limits: a ray in a surface passes very many cells.
+            let finer = frame.with_depth(16).unwrap();
+            let control = Control { max_splits: Some(3000), ..Control::threads(1) };
+            let direct = cast_rays(&csg, &finer, &[ray], Obstacle::Upper, &control).unwrap();
+            match (hit, direct[0]) {
+                (Some(own), Some(direct)) => {
+                    assert!(own.t.lower <= direct.t.upper && direct.t.lower <= own.t.upper);
+                    hits += 1;
+                    sharp += (own.t.width() < 1e-8) as u32;
+                    let length: f64 = own.normal.iter().map(|c| c * c).sum();
+                    assert!(own.normal == [0.0; 3] || (length - 1.0).abs() < 1e-12, "{own:?}");
+                }
+                (None, Some(direct)) => assert!(direct.t.upper == f64::INFINITY, "{direct:?}"),
+                (Some(own), None) => assert!(own.t.upper == f64::INFINITY, "{own:?}"),
+                (None, None) => missed += 1,
+            }
+        }
+    }
+    println!("{hits} hits, of which {sharp} are sharp; {missed} missed; {judged} places");
+    assert!(hits > 300 && 2 * sharp > hits && judged > 10_000, "{hits} {sharp} {judged}");
+}
+
+#[test]
+fn boxes_in_place_do_not_lie() {
+    let mut found = [0; 4];
+    for (model, _, tree, mut random) in models(200, 0xB0C5) {
+        let frame = *tree.frame();
+        for _ in 0..20 {
+            let centre = point(&model, &frame, &mut random);
+            let half = frame.edge() * 0.4 * random.unit().powi(6);
+            let (min, max) = (centre.map(|c| c - half), centre.map(|c| c + half));
+            let region = tree.view().classify_box(min, max).unwrap();
+            found[region as usize] += 1;
+            for _ in 0..10 {
+                let p = centre.map(|c| c + half * random.between(-1.0, 1.0));
+                let sign = model.sign(&exact(p));
+                match region {
+                    Region::Inside => assert!(sign >= 0, "{p:?} in {min:?} {max:?}\n{frame:?}\n{model:#?}"),
+                    Region::Outside => assert!(sign <= 0, "{p:?} in {min:?} {max:?}\n{frame:?}\n{model:#?}"),
+                    Region::Crossing | Region::Undecided => {}
+                }
+            }
+        }
+    }
+    println!("{found:?}");
+    assert!(found[..3].iter().all(|&count| count > 100), "{found:?}");
+}
