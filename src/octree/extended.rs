@@ -1,9 +1,11 @@
 //! Octrees whose PARTIAL cells keep surfaces: what is counted, and what they promise.
 
-use super::cuts::{BLOCK, Block, CellIds, CutCounts, CutsRef, Head};
+use super::cuts::{BLOCK, Block, CellCut, CellFunction, CellIds, CutCounts, CutsRef, Head, StoredSurface};
+use super::links::Step;
 use super::tag::Tag;
-use super::view::OctreeRef;
+use super::view::{OctreeRef, starts_half_way};
 use crate::error::{Damage, Error};
+use crate::lattice::Cell;
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -123,5 +125,71 @@ impl OctreeRef<'_> {
             }
         }
         Ok(levels)
+    }
+}
+
+impl<'a> OctreeRef<'a> {
+    /// The surface of this number, less than [`CutCounts::surfaces`]; `None` if there is none, or it is
+    /// damaged. O(1).
+    pub fn surface(&self, id: u32) -> Option<StoredSurface<'a>> {
+        StoredSurface::new(self.cuts.as_ref()?.surfaces, id)
+    }
+
+    /// The function that the solid is in a cell that lies in a PARTIAL one; `None` if nothing is known there, if different functions
+    /// hold in parts of the cell, or there is no such cell. O(depth).
+    pub fn cell_function(&self, cell: Cell) -> Option<CellFunction> {
+        let cuts = self.cuts.as_ref()?;
+        let depth = self.frame().depth();
+        if cell.level > depth || cell.at.iter().any(|&a| a >> cell.level != 0) {
+            return None;
+        }
+        let (mut record, mut level) = self.record_above(cuts, cell)?;
+        loop {
+            match cuts.at(record) {
+                CellCut::None => return None,
+                CellCut::Table { ids, table } => return Some(CellFunction { ids, table }),
+                CellCut::Split(first) => {
+                    if level >= cell.level {
+                        return None;
+                    }
+                    level += 1;
+                    record = first + usize::from(cell.ancestor(level).octant());
+                }
+            }
+        }
+    }
+
+    /// The record and the level of the PARTIAL cell of the planes in which a cell lies.
+    fn record_above(&self, cuts: &CutsRef<'_>, cell: Cell) -> Option<(usize, u8)> {
+        match self.root_tag() {
+            Tag::Branch => {}
+            Tag::Partial => return Some((CutsRef::ROOT, 0)),
+            _ => return None,
+        }
+        // The finest cell at its lower corner.
+        let shift = self.frame().depth() - cell.level;
+        let finest = Cell { level: self.frame().depth(), at: cell.at.map(|a| a << shift) };
+        let mut index = 0;
+        for e in 0..self.levels() {
+            let planes = self.entry(index)?;
+            let cells = self.cell_level(e);
+            let inner = finest.ancestor(cells).octant();
+            // Of an odd depth the root has one octant.
+            let outer = if e == 0 && starts_half_way(self.frame().depth()) {
+                0
+            } else {
+                finest.ancestor(cells - 1).octant()
+            };
+            let c = u32::from(8 * outer + inner);
+            match self.step(e, index, planes, c) {
+                Step::Into(child) => index = child,
+                Step::Settled(Tag::Partial) => {
+                    let level = cells - u8::from(planes.octant(c >> 3) == Tag::Partial);
+                    return (level <= cell.level).then(|| (cuts.record(index, planes, c), level));
+                }
+                Step::Settled(_) => return None,
+            }
+        }
+        None
     }
 }

@@ -33,7 +33,7 @@ pub use block::Block;
 pub use cells::{CellFilter, Cells, TaggedCell};
 pub(crate) use channel::{Channel, ChannelRef, ScalarType, ValueType};
 pub use cursor::{Cursor, Node};
-pub use cuts::CutCounts;
+pub use cuts::{CellFunction, CutCounts, StoredSurface, SurfaceKind};
 pub use direction::Direction;
 pub use faces::{BoundaryFace, BoundaryFaces};
 pub use metadata::{Metadata, MetadataLimit};

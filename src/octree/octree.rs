@@ -24,6 +24,39 @@ use yoke::erased::ErasedArcCart;
 ///
 /// It is immutable, a clone costs two reference counts, and any number of threads may read it at once. All
 /// reading is done through its [`view`](Octree::view).
+///
+/// # Extended octrees
+///
+/// An octree may have *cuts* ([`build_extended`](crate::build_extended)): a PARTIAL cell then keeps the surfaces that cross it, up to
+/// three, and the function of their sides that the solid is. So it is as exact as what it was made of. Without its cuts it is a
+/// certified octree, and canonical as ever.
+///
+/// *Surfaces* are planes, quadrics, sums of powers and tori in exact numbers, under any placements, and *slabs*, planes with a width,
+/// where nothing exact is known. They lie in one table, in the order of their first use. Exact surfaces are one if their
+/// polynomials are proportional, or figure and place are the same; a complement is the same surface negated. A slab stands for a
+/// set that nobody knows: it is the same as another one only if both have the same origin, a fingerprint of the source and the build, and the
+/// same number there.
+///
+/// *The law* of a cut: at a point of the open cell that lies on no surface, each surface has a side, but for the slabs in whose width
+/// the point lies. Where the function has one value for all sides that these may have, that is the answer; elsewhere it is
+/// undecided. On a surface either answer is right.
+///
+/// *Split records.* Where all descendants of a cell are PARTIAL, the tree has no node for them. If the cell's function takes more
+/// than three surfaces, its cut is a split into eight cuts, and so on, down to the frame's depth. A cell that is still crossed
+/// by more there is *given up*: PARTIAL, and nothing is known of it ([`CutCounts::given_up`](crate::octree::CutCounts::given_up)).
+///
+/// *Normal form.* A function depends on each of its surfaces; surfaces of a cut ascend; nothing is stored for cells that are decided,
+/// surfaces that no cell uses are not kept. Equality and fingerprints include cuts, and the bytes are the same for any number of threads.
+///
+/// What takes octrees sees cuts in one of three ways:
+///
+/// | | functions | |
+/// |---|---|---|
+/// | in place | [`contains`](OctreeRef::contains), [`contains_many`](OctreeRef::contains_many), [`PointCursor`](crate::query::PointCursor), [`PointTable`](crate::query::PointTable), [`cast_ray`](OctreeRef::cast_ray), [`cast_rays`](OctreeRef::cast_rays), [`ray_spans`](OctreeRef::ray_spans), [`classify_box`](OctreeRef::classify_box) | without a worker and without memory; next to a surface rounding leaves points undecided |
+/// | as a solid | whatever takes a [`Solid`](crate::Solid): [`build`](crate::build), [`build_extended`](crate::build_extended), [`contains`](crate::contains), [`cast_rays`](crate::cast_rays), [`measure`](crate::measure), [`bounding_box`](crate::query::bounding_box), [`distances`](crate::query::distances), [`interference`](crate::interference), [`clearance`](crate::clearance), [`Adaptive`](crate::solid::Adaptive), [`LazyOctree`], surfaces, tri-dexel models and pictures of solids | what the source would give; cells split below the tree's depth |
+/// | of cells | [`tag_at`](OctreeRef::tag_at), [`statistics`](Octree::statistics), [`Cursor`](crate::octree::Cursor), [`cells`](OctreeRef::cells), [`BoundaryFaces`](crate::octree::BoundaryFaces), [`bitmap`](OctreeRef::bitmap), [`columns`](OctreeRef::columns), [`heights`](OctreeRef::heights), [`cells_in_box`](OctreeRef::cells_in_box), [`volume_in_box`](OctreeRef::volume_in_box), [`cells_in`](OctreeRef::cells_in), [`volume_in`](OctreeRef::volume_in), [`distance`](OctreeRef::distance), [`nearest_cells`](OctreeRef::nearest_cells), set operations of stored trees, [`resolve`](crate::op::resolve), voxels, components, surfaces and pictures of trees | cuts are not seen. What they say is true, and blunt: take the tree of [`plain`](crate::op::plain) |
+///
+/// [`LazyOctree`]: crate::LazyOctree
 #[derive(Clone)]
 pub struct Octree {
     arrays: Yoke<OctreeRef<'static>, ErasedArcCart>,

@@ -1,5 +1,7 @@
 //! From any solid to an octree whose PARTIAL cells keep the surfaces that cross them.
 
+use super::build::build;
+use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Cell, Cube, Frame, Interval, axes, valid};
@@ -114,6 +116,17 @@ pub fn build_extended<S: Solid>(
         job.advance(WHOLE);
         Ok(writer.finish_with(frame, tag, classifier.exterior(), cuts)?.with_proof(classifier.proof()))
     })
+}
+
+/// The tree without cuts that says what a tree with cuts does, to `depth`: for whatever means cells. Cells are decided by the
+/// surfaces that the tree keeps, and what is undecided at the depth is resolved by `rule`. Metadata and channels are those of `tree`.
+/// Of a tree without cuts it is the same tree, cut at the depth.
+///
+/// # Errors
+/// As [`build`](crate::build); [`Error::Argument`] if `depth` is not 1 to 20.
+pub fn plain(tree: &Octree, depth: u8, rule: Rule, control: &Control<'_>) -> Result<Octree, Error> {
+    let plain = build(tree, &tree.frame().with_depth(depth)?, rule, control)?;
+    Ok(plain.with_metadata_from(tree).with_channels_from(tree))
 }
 
 /// What tells the slabs of a build from all others; `None` if the solid cannot be told from others.

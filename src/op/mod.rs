@@ -17,6 +17,6 @@ use build::build_on;
 pub use build::{build, compact, resolve};
 pub use dexel_centres::octree_from_dexels;
 pub use dexelize::{DexelOptions, dexelize};
-pub use extended::{SurfaceOptions, build_extended};
+pub use extended::{SurfaceOptions, build_extended, plain};
 pub use lazy::{LazyOctree, Refinement};
 pub use rule::Rule;

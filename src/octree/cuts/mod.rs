@@ -6,20 +6,24 @@
 //!
 //! - `figure`: on which side of a surface points lie, by arithmetic in doubles.
 //! - `ids`: the numbers of surfaces.
+//! - `read`: what cuts say, for others.
 //! - `record`: one byte for each PARTIAL cell: a truth table of up to three surfaces, nothing, or a split into eight records.
 //! - `surfaces`: the table of surfaces, in numbers that are exact.
 //! - `writer`: how cuts are gathered and put in order.
 
 mod figure;
 mod ids;
+mod read;
 mod record;
 mod surfaces;
 mod writer;
 
 pub(crate) use figure::{Figure, FigureLine};
 pub(crate) use ids::{CellIds, Ids, OwnedIds, width};
+pub use read::{CellFunction, StoredSurface};
 pub(crate) use record::Head;
-pub(crate) use surfaces::{MOST_TERMS, Origin, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};
+pub use surfaces::SurfaceKind;
+pub(crate) use surfaces::{MOST_TERMS, Origin, Placement, SurfaceRecord, Surfaces, SurfacesRef};
 pub(crate) use writer::{Cut, CutWriter};
 
 use super::word::Planes;

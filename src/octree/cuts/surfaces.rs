@@ -5,20 +5,22 @@ use crate::lattice::{Affine, valid};
 use alloc::vec::Vec;
 use bytemuck::{Pod, Zeroable};
 
-/// What kind of function a surface has.
+/// What kind of function a [`StoredSurface`](super::StoredSurface) has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u32)]
-pub(crate) enum SurfaceKind {
+#[non_exhaustive]
+pub enum SurfaceKind {
     /// a x + b y + c z + d: four numbers.
     Plane = 0,
-    /// A polynomial of degree two: ten numbers, in the order of [`HalfSpace::quadric`](crate::solid::HalfSpace::quadric).
+    /// A polynomial of degree two: its ten coefficients, of x², y², z², xy, yz, zx, x, y, z and 1.
     Quadric = 1,
-    /// A sum of powers: coefficient, centre and exponent an axis, and the constant.
+    /// A sum of powers: A, a, n, B, b, m, C, c, k and D of A (x − a)^n + B (y − b)^m + C (z − c)^k + D.
     Powers = 2,
-    /// A torus: radius of its circle, square of the other one, scale and shift.
+    /// A torus: R, q, s and t of q − (√((s x)² + (s y)²) − R)² − (s z + t)².
     Torus = 3,
-    /// A plane with a width: normal, the two offsets between which the boundary lies, and which of all slabs it is: its origin in
-    /// the table, plus one, and its number there; two zeros if it has none.
+    /// A plane with a width: its normal, the two offsets between which the boundary lies (the first is that of the inner side, which
+    /// counts as positive), and which of all slabs it is: the number of its origin, plus one, and its number there; two zeros if it
+    /// has none. See [`StoredSurface::origin`](super::StoredSurface::origin).
     Slab = 4,
 }
 

@@ -5,9 +5,11 @@ use super::oracle::frames;
 use super::random::Maker;
 use crate::common::exact::Exact;
 use crate::common::{Random, alone};
+use leafless::octree::{StoredSurface, SurfaceKind};
 use leafless::query::{Obstacle, PointCursor, PointTable, Region};
 use leafless::{
-    Control, Csg, Frame, Membership, Octree, Ray, SurfaceOptions, build_extended, cast_rays, contains,
+    Cell, Control, Csg, Error, Frame, Membership, Metadata, Octree, Ray, Rule, SurfaceOptions, build,
+    build_extended, cast_rays, contains, op,
 };
 
 fn exact(p: [f64; 3]) -> Point {
@@ -175,4 +177,103 @@ fn boxes_in_place_do_not_lie() {
     }
     println!("{found:?}");
     assert!(found[..3].iter().all(|&count| count > 100), "{found:?}");
+}
+
+/// A number of a surface.
+fn number(surface: &StoredSurface<'_>, i: usize) -> Exact {
+    surface.number(i).iter().fold(Exact::from(0.0), |sum, &term| sum.plus(&Exact::from(term)))
+}
+
+/// The sign of a surface's function that is a polynomial and not placed.
+fn side(surface: &StoredSurface<'_>, p: [f64; 3]) -> Option<i32> {
+    if surface.placements().next().is_some() {
+        return None;
+    }
+    let [x, y, z] = p.map(Exact::from);
+    let one = Exact::from(1.0);
+    let terms: Vec<[&Exact; 2]> = match surface.kind() {
+        SurfaceKind::Plane => vec![[&x, &one], [&y, &one], [&z, &one], [&one, &one]],
+        SurfaceKind::Quadric => vec![
+            [&x, &x],
+            [&y, &y],
+            [&z, &z],
+            [&x, &y],
+            [&y, &z],
+            [&z, &x],
+            [&x, &one],
+            [&y, &one],
+            [&z, &one],
+            [&one, &one],
+        ],
+        _ => return None,
+    };
+    assert_eq!(terms.len(), surface.numbers());
+    let value = terms
+        .iter()
+        .enumerate()
+        .fold(Exact::from(0.0), |sum, (i, [a, b])| sum.plus(&number(surface, i).times(a).times(b)));
+    Some(value.sign())
+}
+
+/// The function that is read of a cell is what the solid is there; below a cell it is the same one.
+#[test]
+fn functions_of_cells_are_the_solid() {
+    let (mut judged, mut functions) = (0, 0);
+    for (model, _, tree, mut random) in models(200, 0xF00C) {
+        let (frame, view) = (*tree.frame(), tree.view());
+        for _ in 0..100 {
+            let level = random.below(u64::from(frame.depth()) + 1) as u8;
+            let cell = Cell { level, at: [0; 3].map(|_| random.below(1 << level) as u32) };
+            let Some(function) = view.cell_function(cell) else { continue };
+            functions += 1;
+            if level < frame.depth() {
+                assert_eq!(view.cell_function(cell.child(random.below(8) as u8)), Some(function));
+            }
+            let surfaces: Vec<_> =
+                function.surfaces().iter().map(|&id| view.surface(id).expect("a surface")).collect();
+            let size = frame.edge() / f64::from(1u32 << level);
+            let p = [0, 1, 2].map(|axis| {
+                frame.origin()[axis] + size * (f64::from(cell.at[axis]) + random.between(0.01, 0.99))
+            });
+            let sides: Option<Vec<i32>> = surfaces.iter().map(|surface| side(surface, p)).collect();
+            let Some(sides) = sides.filter(|sides| !sides.contains(&0)) else { continue };
+            let m = sides.iter().enumerate().fold(0, |m, (i, &side)| m | u8::from(side > 0) << i);
+            let inside = function.table() >> m & 1 != 0;
+            let sign = model.sign(&exact(p));
+            assert!(if inside { sign >= 0 } else { sign <= 0 }, "{p:?} {cell:?} {function:?}\n{model:#?}");
+            judged += 1;
+        }
+        let surfaces = view.cuts().expect("cuts").surfaces as u32;
+        assert!(view.surface(surfaces).is_none());
+    }
+    assert!(functions > 1000 && judged > 300, "{functions} {judged}");
+}
+
+/// A tree without cuts that is made of one with them is that of the expression, but where groups of that decide a cell by boxes.
+#[test]
+fn plain_trees_are_those_of_the_expression() {
+    let (mut same, mut all) = (0, 0);
+    for (_, csg, tree, _) in models(60, 0x71A1) {
+        let depth = (tree.frame().depth() + 1).min(7);
+        let tree = tree.with_metadata(Metadata::new());
+        let plain = op::plain(&tree, depth, Rule::Certified, &alone()).unwrap();
+        assert!(plain.view().cuts().is_none() && plain.frame().depth() == depth);
+        let direct = build(&csg, plain.frame(), Rule::Certified, &alone()).unwrap();
+        all += 1;
+        same += (plain == direct) as u32;
+        // Both are certified, so that they do not contradict each other.
+        let beyond =
+            op::intersection(plain.view(), op::complement(direct.view(), &alone()).unwrap().view(), &alone());
+        assert_eq!(beyond.unwrap().statistics().volume().lower, 0.0);
+    }
+    assert!(2 * same > all, "{same} of {all}");
+    let (_, _, tree, _) = models(1, 3).next().unwrap();
+    for depth in [0, 21] {
+        assert!(matches!(
+            op::plain(&tree, depth, Rule::Outer, &alone()),
+            Err(Error::Argument { name: "depth", .. })
+        ));
+    }
+    let sampled = op::plain(&tree, tree.frame().depth(), Rule::Sampled, &alone());
+    assert!(matches!(sampled, Ok(_) | Err(Error::NotSampled)));
 }
