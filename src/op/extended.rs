@@ -51,7 +51,7 @@ const MOST: usize = 3;
 ///
 /// # Errors
 /// As [`build`](crate::build); [`Error::Argument`] if the tolerance is not a positive number; [`Error::Limit`] if an exact number
-/// of a surface is the sum of more than seven doubles.
+/// of a surface is the sum of more than seven doubles, or a surface lies under more than 64 placements.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, build_extended, measure, SurfaceOptions};

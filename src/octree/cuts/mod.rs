@@ -23,7 +23,7 @@ pub(crate) use ids::{CellIds, Ids, OwnedIds, width};
 pub use read::{CellFunction, StoredSurface};
 pub(crate) use record::Head;
 pub use surfaces::SurfaceKind;
-pub(crate) use surfaces::{MOST_TERMS, Origin, Placement, SurfaceRecord, Surfaces, SurfacesRef};
+pub(crate) use surfaces::{MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceRecord, Surfaces, SurfacesRef};
 pub(crate) use writer::{Cut, CutWriter};
 
 use super::word::Planes;

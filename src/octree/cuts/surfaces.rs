@@ -63,6 +63,9 @@ pub(crate) struct SurfaceRecord {
 /// Most doubles of a number.
 pub(crate) const MOST_TERMS: usize = 7;
 
+/// Most maps that a surface is placed by. It bounds the work and the memory for a surface.
+pub(crate) const MOST_MAPS: usize = 64;
+
 impl SurfaceRecord {
     fn doubles(&self) -> usize {
         (0..10).map(|i| (self.terms >> (3 * i) & 7) as usize).sum()
@@ -130,7 +133,7 @@ impl<'a> SurfacesRef<'a> {
         Some((kind, numbers))
     }
 
-    /// The maps that a surface is placed by, in the order in which they are applied; at most as many as there are.
+    /// The maps that a surface is placed by, in the order in which they are applied; at most one more than is legal.
     pub(crate) fn placements(&self, id: usize) -> impl Iterator<Item = &'a [[f64; 4]; 3]> + use<'a> {
         let placements = self.placements;
         let mut next = self.records.get(id).map_or(0, |record| u64::from(record.placement));
@@ -141,6 +144,7 @@ impl<'a> SurfacesRef<'a> {
             next = placement.outer.min(index as u64);
             Some(&placement.rows)
         })
+        .take(MOST_MAPS + 1)
     }
 
     /// Checks that all is there, in the order of first use, and that every surface is one. O(n).
@@ -156,6 +160,9 @@ impl<'a> SurfacesRef<'a> {
             let origin = self.get(id).and_then(|(kind, numbers)| Figure::new(kind, numbers)?.origin());
             let Some(origin) = origin.filter(|&origin| origin <= origins + 1) else { return Err(wrong) };
             origins = origins.max(origin);
+            if self.placements(id).count() > MOST_MAPS {
+                return Err(wrong);
+            }
             // Of new maps each follows the one before.
             let mut last = u64::from(record.placement);
             let newest = placements.max(last);
@@ -195,7 +202,8 @@ impl<'a> Figure<'a> {
     fn new(kind: SurfaceKind, numbers: impl Iterator<Item = &'a [f64]>) -> Option<Figure<'a>> {
         let mut own = [&[][..]; 10];
         for (to, number) in own.iter_mut().zip(numbers) {
-            let fits = |pair: &[f64]| pair[1].abs() <= pair[0].abs() * (0.5 * f64::EPSILON);
+            // (A product with 2^53 is exact or infinite, one with 2^-53 may be rounded.)
+            let fits = |pair: &[f64]| pair[1].abs() * (2.0 / f64::EPSILON) <= pair[0].abs();
             let is_sum = number.iter().all(|c| c.is_finite() && *c != 0.0) && number.windows(2).all(fits);
             if !is_sum {
                 return None;

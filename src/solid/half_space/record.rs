@@ -10,7 +10,9 @@ use crate::error::Error;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Affine, Frame};
 use crate::memory;
-use crate::octree::cuts::{MOST_TERMS, Origin, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef};
+use crate::octree::cuts::{
+    MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef,
+};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
@@ -230,7 +232,8 @@ impl PlacedHalfSpace {
     /// Writes surfaces one after the other; maps that several share stand once.
     ///
     /// # Errors
-    /// [`Error::Limit`] if a number is the sum of more than seven doubles, or there are too many; [`Error::OutOfMemory`].
+    /// [`Error::Limit`] if a number is the sum of more than seven doubles, if a surface has more than 64 maps, or if there are
+    /// too many doubles; [`Error::OutOfMemory`].
     pub(crate) fn write<'s>(
         surfaces: impl ExactSizeIterator<Item = &'s PlacedHalfSpace>,
     ) -> Result<Surfaces, Error> {
@@ -238,6 +241,10 @@ impl PlacedHalfSpace {
         let mut places: HashMap<(u64, [[u64; 4]; 3]), u64> = HashMap::new();
         let mut origins: HashMap<Origin, u32> = HashMap::new();
         for surface in surfaces {
+            if surface.placements.len() > MOST_MAPS {
+                let what = "placements of a surface within each other";
+                return Err(Error::Limit { what, limit: MOST_MAPS as u64 });
+            }
             let mut outer = 0;
             for placement in &*surface.placements {
                 let rows = placement.rows();
@@ -288,6 +295,9 @@ impl PlacedHalfSpace {
         let numbers: Vec<Dyadic> = numbers.map(Dyadic::sum).collect();
         let mut placements =
             surfaces.placements(id).map(|rows| Affine::new(*rows).ok()).collect::<Option<Vec<_>>>()?;
+        if placements.len() > MOST_MAPS {
+            return None;
+        }
         placements.reverse();
         Some(PlacedHalfSpace {
             half_space: HalfSpace::stored(kind, &numbers, surfaces.origins)?,
