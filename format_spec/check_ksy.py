@@ -86,6 +86,7 @@ SEEN_BY = {
     "section-metadata-length": {"section.end_of_entry"},
     "section-required": {"section.end_of_entry"},
     "section-missing": {"section.end_of_table"},
+    "section-cuts": {"surface_numbers.values", None},
     "section-end": {"section.end_of_table"},
     "file-length": {LENGTH},
     "object-mirror": OBJECT_FIELDS,
@@ -113,6 +114,17 @@ SEEN_BY = {
     "brick-branch": {"element.upper_octants"},
     "planes-missing": {"header.num_brick_planes", "element.upper_octants", "level.num_partial"},
     "planes-needless": None,
+    "cut-first": None,
+    "cut-block": None,
+    "cut-head": None,
+    "cut-group": None,
+    "cut-uniform": None,
+    "cut-ids": None,
+    "surface-record": {"surface.kind", "surface.terms", None},
+    "surface-number": {"surface_numbers.values", None},
+    "surface-origin": None,
+    "surface-placement": {"placement.outer", None},
+    "placement-map": {"placement.entries", None},
     "level-table-counts": None,
     "channel-count": None,
     "channel-record": {
@@ -303,6 +315,34 @@ def channel(number, record):
     )
 
 
+def cuts(root):
+    """What the file says of cuts, as the lines of a text, with doubles as numbers."""
+    told = {"cuts": [], "surface": [], "placement": [], "slab-origin": []}
+    if root.cut_heads is None:
+        return told
+    heads = root.cut_heads.heads
+    surfaces = root.surfaces.surfaces if root.surfaces else []
+    placements = root.placements.placements if root.placements else []
+    origins = root.origins.origins if root.origins else []
+    nothing, splits = heads.count(0), heads.count(255)
+    counts = [len(heads) - nothing - splits, nothing, splits, len(surfaces), len(placements), len(origins)]
+    told["cuts"].append(" ".join(map(str, counts)))
+    for i, surface in enumerate(surfaces):
+        kind = ("plane", "quadric", "powers", "torus", "slab")[surface.kind]
+        at = surface.first
+        numbers = []
+        for k in range(surface.num_numbers):
+            end = at + (surface.terms >> (3 * k) & 7)
+            numbers.append(root.surface_numbers.values[at:end])
+            at = end
+        told["surface"].append([str(i), kind, str(surface.placement), *numbers])
+    for i, map_ in enumerate(placements):
+        told["placement"].append([str(i), str(map_.outer), *map_.entries])
+    for i, origin in enumerate(origins):
+        told["slab-origin"].append(f"{i} {origin.low:016x} {origin.high:016x}")
+    return told
+
+
 def check_dexels(data, root, stated):
     """Compares a valid file of a tri-dexel model with its text, but for what lies in the arrays of its directions."""
     header = root.header
@@ -377,12 +417,14 @@ def check_valid(data, stated, description):
         "cells": [f"{surely} {possibly}"],
         "channel": [channel(number, record) for number, record in enumerate(root.objects.objects) if record.is_channel],
         "metadata": [f"{fact.key}\t{fact.value}" for fact in root.metadata.facts] if root.metadata else [],
+        **cuts(root),
     }
     told = {key: [] for key in known}
     compared = 0
     for key, value in stated:
         # The description does not state the sections of channels.
-        if key in ("about", "canonical", "channel-level", "channel-metadata", "value"):
+        # Nor does it say what cuts say of points.
+        if key in ("about", "canonical", "channel-level", "channel-metadata", "value", "cut-point"):
             continue
         compared += 1
         if key == "point":
@@ -394,6 +436,13 @@ def check_valid(data, stated, description):
             told[key].append(doubles(value))
         elif key in ("origin-decimal", "edge-decimal"):
             told[key].append([float(word) for word in value.split(" ")])
+        elif key == "surface":
+            i, kind, placement, *numbers = value.split(" ")
+            split = [[float.fromhex(word) for word in number.split(",") if number != "0"] for number in numbers]
+            told[key].append([i, kind, placement, *split])
+        elif key == "placement":
+            i, outer, *entries = value.split(" ")
+            told[key].append([i, outer, *map(float.fromhex, entries)])
         elif key in told:
             told[key].append(value)
         else:

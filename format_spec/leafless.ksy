@@ -1,12 +1,13 @@
-# The file format of Leafless, version 0.3, as a Kaitai Struct description. The specification is specification.md
+# The file format of Leafless, version 0.4, as a Kaitai Struct description. The specification is specification.md
 # beside this file; where the two differ, that one is right.
 #
 # Every `valid` is a rule of §10 of the specification, except those that are marked "implied": these follow from rules
 # that a description cannot state. What it does not state: checksums, links, the counts of the level table but for the
 # implied ones, order and use of dictionary entries, and `planes-needless`. Of channels it states what their records say;
 # which sections they have, and what lies in these, it does not. Of tri-dexel models it states header, table, record and
-# windows; the arrays of their directions are read as bytes. So a file that can be read through this
-# description need not be valid.
+# windows; the arrays of their directions are read as bytes. Of cuts it states the entries of the table and single numbers
+# of the sections, but not what these have to do with one another. So a file that can be read through this description
+# need not be valid.
 #
 # Instances are read when they are asked for, and only then are their rules applied; check_ksy.py asks for all. Fields
 # of no bytes, such as `end_of_header`, carry rules about several fields. Derived values are cast because Kaitai takes
@@ -74,6 +75,79 @@ instances:
   find_windows:
     type: finder(section_kind::windows)
     doc: The place of the section `windows` of a tri-dexel model in the table.
+  find_cut_heads:
+    type: finder(section_kind::cut_heads)
+    doc: The place of the solid's section `cut heads` in the table.
+  find_cut_ids:
+    type: finder(section_kind::cut_ids)
+    doc: The place of the solid's section `cut ids` in the table.
+  find_cut_blocks:
+    type: finder(section_kind::cut_blocks)
+    doc: The place of the solid's section `cut blocks` in the table.
+  find_cut_first:
+    type: finder(section_kind::cut_first)
+    doc: The place of the solid's section `cut first` in the table.
+  find_surfaces:
+    type: finder(section_kind::surfaces)
+    doc: The place of the solid's section `surfaces` in the table.
+  find_surface_numbers:
+    type: finder(section_kind::surface_numbers)
+    doc: The place of the solid's section `surface numbers` in the table.
+  find_placements:
+    type: finder(section_kind::placements)
+    doc: The place of the solid's section `placements` in the table.
+  find_origins:
+    type: finder(section_kind::origins)
+    doc: The place of the solid's section `origins` in the table.
+  cut_heads:
+    pos: find_cut_heads.section.ofs_body
+    size: find_cut_heads.section.len_body
+    type: cut_heads
+    if: find_cut_heads.is_found
+    doc: One byte for each cut; absent if there are no cuts.
+    doc-ref: specification.md §5.8
+  cut_blocks:
+    pos: find_cut_blocks.section.ofs_body
+    size: find_cut_blocks.section.len_body
+    type: cut_blocks
+    if: find_cut_blocks.is_found
+    doc: What is counted before every 32nd cut.
+    doc-ref: specification.md §5.8
+  cut_first:
+    pos: find_cut_first.section.ofs_body
+    size: find_cut_first.section.len_body
+    type: cut_first
+    if: find_cut_first.is_found
+    doc: Cuts before each element and brick, and those of all cells of the tree.
+    doc-ref: specification.md §5.8
+  surfaces:
+    pos: find_surfaces.section.ofs_body
+    size: find_surfaces.section.len_body
+    type: surfaces
+    if: find_surfaces.is_found
+    doc: The surfaces of the cuts.
+    doc-ref: specification.md §5.8
+  surface_numbers:
+    pos: find_surface_numbers.section.ofs_body
+    size: find_surface_numbers.section.len_body
+    type: surface_numbers
+    if: find_surface_numbers.is_found
+    doc: The doubles of the surfaces.
+    doc-ref: specification.md §5.8
+  placements:
+    pos: find_placements.section.ofs_body
+    size: find_placements.section.len_body
+    type: placements
+    if: find_placements.is_found
+    doc: Maps that place surfaces.
+    doc-ref: specification.md §5.8
+  origins:
+    pos: find_origins.section.ofs_body
+    size: find_origins.section.len_body
+    type: origins
+    if: find_origins.is_found
+    doc: What slabs were made from.
+    doc-ref: specification.md §5.8
   windows:
     pos: find_windows.section.ofs_body
     size: find_windows.section.len_body
@@ -319,8 +393,8 @@ types:
         doc: No bytes. The file is as long as it says. (`file-length`)
     instances:
       is_newer:
-        value: version_minor > 3
-        doc: Whether a later version wrote the file, which may have given a meaning to what is reserved in 0.3.
+        value: version_minor > 4
+        doc: Whether a later version wrote the file, which may have given a meaning to what is reserved in 0.4.
       is_dexels:
         value: version_minor >= 3 and (required_flags & 1) != 0
         doc: Whether the solid is a tri-dexel model, and not an octree.
@@ -511,10 +585,12 @@ types:
         size: 0
         valid:
           expr: >-
-            is_known ? element_code == element_demanded and num_components == num_components_demanded
-            and (kind == section_kind::objects or is_starts or (kind == section_kind::metadata ? len_body <= 1048576
-            : num_elements == num_elements_demanded))
-            and is_required == (kind != section_kind::metadata)
+            is_known ? (element_code == element_demanded
+            or (kind == section_kind::cut_ids and (element_code == 2 or element_code == 3)))
+            and num_components == num_components_demanded
+            and (kind == section_kind::objects or is_starts or is_of_cuts
+            or (kind == section_kind::metadata ? len_body <= 1048576 : num_elements == num_elements_demanded))
+            and is_required == (kind != section_kind::metadata and not is_of_cuts)
             : owner != 0 or not is_required
         doc: |
           No bytes. A known section has the elements of its kind, and as many as the header demands; an unknown one of
@@ -534,8 +610,12 @@ types:
       is_known:
         value: >-
           owner == 0 and kind_code >= 1 and (kind_code <= 2
-          or (_root.header.is_dexels ? kind_code >= 32 and kind_code <= 47 : kind_code <= 10))
+          or (_root.header.is_dexels ? kind_code >= 32 and kind_code <= 47
+          : kind_code <= 10 or (is_of_cuts and _root.header.version_minor >= 4)))
         doc: Whether this description knows the section. It knows those of the solid.
+      is_of_cuts:
+        value: (kind_code >= 11 and kind_code <= 15) or (kind_code >= 20 and kind_code <= 22)
+        doc: Whether it is one of the sections of cuts, if it is known.
       is_starts:
         value: kind_code >= 33 and (kind_code - 33) % 5 == 0
         doc: Whether a known section has the starts of a direction, of which the window says how many there are.
@@ -580,8 +660,8 @@ types:
         value: '(index == 0 ? 0 : _root.sections[index - 1].kinds_before_next).as<u4>'
         doc: Bits of the known kinds that sections of the solid before this one have, as in `kinds_demanded`.
       kinds_before_next:
-        value: '(kinds_before | (is_known ? 1 << (kind_code > 10 ? kind_code - 21 : kind_code) : 0)).as<u4>'
-        doc: The same with this section.
+        value: '(kinds_before | (is_known and not is_of_cuts ? 1 << (kind_code > 10 ? kind_code - 21 : kind_code) : 0)).as<u4>'
+        doc: The same with this section. Those of cuts are not among them.
       len_number:
         value: |
           element_code == 1 ? 1
@@ -598,11 +678,15 @@ types:
           kind == section_kind::objects ? 0
           : kind == section_kind::metadata ? 1
           : kind == section_kind::rel or kind == section_kind::brick_indices ? 2
+          : kind == section_kind::cut_heads or kind == section_kind::cut_ids ? 1
+          : kind_code >= 13 and kind_code <= 15 ? 3
+          : kind == section_kind::surface_numbers ? 6
+          : kind == section_kind::placements ? 0
           : kind_code < 32 ? 4
           : column == 1 and (_root.header.form & 1) != 0 ? 6
           : column == 2 and ((_root.header.form >> 1) & 3) == 1 ? 2
           : 3
-        doc: The element type of a known section.
+        doc: The element type of a known section. Ids of cuts may be wider.
         doc-ref: specification.md §5
       num_components_demanded:
         value: |
@@ -610,7 +694,9 @@ types:
           : kind == section_kind::level_table ? 3
           : kind == section_kind::planes ? 2
           : kind == section_kind::bricks or kind == section_kind::dictionary_entries ? _root.header.num_brick_planes
-          : kind == section_kind::windows ? 4
+          : kind == section_kind::windows or kind == section_kind::surfaces ? 4
+          : kind == section_kind::cut_blocks or kind == section_kind::origins ? 2
+          : kind == section_kind::placements ? 13
           : column >= 1 and column <= 3 ? 2
           : 1).as<u1>
         doc: The components of a known section.
@@ -627,7 +713,7 @@ types:
           : kind == section_kind::windows ? _root.header.num_directions
           : kind_code >= 33 ? ((_root.header.columns_stored >> column) & 1) * num_intervals
           : _root.header.depth + 1).as<u8>
-        doc: The number of elements that a known section must have; objects and metadata may have any.
+        doc: The number of elements that a known section must have; objects, metadata and cuts may have any.
         doc-ref: specification.md §5
       padding:
         io: _root._io
@@ -717,6 +803,130 @@ types:
       num_cells:
         value: 1 << _root.header.depth
         doc: Finest cells along each axis.
+  cut_heads:
+    doc: One byte for each cut.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: heads
+        type: u1
+        repeat: eos
+        doc: 0 says that nothing is known, 255 that the cell is split; any other number is a table of up to three surfaces.
+  cut_blocks:
+    doc: What is counted before every 32nd cut.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: blocks
+        type: cut_block
+        repeat: eos
+        doc: One for each 32 cuts.
+  cut_block:
+    doc: What is counted before a cut.
+    seq:
+      - id: num_ids
+        type: u4
+        doc: Ids of surfaces.
+      - id: num_splits
+        type: u4
+        doc: Splits.
+  cut_first:
+    doc: Cuts before each element and brick.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: values
+        type: u4
+        repeat: eos
+        doc: One for each element and brick, and at last the number of cuts that cells of the tree have.
+  surfaces:
+    doc: The surfaces of the cuts.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: surfaces
+        size: 16
+        type: surface
+        repeat: eos
+        doc: In the order of their first use.
+  surface:
+    doc: What kind of function a surface has, and where its numbers are.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: kind
+        type: u4
+        valid:
+          max: 4
+        doc: 0 is a plane, 1 a quadric, 2 a sum of powers, 3 a torus, 4 a slab. (`surface-record`)
+      - id: terms
+        type: u4
+        valid:
+          expr: _ >> (3 * num_numbers) == 0
+        doc: Of how many doubles each number is the sum, three bits for each. (`surface-record`)
+      - id: first
+        type: u4
+        doc: Its first double.
+      - id: placement
+        type: u4
+        doc: 0, or one more than the index of the first map that it is placed by.
+    instances:
+      num_numbers:
+        value: '(kind == 1 or kind == 2 ? 10 : kind == 4 ? 7 : 4).as<u1>'
+        doc: The numbers that a surface of this kind has.
+  surface_numbers:
+    doc: The doubles of the surfaces.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: values
+        type: f8
+        repeat: eos
+        valid:
+          expr: _ != 0.0 and _ >= -1.7976931348623157e+308 and _ <= 1.7976931348623157e+308
+        doc: Surface by surface, and number by number. (`surface-number`, in part)
+  placements:
+    doc: Maps that place surfaces.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: placements
+        size: 104
+        type: placement(_index)
+        repeat: eos
+        doc: In the order of their first use.
+  placement:
+    doc: An affine map.
+    doc-ref: specification.md §5.8
+    params:
+      - id: index
+        type: s4
+        doc: The number of the map.
+    seq:
+      - id: entries
+        type: f8
+        repeat: expr
+        repeat-expr: 12
+        valid:
+          expr: >-
+            _ == 0.0 or (_ >= 5.421010862427522e-20 and _ <= 1.8446744073709552e+19)
+            or (_ <= -5.421010862427522e-20 and _ >= -1.8446744073709552e+19)
+        doc: Row by row, the shift last in each. (`placement-map`, in part)
+      - id: outer
+        type: u8
+        valid:
+          expr: _ <= index.as<u8>
+        doc: 0, or one more than the index of the map that follows. (`surface-placement`, in part)
+  origins:
+    doc: What slabs were made from.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: origins
+        type: origin
+        repeat: eos
+        doc: In the order of their first use.
+  origin:
+    doc: A fingerprint of 128 bits.
+    seq:
+      - id: low
+        type: u8
+        doc: The lower half.
+      - id: high
+        type: u8
+        doc: The higher half.
   objects:
     doc: What the file holds. Each section belongs to one of these objects.
     doc-ref: specification.md §2.6, §5.1
@@ -1423,6 +1633,30 @@ enums:
     10:
       id: dictionary_segments
       doc: First entries of segments, 8 bytes each.
+    11:
+      id: cut_heads
+      doc: One byte for each cut.
+    12:
+      id: cut_ids
+      doc: Surfaces of each cut, of 1, 2 or 4 bytes.
+    13:
+      id: cut_blocks
+      doc: What is counted before every 32nd cut, 8 bytes each.
+    14:
+      id: cut_first
+      doc: Cuts before each element and brick, 4 bytes each.
+    15:
+      id: surfaces
+      doc: Surfaces, 16 bytes each.
+    20:
+      id: surface_numbers
+      doc: Doubles of the surfaces.
+    21:
+      id: placements
+      doc: Maps that place surfaces, 104 bytes each.
+    22:
+      id: origins
+      doc: What slabs were made from, 16 bytes each.
     32:
       id: windows
       doc: Rays of each direction, 16 bytes each.

@@ -9,6 +9,7 @@
 //! that the files were made from, counts from a plain recursion over them, and the cells of points from
 //! integers.
 
+pub mod cut_vectors;
 pub mod dexel_vectors;
 
 use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
@@ -74,6 +75,7 @@ struct Model {
     shape: Shape,
     /// In the order of their names.
     channels: Vec<Field>,
+    cuts: Option<cut_vectors::Cuts>,
 }
 
 impl Solid for Model {
@@ -143,7 +145,7 @@ impl Model {
         let frame = Frame::new(origin, edge, depth).expect("a frame in range");
         let (proof, metadata) = (Proof::CERTIFIED, Metadata::new());
         let channels = vec![];
-        Model { frame, exterior: Tag::Empty, proof, metadata, shape: Arc::new(shape), channels }
+        Model { frame, exterior: Tag::Empty, proof, metadata, shape: Arc::new(shape), channels, cuts: None }
     }
 
     /// One in which lattice coordinates are model coordinates.
@@ -174,6 +176,10 @@ impl Model {
     fn channel(mut self, channel: Field) -> Model {
         self.channels.push(channel);
         self
+    }
+
+    fn cuts(self, cuts: cut_vectors::Cuts) -> Model {
+        Model { cuts: Some(cuts), ..self }
     }
 
     fn verdict(&self, cell: Cell) -> Verdict<()> {
@@ -730,7 +736,7 @@ pub fn valid() -> Vec<Valid> {
         parts.sort();
         parts.bytes()
     });
-    let about = "minor version 4: reserved fields of a channel's record, its flags and those of its sections";
+    let about = "minor version 5: reserved fields of a channel's record, its flags and those of its sections";
     unusual("channel-newer", about, model().channel(grain("heat", 3)), &|mut parts| {
         put(&mut parts.head, 10, NEWER, 2);
         let record = parts.record(1);
@@ -757,6 +763,7 @@ pub fn valid() -> Vec<Valid> {
         parts.sections.iter_mut().for_each(|section| section.gap = 64);
         parts.bytes()
     });
+    vectors.extend(cut_vectors::valid());
     vectors
 }
 
@@ -830,6 +837,9 @@ impl Valid {
                 line("channel-metadata", &format!("{owner} {key}\t{value}"));
             }
         }
+        for (key, value) in model.cut_facts() {
+            line(key, &value);
+        }
         for point in points(frame) {
             let answer = match cell_of(frame, point).map(|at| model.finest(at)) {
                 Some(Tag::Full) => "inside",
@@ -837,6 +847,9 @@ impl Valid {
                 _ => "undecided",
             };
             line("point", &format!("{} {} {} {answer}", hex(point[0]), hex(point[1]), hex(point[2])));
+        }
+        for point in model.cut_points() {
+            line("cut-point", &point);
         }
         for (owner, field) in owners.iter().zip(&model.channels) {
             let frame = frame.with_depth(field.depth).expect("1 to 20");
@@ -1023,7 +1036,7 @@ const CHANNEL: u64 = 2;
 const NO_PARENT: u64 = u32::MAX as u64;
 
 /// A minor version that is newer than this one.
-const NEWER: u64 = 4;
+const NEWER: u64 = 5;
 
 /// Length of a header, and of the record of an object.
 const HEADER: usize = 128;
@@ -1134,7 +1147,8 @@ pub fn has_unknown_parts(bytes: &[u8]) -> bool {
         let (kind, owner) = (number(bytes, at + KIND, 4), number(bytes, at + OWNER, 4));
         let of_channel =
             (METADATA..=SEGMENTS).contains(&kind) || [VALUES, VALUE_REL, VALUE_BASE].contains(&kind);
-        if owner == 0 { !of_solid.contains(&kind) } else { !of_channel }
+        let of_cuts = cut_vectors::is_of_cuts(kind) && number(bytes, 10, 2) >= 4;
+        if owner == 0 { !of_solid.contains(&kind) && !of_cuts } else { !of_channel }
     };
     channels(bytes).count() as u64 + 1 != objects || entries(bytes).any(unknown)
 }
@@ -1221,7 +1235,12 @@ impl Parts {
             assert_eq!(section.flags, field(FLAGS, 4));
             section.of(field(OWNER, 4))
         };
-        Parts { head: bytes[..HEADER].to_vec(), sections: entries(&bytes).map(section).collect() }
+        let mut parts =
+            Parts { head: bytes[..HEADER].to_vec(), sections: entries(&bytes).map(section).collect() };
+        if let Some(cuts) = &model.cuts {
+            parts.add_cuts(model, cuts);
+        }
+        parts
     }
 
     /// The solid's section of a kind.
@@ -1445,6 +1464,7 @@ pub fn invalid() -> Vec<Invalid> {
     verification(&mut list);
     channel_records(&mut list);
     channel_contents(&mut list);
+    cut_vectors::invalid(&mut list);
     list.vectors
 }
 

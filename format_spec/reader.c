@@ -1,6 +1,6 @@
 /*
- * A reader of files of the Leafless format, version 0.3, in C99 and nothing but its library. What only tri-dexel models
- * have is read by reader_dexels.c, which this file includes.
+ * A reader of files of the Leafless format, version 0.4, in C99 and nothing but its library. What only tri-dexel models
+ * have is read by reader_dexels.c, cuts by reader_cuts.c. This file includes both.
  *
  * It is meant to be read beside specification.md, whose sections the comments name (§): each rule of §10 stands here
  * under its name, in the order in which the specification lists it. It favours being evident over being fast; yet every
@@ -11,6 +11,7 @@
  *     cc -std=c99 -O2 -o reader reader.c
  *     reader [--probe | --plain | --metadata] FILE...    prints what the files say, as vectors/valid/NAME.txt does
  *     reader [--plain | --metadata] --points FILE        reads lines `x y z`, prints inside, outside or undecided
+ *     reader [--plain | --metadata] --cut-points FILE    the same, with what the cuts say
  *     reader [--plain | --metadata] --volume FILE...     prints the volume in cubic model units, rounded outwards
  *     reader [--metadata] --values FILE                  reads lines `x y z`, prints the values of all channels
  *     reader [--plain | --metadata] --cells FILE         of a tri-dexel model: reads lines `i j k` of indices of a finest
@@ -20,11 +21,12 @@
  * option all. The exit code is 0, or 1 if a file is refused (`refused: RULE`), or 2 for wrong usage and failing input.
  *
  * As a library: compile with LEAFLESS_READER_NO_MAIN, or include this file after defining it. The bytes of a file must
- * stay as they are while its reader is used. Only lfl_verify allocates memory, at most 1.3 MB at a time, and releases it itself.
+ * stay as they are while its reader is used. Only lfl_verify allocates memory, and releases it itself: at most 1.3 MB at a
+ * time, or a byte for each cut.
  *
- * No byte order, alignment or layout of structures is assumed, and no floating-point arithmetic is done: doubles are
- * taken apart and put together as 64 bits. The platform's `double` must be IEEE 754 binary64, in the byte order of its
- * 64-bit integers.
+ * No byte order, alignment or layout of structures is assumed. But for the sides of surfaces (reader_cuts.c), no
+ * floating-point arithmetic is done: doubles are taken apart and put together as 64 bits. The platform's `double` must be
+ * IEEE 754 binary64, in the byte order of its 64-bit integers.
  */
 
 #include <float.h>
@@ -143,8 +145,11 @@ enum lfl_tag lfl_cell_tag(const struct lfl_reader *reader, uint32_t x, uint32_t 
 /* The finest cell in which a coordinate lies on an axis, 0 to 2 (§7.1): 1, or 0 if it lies in none. Exact. */
 int lfl_cell(const struct lfl_reader *reader, unsigned axis, double coordinate, uint32_t *cell);
 
-/* Does the solid contain the point (§7.1)? Exact for each f64. */
+/* Does the solid contain the point (§7.1)? Exact for each f64. Cuts are not looked at. */
 enum lfl_answer lfl_contains(const struct lfl_reader *reader, double x, double y, double z);
+
+/* The same with what the cuts say (§7.5), by interval arithmetic: undecided next to a surface, too. */
+enum lfl_answer lfl_contains_with_cuts(const struct lfl_reader *reader, double x, double y, double z);
 
 /* The first channel whose object is not before *owner, which begins as 1 and is moved on behind it: 1; at the end 0. Needs
    a file that has passed lfl_check_metadata. */
@@ -370,9 +375,17 @@ enum {
     KIND_BRICK_INDICES,
     KIND_DICTIONARY_ENTRIES,
     KIND_DICTIONARY_SEGMENTS,
-    KIND_VALUES = 16,
+    KIND_CUT_HEADS,
+    KIND_CUT_IDS,
+    KIND_CUT_BLOCKS,
+    KIND_CUT_FIRST,
+    KIND_SURFACES,
+    KIND_VALUES,
     KIND_VALUE_REL = 18,
-    KIND_VALUE_BASE = 19
+    KIND_VALUE_BASE,
+    KIND_SURFACE_NUMBERS,
+    KIND_PLACEMENTS,
+    KIND_ORIGINS
 };
 
 /* Types of objects (§5.1). */
@@ -388,13 +401,17 @@ static const unsigned type_size[TYPES] = {8, 1, 2, 4, 8, 4, 8};
 /* §3: bit 0 of the required flags, which versions before 0.3 do not know. */
 int lfl_is_dexels(const struct lfl_reader *r) { return r->minor >= 3 && (r->required_flags & 1) != 0; }
 
-/* Kinds of sections of object 0: those of §5, or of a tri-dexel model those of §5.7. */
+static int is_cut_kind(uint32_t kind); /* reader_cuts.c */
+
+/* Kinds of sections of object 0: those of §5, from version 0.4 on with those of §5.8, or of a tri-dexel model those of §5.7. */
 static int is_known_kind(const struct lfl_reader *r, uint32_t kind)
 {
     if (kind == KIND_OBJECTS || kind == KIND_METADATA)
         return 1;
     if (lfl_is_dexels(r))
         return kind >= 32 && kind < 48;
+    if (is_cut_kind(kind))
+        return r->minor >= 4;
     return kind > KIND_METADATA && kind <= KIND_DICTIONARY_SEGMENTS;
 }
 
@@ -406,11 +423,12 @@ static int is_known(const struct lfl_reader *r, const struct lfl_section *s)
 /* A row of §5's table. */
 struct demand {
     unsigned element_type, components;
-    int any_count;  /* objects and metadata: other rules bound their counts */
+    int any_count;  /* objects, metadata and cuts: other rules bound their counts */
     uint64_t count; /* 0 where the section must be absent */
 };
 
 static struct demand demanded_of_dexels(const struct lfl_reader *r, uint32_t kind); /* reader_dexels.c */
+static struct demand demanded_of_cuts(uint32_t kind);                               /* reader_cuts.c */
 
 static struct demand demanded(const struct lfl_reader *r, uint32_t kind)
 {
@@ -418,6 +436,8 @@ static struct demand demanded(const struct lfl_reader *r, uint32_t kind)
     struct demand d = {TYPE_U64, 1, 0, 0};
     if (kind >= 32)
         return demanded_of_dexels(r, kind);
+    if (is_cut_kind(kind))
+        return demanded_of_cuts(kind);
     switch (kind) {
     case KIND_OBJECTS: d.element_type = TYPE_RECORD, d.components = 16, d.any_count = 1; break;
     case KIND_METADATA: d.element_type = TYPE_U8, d.any_count = 1; break;
@@ -583,7 +603,7 @@ static int is_illegal(uint64_t bits)
 }
 
 /* §10: whether a later version wrote the file, which may have given a meaning to what is reserved today. */
-static int is_newer(const struct lfl_reader *r) { return r->minor > 3; }
+static int is_newer(const struct lfl_reader *r) { return r->minor > 4; }
 
 static uint64_t end_of_table(const struct lfl_reader *r) { return 128 + 48 * (uint64_t)r->section_count; }
 
@@ -735,13 +755,17 @@ static const char *check_section(struct lfl_reader *r, uint32_t index, uint64_t 
     if (!known)
         return NULL;
     d = demanded(r, s.kind);
+    if (s.kind == KIND_CUT_IDS && (s.element_type == TYPE_U16 || s.element_type == TYPE_U32))
+        d.element_type = s.element_type;
     REFUSE_IF(s.element_type != d.element_type || s.components != d.components, "section-size");
     REFUSE_IF(!d.any_count && s.count != d.count, "section-count");
     REFUSE_IF(s.kind == KIND_METADATA && s.length > MAX_METADATA, "section-metadata-length");
-    REFUSE_IF((s.flags & 1) != (s.kind != KIND_METADATA), "section-required");
+    REFUSE_IF((s.flags & 1) != (s.kind != KIND_METADATA && !is_cut_kind(s.kind)), "section-required");
     r->section[s.kind] = s;
     return NULL;
 }
+
+static const char *check_cut_sections(const struct lfl_reader *r); /* reader_cuts.c */
 
 static const char *check_table(struct lfl_reader *r)
 {
@@ -757,6 +781,8 @@ static const char *check_table(struct lfl_reader *r)
     }
     for (i = KIND_OBJECTS; i < LFL_KINDS; i++)
         REFUSE_IF(is_known_kind(r, i) && demanded(r, i).count != 0 && r->section[i].count == 0, "section-missing");
+    if ((error = check_cut_sections(r)) != NULL)
+        return error;
     REFUSE_IF(end != r->file_length, "section-end");
     return NULL;
 }
@@ -979,6 +1005,7 @@ static const char *check_metadata_and_channels(const struct lfl_reader *r)
 }
 
 #include "reader_dexels.c"
+#include "reader_cuts.c"
 
 static const char *check_all_before_use(const void *bytes, size_t length, struct lfl_reader *r, int probing)
 {
@@ -1165,8 +1192,8 @@ static const char *verify_bricks(const struct lfl_reader *r, struct lfl_level *c
     return NULL;
 }
 
-/* What follows from all elements and bricks: the number of planes, and the level table. */
-static const char *verify_counts(const struct lfl_reader *r, const struct lfl_level *counts)
+/* What follows from all elements and bricks: the number of planes. */
+static const char *verify_planes(const struct lfl_reader *r, const struct lfl_level *counts)
 {
     int any_partial = 0;
     unsigned l;
@@ -1174,6 +1201,13 @@ static const char *verify_counts(const struct lfl_reader *r, const struct lfl_le
         any_partial |= counts[l].partial != 0;
     REFUSE_IF(r->brick_planes == 1 && any_partial, "planes-missing");
     REFUSE_IF(r->brick_planes == 2 && !any_partial, "planes-needless");
+    return NULL;
+}
+
+/* And the level table. */
+static const char *verify_counts(const struct lfl_reader *r, const struct lfl_level *counts)
+{
+    unsigned l;
     for (l = 0; l <= r->depth; l++) {
         struct lfl_level given = lfl_level(r, l);
         REFUSE_IF(given.nodes != counts[l].nodes, "level-table-counts");
@@ -1310,6 +1344,7 @@ static const char *verify(const struct lfl_reader *r)
     if ((error = verify_sections(r)) != NULL || (error = check_metadata_and_channels(r)) != NULL ||
         (error = verify_links(r)) != NULL || (error = verify_elements(r, counts)) != NULL ||
         (error = verify_dictionary(r)) != NULL || (error = verify_bricks(r, counts)) != NULL ||
+        (error = verify_planes(r, counts)) != NULL || (error = verify_cuts(r)) != NULL ||
         (error = verify_counts(r, counts)) != NULL)
         return error;
     return verify_channels(r);
@@ -1511,7 +1546,7 @@ void lfl_volume(const struct lfl_reader *r, double *lower, double *upper)
 
 enum { OK = 0, REFUSED = 1, FAILED = 2 };
 enum checks { PROBE, PLAIN, METADATA, ALL };
-enum question { FACTS, POINTS, VALUES, VOLUME, CELLS };
+enum question { FACTS, POINTS, CUT_POINTS, VALUES, VOLUME, CELLS };
 
 /* Control characters could do things to a terminal, and are printed as \xHH. */
 static void print_text(const unsigned char *p, size_t length)
@@ -1670,6 +1705,44 @@ static void print_channels(const struct lfl_reader *r)
     }
 }
 
+/* Of verified files. */
+static void print_cuts(const struct lfl_reader *r)
+{
+    static const char *const kinds[] = {"plane", "quadric", "powers", "torus", "slab"};
+    uint64_t i, cuts = count_of(r, KIND_CUT_HEADS), nothing = 0, splits = 0;
+    unsigned k, m;
+    if (cuts == 0)
+        return;
+    for (i = 0; i < cuts; i++) {
+        nothing += cut_head(r, i) == HEAD_NOTHING;
+        splits += cut_head(r, i) == HEAD_SPLIT;
+    }
+    printf("cuts: %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", cuts - nothing - splits,
+           nothing, splits, count_of(r, KIND_SURFACES), count_of(r, KIND_PLACEMENTS), count_of(r, KIND_ORIGINS));
+    for (i = 0; i < count_of(r, KIND_SURFACES); i++) {
+        struct surface s;
+        if (read_surface(r, i, &s) != NULL)
+            continue;
+        printf("surface: %" PRIu64 " %s %" PRIu32, i, kinds[s.kind], s.placement);
+        for (k = 0; k < number_count[s.kind]; k++) {
+            printf(s.terms[k] == 0 ? " 0" : " ");
+            for (m = 0; m < s.terms[k]; m++)
+                printf("%s%a", m == 0 ? "" : ",", from_bits(double_bits(r, s.begin[k] + m)));
+        }
+        putchar('\n');
+    }
+    for (i = 0; i < count_of(r, KIND_PLACEMENTS); i++) {
+        printf("placement: %" PRIu64 " %" PRIu64, i, map_outer(r, i));
+        for (k = 0; k < 12; k++)
+            printf(" %a", map_entry(r, i, k / 4, k % 4));
+        putchar('\n');
+    }
+    for (i = 0; i < count_of(r, KIND_ORIGINS); i++) {
+        const unsigned char *p = item(r, KIND_ORIGINS, i);
+        printf("slab-origin: %" PRIu64 " %016" PRIx64 " %016" PRIx64 "\n", i, u64(p), u64(p + 8));
+    }
+}
+
 static void print_volume(const struct lfl_reader *r)
 {
     double lower, upper;
@@ -1725,6 +1798,8 @@ static int answer_points(const struct lfl_reader *r, enum question question)
             print_cell(r, v);
         else if (question == VALUES)
             print_values(r, v);
+        else if (question == CUT_POINTS)
+            puts(answers[lfl_contains_with_cuts(r, v[0], v[1], v[2])]);
         else
             puts(answers[lfl_contains(r, v[0], v[1], v[2])]);
     }
@@ -1782,7 +1857,7 @@ static int read_one(const char *path, enum checks checks, enum question question
     } else if (question != FACTS && (question == CELLS) != lfl_is_dexels(&reader)) {
         fprintf(stderr, "the question is for %s\n", question == CELLS ? "tri-dexel models" : "octrees");
         code = FAILED;
-    } else if (question == POINTS || question == VALUES || question == CELLS) {
+    } else if (question == POINTS || question == CUT_POINTS || question == VALUES || question == CELLS) {
         code = answer_points(&reader, question);
     } else if (question == VOLUME) {
         print_volume(&reader);
@@ -1790,6 +1865,8 @@ static int read_one(const char *path, enum checks checks, enum question question
         print_facts(&reader, checks);
         if (checks >= METADATA && !lfl_is_dexels(&reader))
             print_channels(&reader);
+        if (checks == ALL && !lfl_is_dexels(&reader))
+            print_cuts(&reader);
     }
     free(bytes);
     return code;
@@ -1809,6 +1886,8 @@ int main(int argc, char **argv)
             checks = METADATA;
         else if (strcmp(argv[i], "--points") == 0)
             question = POINTS;
+        else if (strcmp(argv[i], "--cut-points") == 0)
+            question = CUT_POINTS;
         else if (strcmp(argv[i], "--values") == 0)
             question = VALUES;
         else if (strcmp(argv[i], "--volume") == 0)
@@ -1823,6 +1902,7 @@ int main(int argc, char **argv)
         (question != FACTS && checks == PROBE) || (question == VALUES && checks == PLAIN)) {
         fprintf(stderr, "usage: reader [--probe | --plain | --metadata] FILE...\n"
                         "       reader [--plain | --metadata] --points FILE\n"
+                        "       reader [--plain | --metadata] --cut-points FILE\n"
                         "       reader [--plain | --metadata] --volume FILE...\n"
                         "       reader [--metadata] --values FILE\n"
                         "       reader [--plain | --metadata] --cells FILE\n");

@@ -9,7 +9,7 @@
 use crate::bodies::Random;
 #[allow(dead_code)]
 use crate::{bodies, make_vectors};
-use leafless::{Membership, Octree, Tag, file, file::dexels};
+use leafless::{Control, Membership, Octree, Proof, Tag, contains, file, file::dexels};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -88,7 +88,8 @@ fn vectors(kind: &str) -> Vec<(PathBuf, String)> {
 fn it_gives_the_facts_of_every_valid_vector() {
     for (path, text) in vectors("valid") {
         // What no reader can know, or need not print.
-        let apart = ["about", "canonical", "origin-decimal", "edge-decimal", "point", "value", "cell"];
+        let apart =
+            ["about", "canonical", "origin-decimal", "edge-decimal", "point", "cut-point", "value", "cell"];
         let facts = text.lines().filter(|line| !apart.contains(&line.split(':').next().unwrap()));
         let (code, printed) = run(&[], &path, "");
         assert_eq!(code, 0, "{}", path.display());
@@ -107,12 +108,14 @@ fn it_gives_the_facts_of_every_valid_vector() {
             assert_eq!((code, answers.lines().collect()), (0, expected), "{}", path.display());
             continue;
         }
-        let points: Vec<(&str, &str)> =
-            text.lines().filter_map(|line| line.strip_prefix("point: ")?.rsplit_once(' ')).collect();
-        let questions: String = points.iter().map(|(point, _)| format!("{point}\n")).collect();
-        let (_, answers) = run(&["--points"], &path, &questions);
-        let expected: Vec<&str> = points.iter().map(|(_, answer)| *answer).collect();
-        assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected, "{}", path.display());
+        for (key, option) in [("point: ", "--points"), ("cut-point: ", "--cut-points")] {
+            let points: Vec<(&str, &str)> =
+                text.lines().filter_map(|line| line.strip_prefix(key)?.rsplit_once(' ')).collect();
+            let questions: String = points.iter().map(|(point, _)| format!("{point}\n")).collect();
+            let (_, answers) = run(&[option], &path, &questions);
+            let expected: Vec<&str> = points.iter().map(|(_, answer)| *answer).collect();
+            assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected, "{}", path.display());
+        }
         // Every point of a channel is asked of all channels.
         let channels = text.lines().filter(|line| line.starts_with("channel: ")).count();
         let values: Vec<Vec<&str>> = text
@@ -206,12 +209,32 @@ fn it_agrees_with_the_library_on_what_the_library_writes() {
         let points = points(&tree, &mut random);
         let questions: String = points.iter().map(|[x, y, z]| format!("{x:e} {y:e} {z:e}\n")).collect();
         let (_, answers) = run(&["--points"], &path, &questions);
-        let expected = points.iter().map(|&point| match tree.contains(point) {
+        let word = |answer: Membership| match answer {
             Membership::Outside => "outside",
             Membership::Inside => "inside",
             Membership::Undecided => "undecided",
-        });
+        };
+        let tags = tree.view().without_cuts();
+        let expected = points.iter().map(|&point| word(tags.contains(point)));
         assert_eq!(answers.split_whitespace().collect::<Vec<_>>(), expected.collect::<Vec<_>>());
+
+        // With the cuts intervals leave open what exact signs decide, and only that.
+        let (_, answers) = run(&["--cut-points"], &path, &questions);
+        let mut expected = vec![Membership::Undecided; points.len()];
+        let certified = tree.view().with_proof(Proof::CERTIFIED);
+        contains(&certified, tree.frame(), &points, &mut expected, &Control::threads(1)).unwrap();
+        let (mut decided, mut open) = (0, 0);
+        for ((found, expected), point) in answers.split_whitespace().zip(expected).zip(&points) {
+            assert!(found == "undecided" || found == word(expected), "{point:?}: {found}, {expected:?}");
+            decided += u32::from(expected != Membership::Undecided);
+            open += u32::from(expected != Membership::Undecided && found == "undecided");
+        }
+        assert!(10 * open <= decided, "{open} of {decided}");
+        if let Some(cuts) = tree.view().cuts() {
+            let words = all("cuts");
+            let numbers: Vec<u64> = words[0].split(' ').map(|word| word.parse().unwrap()).collect();
+            assert_eq!(numbers[..4], [cuts.cells, cuts.given_up, cuts.splits, cuts.surfaces]);
+        }
 
         let channels: Vec<_> = (1..).zip(tree.channels()).collect();
         assert_eq!(all("channel").len(), channels.len());
