@@ -11,17 +11,36 @@ use crate::lattice::Interval;
 
 /// Bounds of the area of the boundary of { x in the cell : all functions are ≥ 0 }, in squares of the half edge.
 pub(crate) fn area_of_faces(surfaces: &[Option<Taylor>; 3]) -> Interval {
-    let are_known = surfaces.iter().flatten().all(|surface| surface.f.error < f64::INFINITY);
     let mut sum = Interval::exactly(0.0);
     for (i, surface) in surfaces.iter().enumerate() {
         let Some(surface) = surface else { continue };
-        let whole = Interval::between(0.0, area_of_surface(surface).upper);
-        let others = surfaces.iter().enumerate().filter(|(j, _)| *j != i).filter_map(|(_, f)| f.as_ref());
-        let face = if are_known { area_of_face(surface, others).unwrap_or(whole) } else { whole };
-        let upper = face.upper.min(whole.upper);
-        sum = Interval::between(sum.lower + face.lower.clamp(0.0, upper), sum.upper + upper);
+        let mut others = *surfaces;
+        others[i] = None;
+        let face = area_within(surface, core::iter::once(others));
+        sum = Interval::between(sum.lower + face.lower, sum.upper + face.upper);
     }
     sum
+}
+
+/// Bounds of the area that a surface has in regions that do not overlap. Each region is where the functions of some others are
+/// ≥ 0.
+pub(crate) fn area_within(surface: &Taylor, regions: impl Iterator<Item = [Option<Taylor>; 3]>) -> Interval {
+    let own = area_of_surface(surface);
+    let whole = Interval::between(0.0, own.upper);
+    let is_known = |surface: &Taylor| surface.f.error < f64::INFINITY;
+    let (mut lower, mut upper) = (0.0, 0.0);
+    for others in regions {
+        let face = if others.iter().flatten().next().is_none() {
+            own
+        } else if is_known(surface) && others.iter().flatten().all(is_known) {
+            area_of_face(surface, others.iter().flatten()).unwrap_or(whole)
+        } else {
+            whole
+        };
+        (lower, upper) = (lower + face.lower.max(0.0), upper + face.upper);
+    }
+    let upper = whole.upper.min(upper);
+    Interval::between(lower.clamp(0.0, upper), upper)
 }
 
 /// Bounds of the area that a surface has within the half-spaces of others; `None` if it is no graph over a wall.

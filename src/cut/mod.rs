@@ -32,7 +32,7 @@ mod wedge;
 
 use crate::lattice::{CellMoments, CubeMoments};
 pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
-pub(crate) use face::area_of_faces;
+pub(crate) use face::{area_of_faces, area_within};
 pub(crate) use flux::{area_of_surface, most_area};
 pub(crate) use quadratic::Quadratic;
 pub(crate) use section::{SETTLED, Section};
@@ -63,6 +63,14 @@ pub(crate) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
             .map_or(if outer { CubeMoments::FULL } else { CubeMoments::EMPTY }, |m| m.complement()),
     };
     (of(false), of(true))
+}
+
+/// The moments of a solid in a cell of which the enclosure is known.
+pub(crate) fn between(enclosure: &Enclosure) -> CellMoments {
+    let (inner, outer) = bounds(enclosure);
+    // No moment of what lies between both sets, or of a part of that, is greater than the volume between them.
+    let error = 0.5 * (outer.volume - inner.volume).max(0.0) + 2.0 * ERROR;
+    CellMoments { moments: inner.mean(&outer), error }
 }
 
 /// Moments of { x in the cell : f(x) ≥ 0 } on the inner sides of up to two planes, of which slabs tell all but what

@@ -37,6 +37,17 @@ impl CubeMoments {
         (0..6).for_each(|i| rest.second[i] -= self.second[i]);
         rest
     }
+
+    /// Those half-way between these and others.
+    #[must_use]
+    pub(crate) fn mean(&self, other: &CubeMoments) -> CubeMoments {
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        CubeMoments {
+            volume: mean(self.volume, other.volume),
+            first: core::array::from_fn(|i| mean(self.first[i], other.first[i])),
+            second: core::array::from_fn(|i| mean(self.second[i], other.second[i])),
+        }
+    }
 }
 
 /// What is known of the moments of a solid in a cell.
@@ -49,6 +60,22 @@ pub struct CellMoments {
 }
 
 impl CellMoments {
+    /// What is known of the union with a set in the same cell that this one does not overlap.
+    #[must_use]
+    pub(crate) fn plus(&self, other: &CellMoments) -> CellMoments {
+        let (own, theirs) = (&self.moments, &other.moments);
+        let moments = CubeMoments {
+            volume: own.volume + theirs.volume,
+            first: core::array::from_fn(|i| own.first[i] + theirs.first[i]),
+            second: core::array::from_fn(|i| own.second[i] + theirs.second[i]),
+        };
+        // The sums are rounded.
+        CellMoments {
+            moments,
+            error: (self.error + other.error) * (1.0 + f64::EPSILON) + 16.0 * f64::EPSILON,
+        }
+    }
+
     /// What is known of the complement.
     #[must_use]
     pub fn complement(&self) -> CellMoments {

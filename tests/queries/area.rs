@@ -8,7 +8,7 @@ use leafless::query::{StopReason, SurfaceArea, surface_area};
 use leafless::solid::{Ask, AskWhole};
 use leafless::{
     Affine, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Rule, Solid,
-    Tolerance, TriangleMesh, Verdict, Worker, build,
+    SurfaceOptions, Tolerance, TriangleMesh, Verdict, Worker, build, build_extended,
 };
 use std::f64::consts::PI;
 
@@ -273,42 +273,61 @@ fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -
     sum
 }
 
+/// Cells of `solid` on the way down to a random one: their areas against those of finer cells.
+fn cells_of<S: Solid>(solid: &S, frame: &Frame, seed: u64, random: &mut Random, found: &mut [u64; 2]) {
+    let classifier = solid.on(frame, &alone()).unwrap();
+    let Some(mut way) = Way::new(classifier.worker().unwrap()) else { return };
+    while way.cell.level <= 14 {
+        let cell = way.cell;
+        if let Some(area) = way.worker.area(cell, &way.part).unwrap() {
+            let finer = by_finer(&mut way.worker, cell, &way.part, 2);
+            let slack = 1e-10;
+            assert!(
+                area.lower <= finer.upper + slack && finer.lower <= area.upper + slack,
+                "{seed} {cell:?} {area:?} {finer:?}"
+            );
+            found[0] += 1;
+            found[1] += (area.width() < 0.5) as u64;
+        }
+        if !way.descend(random) {
+            break;
+        }
+    }
+}
+
 fn cells_agree(count: u64) {
     let frame = Frame::new([-1.013, -1.027, -1.041], 2.1, 20).unwrap();
-    let (mut checked, mut tight) = (0, 0);
+    // Expressions, functions of three half-spaces, and extended trees of both.
+    let mut found = [[0; 2]; 4];
     for seed in 0.. {
-        if checked >= count {
+        if found.iter().all(|&[checked, _]| checked >= count / 3) {
             break;
         }
         let mut random = Random(seed ^ 0xA12EA);
         let mut maker = Maker { random: &mut random, frame, aligned: false, others: false };
-        let count = 1 + maker.below(4);
-        let model = maker.joined(count);
+        let is_function = seed % 2 == 1;
+        let model = if is_function {
+            maker.function(|maker| maker.half_space())
+        } else {
+            let count = 1 + maker.below(4);
+            maker.joined(count)
+        };
         let Ok(solid) = model.csg(&frame) else { continue };
-        let classifier = solid.on(&frame, &alone()).unwrap();
-        if !classifier.is_off_lattice() {
+        if !solid.on(&frame, &alone()).unwrap().is_off_lattice() {
             continue;
         }
-        let Some(mut way) = Way::new(classifier.worker().unwrap()) else { continue };
-        while way.cell.level <= 14 {
-            let cell = way.cell;
-            if let Some(area) = way.worker.area(cell, &way.part).unwrap() {
-                let finer = by_finer(&mut way.worker, cell, &way.part, 2);
-                let slack = 1e-10;
-                assert!(
-                    area.lower <= finer.upper + slack && finer.lower <= area.upper + slack,
-                    "{seed} {cell:?} {area:?} {finer:?}"
-                );
-                checked += 1;
-                tight += (area.width() < 0.5) as u64;
-            }
-            if !way.descend(&mut random) {
-                break;
-            }
-        }
+        let kind = 2 * usize::from(is_function);
+        cells_of(&solid, &frame, seed, &mut random, &mut found[kind]);
+        let shallow = frame.with_depth(4).unwrap();
+        let Ok(tree) = build_extended(&solid, &shallow, &SurfaceOptions::default(), &alone()) else {
+            continue;
+        };
+        cells_of(&tree, &frame, seed, &mut random, &mut found[kind + 1]);
     }
-    println!("{tight} of {checked}");
-    assert!(tight * 4 > checked, "{tight} of {checked}");
+    println!("checked, tight: {found:?}");
+    for [checked, tight] in found {
+        assert!(tight * 4 > checked, "{tight} of {checked}");
+    }
 }
 
 #[test]

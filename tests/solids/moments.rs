@@ -6,7 +6,7 @@ use crate::random::Maker;
 use leafless::lattice::{CellMoments, CubeMoments, MAX_DEPTH};
 #[allow(dead_code)]
 use leafless::solid::Ask;
-use leafless::{Cell, Classifier, Csg, Frame, Solid, Verdict, Worker};
+use leafless::{Cell, Classifier, Csg, Frame, Solid, SurfaceOptions, Verdict, Worker, build_extended};
 
 /// The order of second moments.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
@@ -44,15 +44,16 @@ impl Sum {
 /// The moments of a cell from cells some levels below: those that are decided, those that know their moments, and
 /// others, of which any part may be solid.
 fn below<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u32, fine: bool) -> Sum {
+    let any = || {
+        let mut half = Sum::of(&CubeMoments::FULL, 4.0);
+        half.moments.iter_mut().for_each(|moment| *moment *= 0.5);
+        half
+    };
     if levels == 0 || cell.level == worker.frame().depth() {
         let known = if fine { worker.moments(cell, part).unwrap() } else { None };
         return match known {
             Some(CellMoments { moments, error }) => Sum::of(&moments, error),
-            None => {
-                let mut half = Sum::of(&CubeMoments::FULL, 4.0);
-                half.moments.iter_mut().for_each(|moment| *moment *= 0.5);
-                half
-            }
+            None => any(),
         };
     }
     let mark = worker.mark();
@@ -61,7 +62,8 @@ fn below<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u32, fin
         let child = match verdict {
             Verdict::Empty => continue,
             Verdict::Full => Sum::of(&CubeMoments::FULL, 0.0),
-            Verdict::Undecided => panic!("half-spaces can be split"),
+            // Of an extended tree, a cell that was given up.
+            Verdict::Undecided => any(),
             Verdict::Partial(part) => below(worker, cell.child(octant), &part, levels - 1, fine),
         };
         sum.add(octant, &child);
@@ -81,13 +83,22 @@ struct Found {
     asked: u64,
     known: u64,
     strong: u64,
+    /// Of planes alone the moments are known to rounding.
+    exact: u64,
     /// The greatest difference as a share of the error, of strong ones.
     most: f64,
 }
 
-fn walk(model: &Model, frame: &Frame, csg: &Csg, random: &mut Random, found: &mut Found) {
-    let way = |csg: &Csg| Way::new(csg.on(frame, &alone()).unwrap().worker().unwrap());
-    let (Some(mut way), Some(mut opposite)) = (way(csg), way(&csg.complement())) else { return };
+/// A solid and its complement.
+fn walk<S: Solid>(
+    model: &Model,
+    frame: &Frame,
+    [solid, complement]: [&S; 2],
+    random: &mut Random,
+    found: &mut Found,
+) {
+    let way = |solid: &S| Way::new(solid.on(frame, &alone()).unwrap().worker().unwrap());
+    let (Some(mut way), Some(mut opposite)) = (way(solid), way(complement)) else { return };
     while way.cell.level < frame.depth() {
         let cell = way.cell;
         found.asked += 1;
@@ -97,6 +108,7 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, random: &mut Random, found: &mu
         assert_eq!(known.is_some(), complement.is_some(), "{}", context());
         if let (Some(known), Some(complement)) = (known, complement) {
             found.known += 1;
+            found.exact += (known.error < 1e-10) as u64;
             let own = Sum::of(&known.moments, known.error);
             let back = complement.complement();
             let error = known.error + back.error;
@@ -125,6 +137,13 @@ fn walk(model: &Model, frame: &Frame, csg: &Csg, random: &mut Random, found: &mu
 
 /// Random solids made by `make`, until `wanted` cells know their moments.
 fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
+    for extended in [false, true] {
+        hold_as(name, wanted, extended, &make);
+    }
+}
+
+/// Expressions, or extended trees of them.
+fn hold_as(name: &str, wanted: u64, extended: bool, make: impl Fn(&mut Maker<'_>) -> Model) {
     let mut found = Found::default();
     for seed in 0.. {
         if found.known >= wanted {
@@ -142,10 +161,19 @@ fn hold(name: &str, wanted: u64, make: impl Fn(&mut Maker<'_>) -> Model) {
         let model = make(&mut maker);
         // What the ranges of arguments do not admit.
         let Ok(csg) = model.csg(&frame) else { continue };
-        walk(&model, &frame, &csg, &mut random, &mut found);
+        if extended {
+            let tree = |csg: &Csg| {
+                let shallow = frame.with_depth(4).unwrap();
+                build_extended(csg, &shallow, &SurfaceOptions::default(), &alone()).ok()
+            };
+            let (Some(own), Some(other)) = (tree(&csg), tree(&csg.complement())) else { continue };
+            walk(&model, &frame, [&own, &other], &mut random, &mut found);
+        } else {
+            walk(&model, &frame, [&csg, &csg.complement()], &mut random, &mut found);
+        }
     }
-    println!("{name}: {found:?}");
-    assert!(found.strong > wanted / 4, "{name}: {found:?}");
+    println!("{name}, {}: {found:?}", if extended { "extended" } else { "as it is" });
+    assert!(found.strong + found.exact > wanted / 4, "{name}: {found:?}");
 }
 
 /// A curved half-space with one or two planes.
@@ -189,6 +217,12 @@ fn every_producer(cells: u64) {
     hold("cut by planes, turned", cells, |maker| {
         let cut = cut(maker);
         maker.placed(cut)
+    });
+    hold("functions of planes", cells, |maker| maker.function(|maker| maker.plane()));
+    hold("functions of half-spaces", cells, |maker| maker.function(|maker| maker.half_space()));
+    hold("functions of half-spaces, turned", cells, |maker| {
+        let function = maker.function(|maker| maker.half_space());
+        maker.placed(function)
     });
 }
 

@@ -41,6 +41,11 @@ impl Literals {
         around(table, false).or_else(|| around(Table(!table.0), true))
     }
 
+    /// Whether the solid, or its complement, may be less than the intersection.
+    pub(crate) fn is_one_sided(&self) -> bool {
+        self.one_sided
+    }
+
     fn each<'h>(&self, half_spaces: &'h [Placed]) -> impl Iterator<Item = (&'h Placed, bool)> {
         self.literals.into_iter().flatten().map(|(index, not)| (&half_spaces[index as usize], not))
     }

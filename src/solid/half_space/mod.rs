@@ -1,6 +1,7 @@
 //! Half-spaces: what all primitives are made of.
 
 pub(crate) mod bounds;
+pub(crate) mod function;
 mod host;
 pub(crate) mod linear;
 pub(crate) mod lines;
@@ -14,8 +15,10 @@ pub(crate) mod power;
 pub(crate) mod quadric;
 pub(crate) mod record;
 mod slab;
+pub(crate) mod sweep;
 pub(crate) mod table;
 pub(crate) mod tangent;
+mod terms;
 pub(crate) mod torus;
 
 use crate::cut::Taylor;

@@ -49,27 +49,35 @@ fn exclude(a: &Tangent, negative_a: bool, b: &Tangent, negative_b: bool) -> bool
 }
 
 impl Table {
-    /// The function on the combinations that are possible, of as few half-spaces as the following rule finds: in the order of
-    /// their numbers, one on which the values do not depend where both of its signs are possible is left out; what the function
-    /// says of combinations that are not possible follows from those that are.
-    pub(crate) fn simplified(self, mut possible: Table) -> Table {
-        let mut table = self.0;
+    /// The function on the combinations that are possible, of as few half-spaces as the following rule finds. In the order of
+    /// their numbers, a half-space is left out if the values do not depend on it where both of its signs are possible. A
+    /// combination that is not possible has the value of the possible one that comes first in this order: by the number of the
+    /// last half-space whose sign differs, then by that of the one before, and so on.
+    ///
+    /// So the result depends on the values at possible combinations alone, and the complement of the function has the complement
+    /// of the result.
+    pub(crate) fn simplified(self, possible: Table) -> Table {
+        let (mut table, mut possible) = (self.0, possible.0);
+        // Values and possibilities of both signs, at the places of the negative one.
+        let signs =
+            |bits: u64, i: usize| ((bits & Table::of(i, false).0) >> (1 << i), bits & Table::of(i, true).0);
         for i in 0..MOST {
-            let [positive, negative] = [Table::of(i, false).0, Table::of(i, true).0];
-            let shift = 1 << i;
-            // Values and possibilities of both signs, at the places of the negative one.
-            let (on, off) = ((table & positive) >> shift, table & negative);
-            let (can_on, can_off) = ((possible.0 & positive) >> shift, possible.0 & negative);
+            let ((on, off), (can_on, can_off)) = (signs(table, i), signs(possible, i));
             if (on ^ off) & can_on & can_off != 0 {
                 continue;
             }
-            let value = on & can_on | off & can_off;
-            let can = can_on | can_off;
-            table = value | value << shift;
-            possible = Table(can | can << shift);
+            let (value, can) = (on & can_on | off & can_off, can_on | can_off);
+            table = value | value << (1 << i);
+            possible = can | can << (1 << i);
         }
-        // Where nothing is possible any value is right; all is possible of what is constant.
-        if table & possible.0 == possible.0 { Table::FULL } else { Table(table) }
+        for i in 0..MOST {
+            let ((on, off), (can_on, can_off)) = (signs(table, i), signs(possible, i));
+            let (on, off) = (on & can_on | off & !can_on, off & can_off | on & !can_off);
+            table = off | on << (1 << i);
+            let can = can_on | can_off;
+            possible = can | can << (1 << i);
+        }
+        Table(table)
     }
 }
 
@@ -93,6 +101,10 @@ mod tests {
                 let wide = |bits: u64| bits * 0x0101_0101_0101_0101;
                 let simple = Table(wide(bits)).simplified(Table(wide(can)));
                 assert_eq!((simple.0 ^ wide(bits)) & wide(can), 0, "{bits:b} {can:b}");
+                // Nothing else counts, and complements are complements.
+                assert_eq!(Table(wide(bits & can)).simplified(Table(wide(can))), simple);
+                assert_eq!(Table(!wide(bits)).simplified(Table(wide(can))), Table(!simple.0));
+                assert_eq!(simple.simplified(Table(wide(can))), simple);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! What the cuts of a stored octree say: cells below its own, and points.
 
 use super::StoredPart;
+use crate::dexel::Beam;
 use crate::error::{Damage, Error};
 use crate::lattice::{Cell, Frame};
 use crate::memory;
@@ -8,7 +9,9 @@ use crate::octree::cuts::{CellCut, CellIds, CutsRef};
 use crate::octree::{OctreeRef, Planes, Tag};
 use crate::solid::half_space::Placed;
 use crate::solid::half_space::bounds::{Octants, centre};
-use crate::solid::half_space::literals::{Literals, most_area};
+use crate::solid::half_space::function;
+use crate::solid::half_space::literals::Literals;
+use crate::solid::half_space::sweep::Sweep;
 use crate::solid::half_space::table::Table;
 use crate::solid::{OCTANTS, OpenSurfaces, PlacedHalfSpace, Question, Verdict};
 use alloc::boxed::Box;
@@ -39,7 +42,7 @@ fn widened(table: u8) -> Table {
 }
 
 impl PlacedCuts {
-    /// Of a tree with cuts. O(surfaces).
+    /// Of a tree with cuts, on a frame of its universe. O(surfaces).
     ///
     /// # Errors
     /// [`Damage::Surface`] if one is none; [`Error::Limit`] if the exact map of its placements is too long.
@@ -110,20 +113,19 @@ impl PlacedCuts {
     ) -> Result<(), Error> {
         let table = widened(table);
         let Some(variables) = self.variables(cuts, record, table) else { return Ok(()) };
-        let literals = || Literals::of_table(variables.each(), table);
         match question {
             Question::Centre(inside) => {
                 *inside = variables.inside(|id| self.cells[id].contains(centre(cell)))?
             }
             Question::Enclosure(known) => {
-                *known = literals().and_then(|own| own.enclosure(&self.cells, cell))
+                let literals = Literals::of_table(variables.each(), table);
+                *known = literals.and_then(|own| own.enclosure(&self.cells, cell))
             }
-            Question::Moments(known) => *known = literals().and_then(|own| own.moments(&self.cells, cell)),
-            Question::Area(known) => {
-                let all = variables.each().map(|(_, id)| &self.cells[id as usize]);
-                let one = literals().and_then(|own| own.area(&self.cells, cell));
-                *known = one.or_else(|| most_area(all, cell));
+            Question::Moments(known) => {
+                *known = function::moments(variables.each(), table, &self.cells, cell)
             }
+            Question::Area(known) => *known = function::area(variables.each(), table, &self.cells, cell),
+            Question::Chords(chords) => *chords.found = self.chords(&variables, chords.beam)?,
             Question::Surfaces(known) => {
                 let (mut open, mut dense) = (OpenSurfaces::constant(false), table);
                 for (i, id) in variables.each() {
@@ -132,9 +134,29 @@ impl PlacedCuts {
                 }
                 *known = Some(open.with_table(dense));
             }
-            Question::Crossing(..) | Question::Chords(_) => {}
+            Question::Crossing(..) => {}
         }
         Ok(())
+    }
+
+    /// Adds the intervals of all rays of a beam; `false` if a surface has no exact place.
+    fn chords(&self, variables: &Variables<'_>, beam: &mut Beam) -> Result<bool, Error> {
+        let mut sweep = Sweep::default();
+        let mut places = [0; 3];
+        for (i, id) in variables.each() {
+            places[sweep.half_spaces.len()] = i;
+            memory::push(&mut sweep.half_spaces, id)?;
+        }
+        if !sweep.are_known(&self.cells) {
+            return Ok(false);
+        }
+        let table = variables.table;
+        sweep.find(&self.cells, beam, |inside| {
+            let signs =
+                inside.iter().zip(places).fold(0, |signs, (&inside, i)| signs | u32::from(inside) << i);
+            Ok(table.0 >> signs & 1 != 0)
+        })?;
+        Ok(true)
     }
 
     /// Whether a point of the universe (model units) is inside, by exact signs; `None` if nothing is known of it there.

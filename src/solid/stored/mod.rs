@@ -147,7 +147,7 @@ impl<T: Tree> StoredOnFrame<T> {
         tree.tree().ensure_links()?;
         tree.tree().ensure_cuts()?;
         let cuts = match &tree.tree().cuts {
-            Some(cuts) => Some(Arc::new(PlacedCuts::new(cuts, tree.tree().frame())?)),
+            Some(cuts) => Some(Arc::new(PlacedCuts::new(cuts, frame)?)),
             None => None,
         };
         Ok(StoredOnFrame { tree, frame: *frame, cuts })

@@ -6,9 +6,11 @@ use super::points::{Found, Judge};
 use crate::common::exact::Exact;
 use crate::common::{Random, alone};
 use crate::random::Maker;
+use leafless::op::DexelOptions;
 use leafless::{
-    Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid,
-    SurfaceOptions, Tag, TriangleMesh, build, build_extended, contains, file, measure,
+    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree,
+    Rule, Solid, SurfaceOptions, Tag, TriangleMesh, Verdict, Worker, build, build_extended, contains,
+    dexelize, file, measure,
 };
 
 fn extended(csg: &Csg, frame: &Frame) -> Octree {
@@ -181,6 +183,96 @@ fn a_plate_with_twenty_bores_is_small_and_sharp() {
         assert!(own.volume.contains(truth) && own.volume.width() < 1.01e-4 * truth, "{:?}", own.volume);
         assert!(own.splits as f64 <= 1.1 * source.splits as f64, "{} {}", own.splits, source.splits);
     }
+}
+
+/// A tree is split on a finer frame by signs that are exact there: a plane whose values are doubles on the tree's lattice, and
+/// which misses a vertex of the finest one by 2^-64.
+#[test]
+fn signs_are_exact_below_the_depth_of_a_tree() {
+    const BITS: u32 = 44;
+    let deep = Frame::new([0.0; 3], 1.0, 20).unwrap();
+    let mut random = Random(0xDEE9);
+    for _ in 0..500 {
+        let at = [0; 3].map(|_| 1 + 2 * random.below(1 << 19) as i128);
+        // The remainder of n · at, modulo 2^20, is 1 or −1.
+        let rest = 1 - 2 * random.below(2) as i128;
+        let mut n = [0; 3].map(|_| (1 << (BITS - 1)) + random.below(1 << (BITS - 1)) as i128);
+        let inverse = (0..5).fold(1i128, |inverse, _| (inverse * (2 - at[2] * inverse)).rem_euclid(1 << 20));
+        let low = ((rest - n[0] * at[0] - n[1] * at[1]) * inverse).rem_euclid(1 << 20);
+        n[2] = (n[2] >> 20 << 20) + low;
+        let sum = (0..3).map(|axis| n[axis] * at[axis]).sum::<i128>();
+        assert_eq!((sum - rest).rem_euclid(1 << 20), 0);
+        let unit = 2.0f64.powi(-(BITS as i32));
+        let plane = Csg::half_space(n.map(|n| n as f64 * unit), -((sum - rest) >> 20) as f64 * unit).unwrap();
+        let place = at.map(|at| at as f64 / (1u64 << 20) as f64);
+        let tree = extended(&plane, &deep.with_depth(2).unwrap());
+        assert_eq!(verdicts_at(&plane, &deep, place), verdicts_at(&tree, &deep, place), "{n:?} {at:?}");
+    }
+}
+
+/// The verdicts of all cells around a place, from the universe down.
+fn verdicts_at<S: Solid>(solid: &S, frame: &Frame, at: [f64; 3]) -> Vec<[Tag; 8]> {
+    let mut worker = solid.on(frame, &alone()).unwrap().worker().unwrap();
+    let (mut verdict, mut cell, mut found) = (worker.root().unwrap(), Cell::ROOT, Vec::new());
+    while let (Verdict::Partial(part), true) = (verdict, cell.level < frame.depth()) {
+        let children = worker.split(cell, &part).unwrap();
+        found.push(children.each_ref().map(|verdict| verdict.tag()));
+        // Towards the place, but to its lower side in the end.
+        let half = |axis: usize| {
+            let middle = (2 * cell.at[axis] + 1) as f64 / (2u64 << cell.level) as f64;
+            u8::from(at[axis] > middle)
+        };
+        let octant = half(0) | half(1) << 1 | half(2) << 2;
+        (verdict, cell) = (children[usize::from(octant)].clone(), cell.child(octant));
+    }
+    found
+}
+
+/// Rays through cell centres: intervals as the source has them.
+#[test]
+fn rays_of_cut_cells_begin_and_end_where_those_of_the_source_do() {
+    let (mut rays, mut intervals) = (0, 0);
+    for seed in 0..60 {
+        let mut random = Random(seed ^ 0xC403D5);
+        let frame = frames(4 + random.below(3) as u8)[random.below(5) as usize];
+        let aligned = random.below(2) == 0;
+        let mut maker = Maker { random: &mut random, frame, aligned, others: false };
+        let model = match seed % 3 {
+            0 => maker.function(|maker| maker.half_space()),
+            1 => maker.primitive(),
+            _ => maker.expression(2),
+        };
+        let Ok(csg) = model.csg(&frame) else { continue };
+        let shallow = frame.with_depth(2 + (seed % 2) as u8).unwrap();
+        let Ok(tree) = build_extended(&csg, &shallow, &SurfaceOptions::default(), &alone()) else { continue };
+        if tree.view().cuts().unwrap().given_up > 0 {
+            continue;
+        }
+        let options = DexelOptions::default();
+        let [own, source] = [
+            dexelize(&tree, &frame, &options, &alone()).unwrap(),
+            dexelize(&csg, &frame, &options, &alone()).unwrap(),
+        ];
+        for direction in 0..3 {
+            for row in 0..frame.cells() {
+                for column in 0..frame.cells() {
+                    let [own, source] = [&own, &source].map(|model| {
+                        model.view().rays(direction).unwrap().dexels([column, row]).collect::<Vec<_>>()
+                    });
+                    assert_eq!(own.len(), source.len(), "{seed} {direction} {column} {row}\n{model:#?}");
+                    for (own, source) in own.iter().zip(&source) {
+                        let off =
+                            (own.start.at - source.start.at).abs().max((own.end.at - source.end.at).abs());
+                        assert!(off <= 1e-6 * frame.edge(), "{seed}: {own:?} {source:?}\n{model:#?}");
+                        intervals += 1;
+                    }
+                    rays += 1;
+                }
+            }
+        }
+    }
+    println!("{intervals} intervals of {rays} rays");
+    assert!(intervals > 1000);
 }
 
 /// What is equal is one surface, however it was written.

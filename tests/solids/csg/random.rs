@@ -103,6 +103,22 @@ impl Maker<'_> {
         }
     }
 
+    /// A function of two or three half-spaces that is no intersection or union of them: one chooses between the others, holds or
+    /// both others do, two of three hold, or an odd number of them does.
+    pub fn function(&mut self, mut half_space: impl FnMut(&mut Self) -> Model) -> Model {
+        let [a, b, c] = [(); 3].map(|()| half_space(self));
+        let and = |a: &Model, b: &Model| Model::Intersection(vec![a.clone(), b.clone()]);
+        let not = |a: &Model| Model::Complement(Box::new(a.clone()));
+        match self.below(6) {
+            0 => Model::Xor(vec![a, b]),
+            1 => Model::Xor(vec![a, b, c]),
+            2 => Model::Union(vec![and(&a, &b), c]),
+            3 => Model::Union(vec![and(&a, &c), and(&b, &not(&c))]),
+            4 => Model::Union(vec![and(&a, &b), and(&a, &c), and(&b, &c)]),
+            _ => Model::Intersection(vec![a, Model::Xor(vec![b, c])]),
+        }
+    }
+
     /// Half-spaces joined in some way.
     pub fn joined(&mut self, count: u64) -> Model {
         let mut model = self.half_space();

@@ -7,7 +7,7 @@ use crate::cut;
 use crate::error::Error;
 use crate::lattice::{Cell, Interval};
 use crate::solid::Ask;
-use crate::solid::half_space::literals::most_area;
+use crate::solid::half_space::function;
 
 impl Scratch {
     /// Bounds of the area of the boundary in a cell; `None` if too little is known of an operand that is open there.
@@ -48,15 +48,10 @@ impl Scratch {
 
     fn area_of_half_spaces(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Interval> {
         let half_spaces = &*program.half_spaces;
-        if let Some(known) =
-            self.literals(program, part).and_then(|literals| literals.area(half_spaces, cell))
-        {
-            return Some(known);
-        }
         if !part.is_table() {
-            return None;
+            return self.literals(program, part)?.area(half_spaces, cell);
         }
-        let variables = Scratch::table_of(Scratch::list(program, &self.words, part)).0;
-        most_area(variables.iter().map(|word| &half_spaces[word.variable().1 as usize]), cell)
+        let (variables, table) = Scratch::table_of(Scratch::list(program, &self.words, part));
+        function::area(variables.iter().map(|word| word.variable()), table, half_spaces, cell)
     }
 }

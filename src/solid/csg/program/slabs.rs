@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::lattice::{Cell, CellMoments};
 use crate::memory;
 use crate::solid::csg::Join;
+use crate::solid::half_space::function;
 use crate::solid::half_space::literals::Literals;
 use crate::solid::{Ask, Enclosure};
 use alloc::vec::Vec;
@@ -21,7 +22,12 @@ impl Scratch {
 
     /// The moments of the solid in a cell, if more is known of them than slabs tell.
     pub(crate) fn moments(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<CellMoments> {
-        self.literals(program, part)?.moments(&program.half_spaces, cell)
+        if program.paper || !part.is_table() {
+            return self.literals(program, part)?.moments(&program.half_spaces, cell);
+        }
+        let (half_spaces, table) = Scratch::table_of(Scratch::list(program, &self.words, part));
+        let variables = half_spaces.iter().map(|word| word.variable());
+        function::moments(variables, table, &program.half_spaces, cell)
     }
 
     /// What the open operands of a cell know of it, whatever they are, joined by the cell's words. Operands of which nothing is

@@ -1,0 +1,154 @@
+//! What a cell knows in which few half-spaces are open, whatever function of them the solid is: moments and area.
+//!
+//! A function of up to three half-spaces is a union of intersections that do not overlap ([`Terms`]). So its moments are sums of
+//! theirs. A piece of a half-space's surface belongs to the boundary where the function's value depends on that half-space, which
+//! is a function of the others.
+
+use super::Placed;
+use super::bounds::{centre, half_edge};
+use super::literals::{Literals, most_area};
+use super::table::Table;
+use super::terms::{Term, Terms};
+use crate::cut::{self, Enclosure, Quadratic, Slab, SlabJoin, Taylor};
+use crate::lattice::{Cell, CellMoments, CubeMoments, Interval};
+
+/// A function of up to three half-spaces, numbered from 0 on.
+struct Function<'h> {
+    half_spaces: [Option<&'h Placed>; 3],
+    table: Table,
+}
+
+/// The moments in a cell, if more is known of them than slabs tell. Half-spaces are given with their numbers in the table.
+pub(crate) fn moments(
+    variables: impl Iterator<Item = (usize, u32)> + Clone,
+    table: Table,
+    half_spaces: &[Placed],
+    cell: Cell,
+) -> Option<CellMoments> {
+    let literals = Literals::of_table(variables.clone(), table);
+    if let Some(own) = literals.filter(|own| !own.is_one_sided()) {
+        return own.moments(half_spaces, cell);
+    }
+    let known = Function::new(variables, table, half_spaces)?.moments(cell)?;
+    let slabs = literals.and_then(|own| own.enclosure(half_spaces, cell));
+    let doubt = slabs.map_or(8.0, |enclosure| cut::doubt(&enclosure));
+    (2.0 * known.error < doubt).then_some(known)
+}
+
+/// Bounds of the area that the boundary has in a cell; `None` if too little is known.
+pub(crate) fn area(
+    variables: impl Iterator<Item = (usize, u32)> + Clone,
+    table: Table,
+    half_spaces: &[Placed],
+    cell: Cell,
+) -> Option<Interval> {
+    if let Some(known) =
+        Literals::of_table(variables.clone(), table).and_then(|own| own.area(half_spaces, cell))
+    {
+        return Some(known);
+    }
+    match Function::new(variables.clone(), table, half_spaces) {
+        Some(function) => function.area(cell),
+        None => most_area(variables.map(|(_, index)| &half_spaces[index as usize]), cell),
+    }
+}
+
+impl<'h> Function<'h> {
+    /// `None` if it depends on more half-spaces.
+    fn new(
+        variables: impl Iterator<Item = (usize, u32)>,
+        mut table: Table,
+        all: &'h [Placed],
+    ) -> Option<Function<'h>> {
+        let mut half_spaces = [None; 3];
+        let mut count = 0;
+        for (i, index) in variables {
+            if !table.depends_on(i) {
+                continue;
+            }
+            // Numbers are given in ascending order, so that none is taken that is still to come.
+            table = table.renamed(i, count, false);
+            *half_spaces.get_mut(count)? = Some(&all[index as usize]);
+            count += 1;
+        }
+        Some(Function { half_spaces, table })
+    }
+
+    /// The sum of the moments of terms; `None` if nothing is known of a half-space.
+    fn moments(&self, cell: Cell) -> Option<CellMoments> {
+        let (centre, half) = (centre(cell), half_edge(cell));
+        let (mut slabs, mut curves, mut curved) = ([Slab::NONE; 3], [None; 3], [false; 3]);
+        for (i, half_space) in self.half_spaces.iter().enumerate() {
+            let Some(half_space) = half_space else { continue };
+            let tangent = half_space.tangent(centre, half)?;
+            // Where the gradient vanishes there is no slab.
+            if tangent.gradient == [0.0; 3] {
+                return None;
+            }
+            slabs[i] = tangent.slab();
+            curved[i] = !matches!(half_space, Placed::Plane(_) | Placed::Slab(_));
+            if curved[i] {
+                curves[i] = half_space.taylor(centre, half).map(|taylor| taylor.f);
+            }
+        }
+        let (terms, complement) = Terms::cheapest(self.table, curved);
+        let mut sum = CellMoments { moments: CubeMoments::EMPTY, error: 0.0 };
+        for term in terms.each() {
+            sum = sum.plus(&moments_of_term(term, &slabs, &curves));
+        }
+        Some(if complement { sum.complement() } else { sum })
+    }
+
+    /// The sum of the areas of faces; `None` if nothing is known of a surface.
+    fn area(&self, cell: Cell) -> Option<Interval> {
+        let mut surfaces = [None; 3];
+        for (surface, half_space) in surfaces.iter_mut().zip(&self.half_spaces) {
+            let Some(half_space) = half_space else { continue };
+            *surface = Some(half_space.taylor(centre(cell), half_edge(cell))?);
+        }
+        let mut sum = Interval::exactly(0.0);
+        for (i, surface) in surfaces.iter().enumerate() {
+            let Some(surface) = surface else { continue };
+            let bounds = Table(self.table.with(i, true).0 ^ self.table.with(i, false).0);
+            let terms = Terms::exactly(bounds);
+            sum = sum.plus(cut::area_within(surface, terms.each().map(|term| sides(term, &surfaces))));
+        }
+        Some(sum)
+    }
+}
+
+/// The functions that are positive in a term.
+fn sides(term: &Term, surfaces: &[Option<Taylor>; 3]) -> [Option<Taylor>; 3] {
+    let mut sides = [None; 3];
+    for ((side, not), surface) in sides.iter_mut().zip(term).zip(surfaces) {
+        let (Some(not), Some(surface)) = (not, surface) else { continue };
+        *side = Some(if *not { surface.complement() } else { *surface });
+    }
+    sides
+}
+
+/// The moments of an intersection: to third order where one curved half-space is open, alone or with planes, else by slabs.
+fn moments_of_term(term: &Term, slabs: &[Slab; 3], curves: &[Option<Quadratic>; 3]) -> CellMoments {
+    let literals = || term.iter().enumerate().filter_map(|(i, not)| Some((i, (*not)?)));
+    let slab = |(i, not): (usize, bool)| if not { slabs[i].complement() } else { slabs[i] };
+    let mut own = [Slab::NONE; 3];
+    for (to, literal) in own.iter_mut().zip(literals()) {
+        *to = slab(literal);
+    }
+    let enclosure = Enclosure { slabs: own, join: SlabJoin::All, cone: f64::INFINITY };
+    let mut bent = literals().filter_map(|(i, not)| Some((i, not, curves[i]?)));
+    if let (Some((curve, not, f)), None) = (bent.next(), bent.next()) {
+        let (mut planes, mut count) = ([Slab::NONE; 3], 0);
+        for literal in literals().filter(|&(i, _)| i != curve) {
+            planes[count] = slab(literal);
+            count += 1;
+        }
+        let f = if not { f.complement() } else { f };
+        if let Some(known) = cut::curved(&f, &planes[..count])
+            && 2.0 * known.error < cut::doubt(&enclosure)
+        {
+            return known;
+        }
+    }
+    cut::between(&enclosure)
+}
