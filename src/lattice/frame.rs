@@ -59,6 +59,31 @@ impl Frame {
         if frame.holds(min, max) { Ok(frame) } else { Err(UNRESOLVED) }
     }
 
+    /// The frame [`around`](Self::around) a shape whose finest cells are no longer than a tolerance: the greater of `absolute` (model
+    /// units) and `relative` times the longest extent. It has the least such depth. Where 20 levels do not suffice it has 20; so
+    /// it has for a tolerance of zero, which is right for [`build_extended`](crate::build_extended) of exact surfaces: their cells
+    /// end at any size.
+    ///
+    /// # Errors
+    /// As [`around`](Self::around); [`Error::Argument`] if a tolerance is negative or no number.
+    ///
+    /// ```
+    /// use leafless::Frame;
+    /// let ([min, max], depth) = ([[0.0; 3], [100.0, 60.0, 30.0]], |frame: Frame| frame.depth());
+    /// assert_eq!(depth(Frame::to_tolerance(min, max, 0.2, 0.0)?), 10);
+    /// assert_eq!(depth(Frame::to_tolerance(min, max, 0.0, 1e-3)?), 11);
+    /// assert_eq!(depth(Frame::to_tolerance(min, max, 0.0, 0.0)?), 20);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn to_tolerance(min: [f64; 3], max: [f64; 3], absolute: f64, relative: f64) -> Result<Frame, Error> {
+        valid::tolerance("absolute", absolute)?;
+        valid::tolerance("relative", relative)?;
+        let tolerance = absolute.max(relative * longest_extent(min, max)?);
+        let frame = Frame::around(min, max, MAX_DEPTH)?;
+        let fits = |depth: u8| frame.with_depth(depth).is_ok_and(|frame| frame.cell_size() <= tolerance);
+        frame.with_depth((1..MAX_DEPTH).find(|&depth| fits(depth)).unwrap_or(MAX_DEPTH))
+    }
+
     /// A frame whose lattice planes are round numbers, around a shape with the bounds `min`, `max`: cells are
     /// powers of two, and the origin is a multiple of as great a power of two as possible. Faces at 25, 12.5
     /// or −0.75 then lie on lattice planes. Such a face needs no cells along it, and the certified volume is

@@ -4,21 +4,22 @@ use super::build::build;
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame, Interval, axes, valid};
+use crate::lattice::{Bounds, Cell, Cube, Frame, Interval, axes, valid};
 use crate::memory;
-use crate::octree::cuts::{Cut, CutWriter, Origin};
+use crate::octree::cuts::{Cut, CutWriter, Head, Origin};
 use crate::octree::view::{element_levels, starts_half_way};
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Tag};
-use crate::parallel::each_with;
+use crate::parallel::{self, each_with};
 use crate::solid::half_space::Placed;
 use crate::solid::half_space::possible::possible;
 use crate::solid::half_space::record::Pool;
 use crate::solid::half_space::table::Table;
 use crate::solid::{
-    Ask, AskWhole, Classifier, Enclosure, Fingerprinter, HalfSpace, OCTANTS, OpenSurfaces, Parts,
+    Ask, AskWhole, Batch, Classifier, Enclosure, Fingerprinter, HalfSpace, OCTANTS, OpenSurfaces, Parts,
     PlacedHalfSpace, Slab, SlabJoin, Solid, Verdict, Worker,
 };
+use crate::walk::{LEVELS, Part, each, split_each};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -30,6 +31,25 @@ pub struct SurfaceOptions {
     pub tolerance: Option<f64>,
 }
 
+impl SurfaceOptions {
+    /// The frame to build on: around the bounds of a shape, with finest cells no longer than the tolerance. Without a tolerance it
+    /// has the greatest depth, because cells with exact surfaces end at any size.
+    ///
+    /// # Errors
+    /// As [`Frame::to_tolerance`].
+    ///
+    /// ```
+    /// use leafless::{Bounds, SurfaceOptions};
+    /// let bounds = Bounds::new([0.0; 3], [100.0, 60.0, 30.0])?;
+    /// assert_eq!(SurfaceOptions::default().frame(&bounds)?.depth(), 20);
+    /// assert_eq!(SurfaceOptions { tolerance: Some(0.05) }.frame(&bounds)?.depth(), 12);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn frame(&self, bounds: &Bounds) -> Result<Frame, Error> {
+        Frame::to_tolerance(bounds.min, bounds.max, self.tolerance.unwrap_or(0.0), 0.0)
+    }
+}
+
 /// Most surfaces that a cell keeps.
 const MOST: usize = 3;
 
@@ -39,6 +59,14 @@ const MOST: usize = 3;
 /// A cell ends as soon as three surfaces are left in it, at any size. So the tree is small, and as exact as the solid: put on any
 /// frame of its universe, it splits below its own cells, and answers measures, points, rays and distances as the solid would. What
 /// is still crossed by more surfaces at the frame's depth is PARTIAL, and nothing is known of it.
+///
+/// A cell that had to be split may turn out to need no more than three surfaces: bounds over smaller cells are closer, and one of
+/// the surfaces in doubt does not reach it after all. So eight cells that are done become one, from the finest up, by this rule: none
+/// of them is given up, all their exact surfaces together are at most three, and one function of these has the value of each cell
+/// for all combinations of signs that are possible in that cell. Combinations that are possible in none of the eight have the value
+/// of the nearest that is. Cells with slabs stay apart, because each slab stands for a surface of its own.
+///
+/// A solid whose answers are dear, such as a function of a host program, is asked level by level about many cells at once.
 ///
 /// The half-spaces of expressions are kept exactly, under any placements, and those of extended octrees within them. The result is
 /// the same bit for bit for any number of threads. Time and memory are linear in the cells that are visited.
@@ -87,7 +115,9 @@ pub fn build_extended<S: Solid>(
         placed.push(surface.on(frame)?);
     }
     let levels = element_levels(frame.depth());
-    control.run(levels > 3, |parallel| {
+    // Shallow trees are made faster than threads, unless it is somebody else who takes the time.
+    let likes_many = classifier.worker()?.likes_many();
+    control.run(levels > 3 || likes_many, |parallel| {
         let exact = pool.surfaces.len() as u32;
         let tolerance = options.tolerance;
         let builder =
@@ -166,10 +196,8 @@ impl<'j, C: Classifier> Hand<'j, C> {
     }
 }
 
-/// The parts of a classifier's cells.
-type Part<C> = <<C as Classifier>::Worker as Parts>::Part;
-
 /// What becomes of a cell.
+#[derive(Clone)]
 enum Known<P> {
     /// It is decided.
     Settled(Tag),
@@ -188,6 +216,13 @@ enum Octant<P> {
     Eight([Known<P>; 8]),
 }
 
+/// A cell that was asked about together with others: where its children are, or, of the last level, its part.
+#[derive(Clone)]
+enum Asked<P> {
+    Children(usize),
+    Part(P),
+}
+
 impl<C: Classifier> Extended<'_, C> {
     fn known(
         &self,
@@ -195,27 +230,53 @@ impl<C: Classifier> Extended<'_, C> {
         verdict: Verdict<Part<C>>,
         hand: &mut Hand<'_, C>,
     ) -> Result<Known<Part<C>>, Error> {
+        let (known, wants_slabs) = self.by_surfaces(cell, verdict, &mut hand.worker)?;
+        match known {
+            Known::Goes(part) if wants_slabs => {
+                let enclosure = hand.worker.enclosure(cell, &part)?;
+                self.by_slabs(cell, part, enclosure, &mut hand.slabs)
+            }
+            known => Ok(known),
+        }
+    }
+
+    /// What becomes of a cell by the exact surfaces that cross it, and whether slabs may still end it.
+    fn by_surfaces(
+        &self,
+        cell: Cell,
+        verdict: Verdict<Part<C>>,
+        worker: &mut C::Worker,
+    ) -> Result<(Known<Part<C>>, bool), Error> {
         let part = match verdict {
-            Verdict::Empty => return Ok(Known::Settled(Tag::Empty)),
-            Verdict::Full => return Ok(Known::Settled(Tag::Full)),
-            Verdict::Undecided => return Ok(Known::Ends(Cut::None)),
+            Verdict::Empty => return Ok((Known::Settled(Tag::Empty), false)),
+            Verdict::Full => return Ok((Known::Settled(Tag::Full), false)),
+            Verdict::Undecided => return Ok((Known::Ends(Cut::None), false)),
             Verdict::Partial(part) => part,
         };
-        let exact = hand.worker.surfaces(cell, &part)?.and_then(|open| self.renamed(cell, &open));
-        match (exact, self.tolerance) {
-            (Some((_, 0, Table::EMPTY)), _) => return Ok(Known::Settled(Tag::Empty)),
-            (Some((_, 0, _)), _) => return Ok(Known::Settled(Tag::Full)),
-            (Some((ids, 1..=MOST, table)), _) => {
-                return Ok(Known::Ends(Cut::Table { ids, table: table.0 as u8 }));
-            }
-            (None, Some(tolerance)) => {
-                if let Some(enclosure) = hand.worker.enclosure(cell, &part)?
-                    && let Some(cut) = self.slabs(cell, &enclosure, tolerance, &mut hand.slabs)?
-                {
-                    return Ok(Known::Ends(cut));
-                }
-            }
-            _ => {}
+        let exact = worker.surfaces(cell, &part)?.and_then(|open| self.renamed(cell, &open));
+        let wants_slabs = exact.is_none() && self.tolerance.is_some();
+        let known = match exact {
+            Some((_, 0, Table::EMPTY)) => Known::Settled(Tag::Empty),
+            Some((_, 0, _)) => Known::Settled(Tag::Full),
+            Some((ids, 1..=MOST, table)) => Known::Ends(Cut::Table { ids, table: table.0 as u8 }),
+            _ if cell.level == self.frame.depth() && !wants_slabs => Known::Ends(Cut::None),
+            _ => Known::Goes(part),
+        };
+        Ok((known, wants_slabs))
+    }
+
+    /// What becomes of a cell of which no exact surfaces are known.
+    fn by_slabs(
+        &self,
+        cell: Cell,
+        part: Part<C>,
+        enclosure: Option<Enclosure>,
+        slabs: &mut Vec<PlacedHalfSpace>,
+    ) -> Result<Known<Part<C>>, Error> {
+        if let (Some(enclosure), Some(tolerance)) = (enclosure, self.tolerance)
+            && let Some(cut) = self.slabs(cell, &enclosure, tolerance, slabs)?
+        {
+            return Ok(Known::Ends(cut));
         }
         Ok(if cell.level == self.frame.depth() { Known::Ends(Cut::None) } else { Known::Goes(part) })
     }
@@ -286,21 +347,110 @@ impl<C: Classifier> Extended<'_, C> {
 
     /// Writes the element of a PARTIAL cell; returns the cell's tag, and its cut if that is PARTIAL.
     fn element(&self, e: usize, cell: Cell, part: &Part<C>, hand: &mut Hand<'_, C>) -> Result<Done, Error> {
+        if !hand.worker.likes_many() {
+            return self.element_by(&Directly(self), e, cell, part, hand);
+        }
+        let mark = hand.worker.mark();
+        // Parts are left over where elements begin.
+        let levels = if e == 0 && starts_half_way(self.frame.depth()) { LEVELS - 1 } else { LEVELS };
+        let last = (cell.level + levels).min(self.frame.depth());
+        let told = Told { builder: self, families: self.asked(cell, part, last, hand)? };
+        let done = self.element_by(&told, e, cell, &Asked::Children(0), hand);
+        hand.worker.release(mark);
+        done
+    }
+
+    /// What becomes of all cells below one, to a last level, asked level by level: the children of cells that are split.
+    fn asked(
+        &self,
+        cell: Cell,
+        part: &Part<C>,
+        last: u8,
+        hand: &mut Hand<'_, C>,
+    ) -> Result<Vec<[Known<Asked<Part<C>>>; 8]>, Error> {
+        let control = hand.writer.job().control();
+        let threads = if self.parallel { parallel::threads() } else { 1 };
+        let mut families = Vec::new();
+        let mut front = memory::collected([(cell, part.clone())].into_iter())?;
+        while !front.is_empty() {
+            let verdicts = split_each(self.classifier, &mut hand.worker, &front, threads, control)?;
+            let mut all = memory::with_capacity(front.len())?;
+            // Children of which slabs are asked, and where they are.
+            let (mut cells, mut places) = (Vec::new(), Vec::new());
+            for ((cell, _), verdicts) in front.iter().zip(verdicts) {
+                let mut eight = OCTANTS.map(|_| Known::Settled(Tag::Empty));
+                for ((k, verdict), known) in OCTANTS.into_iter().zip(verdicts).zip(&mut eight) {
+                    let child = cell.child(k);
+                    let wants_slabs;
+                    (*known, wants_slabs) = self.by_surfaces(child, verdict, &mut hand.worker)?;
+                    if let (Known::Goes(part), true) = (&*known, wants_slabs) {
+                        memory::push(&mut cells, (child, part.clone()))?;
+                        memory::push(&mut places, (all.len(), usize::from(k)))?;
+                    }
+                }
+                all.push(eight);
+            }
+            let enclosures =
+                each(self.classifier, &mut hand.worker, &cells, threads, |worker, cells, found| {
+                    for (cell, part) in cells {
+                        control.check()?;
+                        memory::push(found, worker.enclosure(*cell, part)?)?;
+                    }
+                    Ok(())
+                })?;
+            for (((cell, part), (family, k)), enclosure) in cells.into_iter().zip(places).zip(enclosures) {
+                all[family][k] = self.by_slabs(cell, part, enclosure, &mut hand.slabs)?;
+            }
+            let mut next = Vec::new();
+            let first = families.len() + all.len();
+            families.try_reserve(all.len())?;
+            for ((cell, _), eight) in front.iter().zip(all) {
+                let mut told = OCTANTS.map(|_| Known::Settled(Tag::Empty));
+                for ((k, known), told) in OCTANTS.into_iter().zip(eight).zip(&mut told) {
+                    *told = match known {
+                        Known::Settled(tag) => Known::Settled(tag),
+                        Known::Ends(cut) => Known::Ends(cut),
+                        Known::Goes(part) if cell.level + 1 == last => Known::Goes(Asked::Part(part)),
+                        Known::Goes(part) => {
+                            memory::push(&mut next, (cell.child(k), part))?;
+                            Known::Goes(Asked::Children(first + next.len() - 1))
+                        }
+                    };
+                }
+                families.push(told);
+            }
+            front = next;
+        }
+        Ok(families)
+    }
+
+    fn element_by<'j, S: Source<'j, C>>(
+        &self,
+        source: &S,
+        e: usize,
+        cell: Cell,
+        part: &S::Part,
+        hand: &mut Hand<'j, C>,
+    ) -> Result<Done, Error> {
         hand.writer.job().check()?;
         let mark = hand.worker.mark();
         // Octants with the cells that they are.
         let mut octants = memory::with_capacity(8)?;
+        let octant = |cell: Cell, known: Known<S::Part>, hand: &mut Hand<'j, C>| {
+            Ok::<_, Error>(match known {
+                Known::Settled(tag) => Octant::One((tag, Cut::None)),
+                Known::Ends(cut) => Octant::One((Tag::Partial, cut)),
+                Known::Goes(part) => Octant::Eight(source.children(cell, &part, hand)?),
+            })
+        };
         if e == 0 && starts_half_way(self.frame.depth()) {
-            octants.push((cell, self.octant(cell, Known::Goes(part.clone()), hand)?));
+            octants.push((cell, octant(cell, Known::Goes(part.clone()), hand)?));
         } else {
-            let verdicts = hand.worker.split(cell, part)?;
-            for (k, verdict) in OCTANTS.into_iter().zip(verdicts) {
+            for (k, known) in OCTANTS.into_iter().zip(source.children(cell, part, hand)?) {
                 let child = cell.child(k);
-                let known = self.known(child, verdict, hand)?;
-                octants.push((child, self.octant(child, known, hand)?));
+                octants.push((child, octant(child, known, hand)?));
             }
         }
-        // What is still to be split, by threads near the root.
         let mut open = Vec::new();
         for (octant, cells) in &octants {
             let Octant::Eight(cells) = cells else { continue };
@@ -310,50 +460,87 @@ impl<C: Classifier> Extended<'_, C> {
                 }
             }
         }
-        let done = if self.parallel && e < 2 && open.len() > 1 {
-            self.elements_in_parallel(e + 1, &open, hand)?
-        } else {
-            let mut done = memory::with_capacity(open.len())?;
-            for (cell, part) in &open {
-                done.push(self.element(e + 1, *cell, part, hand)?);
-            }
-            done
-        };
-        let mut done = done.into_iter();
+        let mut done = source.elements(e + 1, &open, hand)?.into_iter();
         let mut cells = memory::with_capacity(8)?;
-        for (_, octant) in octants {
+        for (at, octant) in octants {
             cells.push(match octant {
                 Octant::One(one) => memory::collected([one].into_iter())?,
                 Octant::Eight(eight) => {
-                    merged(memory::collected(eight.into_iter().map(|known| match known {
+                    let eight = memory::collected(eight.into_iter().map(|known| match known {
                         Known::Settled(tag) => (tag, Cut::None),
                         Known::Ends(cut) => (Tag::Partial, cut),
                         Known::Goes(_) => done.next().unwrap_or((Tag::Partial, Cut::None)),
-                    }))?)?
+                    }))?;
+                    match self.joined(at, eight.iter()) {
+                        Some(cut) => memory::collected([(Tag::Partial, cut)].into_iter())?,
+                        None => merged(eight)?,
+                    }
                 }
             });
         }
         hand.worker.release(mark);
+        if cells.len() == 8
+            && cells.iter().all(|octant| octant.len() == 1)
+            && let Some(cut) = self.joined(cell, cells.iter().flatten())
+        {
+            return Ok((Tag::Partial, cut));
+        }
         put(e, &cells, hand)
     }
 
-    fn octant(
-        &self,
-        cell: Cell,
-        known: Known<Part<C>>,
-        hand: &mut Hand<'_, C>,
-    ) -> Result<Octant<Part<C>>, Error> {
-        let part = match known {
-            Known::Settled(tag) => return Ok(Octant::One((tag, Cut::None))),
-            Known::Ends(cut) => return Ok(Octant::One((Tag::Partial, cut))),
-            Known::Goes(part) => part,
-        };
-        let verdicts = hand.worker.split(cell, &part)?;
-        let mut cells = OCTANTS.map(|_| Known::Settled(Tag::Empty));
-        for ((k, verdict), known) in OCTANTS.into_iter().zip(verdicts).zip(&mut cells) {
-            *known = self.known(cell.child(k), verdict, hand)?;
+    /// The cut of a cell whose eight children are done, if one function of up to three exact surfaces has the value of each child
+    /// for all combinations of signs that are possible there.
+    fn joined<'d>(&self, cell: Cell, children: impl Iterator<Item = &'d Done> + Clone) -> Option<Cut> {
+        let (mut ids, mut count) = ([0; MOST], 0);
+        for child in children.clone() {
+            let own = match child {
+                (Tag::Partial, Cut::Table { ids, table }) => &ids[..Head(*table).surfaces()],
+                (Tag::Empty | Tag::Full, _) => &[],
+                _ => return None,
+            };
+            for &id in own {
+                if !ids[..count].contains(&id) {
+                    if id >= self.exact || count == MOST {
+                        return None;
+                    }
+                    (ids[count], count) = (id, count + 1);
+                }
+            }
         }
-        Ok(Octant::Eight(cells))
+        let ids = &mut ids[..count];
+        ids.sort_unstable();
+        let (mut holds, mut fails) = (0, 0);
+        for (k, child) in OCTANTS.into_iter().zip(children) {
+            let value = match child {
+                (Tag::Partial, Cut::Table { ids: own, table }) => {
+                    let places = own[..Head(*table).surfaces()]
+                        .iter()
+                        .map(|id| ids.iter().position(|known| known == id));
+                    spread(*table, places)
+                }
+                (tag, _) => {
+                    if *tag == Tag::Full {
+                        !0
+                    } else {
+                        0
+                    }
+                }
+            };
+            let placed = ids.iter().map(|&id| &self.placed[id as usize]);
+            let possible = possible(placed, cell.child(k)).0;
+            (holds, fails) = (holds | value & possible, fails | !value & possible);
+        }
+        if holds & fails != 0 {
+            return None;
+        }
+        let table = Table(holds).simplified(Table(holds | fails));
+        let (mut own, mut order) = ([0; MOST], [0; MOST]);
+        let mut count = 0;
+        for (i, &id) in ids.iter().enumerate().filter(|&(i, _)| table.depends_on(i)) {
+            (own[count], order[count], count) = (id, i, count + 1);
+        }
+        let table = reordered(table, order[..count].iter().copied());
+        (count > 0).then_some(Cut::Table { ids: own, table: table.0 as u8 })
     }
 
     /// Elements of level `e`, one after the other as they are written.
@@ -399,6 +586,104 @@ impl<C: Classifier> Extended<'_, C> {
             all.push((tag, cut));
         }
         Ok(all)
+    }
+}
+
+/// Where the cells of a subtree come from.
+trait Source<'j, C: Classifier> {
+    type Part: Clone;
+
+    /// What becomes of the children of a cell.
+    fn children(
+        &self,
+        cell: Cell,
+        part: &Self::Part,
+        hand: &mut Hand<'j, C>,
+    ) -> Result<[Known<Self::Part>; 8], Error>;
+
+    /// Writes cells that elements of level `e` describe.
+    fn elements(
+        &self,
+        e: usize,
+        open: &[(Cell, Self::Part)],
+        hand: &mut Hand<'j, C>,
+    ) -> Result<Vec<Done>, Error>;
+}
+
+/// Each cell is split when it is come to.
+struct Directly<'a, 'b, C>(&'a Extended<'b, C>);
+
+impl<'j, C: Classifier> Source<'j, C> for Directly<'_, '_, C> {
+    type Part = Part<C>;
+
+    fn children(
+        &self,
+        cell: Cell,
+        part: &Part<C>,
+        hand: &mut Hand<'j, C>,
+    ) -> Result<[Known<Part<C>>; 8], Error> {
+        let verdicts = hand.worker.split(cell, part)?;
+        let mut cells = OCTANTS.map(|_| Known::Settled(Tag::Empty));
+        for ((k, verdict), known) in OCTANTS.into_iter().zip(verdicts).zip(&mut cells) {
+            *known = self.0.known(cell.child(k), verdict, hand)?;
+        }
+        Ok(cells)
+    }
+
+    fn elements(
+        &self,
+        e: usize,
+        open: &[(Cell, Part<C>)],
+        hand: &mut Hand<'j, C>,
+    ) -> Result<Vec<Done>, Error> {
+        // Threads begin near the root.
+        if self.0.parallel && e < 3 && open.len() > 1 {
+            return self.0.elements_in_parallel(e, open, hand);
+        }
+        let mut done = memory::with_capacity(open.len())?;
+        for (cell, part) in open {
+            done.push(self.0.element(e, *cell, part, hand)?);
+        }
+        Ok(done)
+    }
+}
+
+/// The children of cells that were asked about together.
+struct Told<'a, 'b, C: Classifier> {
+    builder: &'a Extended<'b, C>,
+    families: Vec<[Known<Asked<Part<C>>>; 8]>,
+}
+
+impl<'j, C: Classifier> Source<'j, C> for Told<'_, '_, C> {
+    type Part = Asked<Part<C>>;
+
+    fn children(
+        &self,
+        _: Cell,
+        part: &Asked<Part<C>>,
+        _: &mut Hand<'j, C>,
+    ) -> Result<[Known<Asked<Part<C>>>; 8], Error> {
+        let family = match part {
+            Asked::Children(family) => self.families.get(*family),
+            Asked::Part(_) => None,
+        };
+        Ok(family.cloned().unwrap_or_else(|| OCTANTS.map(|_| Known::Ends(Cut::None))))
+    }
+
+    fn elements(
+        &self,
+        e: usize,
+        open: &[(Cell, Asked<Part<C>>)],
+        hand: &mut Hand<'j, C>,
+    ) -> Result<Vec<Done>, Error> {
+        let mut done = memory::with_capacity(open.len())?;
+        for (cell, part) in open {
+            done.push(match part {
+                Asked::Children(_) => self.builder.element_by(self, e, *cell, part, hand)?,
+                Asked::Part(part) => self.builder.element(e, *cell, part, hand)?,
+            });
+        }
+        Ok(done)
     }
 }
 
@@ -450,6 +735,18 @@ fn reordered(table: Table, order: impl ExactSizeIterator<Item = usize> + Clone) 
         table.0 >> before & 1
     };
     Table((0..64).fold(0, |all, signs| all | value(signs) << signs))
+}
+
+/// The table of up to three surfaces whose numbers become `places`.
+fn spread(table: u8, places: impl Iterator<Item = Option<usize>> + Clone) -> u64 {
+    let value = |signs: u64| {
+        let own = places
+            .clone()
+            .enumerate()
+            .fold(0, |all, (from, to)| all | to.map_or(0, |to| (signs >> to & 1) << from));
+        u64::from(table) >> own & 1
+    };
+    (0..64).fold(0, |all, signs| all | value(signs) << signs)
 }
 
 /// The slab of a cell in model space, rounded outward: normal, inner and outer offset.

@@ -25,7 +25,7 @@ pub(crate) use gathered::{Gathered, LEVELS};
 pub(crate) use hull::hull;
 pub(crate) use proven::{Proven, ProvenWorker};
 pub(crate) use queue::Queue;
-pub(crate) use split::{Part, each_known, split_each, split_one};
+pub(crate) use split::{Part, each, each_known, split_each, split_one};
 pub(crate) use subject::Subject;
 pub(crate) use trail::Trail;
 pub(crate) use zone::Reach;

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
 use crate::parallel;
-use crate::solid::{Batch, Classifier, Parts, Verdict, Worker};
+use crate::solid::{Batch, Classifier, Enclosure, Parts, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// The parts of a classifier's workers.
@@ -123,6 +123,12 @@ pub(crate) fn map_parts<P, Q>(
         *to = verdict.try_map(|own| part(octant, own))?;
     }
     Ok(mapped)
+}
+
+impl<P> Answer<P> for Option<Enclosure> {
+    fn handed_over(self, _: impl FnMut(P) -> Result<P, Error>) -> Result<Self, Error> {
+        Ok(self)
+    }
 }
 
 impl<P> Answer<P> for Option<bool> {

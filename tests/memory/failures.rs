@@ -30,9 +30,9 @@ use leafless::surface::{
 use leafless::voxel::{VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
     Affine, AnySolid, Bounds, Callback, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership,
-    MeshSolid, Metadata, Octree, Ray, Rule, Tag, TriDexel, TriangleMesh, Verdict, Volume, bounding_box,
-    build, cast_rays, clearance, compact, complement, contains, dexelize, difference, exchange, file,
-    intersection, marching_cubes, measure, scene, union, xor,
+    MeshSolid, Metadata, Octree, Ray, Rule, SurfaceOptions, Tag, TriDexel, TriangleMesh, Verdict, Volume,
+    bounding_box, build, build_extended, cast_rays, clearance, compact, complement, contains, dexelize,
+    difference, exchange, file, intersection, marching_cubes, measure, scene, union, xor,
 };
 use std::io::{self, Write};
 use std::path::Path;
@@ -204,6 +204,28 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("build mesh deep", [closed], {
         let frame = frame().with_depth(7)?;
         build(&MeshSolid::new(closed.clone(), FillRule::EvenOdd)?, &frame, Rule::Sampled, &CONTROL)
+    });
+    operation!("build extended", [], {
+        let part = Csg::ball([15.0; 3], 9.0)?.difference(&Csg::cuboid([1.1; 3], [22.0, 21.0, 15.3])?)?;
+        let turned =
+            part.placed(&Affine::new([[0.6, -0.8, 0.0, 9.0], [0.8, 0.6, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]])?)?;
+        let tree = build_extended(&turned, &frame(), &SurfaceOptions::default(), &CONTROL)?;
+        let mut answers = [Membership::Undecided; 2];
+        contains(&tree, &frame(), &[[15.0; 3], [9.1, 8.2, 7.3]], &mut answers, &CONTROL)?;
+        measure(&tree, &frame(), 1e-2, &CONTROL)
+    });
+    operation!("build extended mesh", [closed], {
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        let options = SurfaceOptions { tolerance: Some(0.75) };
+        build_extended(&solid, &frame(), &options, &CONTROL)
+    });
+    operation!("build extended callback", [], {
+        let slab = Callback::new(|min, max| match (min[2], max[2]) {
+            (low, high) if high <= 3.3 || low >= 9.1 => Ok(Verdict::Empty),
+            (low, high) if low >= 3.3 && high <= 9.1 => Ok(Verdict::Full),
+            _ => Ok(Verdict::Partial(())),
+        });
+        build_extended(&slab, &frame(), &SurfaceOptions::default(), &CONTROL)
     });
     operation!("build stored", [a], build(a.view(), &frame(), Rule::Inner, &CONTROL));
     let waves: Vec<f32> =

@@ -9,7 +9,8 @@ use leafless::op::{Refinement, Zone};
 use leafless::solid::{Adaptive, Batch, Prepared, SplitCounter, Transform};
 use leafless::{
     Affine, AnySolid, Bounds, Callback, Classifier, Control, Csg, Error, Frame, LazyOctree, Membership,
-    Octree, Rule, Solid, Verdict, Worker, bounding_box, build, clearance, contains, interference, measure,
+    Octree, Rule, Solid, SurfaceOptions, Verdict, Worker, bounding_box, build, build_extended, clearance,
+    contains, interference, measure,
 };
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
@@ -185,6 +186,45 @@ fn deep_builds_ask_in_batches() {
         build(&Csg::ball(CENTRE, RADIUS).unwrap(), &frame, Rule::Certified, &Control::default()).unwrap();
     let (host, exact) = (tree.statistics().volume(), exact.statistics().volume());
     assert!((host.lower - exact.lower).abs() < 1e-6 && (host.upper - exact.upper).abs() < 1e-6);
+}
+
+/// Extended trees too are asked level by level: a call a level and thread, however many cells there are.
+#[test]
+fn extended_builds_ask_level_by_level() {
+    let plain =
+        build(&host(&Arc::default(), Duration::ZERO, false), &unit(7), Rule::Certified, &Control::threads(1))
+            .unwrap();
+    // What a host knows keeps no surface; of an expression the rest does.
+    let block = Csg::cuboid([0.2, 0.21, 0.22], [0.95, 0.96, 0.97]).unwrap();
+    let mut sizes = Vec::new();
+    for threads in [1, 3] {
+        let control = Control::threads(threads);
+        let options = SurfaceOptions::default();
+        let calls = Arc::new(Calls::default());
+        let solid = host(&calls, Duration::ZERO, true);
+        let tree = build_extended(&solid, &unit(7), &options, &control).unwrap();
+        tree.view().check().unwrap();
+        assert_eq!(tree.without_cuts(), plain);
+        assert_eq!(tree.view().cuts().unwrap().cells, 0);
+        let batches = |calls: &Calls| calls.batches.load(Relaxed);
+        assert!(batches(&calls) <= 1 + 7 * threads as u64, "{}", batches(&calls));
+        let calls = Arc::new(Calls::default());
+        let part = block.difference(&Csg::solid(host(&calls, Duration::ZERO, true))).unwrap();
+        let tree = build_extended(&part, &unit(7), &options, &control).unwrap();
+        tree.view().check().unwrap();
+        assert!(batches(&calls) <= 1 + 7 * threads as u64, "{}", batches(&calls));
+        let cuts = tree.view().cuts().unwrap();
+        assert!(cuts.cells > 20 && cuts.surfaces == 6, "{cuts:?}");
+        sizes.push(tree);
+    }
+    assert_eq!(sizes[0], sizes[1]);
+    // Deeper than what is asked at once.
+    let calls = Arc::new(Calls::default());
+    let solid = host(&calls, Duration::ZERO, true);
+    let tree = build_extended(&solid, &unit(9), &SurfaceOptions::default(), &Control::threads(2)).unwrap();
+    let reference =
+        build(&host(&Arc::default(), Duration::ZERO, false), &unit(9), Rule::Certified, &Control::default());
+    assert_eq!(tree.without_cuts(), reference.unwrap());
 }
 
 #[test]

@@ -3,8 +3,8 @@
 
 use leafless::solid::{Adaptive, Ask, GradientRange, TangentBalls};
 use leafless::{
-    AnySolid, Bounds, Callback, Classifier, Control, Error, Frame, Interval, Octree, Rule, Solid, Verdict,
-    Worker, bounding_box, build, measure,
+    AnySolid, Bounds, Callback, Classifier, Control, Error, Frame, Interval, Membership, Octree, Rule, Solid,
+    SurfaceOptions, Verdict, Worker, bounding_box, build, build_extended, contains, measure,
 };
 use std::f64::consts::PI;
 
@@ -178,6 +178,39 @@ fn bounding_boxes_and_adaptive_octrees_use_it() {
 }
 
 /// Asks all PARTIAL cells of two levels.
+/// Slabs of a host's function in an extended tree, asked by any number of threads.
+#[test]
+fn extended_octrees_keep_its_slabs() {
+    let (frame, options) = (universe(9), SurfaceOptions { tolerance: Some(0.01) });
+    let tree = build_extended(&shape(ball, true), &frame, &options, &one_thread()).unwrap();
+    assert_eq!(build_extended(&shape(ball, true), &frame, &options, &Control::threads(3)).unwrap(), tree);
+    tree.view().check().unwrap();
+    let cuts = tree.view().cuts().unwrap();
+    assert!(cuts.given_up == 0 && cuts.cells == cuts.surfaces, "{cuts:?}");
+    let volume = measure(&tree, &frame, 1e-9, &one_thread()).unwrap().volume;
+    let truth = 4.0 / 3.0 * PI * RADIUS.powi(3);
+    assert!(volume.contains(truth) && volume.width() < 0.02 * 4.0 * PI * RADIUS * RADIUS, "{volume:?}");
+    let points: Vec<[f64; 3]> = (0..4000)
+        .map(|k| {
+            let (turn, rise) = (0.61803 * k as f64, (k as f64 + 0.5) / 2000.0 - 1.0);
+            let (level, depth) = ((1.0 - rise * rise).sqrt(), (k % 41 - 20) as f64 * 0.001);
+            let way = [level * turn.cos(), level * turn.sin(), rise];
+            [0, 1, 2].map(|axis| CENTRE[axis] + (RADIUS - depth) * way[axis])
+        })
+        .collect();
+    let mut answers = vec![Membership::Undecided; points.len()];
+    contains(&tree, &frame, &points, &mut answers, &one_thread()).unwrap();
+    for (k, answer) in answers.into_iter().enumerate() {
+        let depth = (k as i64 % 41 - 20) as f64 * 0.001;
+        match answer {
+            Membership::Inside => assert!(depth > -1e-9, "{depth}"),
+            Membership::Outside => assert!(depth < 1e-9, "{depth}"),
+            // A slab is as thick as the tolerance.
+            Membership::Undecided => assert!(depth.abs() < 0.01, "{depth}"),
+        }
+    }
+}
+
 fn asked(solid: &AnySolid) -> Result<u32, Error> {
     let mut worker = solid.on(&universe(4), &one_thread())?.worker()?;
     let Verdict::Partial(root) = worker.root()? else { panic!("decided") };

@@ -7,8 +7,8 @@ use super::tangent::Tangent;
 use crate::lattice::{Cell, axes};
 
 /// The combinations of signs that functions may have in a cell: bit m is for those that are positive whose bits are set in m. A
-/// combination is left out if two functions are proven not to have these signs at one point: a positive multiple of the one, added
-/// to the other, would be positive there, and is nowhere so.
+/// combination is left out if a function is proven to have its sign nowhere, or two functions are proven not to have theirs at one
+/// point: a positive multiple of the one, added to the other, would be positive there, and is nowhere so.
 pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Table {
     let mut tangents = [None; MOST];
     for (tangent, half_space) in tangents.iter_mut().zip(half_spaces) {
@@ -16,6 +16,11 @@ pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: 
     }
     let mut possible = !0;
     for (i, a) in tangents.iter().enumerate() {
+        for negative in [false, true] {
+            if a.is_some_and(|a| is_nowhere(&a, negative)) {
+                possible &= !Table::of(i, negative).0;
+            }
+        }
         for (j, b) in tangents.iter().enumerate().skip(i + 1) {
             let (Some(a), Some(b)) = (a, b) else { continue };
             for (negative_a, negative_b) in [(false, false), (true, false), (false, true), (true, true)] {
@@ -28,12 +33,21 @@ pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: 
     Table(possible)
 }
 
+/// A linear function above a function, or, if so said, above its negative: factors and constant.
+fn above(t: &Tangent, negative: bool) -> ([f64; 3], f64) {
+    if negative { (t.gradient.map(|c| -c), -t.low) } else { (t.gradient, t.high) }
+}
+
+/// Whether a function is nowhere positive in the cell, or, if so said, nowhere negative.
+fn is_nowhere(t: &Tangent, negative: bool) -> bool {
+    let (n, p) = above(t, negative);
+    let reach: f64 = n.iter().map(|c| c.abs()).sum();
+    // (What is no number is not less.)
+    p + reach + 8.0 * f64::EPSILON * (p.abs() + reach) <= 0.0
+}
+
 /// Whether no point of the cell has both functions positive, or, if so said, negative.
 fn exclude(a: &Tangent, negative_a: bool, b: &Tangent, negative_b: bool) -> bool {
-    // A linear function above each.
-    let above = |t: &Tangent, negative: bool| {
-        if negative { (t.gradient.map(|c| -c), -t.low) } else { (t.gradient, t.high) }
-    };
     let ((n, p), (m, q)) = (above(a, negative_a), above(b, negative_b));
     let dot = |u: &[f64; 3], v: &[f64; 3]| (u[0] * v[0] + u[1] * v[1]) + u[2] * v[2];
     let share = -dot(&n, &m) / dot(&m, &m);

@@ -4,6 +4,7 @@ mod costs;
 mod equals;
 mod exactness;
 mod extended;
+mod extended_laws;
 mod extremes;
 mod hierarchy;
 mod hostile;
