@@ -110,15 +110,18 @@ pub fn build_extended<S: Solid>(
         job.check()?;
         memory::push(&mut names, pool.number(&surface)?)?;
     }
-    let mut placed = memory::with_capacity(pool.surfaces.len())?;
-    for surface in &pool.surfaces {
+    // By their bytes: A ∪ B numbers them as B ∪ A does.
+    let (surfaces, places) = pool.sorted()?;
+    names.iter_mut().flatten().for_each(|(id, _)| *id = places[*id as usize]);
+    let mut placed = memory::with_capacity(surfaces.len())?;
+    for surface in &surfaces {
         placed.push(surface.on(frame)?);
     }
     let levels = element_levels(frame.depth());
     // Shallow trees are made faster than threads, unless it is somebody else who takes the time.
     let likes_many = classifier.worker()?.likes_many();
     control.run(levels > 3 || likes_many, |parallel| {
-        let exact = pool.surfaces.len() as u32;
+        let exact = surfaces.len() as u32;
         let tolerance = options.tolerance;
         let builder =
             Extended { classifier: &classifier, frame: *frame, tolerance, names, placed, exact, parallel };
@@ -139,7 +142,7 @@ pub fn build_extended<S: Solid>(
                 }
             }
             PlacedHalfSpace::write(used.iter().map(|&id| match id.checked_sub(exact) {
-                None => &pool.surfaces[id as usize],
+                None => &surfaces[id as usize],
                 Some(slab) => &slabs[slab as usize],
             }))
         })?;
@@ -281,25 +284,37 @@ impl<C: Classifier> Extended<'_, C> {
         Ok(if cell.level == self.frame.depth() { Known::Ends(Cut::None) } else { Known::Goes(part) })
     }
 
-    /// The same function of the surfaces that differ: those on which it depends, in ascending order, how many they are, and the table;
-    /// `None` if a surface has no exact
-    /// numbers. (Of more than [`MOST`] only the number is right.)
+    /// The same function of the surfaces that differ: those on which it depends, in ascending order, how many they are, and the
+    /// table. `None` if a surface has no exact numbers. (Of more than [`MOST`] surfaces only the count is right.)
     fn renamed(&self, cell: Cell, open: &OpenSurfaces) -> Option<([u32; MOST], usize, Table)> {
-        let mut pooled = OpenSurfaces::constant(false);
-        let mut table = open.table();
-        // Numbers are given in their order, so that none is taken that is still to come.
-        for (i, &index) in open.indices().iter().enumerate() {
+        // By the numbers of those that differ, each with its place in the function, and whether it is negated there.
+        let mut named = [(u32::MAX, 0, false); OpenSurfaces::MOST];
+        let count = open.indices().len();
+        for (i, (name, &index)) in named.iter_mut().zip(open.indices()).enumerate() {
             let (id, negated) = self.names[index as usize]?;
-            table = table.renamed(i, pooled.number(id)?, negated);
+            *name = (id, i, negated);
         }
-        let placed = pooled.indices().iter().map(|&id| &self.placed[id as usize]);
-        table = table.simplified(possible(placed, cell));
+        let named = &mut named[..count];
+        named.sort_unstable();
+        let (mut pooled, mut places, mut last) = ([0; OpenSurfaces::MOST], [0; OpenSurfaces::MOST], 0);
+        for (k, &(id, ..)) in named.iter().enumerate() {
+            last += usize::from(k > 0 && id != pooled[last]);
+            (pooled[last], places[k]) = (id, last);
+        }
+        let pooled = &pooled[..count.min(last + 1)];
+        let value = |signs: u64| {
+            let own = named.iter().zip(places).fold(0, |all, (&(_, i, negated), place)| {
+                all | ((signs >> place & 1) ^ u64::from(negated)) << i
+            });
+            open.table().0 >> own & 1
+        };
+        let table = Table((0..64).fold(0, |all, signs| all | value(signs) << signs));
+        let mut table = table.simplified(possible(pooled.iter().map(|&id| &self.placed[id as usize]), cell));
         let mut used = [(u32::MAX, 0); OpenSurfaces::MOST];
         let mut count = 0;
-        for (i, &id) in pooled.indices().iter().enumerate().filter(|&(i, _)| table.depends_on(i)) {
+        for (i, &id) in pooled.iter().enumerate().filter(|&(i, _)| table.depends_on(i)) {
             (used[count], count) = ((id, i), count + 1);
         }
-        used[..count].sort_unstable();
         let mut ids = [0; MOST];
         if count <= MOST {
             ids.iter_mut().zip(&used[..count]).for_each(|(to, &(id, _))| *to = id);

@@ -8,7 +8,10 @@ use crate::model::{Model, Other, Point};
 use crate::random::Maker;
 use leafless::lattice::MAX_DEPTH;
 use leafless::solid::{Ask, Enclosure, GradientRange, Slab, TangentBalls, Transform};
-use leafless::{Affine, AnySolid, Callback, Cell, Classifier, Csg, Error, Frame, Interval, Solid, Verdict};
+use leafless::{
+    Affine, AnySolid, Callback, Cell, Classifier, Csg, Error, Frame, Interval, Solid, SurfaceOptions,
+    Verdict, build_extended,
+};
 
 /// Frames whose planes are integers, exact doubles, no doubles at all; far from the origin, tiny.
 fn frames(depth: u8) -> [Frame; 5] {
@@ -307,7 +310,22 @@ fn by_tangent(model: &Model, _: &Frame) -> Result<Csg, Error> {
     Ok(Csg::solid(AnySolid::new(callback)))
 }
 
+/// An extended tree of the solid, of few levels.
+fn by_tree(model: &Model, frame: &Frame) -> Result<Csg, Error> {
+    let shallow = frame.with_depth(frame.depth().min(4))?;
+    let tree = build_extended(&model.csg(frame)?, &shallow, &SurfaceOptions::default(), &alone())?;
+    Ok(Csg::solid(AnySolid::new(tree)))
+}
+
 fn every_producer(points: u64) {
+    hold_as("extended trees of half-spaces", points, |maker| maker.half_space(), by_tree);
+    hold_as("joined half-spaces, extended", points, |maker| maker.joined(3), by_tree);
+    hold_as(
+        "functions of half-spaces, extended",
+        points,
+        |maker| maker.function(|maker| maker.half_space()),
+        by_tree,
+    );
     hold("planes", points, |maker| maker.plane());
     hold("turned planes", points, |maker| {
         let plane = maker.plane();

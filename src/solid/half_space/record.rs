@@ -214,18 +214,34 @@ impl Pool {
         }
         Ok(Some((number, turned)))
     }
+
+    /// The surfaces in an order that does not depend on that in which they were numbered, and for each number the place there.
+    pub(crate) fn sorted(self) -> Result<(Vec<PlacedHalfSpace>, Vec<u32>), Error> {
+        let keys = memory::collected(self.surfaces.iter().map(PlacedHalfSpace::size))?;
+        let mut order = memory::collected(0..self.surfaces.len())?;
+        order.sort_unstable_by(|&a, &b| keys[a].cmp(&keys[b]));
+        let mut places = memory::filled(order.len(), 0)?;
+        let mut surfaces = memory::with_capacity(order.len())?;
+        for (place, &number) in (0..).zip(&order) {
+            places[number] = place;
+            surfaces.push(self.surfaces[number].clone());
+        }
+        Ok((surfaces, places))
+    }
 }
 
 impl PlacedHalfSpace {
-    /// What is compared where two records tell of one surface: doubles, and then the doubles themselves.
+    /// What surfaces are ordered by, and records that tell of one surface: the number of doubles, the kind, and the doubles
+    /// themselves.
     fn size(&self) -> (usize, Vec<u64>) {
-        let doubles = self.half_space.numbers().and_then(|(_, numbers)| {
-            let terms =
-                numbers.iter().map(|number| number.expansion(MOST_TERMS)).collect::<Option<Vec<_>>>()?;
-            Some(terms.concat())
-        });
+        let (mut bits, mut doubles) = (Vec::new(), Vec::new());
+        if let Some((kind, numbers)) = self.half_space.numbers() {
+            bits.push(kind as u64);
+            let terms = numbers.iter().map(|number| number.expansion(MOST_TERMS)).collect::<Option<Vec<_>>>();
+            doubles = terms.unwrap_or_default().concat();
+        }
         let maps = self.placements.iter().flat_map(|map| map.rows().as_flattened().iter().copied());
-        let bits: Vec<u64> = doubles.unwrap_or_default().into_iter().chain(maps).map(f64::to_bits).collect();
+        bits.extend(doubles.into_iter().chain(maps).map(f64::to_bits));
         (bits.len(), bits)
     }
 

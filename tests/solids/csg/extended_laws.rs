@@ -333,3 +333,35 @@ fn no_eight_siblings_have_the_same_cut() {
     }
     assert!(splits > 100 && cuts > 100, "{splits} {cuts}");
 }
+
+/// The order of operands, what is there twice, and two complements do not show.
+#[test]
+fn equal_expressions_make_equal_trees() {
+    let (mut made, mut cuts) = (0, 0);
+    for seed in 0..60 {
+        let mut random = Random(seed ^ 0xC0 ^ (seed << 9));
+        let frame = frames(4)[random.below(5) as usize];
+        let mut maker = Maker { random: &mut random, frame, aligned: seed % 3 == 0, others: false };
+        let [a, b, c] = [1, 2, 2].map(|count| maker.joined(count).csg(&frame));
+        let (Ok(a), Ok(b), Ok(c)) = (a, b, c) else { continue };
+        let joins: [fn([Csg; 3]) -> Result<Csg, Error>; 3] =
+            [|parts| Csg::union_of(parts), |parts| Csg::intersection_of(parts), |parts| Csg::xor_of(parts)];
+        for join in joins {
+            let tree = |csg: Csg| build_extended(&csg, &frame, &SurfaceOptions::default(), &alone());
+            let all = || join([a.clone(), b.clone(), c.clone()]).unwrap();
+            let Ok(own) = tree(all()) else { continue };
+            let others = [
+                join([c.clone(), a.clone(), b.clone()]).unwrap(),
+                join([b.clone(), a.clone(), c.clone()]).unwrap(),
+                all().complement().complement(),
+                Csg::union_of([all(), all()]).unwrap(),
+            ];
+            for (i, other) in others.into_iter().enumerate() {
+                assert_eq!(tree(other).unwrap(), own, "{seed} {i}");
+            }
+            made += 1;
+            cuts += own.view().cuts().unwrap().cells;
+        }
+    }
+    assert!(made > 60 && cuts > 100, "{made} {cuts}");
+}
