@@ -5,8 +5,8 @@
 //! ```
 
 use leafless::{
-    Affine, Bounds, Control, Csg, Error, Frame, Interval, Octree, Rule, SurfaceOptions, build,
-    build_extended, file, measure,
+    Affine, Control, Csg, Error, Frame, Interval, Octree, Rule, Solid, SurfaceOptions, build, build_extended,
+    file, measure,
 };
 use std::time::Instant;
 
@@ -58,7 +58,7 @@ fn main() -> Result<(), Error> {
     );
     let turn = Affine::new([[0.36, 0.48, -0.8, 0.0], [-0.8, 0.6, 0.0, 0.0], [0.48, 0.64, 0.6, 0.0]])?;
     for (name, part) in [("plate", plate()?), ("turned", plate()?.placed(&turn)?), ("sponge", sponge()?)] {
-        let bounds = leafless::Solid::bounds(&part).unwrap_or(Bounds::new([0.0; 3], [1.0; 3])?);
+        let Some(bounds) = part.bounds() else { continue };
         for depth in [8, 10, 12] {
             let frame = Frame::around(bounds.min, bounds.max, depth)?;
             let begun = Instant::now();

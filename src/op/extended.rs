@@ -210,13 +210,16 @@ enum Known<P> {
     Goes(P),
 }
 
+/// The children of a cell.
+type Family<P> = [Known<P>; 8];
+
 /// A cell that is done: its tag, and its cut if that is PARTIAL.
 type Done = (Tag, Cut);
 
 /// The cells of an octant of an element: one, or eight, of which some are still to be split.
 enum Octant<P> {
     One(Done),
-    Eight([Known<P>; 8]),
+    Eight(Family<P>),
 }
 
 /// A cell that was asked about together with others: where its children are, or, of the last level, its part.
@@ -382,7 +385,7 @@ impl<C: Classifier> Extended<'_, C> {
         part: &Part<C>,
         last: u8,
         hand: &mut Hand<'_, C>,
-    ) -> Result<Vec<[Known<Asked<Part<C>>>; 8]>, Error> {
+    ) -> Result<Vec<Family<Asked<Part<C>>>>, Error> {
         let control = hand.writer.job().control();
         let threads = if self.parallel { parallel::threads() } else { 1 };
         let mut families = Vec::new();
@@ -614,7 +617,7 @@ trait Source<'j, C: Classifier> {
         cell: Cell,
         part: &Self::Part,
         hand: &mut Hand<'j, C>,
-    ) -> Result<[Known<Self::Part>; 8], Error>;
+    ) -> Result<Family<Self::Part>, Error>;
 
     /// Writes cells that elements of level `e` describe.
     fn elements(
@@ -631,12 +634,7 @@ struct Directly<'a, 'b, C>(&'a Extended<'b, C>);
 impl<'j, C: Classifier> Source<'j, C> for Directly<'_, '_, C> {
     type Part = Part<C>;
 
-    fn children(
-        &self,
-        cell: Cell,
-        part: &Part<C>,
-        hand: &mut Hand<'j, C>,
-    ) -> Result<[Known<Part<C>>; 8], Error> {
+    fn children(&self, cell: Cell, part: &Part<C>, hand: &mut Hand<'j, C>) -> Result<Family<Part<C>>, Error> {
         let verdicts = hand.worker.split(cell, part)?;
         let mut cells = OCTANTS.map(|_| Known::Settled(Tag::Empty));
         for ((k, verdict), known) in OCTANTS.into_iter().zip(verdicts).zip(&mut cells) {
@@ -666,7 +664,7 @@ impl<'j, C: Classifier> Source<'j, C> for Directly<'_, '_, C> {
 /// The children of cells that were asked about together.
 struct Told<'a, 'b, C: Classifier> {
     builder: &'a Extended<'b, C>,
-    families: Vec<[Known<Asked<Part<C>>>; 8]>,
+    families: Vec<Family<Asked<Part<C>>>>,
 }
 
 impl<'j, C: Classifier> Source<'j, C> for Told<'_, '_, C> {
@@ -677,7 +675,7 @@ impl<'j, C: Classifier> Source<'j, C> for Told<'_, '_, C> {
         _: Cell,
         part: &Asked<Part<C>>,
         _: &mut Hand<'j, C>,
-    ) -> Result<[Known<Asked<Part<C>>>; 8], Error> {
+    ) -> Result<Family<Asked<Part<C>>>, Error> {
         let family = match part {
             Asked::Children(family) => self.families.get(*family),
             Asked::Part(_) => None,

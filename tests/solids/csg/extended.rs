@@ -77,7 +77,7 @@ fn is_given_up(tree: &Octree, p: [f64; 3]) -> bool {
         }
         let octant = (0..3)
             .fold(0, |octant, axis| octant | (at[axis] >> (frame.depth() - 1 - cell.level) & 1) << axis);
-        verdict = worker.split(cell, part).unwrap()[octant as usize].clone();
+        verdict = worker.split(cell, part).unwrap()[octant as usize];
         cell = cell.child(octant as u8);
     }
     matches!(verdict, Verdict::Undecided)

@@ -344,7 +344,8 @@ fn equal_expressions_make_equal_trees() {
         let mut maker = Maker { random: &mut random, frame, aligned: seed % 3 == 0, others: false };
         let [a, b, c] = [1, 2, 2].map(|count| maker.joined(count).csg(&frame));
         let (Ok(a), Ok(b), Ok(c)) = (a, b, c) else { continue };
-        let joins: [fn([Csg; 3]) -> Result<Csg, Error>; 3] =
+        type Join = fn([Csg; 3]) -> Result<Csg, Error>;
+        let joins: [Join; 3] =
             [|parts| Csg::union_of(parts), |parts| Csg::intersection_of(parts), |parts| Csg::xor_of(parts)];
         for join in joins {
             let tree = |csg: Csg| build_extended(&csg, &frame, &SurfaceOptions::default(), &alone());
