@@ -140,7 +140,7 @@ impl PlacedCuts {
     }
 
     /// Adds the intervals of all rays of a beam; `false` if a surface has no exact place.
-    fn chords(&self, variables: &Variables<'_>, beam: &mut Beam) -> Result<bool, Error> {
+    fn chords(&self, variables: &Variables, beam: &mut Beam) -> Result<bool, Error> {
         let mut sweep = Sweep::default();
         let mut places = [0; 3];
         for (i, id) in variables.each() {
