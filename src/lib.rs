@@ -101,6 +101,8 @@ pub mod error;
 pub mod exchange;
 pub mod file;
 pub mod lattice;
+#[cfg(feature = "std")]
+mod lock;
 #[doc(hidden)]
 pub mod memory;
 pub mod mesh;

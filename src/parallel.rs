@@ -106,10 +106,10 @@ pub(crate) fn sort<T: Ord + Send>(list: &mut [T], parallel: bool) {
 #[cfg(feature = "parallel")]
 mod pool {
     use crate::error::Error;
+    use crate::lock::Lock;
     use crate::memory;
     use alloc::vec::Vec;
     use rayon::prelude::*;
-    use std::sync::{Mutex, MutexGuard, PoisonError};
     use std::thread;
 
     /// Most threads that an operation starts.
@@ -154,20 +154,20 @@ mod pool {
         own: impl Fn() -> S + Sync,
         work: impl Fn(&mut S, T) -> Result<R, Error> + Sync,
     ) -> Result<Vec<R>, Error> {
-        let slots = memory::collected(tasks.map(|task| Mutex::new(Slot::Task(task))))?;
-        let idle = Mutex::new(Vec::new());
+        let slots = memory::collected(tasks.map(|task| Lock::new(Slot::Task(task))))?;
+        let idle = Lock::new(Vec::new());
         share(slots.len(), &|i| {
-            let Slot::Task(task) = core::mem::replace(&mut *locked(&slots[i]), Slot::Taken) else {
+            let Slot::Task(task) = slots[i].with(|slot| core::mem::replace(slot, Slot::Taken)) else {
                 return Ok(());
             };
-            let mut mine = locked(&idle).pop().unwrap_or_else(&own);
+            let mut mine = idle.with(Vec::pop).unwrap_or_else(&own);
             let done = work(&mut mine, task)?;
-            *locked(&slots[i]) = Slot::Done(done);
-            memory::push(&mut *locked(&idle), mine)
+            slots[i].with(|slot| *slot = Slot::Done(done));
+            idle.with(|idle| memory::push(idle, mine))
         })?;
         let mut done = memory::with_capacity(slots.len())?;
         done.extend(slots.into_iter().filter_map(|slot| match slot.into_inner() {
-            Ok(Slot::Done(result)) => Some(result),
+            Slot::Done(result) => Some(result),
             _ => None,
         }));
         Ok(done)
@@ -176,10 +176,5 @@ mod pool {
     /// Shares out the numbers of tasks.
     fn share(count: usize, work: &(dyn Fn(usize) -> Result<(), Error> + Sync)) -> Result<(), Error> {
         (0..count).into_par_iter().try_for_each(work)
-    }
-
-    /// What a mutex guards. A panic while it was held ends the whole operation elsewhere.
-    fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-        mutex.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

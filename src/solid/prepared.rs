@@ -5,8 +5,8 @@ use super::{AnyClassifier, AnySolid, Solid};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Frame};
+use crate::lock::Lock;
 use alloc::sync::Arc;
-use std::sync::{Mutex, PoisonError};
 
 /// A solid that keeps one frame prepared, the last that it was put on: asked on it again, it is there at
 /// once. A clone shares what is kept.
@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Clone)]
 pub struct Prepared {
     solid: AnySolid,
-    last: Arc<Mutex<Option<(Frame, AnyClassifier)>>>,
+    last: Arc<Lock<Option<(Frame, AnyClassifier)>>>,
 }
 
 impl Prepared {
@@ -32,8 +32,9 @@ impl Prepared {
 
     /// What is kept, if it is for this frame.
     fn kept(&self, frame: &Frame) -> Option<AnyClassifier> {
-        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        last.as_ref().filter(|(kept, _)| kept == frame).map(|(_, classifier)| classifier.clone())
+        self.last.with(|last| {
+            last.as_ref().filter(|(kept, _)| kept == frame).map(|(_, classifier)| classifier.clone())
+        })
     }
 }
 
@@ -46,10 +47,7 @@ impl Solid for Prepared {
         }
         // The host's functions may be called here, and may ask this very solid: no lock is held.
         let classifier = self.solid.on(frame, control)?;
-        let before = {
-            let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-            last.replace((*frame, classifier.clone()))
-        };
+        let before = self.last.with(|last| last.replace((*frame, classifier.clone())));
         drop(before);
         Ok(classifier)
     }

@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
 const LAYERS: [&[&str]; 17] = [
-    &["error", "memory", "parallel", "control", "dispatch"],
+    &["error", "memory", "lock", "parallel", "control", "dispatch"],
     &["lattice"],
     &["cut"],
     &["octree"],
