@@ -9,8 +9,9 @@ use std::fmt::Write;
 /// Columns of a line.
 const WIDTH: usize = 110;
 
-/// How the types of numbers begin that stand for members of an enumeration. In the header they are the enumeration.
-const NUMBER: &str = "Number_";
+/// How the types of numbers begin that stand for members of an enumeration, of 32 and of 8 bits. In the header
+/// they are the enumeration.
+const NUMBERS: [&str; 2] = ["Number_", "Byte_"];
 
 /// A part of the header.
 pub struct Section {
@@ -47,7 +48,12 @@ fn items(raw: &str) -> Vec<Item> {
         let doc = lines.iter().take_while(is_doc).map(|line| comment_text(line)).collect();
         let code: Vec<String> = lines.iter().skip_while(is_doc).map(|line| line.to_string()).collect();
         assert!(!code.is_empty(), "a comment without a declaration: {block}");
-        if !code[0].starts_with(&format!("typedef uint32_t {NUMBER}")) {
+        let is_number = |name| {
+            ["uint32_t", "uint8_t"]
+                .iter()
+                .any(|integer| code[0].starts_with(&format!("typedef {integer} {name}")))
+        };
+        if !NUMBERS.iter().any(is_number) {
             items.push(Item { name: name_of(&code), doc, code });
         }
     }
@@ -144,7 +150,7 @@ fn body(lines: &[String], out: &mut String) {
 
 /// Code in which structs go by the names that their typedefs have, and numbers by those of their enumerations.
 fn plain(code: &str) -> String {
-    let code = code.replace(NUMBER, "");
+    let code = NUMBERS.iter().fold(code.to_string(), |code, number| code.replace(number, ""));
     if code.starts_with("typedef struct ") { code } else { code.replace("struct leafless_", "leafless_") }
 }
 

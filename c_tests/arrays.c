@@ -31,18 +31,18 @@ static void refused(leafless_status status, const leafless_mesh_arrays *arrays, 
 }
 
 static size_t vertex_size(uint32_t type) {
-    return 3 * (type == LEAFLESS_VERTEX_F32 ? sizeof(float) : sizeof(double));
+    return 3 * (type == LEAFLESS_VERTEX_TYPE_F32 ? sizeof(float) : sizeof(double));
 }
 
 static size_t triangle_size(uint32_t type) {
-    return 3 * (type == LEAFLESS_INDEX_U16   ? sizeof(uint16_t)
-                : type == LEAFLESS_INDEX_U64 ? sizeof(uint64_t)
+    return 3 * (type == LEAFLESS_INDEX_TYPE_U16   ? sizeof(uint16_t)
+                : type == LEAFLESS_INDEX_TYPE_U64 ? sizeof(uint64_t)
                                              : sizeof(uint32_t));
 }
 
 static void put_coordinate(unsigned char *to, uint32_t type, int k, double x) {
     const float single = (float)x;
-    if (type == LEAFLESS_VERTEX_F32) {
+    if (type == LEAFLESS_VERTEX_TYPE_F32) {
         memcpy(to + (size_t)k * sizeof single, &single, sizeof single);
     } else {
         memcpy(to + (size_t)k * sizeof x, &x, sizeof x);
@@ -52,9 +52,9 @@ static void put_coordinate(unsigned char *to, uint32_t type, int k, double x) {
 static void put_index(unsigned char *to, uint32_t type, int k, uint64_t index) {
     const uint32_t half = (uint32_t)index;
     const uint16_t quarter = (uint16_t)index;
-    if (type == LEAFLESS_INDEX_U16) {
+    if (type == LEAFLESS_INDEX_TYPE_U16) {
         memcpy(to + (size_t)k * sizeof quarter, &quarter, sizeof quarter);
-    } else if (type == LEAFLESS_INDEX_U64) {
+    } else if (type == LEAFLESS_INDEX_TYPE_U64) {
         memcpy(to + (size_t)k * sizeof index, &index, sizeof index);
     } else {
         memcpy(to + (size_t)k * sizeof half, &half, sizeof half);
@@ -137,9 +137,9 @@ static void interleaved(void) {
         }
     }
     arrays = check_arrays(&vertices[0].position, 8, &triangles[0].corners, 12);
-    arrays.vertex_type = LEAFLESS_VERTEX_F32;
+    arrays.vertex_type = LEAFLESS_VERTEX_TYPE_F32;
     arrays.vertex_stride = sizeof vertices[0];
-    arrays.index_type = LEAFLESS_INDEX_U64;
+    arrays.index_type = LEAFLESS_INDEX_TYPE_U64;
     arrays.triangle_stride = sizeof triangles[0];
     is_cube(&arrays);
 }
@@ -152,7 +152,7 @@ static void floats_are_not_changed(void) {
     leafless_mesh *mesh = NULL;
     double vertices[3][3];
     int i, k;
-    arrays.vertex_type = LEAFLESS_VERTEX_F32;
+    arrays.vertex_type = LEAFLESS_VERTEX_TYPE_F32;
     OK(leafless_mesh_new(&arrays, &mesh));
     OK(leafless_mesh_copy(mesh, &vertices[0][0], 3, NULL, 0));
     for (i = 0; i < 3; i++) {
@@ -183,12 +183,12 @@ static void no_indices(void) {
     OK(leafless_mesh_new(&arrays, &mesh));
     OK(leafless_mesh_check_closed(mesh, LEAFLESS_FILL_NON_ZERO));
     OK(leafless_mesh_volume(mesh, &volume));
-    OK(leafless_mesh_describe(mesh, &report));
+    OK(leafless_mesh_inspect(mesh, &report));
     CHECK(volume == 1.0 && report.triangles == 12 && report.vertices == 8 && report.welded == 28);
     leafless_mesh_free(mesh);
 
     arrays.vertices = single;
-    arrays.vertex_type = LEAFLESS_VERTEX_F32;
+    arrays.vertex_type = LEAFLESS_VERTEX_TYPE_F32;
     arrays.vertex_stride = sizeof single[0][0];
     OK(leafless_mesh_new(&arrays, &mesh));
     OK(leafless_mesh_volume(mesh, &volume));
@@ -205,7 +205,7 @@ static void no_indices(void) {
     refused(LEAFLESS_E_ARGUMENT, &arrays, "arrays.indices");
     arrays.triangle_count = 0;
     OK(leafless_mesh_new(&arrays, &mesh));
-    OK(leafless_mesh_describe(mesh, &report));
+    OK(leafless_mesh_inspect(mesh, &report));
     CHECK(report.triangles == 0 && report.vertices == 8);
     leafless_mesh_free(mesh);
 
@@ -259,7 +259,7 @@ static void bad_values(void) {
             memset(single, 0, sizeof single);
             single[7][k] = (float)NUMBERS[i];
             arrays = check_arrays(single, 8, CHECK_CUBE_TRIANGLES, 12);
-            arrays.vertex_type = LEAFLESS_VERTEX_F32;
+            arrays.vertex_type = LEAFLESS_VERTEX_TYPE_F32;
             refused(LEAFLESS_E_MESH, &arrays, "vertex 7 ");
         }
     }
@@ -271,7 +271,7 @@ static void bad_values(void) {
         }
         u16[7][k] = 8;
         arrays = check_arrays(CHECK_CUBE, 8, u16, 12);
-        arrays.index_type = LEAFLESS_INDEX_U16;
+        arrays.index_type = LEAFLESS_INDEX_TYPE_U16;
         refused(LEAFLESS_E_MESH, &arrays, "triangle 7 refers to vertex 8,");
         u16[7][k] = 0xffff;
         refused(LEAFLESS_E_MESH, &arrays, "triangle 7 refers to vertex 65535,");
@@ -281,7 +281,7 @@ static void bad_values(void) {
         u32[11][k] = UINT32_MAX;
         refused(LEAFLESS_E_MESH, &arrays, "triangle 11 refers to vertex 4294967295,");
         arrays = check_arrays(CHECK_CUBE, 8, u64, 12);
-        arrays.index_type = LEAFLESS_INDEX_U64;
+        arrays.index_type = LEAFLESS_INDEX_TYPE_U64;
         u64[2][k] = 8;
         refused(LEAFLESS_E_MESH, &arrays, "triangle 2 refers to vertex 8,");
         /* Not cut to 32 bits, where it would be vertex 1. */
@@ -324,12 +324,12 @@ static void bad_fields(void) {
             arrays.triangle_stride = stride;
             refused(LEAFLESS_E_ARGUMENT, &arrays, "arrays.triangle_stride");
             arrays.triangle_stride = 0;
-            arrays.vertex_type = LEAFLESS_VERTEX_F32;
+            arrays.vertex_type = LEAFLESS_VERTEX_TYPE_F32;
             arrays.vertex_stride = stride;
             refused(LEAFLESS_E_ARGUMENT, &arrays, "arrays.vertex_stride");
         }
         arrays = good;
-        arrays.index_type = LEAFLESS_INDEX_U64;
+        arrays.index_type = LEAFLESS_INDEX_TYPE_U64;
         arrays.triangle_stride = stride;
         refused(LEAFLESS_E_ARGUMENT, &arrays, "arrays.triangle_stride");
     }

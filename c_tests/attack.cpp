@@ -39,7 +39,8 @@ void counts() {
     const double points[6] = {0, 0, 0, 1, 1, 1};
     double numbers[16] = {0};
     const uint64_t codes[2] = {0, 1};
-    const uint8_t levels[2] = {3, 3}, kinds[2] = {1, 1}, colour[4] = {0, 0, 0, 255};
+    const uint8_t levels[2] = {3, 3}, colour[4] = {0, 0, 0, 255};
+    const leafless_voxel_kind kinds[2] = {LEAFLESS_VOXEL_KIND_INSIDE, LEAFLESS_VOXEL_KIND_INSIDE};
     const leafless_cell cells[2] = {};
     const leafless_ray rays[2] = {};
     leafless_ray_hit hits[2];
@@ -183,7 +184,7 @@ void ask(const leafless_attribute *attribute, uint32_t threads) {
     look.attribute = attribute;
     look.transfer = &transfer;
     leafless_layer *layer = nullptr;
-    const leafless_status made = leafless_layer_new_octree(octree, &look, &layer);
+    const leafless_status made = leafless_layer_from_octree(octree, &look, &layer);
     CHECK(is_expected(made));
     if (layer != nullptr) {
         leafless_shot shot;
@@ -306,7 +307,7 @@ void editor_in_threads() {
     leafless_solid *block = nullptr;
     OK(leafless_solid_new_box(min, max, &block));
     leafless_tridexel *model = nullptr;
-    OK(leafless_tridexel_make(block, &frame, LEAFLESS_RULE_SAMPLED, nullptr, nullptr, &model));
+    OK(leafless_tridexel_build(block, &frame, LEAFLESS_RULE_SAMPLED, nullptr, nullptr, &model));
     leafless_tridexel_editor *editor = nullptr;
     OK(leafless_tridexel_editor_new(model, &editor));
     std::atomic<int> done{0}, busy{0};
@@ -395,12 +396,12 @@ void layers_outlive() {
     OK(leafless_init(&slice, sizeof slice));
 
     std::vector<leafless_layer *> layers(7, nullptr);
-    OK(leafless_layer_new_octree(octree, &coloured, &layers[0]));
-    OK(leafless_layer_new_solid(solid, &frame, &look, &layers[1]));
-    OK(leafless_layer_new_mesh(mesh, &look, &layers[2]));
+    OK(leafless_layer_from_octree(octree, &coloured, &layers[0]));
+    OK(leafless_layer_from_solid(solid, &frame, &look, &layers[1]));
+    OK(leafless_layer_from_mesh(mesh, &look, &layers[2]));
     OK(leafless_layer_new_lines(line.data(), line.size() / 6, 1, colour.data(), &layers[3]));
     OK(leafless_layer_new_cells(&frame, cells.data(), cells.size(), 1, colour.data(), &layers[4]));
-    OK(leafless_layer_new_slice(octree, plane, &slice, &layers[5]));
+    OK(leafless_layer_from_octree_slice(octree, plane, &slice, &layers[5]));
     OK(leafless_layer_clipped(layers[0], cut, 1, nullptr, &layers[6]));
     std::vector<std::vector<uint8_t>> before;
     for (const leafless_layer *layer : layers) before.push_back(picture({layer}));

@@ -80,7 +80,7 @@ void many_threads() {
     // Mapped unverified, its links are checked by whoever asks first.
     static const char PATH[] = "attribute.lfl";
     leafless_octree *solid = nullptr, *with = nullptr, *mapped = nullptr;
-    OK(leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &solid));
+    OK(leafless_octree_new_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &solid));
     OK(leafless_octree_with_channel(solid, one.get(), &with));
     OK(octree_save(with, PATH, std::strlen(PATH)));
     OK(octree_map(PATH, std::strlen(PATH), &mapped));

@@ -43,9 +43,9 @@ static leafless_status levels(void *buffer, uint64_t capacity, uint64_t *count) 
 }
 
 static leafless_status sections(void *buffer, uint64_t capacity, uint64_t *count) {
-    leafless_probe probe;
+    leafless_file_info probe;
     const leafless_status status =
-        probe_bytes(bytes, length, &probe, (leafless_section *)buffer, capacity);
+        probe_bytes(bytes, length, &probe, (leafless_file_section *)buffer, capacity);
     if (status == LEAFLESS_OK) {
         *count = probe.sections;
     }
@@ -53,9 +53,9 @@ static leafless_status sections(void *buffer, uint64_t capacity, uint64_t *count
 }
 
 static leafless_status file_sections(void *buffer, uint64_t capacity, uint64_t *count) {
-    leafless_probe probe;
+    leafless_file_info probe;
     const leafless_status status =
-        probe_path("buffers.lfl", 11, &probe, (leafless_section *)buffer, capacity);
+        probe_path("buffers.lfl", 11, &probe, (leafless_file_section *)buffer, capacity);
     if (status == LEAFLESS_OK) {
         *count = probe.sections;
     }
@@ -135,7 +135,7 @@ static void check(two_step function, size_t element, size_t padding) {
 }
 
 int main(void) {
-    const size_t named = offsetof(leafless_section, name) + sizeof(((leafless_section *)0)->name);
+    const size_t named = offsetof(leafless_file_section, name) + sizeof(((leafless_file_section *)0)->name);
     const size_t kind = offsetof(leafless_mesh_defect, kind) + sizeof(leafless_defect);
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
@@ -146,8 +146,8 @@ int main(void) {
     check(octree_bytes, 1, 1);
     check(stl_bytes, 1, 1);
     check(levels, sizeof(leafless_statistics), sizeof(leafless_statistics));
-    check(sections, sizeof(leafless_section), named);
-    check(file_sections, sizeof(leafless_section), named);
+    check(sections, sizeof(leafless_file_section), named);
+    check(file_sections, sizeof(leafless_file_section), named);
     check(vertices, 3 * sizeof(double), 3 * sizeof(double));
     check(defects, sizeof(leafless_mesh_defect), kind);
     check(triangles, 3 * sizeof(uint32_t), 3 * sizeof(uint32_t));

@@ -231,8 +231,8 @@ static int32_t lazy_balls(void *ctx, const double *boxes, uint64_t count, int32_
     return 0;
 }
 
-static leafless_callbacks callbacks_of(host *h) {
-    leafless_callbacks callbacks;
+static leafless_solid_callbacks callbacks_of(host *h) {
+    leafless_solid_callbacks callbacks;
     memset(&callbacks, 0, sizeof callbacks);
     callbacks.struct_size = sizeof callbacks;
     callbacks.exterior = LEAFLESS_EXTERIOR_EMPTY;
@@ -258,7 +258,7 @@ static void equals_the_library(void) {
     for (i = 0; i < COUNT(rules); i++) {
         const leafless_frame frame = check_frame(6);
         host h = ball_host();
-        leafless_callbacks callbacks = callbacks_of(&h);
+        leafless_solid_callbacks callbacks = callbacks_of(&h);
         leafless_solid *solid = NULL;
         leafless_octree *own = NULL, *known = check_ball(6, rules[i]);
         leafless_octree_info a, b;
@@ -284,7 +284,7 @@ static void equals_the_library(void) {
 
 static void is_destroyed_once(void) {
     host h = ball_host();
-    leafless_callbacks callbacks = callbacks_of(&h);
+    leafless_solid_callbacks callbacks = callbacks_of(&h);
     leafless_solid *solid = NULL, *references[5];
     size_t i;
     /* Not if there is no solid in the end. */
@@ -336,7 +336,7 @@ static void garbage_is_refused(void) {
     static const int32_t decisions[] = {-1, 2, 3, 256, 257, INT32_MAX, INT32_MIN};
     const leafless_frame frame = check_frame(6);
     host h = ball_host();
-    leafless_callbacks callbacks = callbacks_of(&h);
+    leafless_solid_callbacks callbacks = callbacks_of(&h);
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
     leafless_options options = one_thread();
@@ -392,7 +392,7 @@ static void garbage_is_refused(void) {
 static void may_call_the_library(void) {
     const leafless_frame frame = check_frame(5);
     host h = ball_host();
-    leafless_callbacks callbacks = callbacks_of(&h);
+    leafless_solid_callbacks callbacks = callbacks_of(&h);
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
     leafless_options options = one_thread();
@@ -418,7 +418,7 @@ static void many_at_once(void) {
     size_t i;
     for (i = 0; i < COUNT(rules); i++) {
         host h = ball_host();
-        leafless_callbacks callbacks = callbacks_of(&h);
+        leafless_solid_callbacks callbacks = callbacks_of(&h);
         leafless_solid *solid = NULL;
         leafless_octree *own = NULL, *known = check_ball(6, rules[i]);
         callbacks.classify_many = balls;
@@ -463,7 +463,7 @@ static void by_distance_alone(void) {
     const leafless_frame frame = check_frame(6), deep = check_frame(20);
     const leafless_options options = one_thread();
     host h = ball_host();
-    leafless_callbacks callbacks = callbacks_of(&h);
+    leafless_solid_callbacks callbacks = callbacks_of(&h);
     leafless_solid *solid = NULL;
     leafless_octree *own = NULL, *known = check_ball(6, LEAFLESS_RULE_CERTIFIED), *sampled = NULL;
     leafless_statistics found, best = statistics_of(known);
@@ -494,14 +494,14 @@ static void by_distance_alone(void) {
     }
     OK(leafless_solid_measure(solid, &deep, 0.05, 0.0, &options, &measures));
     CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
-    CHECK(measures.measured == LEAFLESS_MEASURED_TOLERANCE);
+    CHECK(measures.measured == LEAFLESS_STOP_REASON_TOLERANCE);
     {
         /* As near to the surface as the frame goes. */
         const double at[4][3] = {{0.75 - 1e-5, 0, 0}, {0, 0.75 + 1e-5, 0}, {0.45, 0, -0.6}, {0, 0, 0}};
         const double low[3] = {-0.4, -0.4, -0.4}, high[3] = {0.4, 0.4, 0.4}, out[3] = {0.9, 0.9, 0.9};
         leafless_membership answers[4];
         leafless_region region;
-        OK(leafless_solid_contains(solid, &deep, at[0], 4, &options, answers));
+        OK(leafless_solid_contains_many(solid, &deep, at[0], 4, &options, answers));
         CHECK(answers[0] == LEAFLESS_MEMBERSHIP_INSIDE && answers[1] == LEAFLESS_MEMBERSHIP_OUTSIDE);
         CHECK(answers[2] == LEAFLESS_MEMBERSHIP_UNDECIDED && answers[3] == LEAFLESS_MEMBERSHIP_INSIDE);
         OK(leafless_solid_classify_box(solid, &deep, low, high, &options, &region));
@@ -536,7 +536,7 @@ static void by_distance_and_boxes(void) {
     for (i = 0; i < COUNT(rules); i++) {
         for (many = 0; many < 2; many++) {
             host h = ball_host();
-            leafless_callbacks callbacks = callbacks_of(&h);
+            leafless_solid_callbacks callbacks = callbacks_of(&h);
             leafless_solid *solid = NULL;
             leafless_octree *own = NULL, *known = check_ball(6, rules[i]);
             int without;
@@ -577,7 +577,7 @@ static void by_distance_and_boxes(void) {
         const leafless_frame shallow = check_frame(3);
         const double at[3] = {0.1, 0.1, 0.1};
         host h = ball_host();
-        leafless_callbacks callbacks = callbacks_of(&h);
+        leafless_solid_callbacks callbacks = callbacks_of(&h);
         leafless_solid *solid = NULL;
         leafless_octree *own = NULL;
         leafless_membership answer = 77;
@@ -590,7 +590,7 @@ static void by_distance_and_boxes(void) {
         OK(leafless_octree_build(solid, &shallow, LEAFLESS_RULE_CERTIFIED, &options, &own));
         found = statistics_of(own);
         CHECK(found.volume_model.lower == 0.0 && found.volume_model.upper == 8.0 && found.full == 0);
-        OK(leafless_solid_contains(solid, &shallow, at, 1, &options, &answer));
+        OK(leafless_solid_contains_many(solid, &shallow, at, 1, &options, &answer));
         CHECK(answer == LEAFLESS_MEMBERSHIP_UNDECIDED);
         leafless_octree_free(own);
         leafless_solid_free(solid);
@@ -605,7 +605,7 @@ static void distance_gives_up(void) {
     int last;
     for (last = 1; last <= 3; last++) {
         host h = ball_host();
-        leafless_callbacks callbacks = callbacks_of(&h);
+        leafless_solid_callbacks callbacks = callbacks_of(&h);
         leafless_solid *solid = NULL;
         leafless_octree *octree = NULL;
         leafless_lazy *lazy = NULL;
@@ -623,7 +623,7 @@ static void distance_gives_up(void) {
     CHECK(h.calls == last)
         h.fails_at = last;
         GIVES_UP(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
-        GIVES_UP(leafless_solid_contains(solid, &frame, at, 1, &options, &answer));
+        GIVES_UP(leafless_solid_contains_many(solid, &frame, at, 1, &options, &answer));
         GIVES_UP(leafless_solid_classify_box(solid, &frame, at, beside, &options, &region));
         GIVES_UP(leafless_solid_measure(solid, &frame, 0.0, 0.0, &options, &measures));
         GIVES_UP(leafless_solid_bounding_box(solid, &frame, 0.0, &options, &extent));
@@ -659,7 +659,7 @@ static void by_slabs(void) {
     int which, fails_at;
     for (which = 1; which <= 3; which++) {
         host h = ball_host();
-        leafless_callbacks callbacks = callbacks_of(&h);
+        leafless_solid_callbacks callbacks = callbacks_of(&h);
         leafless_solid *solid = NULL;
         leafless_octree *own = NULL, *known = check_ball(6, LEAFLESS_RULE_CERTIFIED);
         leafless_measures measures;
@@ -670,11 +670,11 @@ static void by_slabs(void) {
         OK(leafless_octree_build(solid, &shallow, LEAFLESS_RULE_CERTIFIED, &options, &own));
         CHECK(check_same(own, known) && h.calls == 0);
         OK(leafless_solid_measure(solid, &frame, 1e-3, 0.0, &options, &measures));
-        CHECK(measures.measured == LEAFLESS_MEASURED_TOLERANCE && measures.splits < 60000 && h.calls > 0);
+        CHECK(measures.measured == LEAFLESS_STOP_REASON_TOLERANCE && measures.splits < 60000 && h.calls > 0);
         CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
         CHECK(measures.volume_model.upper - measures.volume_model.lower <= 1e-3 * volume);
         OK(leafless_solid_bounding_box(solid, &frame, 1e-5, &options, &extent));
-        CHECK(extent.measured == LEAFLESS_MEASURED_TOLERANCE && extent.splits < 20000);
+        CHECK(extent.measured == LEAFLESS_STOP_REASON_TOLERANCE && extent.splits < 20000);
         CHECK(extent.max_model[1].lower <= 0.75 && 0.75 <= extent.max_model[1].upper);
         for (fails_at = 1; fails_at <= 40; fails_at += 13) {
             h.calls = 0;
@@ -687,7 +687,7 @@ static void by_slabs(void) {
         h.nothing = 1.0;
         options.max_splits = 1000;
         OK(leafless_solid_measure(solid, &frame, 1e-3, 0.0, &options, &measures));
-        CHECK(measures.measured == LEAFLESS_MEASURED_BUDGET);
+        CHECK(measures.measured == LEAFLESS_STOP_REASON_BUDGET);
         CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
         options.max_splits = 0;
         leafless_octree_free(own);
@@ -722,7 +722,7 @@ static void is_moved(void) {
     static double points[4000][3];
     static leafless_membership answers[4000];
     host h = ball_host();
-    leafless_callbacks callbacks = callbacks_of(&h);
+    leafless_solid_callbacks callbacks = callbacks_of(&h);
     leafless_solid *solid = NULL, *moved = NULL, *known = NULL;
     leafless_octree *own = NULL, *box = NULL;
     leafless_motion motion = 77;
@@ -779,7 +779,7 @@ static void is_moved(void) {
             points[i][axis] = (double)(state >> 11) / 9007199254740992.0 * 1.2 - 0.5 + offset[axis] / 2;
         }
     }
-    OK(leafless_solid_contains(moved, &frame, points[0], COUNT(points), &options, answers));
+    OK(leafless_solid_contains_many(moved, &frame, points[0], COUNT(points), &options, answers));
     for (i = 0; i < COUNT(points); i++) {
         const double inside = in_brick(offset, points[i]);
         leafless_membership built;

@@ -117,7 +117,7 @@ int32_t endless(void *ctx, const double *, const double *) {
 void another_thread_cancels(uint32_t threads) {
     const leafless_frame frame = check_frame(12);
     Slow slow;
-    leafless_callbacks callbacks = {};
+    leafless_solid_callbacks callbacks = {};
     callbacks.struct_size = sizeof callbacks;
     callbacks.classify = endless;
     callbacks.ctx = &slow;
@@ -221,7 +221,7 @@ void functions_are_not_entered_again() {
     const leafless_frame frame = check_frame(7);
     Inner inner;
     inner.ball = check_ball_solid();
-    leafless_callbacks callbacks;
+    leafless_solid_callbacks callbacks;
     OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = builds;
     callbacks.ctx = &inner;

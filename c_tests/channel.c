@@ -51,7 +51,7 @@ static int32_t one_number_at(void *ctx, const double *point, double *value) {
 static int32_t range_along_z(void *ctx, const double *min, const double *max, leafless_value_range *range) {
     host *const own = (host *)ctx;
     own->ranges++;
-    CHECK(range->kind == LEAFLESS_RANGE_UNKNOWN && isnan(range->values[0].lower) && isnan(range->values[3].upper));
+    CHECK(range->kind == LEAFLESS_RANGE_KIND_UNKNOWN && isnan(range->values[0].lower) && isnan(range->values[3].upper));
     range->kind = own->kind;
     range->values[0].lower = min[2];
     range->values[0].upper = max[2];
@@ -137,7 +137,7 @@ static double first_at(const leafless_octree *octree, const char *name, double x
 }
 
 static double rounded(double value, uint32_t scalar) {
-    return scalar == LEAFLESS_SCALAR_F32 ? (double)(float)value : rint(value);
+    return scalar == LEAFLESS_SCALAR_TYPE_F32 ? (double)(float)value : rint(value);
 }
 
 static void attributes(void) {
@@ -198,25 +198,25 @@ static void attributes(void) {
     CHECK(own.destroyed == 1);
     /* Ranges. */
     OK(leafless_attribute_range(batch, low, high, &range));
-    CHECK(range.kind == LEAFLESS_RANGE_UNKNOWN && isnan(range.values[0].lower));
+    CHECK(range.kind == LEAFLESS_RANGE_KIND_UNKNOWN && isnan(range.values[0].lower));
     leafless_attribute_free(batch);
     CHECK(many.destroyed == 1);
-    z.kind = LEAFLESS_RANGE_WITHIN;
+    z.kind = LEAFLESS_RANGE_KIND_WITHIN;
     OK(leafless_attribute_range(up, low, high, &range));
-    CHECK(range.kind == LEAFLESS_RANGE_WITHIN && range.values[0].lower == 0.25 && range.values[0].upper == 0.5);
+    CHECK(range.kind == LEAFLESS_RANGE_KIND_WITHIN && range.values[0].lower == 0.25 && range.values[0].upper == 0.5);
     CHECK(isnan(range.values[1].lower));
-    z.kind = LEAFLESS_RANGE_NOWHERE;
+    z.kind = LEAFLESS_RANGE_KIND_NOWHERE;
     OK(leafless_attribute_range(up, low, high, &range));
-    CHECK(range.kind == LEAFLESS_RANGE_NOWHERE && isnan(range.values[0].lower));
+    CHECK(range.kind == LEAFLESS_RANGE_KIND_NOWHERE && isnan(range.values[0].lower));
     z.kind = 3;
     FAILS(LEAFLESS_E_CALLBACK, leafless_attribute_range(up, low, high, &range));
-    z.kind = LEAFLESS_RANGE_WITHIN;
+    z.kind = LEAFLESS_RANGE_KIND_WITHIN;
     z.fails_at = z.ranges + 1;
     FAILS(LEAFLESS_E_CALLBACK, leafless_attribute_range(up, low, high, &range));
     leafless_attribute_free(up);
     OK(leafless_attribute_new_constant(colour, 4, &attribute));
     OK(leafless_attribute_range(attribute, low, high, &range));
-    CHECK(range.kind == LEAFLESS_RANGE_WITHIN && range.values[1].lower == 2 && range.values[3].upper == INFINITY);
+    CHECK(range.kind == LEAFLESS_RANGE_KIND_WITHIN && range.values[1].lower == 2 && range.values[3].upper == INFINITY);
     OK(leafless_attribute_values(attribute, &points[0][0], 1, found));
     CHECK(found[0] == 1 && found[3] == INFINITY);
     leafless_attribute_free(attribute);
@@ -268,7 +268,7 @@ static void filled(void) {
             double expected[3] = {NAN, NAN, NAN}, value[4], at[4];
             int k;
             number(points[i], expected);
-            OK(leafless_channel_value_of_cell(channels[0], cell, value));
+            OK(leafless_channel_value_at(channels[0], cell, value));
             OK(leafless_channel_value(channels[0], points[i], at));
             for (k = 0; k < 3; k++) {
                 const double wanted = rounded(expected[k], scalar);
@@ -292,10 +292,10 @@ static void filled(void) {
         OK(leafless_channel_fill(attribute, &frame, NULL, NULL, &channel));
         OK(leafless_channel_values(channel, &beyond[0][0], 2, value));
         CHECK(isnan(value[0]) && isnan(value[1]));
-        OK(leafless_channel_value_of_cell(channel, cell, value));
+        OK(leafless_channel_value_at(channel, cell, value));
         CHECK(isnan(value[0]) && isnan(value[3]));
         OK(leafless_channel_describe(channel, &info));
-        CHECK(info.value_count == 1 && info.bytes == 4 && info.elements == 0 && info.scalar == LEAFLESS_SCALAR_F32);
+        CHECK(info.value_count == 1 && info.bytes == 4 && info.elements == 0 && info.scalar == LEAFLESS_SCALAR_TYPE_F32);
         leafless_channel_free(channel);
         leafless_attribute_free(attribute);
     }
@@ -311,7 +311,7 @@ static void details(void) {
     leafless_channel_info info;
     double value[4];
     const double point[3] = {0.1, 0.2, 0.3};
-    z.kind = LEAFLESS_RANGE_WITHIN;
+    z.kind = LEAFLESS_RANGE_KIND_WITHIN;
     OK(leafless_channel_fill(attribute, &frame, &fill, NULL, &fine));
     OK(leafless_channel_describe(fine, &info));
     CHECK(info.value_count >= 64 && info.frame.depth == 6);
@@ -342,7 +342,7 @@ static void details(void) {
         /* Turned upside down, and back by another fill. */
         const double over[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0};
         leafless_attribute *stored = NULL, *turned = NULL;
-        OK(leafless_channel_as_attribute(fine, &stored));
+        OK(leafless_attribute_from_channel(fine, &stored));
         OK(leafless_attribute_placed(stored, over, &turned));
         leafless_attribute_free(stored);
         OK(leafless_channel_fill(turned, &frame, NULL, NULL, &mirror));
@@ -350,7 +350,7 @@ static void details(void) {
         CHECK(!same(mirror, fine));
         OK(leafless_channel_value(mirror, point, value));
         CHECK(fabs(value[0] + 0.3) <= 1.0 / 64);
-        OK(leafless_channel_as_attribute(mirror, &stored));
+        OK(leafless_attribute_from_channel(mirror, &stored));
         OK(leafless_attribute_placed(stored, over, &turned));
         leafless_attribute_free(stored);
         OK(leafless_channel_fill(turned, &frame, NULL, NULL, &again));
@@ -368,7 +368,7 @@ static void details(void) {
 
 static void metadata(void) {
     leafless_octree *ball = check_ball(3, LEAFLESS_RULE_CERTIFIED);
-    leafless_channel *channel = uniform(ball, 2, LEAFLESS_SCALAR_U8, "density");
+    leafless_channel *channel = uniform(ball, 2, LEAFLESS_SCALAR_TYPE_U8, "density");
     leafless_channel *unit = NULL, *bare = NULL, *renamed = NULL, *reference = NULL;
     const char *key = NULL, *value = NULL;
     static char large[1 << 16];
@@ -407,7 +407,7 @@ static void metadata(void) {
 
 static void regions(void) {
     leafless_octree *ball = check_ball(4, LEAFLESS_RULE_CERTIFIED), *box = check_box(5, -0.5, 0.0), *other = NULL;
-    leafless_channel *channel = uniform(ball, 2, LEAFLESS_SCALAR_U8, "material"), *changed = NULL, *taken = NULL;
+    leafless_channel *channel = uniform(ball, 2, LEAFLESS_SCALAR_TYPE_U8, "material"), *changed = NULL, *taken = NULL;
     leafless_channel_info info;
     leafless_frame elsewhere = {{0, 0, 0}, 1, 4};
     const double inside[3] = {-0.25, -0.25, -0.25}, outside[3] = {0.25, 0.25, 0.25};
@@ -428,7 +428,7 @@ static void regions(void) {
     leafless_channel_free(taken);
     taken = NULL;
     FAILS(LEAFLESS_E_ARGUMENT, leafless_channel_with_value_in(channel, box, &beyond, NULL, &taken));
-    OK(leafless_octree_uniform(&elsewhere, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &other));
+    OK(leafless_octree_new_uniform(&elsewhere, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &other));
     FAILS(LEAFLESS_E_FRAME, leafless_channel_with_value_in(channel, other, &number, NULL, &taken));
     CHECK(taken == NULL);
     leafless_octree_free(other);
@@ -440,7 +440,7 @@ static void regions(void) {
 
 /* The octree with a channel; the octree is given back. */
 static leafless_octree *bearing(leafless_octree *octree, double value, const char *name) {
-    leafless_channel *channel = uniform(octree, value, LEAFLESS_SCALAR_F32, name);
+    leafless_channel *channel = uniform(octree, value, LEAFLESS_SCALAR_TYPE_F32, name);
     leafless_octree *result = NULL;
     OK(leafless_octree_with_channel(octree, channel, &result));
     leafless_channel_free(channel);
@@ -501,8 +501,8 @@ static void octrees(void) {
     leafless_octree_free(result);
     result = NULL;
 
-    OK(leafless_octree_uniform(&elsewhere, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &other));
-    channel = uniform(other, 1, LEAFLESS_SCALAR_U8, "far");
+    OK(leafless_octree_new_uniform(&elsewhere, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &other));
+    channel = uniform(other, 1, LEAFLESS_SCALAR_TYPE_U8, "far");
     FAILS(LEAFLESS_E_FRAME, leafless_octree_with_channel(octree, channel, &result));
     leafless_octree_free(other);
     leafless_channel_free(channel);
@@ -512,7 +512,7 @@ static void octrees(void) {
         sprintf(name, "%d", i);
         bare = bearing(bare, i, name);
     }
-    channel = uniform(bare, 1, LEAFLESS_SCALAR_U8, "");
+    channel = uniform(bare, 1, LEAFLESS_SCALAR_TYPE_U8, "");
     FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_with_channel(bare, channel, &result));
     CHECK(result == NULL && first_at(bare, "200", 0, 0, 0) == 200);
     leafless_channel_free(channel);
@@ -592,7 +592,7 @@ static void carried(void) {
     leafless_octree_free(result);
     result = NULL;
     /* Two types under one name. */
-    one = uniform(b, 3, LEAFLESS_SCALAR_U8, "heat");
+    one = uniform(b, 3, LEAFLESS_SCALAR_TYPE_U8, "heat");
     OK(leafless_octree_with_channel(b, one, &odd));
     operands[1] = odd;
     FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_carry_channels(both, operands, 2, 0, NULL, 0, NULL, &result));

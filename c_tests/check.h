@@ -169,14 +169,14 @@ static inline uint8_t *check_read(const char *path, size_t *length) {
 /* The zone of a point, of a box, and of a ray. */
 static inline leafless_zone check_zone_point(const double *point) {
     leafless_zone zone = LEAFLESS_INIT(leafless_zone);
-    zone.kind = LEAFLESS_ZONE_POINT;
+    zone.kind = LEAFLESS_ZONE_KIND_POINT;
     memcpy(zone.point_model, point, sizeof zone.point_model);
     return zone;
 }
 
 static inline leafless_zone check_zone_box(const double *min, const double *max) {
     leafless_zone zone = LEAFLESS_INIT(leafless_zone);
-    zone.kind = LEAFLESS_ZONE_BOX;
+    zone.kind = LEAFLESS_ZONE_KIND_BOX;
     memcpy(zone.min_model, min, sizeof zone.min_model);
     memcpy(zone.max_model, max, sizeof zone.max_model);
     return zone;
@@ -184,7 +184,7 @@ static inline leafless_zone check_zone_box(const double *min, const double *max)
 
 static inline leafless_zone check_zone_ray(const double *origin, const double *direction, double from, double to) {
     leafless_zone zone = check_zone_point(origin);
-    zone.kind = LEAFLESS_ZONE_RAY;
+    zone.kind = LEAFLESS_ZONE_KIND_RAY;
     memcpy(zone.direction_model, direction, sizeof zone.direction_model);
     zone.from = from;
     zone.to = to;

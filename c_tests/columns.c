@@ -27,9 +27,9 @@ static void runs(const leafless_columns *columns, uint32_t axis, const uint32_t 
     uint64_t offset_count, run_count, index = 0, i;
     uint32_t u, v, on, along;
     for (on = 0; on < 2; on++, index = 0) {
-        OK(leafless_columns_read(columns, on, NULL, 0, &offset_count, NULL, 0, &run_count));
+        OK(leafless_columns_copy(columns, on, NULL, 0, &offset_count, NULL, 0, &run_count));
         CHECK(offset_count == number + 1 && run_count <= COUNT(all));
-        OK(leafless_columns_read(columns, on, offsets, offset_count, &offset_count, all, run_count, &run_count));
+        OK(leafless_columns_copy(columns, on, offsets, offset_count, &offset_count, all, run_count, &run_count));
         CHECK(offsets[0] == 0 && offsets[number] == run_count);
         for (v = first[1]; v < end[1]; v++) {
             for (u = first[0]; u < end[0]; u++, index++) {
@@ -49,8 +49,8 @@ static void runs(const leafless_columns *columns, uint32_t axis, const uint32_t 
     }
     if (run_count > 0) {
         run_count = 77;
-        FAILS(LEAFLESS_E_BUFFER, leafless_columns_read(columns, 0, offsets, number, &offset_count, NULL, 0, &run_count));
-        FAILS(LEAFLESS_E_BUFFER, leafless_columns_read(columns, 0, NULL, 0, &offset_count, all, 0, &run_count));
+        FAILS(LEAFLESS_E_BUFFER, leafless_columns_copy(columns, 0, offsets, number, &offset_count, NULL, 0, &run_count));
+        FAILS(LEAFLESS_E_BUFFER, leafless_columns_copy(columns, 0, NULL, 0, &offset_count, all, 0, &run_count));
         CHECK(run_count == 77);
     }
 }

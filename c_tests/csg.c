@@ -75,7 +75,7 @@ static void ranges_that_say_nothing(void) {
     const leafless_interval nothing[] = {{1, -1},    {-1, -2},   {2, 1},      {NAN, 1},  {NAN, -1},
                                          {1, NAN},   {-1, NAN},  {NAN, NAN},  {INFINITY, -INFINITY}},
                             all_inside = {1, INFINITY}, all_outside = {-INFINITY, -1}, open = {-1, INFINITY};
-    leafless_function function;
+    leafless_solid_function function;
     size_t i;
     OK(leafless_init(&function, sizeof function));
     function.value = constant_value;
@@ -100,7 +100,7 @@ static void ranges_that_say_nothing(void) {
 static void functions(void) {
     const double low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
     int calls = 0;
-    leafless_function function;
+    leafless_solid_function function;
     leafless_solid *a = NULL, *b = NULL, *c = NULL;
     const leafless_solid *parts[2];
     leafless_octree *octree = NULL;
@@ -201,10 +201,10 @@ static void motions(void) {
     leafless_membership answers[2];
     OK(leafless_solid_new_box(low, high, &box));
     OK(leafless_solid_new_box(ends[0], ends[1], &end));
-    OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &meshed));
+    OK(leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &meshed));
     leafless_mesh_free(mesh);
     OK(leafless_octree_build(end, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
-    OK(leafless_octree_as_solid(octree, &stored));
+    OK(leafless_solid_from_octree(octree, &stored));
     leafless_octree_free(octree);
 
     /* Where no number is rounded and cells are the images of cells, each is moved without loss. */
@@ -247,8 +247,8 @@ static void motions(void) {
     has_volume(placed(all, turn, LEAFLESS_MOTION_CONSERVATIVE), 1 + 0.25 / 8);
     a = placed(not_all, turn, LEAFLESS_MOTION_CONSERVATIVE);
     b = placed(a, exact, LEAFLESS_MOTION_CONSERVATIVE);
-    OK(leafless_solid_contains(a, &frame, above, 1, NULL, answers));
-    OK(leafless_solid_contains(a, &frame, outside, 1, NULL, answers + 1));
+    OK(leafless_solid_contains_many(a, &frame, above, 1, NULL, answers));
+    OK(leafless_solid_contains_many(a, &frame, outside, 1, NULL, answers + 1));
     CHECK(answers[0] == LEAFLESS_MEMBERSHIP_OUTSIDE && answers[1] == LEAFLESS_MEMBERSHIP_INSIDE);
     leafless_solid_free(b);
     leafless_solid_free(a);
@@ -305,7 +305,7 @@ static void evaluations(void) {
     CHECK(asked > built && asked <= 2 * built);
     /* References are one solid. */
     OK(leafless_solid_ref(both, &reference));
-    OK(leafless_solid_contains(reference, &frame, at, 1, NULL, &answer));
+    OK(leafless_solid_contains_many(reference, &frame, at, 1, NULL, &answer));
     CHECK(answer == LEAFLESS_MEMBERSHIP_INSIDE && evaluations_of(both) > asked);
     CHECK(evaluations_of(both) - asked < 1000 && evaluations_of(reference) == evaluations_of(both));
     leafless_solid_free(reference);
@@ -326,12 +326,12 @@ static void evaluations(void) {
     leafless_solid_free(other);
 
     /* Solids of other kinds have none to count. */
-    OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &other));
+    OK(leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &other));
     (void)statistics_of(other, LEAFLESS_RULE_CERTIFIED);
     CHECK(evaluations_of(other) == 0);
     leafless_solid_free(other);
     OK(leafless_octree_build(both, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
-    OK(leafless_octree_as_solid(octree, &other));
+    OK(leafless_solid_from_octree(octree, &other));
     asked = evaluations_of(both);
     (void)statistics_of(other, LEAFLESS_RULE_CERTIFIED);
     CHECK(evaluations_of(other) == 0 && evaluations_of(both) == asked);
@@ -464,7 +464,7 @@ int main(void) {
     {
         leafless_octree *octree = NULL;
         OK(leafless_octree_build(a, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
-        OK(leafless_octree_as_solid(octree, &b));
+        OK(leafless_solid_from_octree(octree, &b));
         leafless_octree_free(octree);
         c = ball(1);
         OK(check_solids(LEAFLESS_OPERATION_DIFFERENCE, b, c, &deep));

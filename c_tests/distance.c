@@ -34,7 +34,7 @@ static void points(const leafless_octree *octree, const leafless_solid *solid) {
             CHECK(holds(found[i], truth) && found[i].upper - found[i].lower < 0.25);
             CHECK(holds(near[i].distance_model, truth));
             /* The centre is as near to all of the boundary. */
-            CHECK(i == 0 || near[i].measured == LEAFLESS_MEASURED_TOLERANCE);
+            CHECK(i == 0 || near[i].measured == LEAFLESS_STOP_REASON_TOLERANCE);
             CHECK(i == 0 || near[i].distance_model.upper - near[i].distance_model.lower <= 1e-6);
         }
         CHECK(found[3].upper == INFINITY && near[3].distance_model.upper == INFINITY && near[3].splits == 0);

@@ -212,8 +212,8 @@ static leafless_status open_sheet(void) {
             }
         }
     }
-    arrays.vertex_type = LEAFLESS_VERTEX_F32;
-    arrays.index_type = LEAFLESS_INDEX_U16;
+    arrays.vertex_type = LEAFLESS_VERTEX_TYPE_F32;
+    arrays.index_type = LEAFLESS_INDEX_TYPE_U16;
     OK(leafless_init(&options, sizeof options));
     options.threads = 1;
     status = leafless_mesh_new(&arrays, &mesh);
@@ -223,10 +223,10 @@ static leafless_status open_sheet(void) {
     status = leafless_mesh_defects(mesh, UINT64_MAX, defects, COUNT(defects), &count);
     if (status == LEAFLESS_OK) {
         CHECK(count >= 5);
-        status = leafless_mesh_describe(mesh, &report);
+        status = leafless_mesh_inspect(mesh, &report);
     }
     if (status == LEAFLESS_OK) {
-        status = leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid);
+        status = leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid);
     }
     if (status == LEAFLESS_OK) {
         status = leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree);
@@ -263,10 +263,10 @@ static leafless_status scanned_ball(void) {
         }
     }
     OK(leafless_init(&layout, sizeof layout));
-    layout.sample_type = LEAFLESS_SAMPLE_U16;
+    layout.sample_type = LEAFLESS_SAMPLE_TYPE_U16;
     layout.extents[0] = layout.extents[1] = layout.extents[2] = SIDE;
     OK(leafless_init(&surface, sizeof surface));
-    surface.method = LEAFLESS_SURFACE_SMC;
+    surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
     OK(leafless_init(&write, sizeof write));
     write.format = LEAFLESS_MESH_FORMAT_PLY;
     OK(leafless_init(&options, sizeof options));
@@ -276,11 +276,11 @@ static leafless_status scanned_ball(void) {
         return volume == (leafless_volume *)UNTOUCHED ? status : LEAFLESS_E_PANIC;
     }
     OK(leafless_volume_frame(volume, &frame));
-    status = leafless_solid_new_volume(volume, NULL, &options, &solid);
+    status = leafless_solid_from_volume(volume, NULL, &options, &solid);
     if (!status) status = leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, &options, &octree);
     if (!status) status = leafless_octree_surface(octree, NULL, &options, &mesh);
     if (!status) status = leafless_octree_surface(octree, &surface, &options, &other);
-    if (!status) status = leafless_mesh_describe(mesh, &report);
+    if (!status) status = leafless_mesh_inspect(mesh, &report);
     if (!status) status = mesh_to_bytes(mesh, &write, NULL, 0, &length);
     if (!status) status = volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_NRRD_GZIP, NULL, 0, &length);
     if (!status) {
@@ -424,14 +424,14 @@ int main(int argc, char **argv) {
         leafless_solid *stored = NULL, *meshed = NULL;
         leafless_membership membership = 77;
         leafless_region region = 77;
-        OK(leafless_octree_as_solid(ball, &stored));
+        OK(leafless_solid_from_octree(ball, &stored));
         FAILS(LEAFLESS_E_FRAME, leafless_octree_build(stored, &apart, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
-        FAILS(LEAFLESS_E_FRAME, leafless_solid_contains(stored, &apart, centre, 1, NULL, &membership));
+        FAILS(LEAFLESS_E_FRAME, leafless_solid_contains_many(stored, &apart, centre, 1, NULL, &membership));
         FAILS(LEAFLESS_E_FRAME, leafless_solid_classify_box(stored, &apart, centre, corner, NULL, &region));
         failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [");
         CHECK(region == 77);
-        OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &meshed));
-        OK(leafless_solid_contains(meshed, &apart, centre, 1, NULL, &membership));
+        OK(leafless_solid_from_mesh(cube, LEAFLESS_FILL_NON_ZERO, &meshed));
+        OK(leafless_solid_contains_many(meshed, &apart, centre, 1, NULL, &membership));
         CHECK(membership == LEAFLESS_MEMBERSHIP_INSIDE);
         OK(leafless_solid_classify_box(meshed, &other, centre, corner, NULL, &region));
         CHECK(region == LEAFLESS_REGION_INSIDE);
@@ -455,7 +455,7 @@ int main(int argc, char **argv) {
         failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "triangle 0 refers to vertex 8");
         FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(open, LEAFLESS_FILL_EVEN_ODD));
         failed(LEAFLESS_E_MESH, "LEAFLESS_E_MESH", "3 edges");
-        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, LEAFLESS_FILL_EVEN_ODD, &none));
+        FAILS(LEAFLESS_E_MESH, leafless_solid_from_mesh(open, LEAFLESS_FILL_EVEN_ODD, &none));
         leafless_mesh_free(open);
         {
             /* Moved beyond the numbers that meshes may have, which end at 2^256. */
@@ -463,7 +463,7 @@ int main(int argc, char **argv) {
             leafless_solid *rest = NULL, *moved = NULL;
             leafless_motion motion = 77;
             int i;
-            OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &rest));
+            OK(leafless_solid_from_mesh(cube, LEAFLESS_FILL_NON_ZERO, &rest));
             for (i = 0; i < 4; i++) {
                 OK(leafless_solid_placed(rest, larger, NULL, &moved));
                 leafless_solid_free(rest);
@@ -500,8 +500,8 @@ int main(int argc, char **argv) {
 
     {
         uint8_t *altered = (uint8_t *)malloc((size_t)length);
-        leafless_probe probe;
-        leafless_section sections[8];
+        leafless_file_info probe;
+        leafless_file_section sections[8];
         CHECK(altered != NULL);
         memcpy(altered, bytes, (size_t)length);
         altered[MAJOR_VERSION] = 3;
@@ -584,18 +584,18 @@ int main(int argc, char **argv) {
     {
         /* Whoever asks a solid can be stopped, and hears of the host's own errors. */
         const double at[3] = {0.7, 0.2, 0.1}, beside[3] = {0.8, 0.3, 0.2};
-        leafless_callbacks callbacks;
+        leafless_solid_callbacks callbacks;
         leafless_solid *host = NULL;
         leafless_membership membership = 77;
         leafless_region region = 77;
         options.progress = NULL;
         options.control = control;
-        FAILS(LEAFLESS_E_CANCELLED, leafless_solid_contains(solid, &other, at, 1, &options, &membership));
+        FAILS(LEAFLESS_E_CANCELLED, leafless_solid_contains_many(solid, &other, at, 1, &options, &membership));
         FAILS(LEAFLESS_E_CANCELLED, leafless_solid_classify_box(solid, &other, at, beside, &options, &region));
         OK(leafless_init(&callbacks, sizeof callbacks));
         callbacks.distance_many = knows_nothing;
         OK(leafless_solid_new_callbacks(&callbacks, &host));
-        FAILS(LEAFLESS_E_CALLBACK, leafless_solid_contains(host, &other, at, 1, NULL, &membership));
+        FAILS(LEAFLESS_E_CALLBACK, leafless_solid_contains_many(host, &other, at, 1, NULL, &membership));
         failed(LEAFLESS_E_CALLBACK, "LEAFLESS_E_CALLBACK", "-815");
         CHECK(leafless_last_code() == -815);
         FAILS(LEAFLESS_E_CALLBACK, leafless_solid_classify_box(host, &other, at, beside, NULL, &region));
@@ -656,14 +656,14 @@ int main(int argc, char **argv) {
         leafless_octree *with = NULL;
         leafless_channel_fill_options fill;
         leafless_channel_info info;
-        leafless_probe probe;
-        leafless_section sections[32];
+        leafless_file_info probe;
+        leafless_file_section sections[32];
         uint64_t file_length = 0;
         uint8_t *file;
         double value = 77;
         OK(leafless_attribute_new_constant(&large, 1, &one));
         OK(leafless_init(&fill, sizeof fill));
-        fill.scalar = LEAFLESS_SCALAR_U8;
+        fill.scalar = LEAFLESS_SCALAR_TYPE_U8;
         FAILS(LEAFLESS_E_ARGUMENT, leafless_channel_fill(one, &frame, &fill, NULL, &channel));
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "value: must lie in the range of the channel's type");
         fill.solid = ball;
@@ -724,11 +724,11 @@ int main(int argc, char **argv) {
         uint64_t count = 77, offset_count = 77;
         OK(leafless_init(&along_y, sizeof along_y));
         along_y.directions = LEAFLESS_AXES_Y;
-        OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
-        OK(leafless_tridexel_make(solid, &apart, LEAFLESS_RULE_SAMPLED, NULL, NULL, &other));
-        OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, &along_y, NULL, &column));
+        OK(leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
+        OK(leafless_tridexel_build(solid, &apart, LEAFLESS_RULE_SAMPLED, NULL, NULL, &other));
+        OK(leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, &along_y, NULL, &column));
         OK(leafless_tridexel_editor_new(model, &editor));
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
         failed(LEAFLESS_E_ARGUMENT, "LEAFLESS_E_ARGUMENT", "take sampled, inner or outer");
         FAILS(LEAFLESS_E_FRAME, check_tridexels(LEAFLESS_OPERATION_UNION, model, other, NULL, &result));
         failed(LEAFLESS_E_FRAME, "LEAFLESS_E_FRAME", "different frames: origin [-1");
@@ -745,8 +745,8 @@ int main(int argc, char **argv) {
         {
             /* Intervals of a file that nobody has verified. */
             leafless_tridexel *viewed = NULL;
-            leafless_probe probe;
-            leafless_section sections[32];
+            leafless_file_info probe;
+            leafless_file_section sections[32];
             uint64_t file_length = 0;
             uint8_t *file;
             OK(tridexel_to_bytes(model, NULL, 0, &file_length));
@@ -774,7 +774,7 @@ int main(int argc, char **argv) {
         }
         OK(leafless_init(&options, sizeof options));
         options.max_bytes = 100;
-        FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
+        FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
         failed(LEAFLESS_E_LIMIT, "LEAFLESS_E_LIMIT", "100 bytes");
         options.max_bytes = 0;
         options.control = control;
@@ -801,7 +801,7 @@ int main(int argc, char **argv) {
     {
         /* A function that is asked about a cell of an octree uses that octree. */
         leafless_lazy *lazy = NULL;
-        leafless_callbacks callbacks;
+        leafless_solid_callbacks callbacks;
         leafless_solid *host = NULL;
         OK(leafless_init(&callbacks, sizeof callbacks));
         callbacks.classify = uses_the_octree;

@@ -36,7 +36,7 @@ std::vector<uint16_t> shells() {
 volume_ptr view(const std::vector<uint16_t> &samples) {
     leafless_volume_layout layout;
     OK(leafless_init(&layout, sizeof layout));
-    layout.sample_type = LEAFLESS_SAMPLE_U16;
+    layout.sample_type = LEAFLESS_SAMPLE_TYPE_U16;
     for (uint32_t &extent : layout.extents) extent = SIDE;
     leafless_volume *volume = nullptr;
     OK(volume_in_place(&layout, samples.data(), 2 * samples.size(), &volume));
@@ -49,7 +49,7 @@ octree_ptr voxels(const leafless_volume *volume, double threshold) {
     leafless_solid *solid = nullptr;
     leafless_octree *octree = nullptr;
     OK(leafless_volume_frame(volume, &frame));
-    OK(leafless_solid_new_volume(volume, &band, nullptr, &solid));
+    OK(leafless_solid_from_volume(volume, &band, nullptr, &solid));
     const solid_ptr owner(solid);
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, nullptr, &octree));
     return octree_ptr(octree);
@@ -148,7 +148,7 @@ void cancelling() {
     options.control = control;
     leafless_surface_options surface;
     OK(leafless_init(&surface, sizeof surface));
-    surface.placement = LEAFLESS_PLACEMENT_CROSSING;
+    surface.placement = LEAFLESS_VERTEX_PLACEMENT_CROSSING;
     std::atomic<bool> is_done{false};
     std::thread other([&] {
         double fraction = 0;

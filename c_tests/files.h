@@ -64,13 +64,13 @@ WAYS_IN_AND_OUT(octree)
 WAYS_IN_AND_OUT(tridexel)
 
 static inline leafless_status mesh_open(const char *path, size_t path_length, const leafless_mesh_options *options,
-                                        leafless_mesh_found *found, leafless_mesh **mesh) {
+                                        leafless_mesh_file_info *found, leafless_mesh **mesh) {
     const leafless_source source = source_path(path, path_length, LEAFLESS_ACCESS_COPY);
     return leafless_mesh_read(&source, options, found, mesh);
 }
 
 static inline leafless_status mesh_from_bytes(const uint8_t *bytes, uint64_t length, const leafless_mesh_options *options,
-                                              leafless_mesh_found *found, leafless_mesh **mesh) {
+                                              leafless_mesh_file_info *found, leafless_mesh **mesh) {
     const leafless_source source = leafless_from_bytes(bytes, length, LEAFLESS_ACCESS_COPY);
     return leafless_mesh_read(&source, options, found, mesh);
 }
@@ -136,16 +136,16 @@ static inline leafless_status scene_from_text(const char *text, const char *fold
     return leafless_scene_read(&source, &options, scene);
 }
 
-static inline leafless_status probe_path(const char *path, size_t path_length, leafless_probe *probe,
-                                         leafless_section *sections, uint64_t capacity) {
+static inline leafless_status probe_path(const char *path, size_t path_length, leafless_file_info *probe,
+                                         leafless_file_section *sections, uint64_t capacity) {
     const leafless_source source = source_path(path, path_length, LEAFLESS_ACCESS_COPY);
-    return leafless_file_probe(&source, probe, sections, capacity);
+    return leafless_file_describe(&source, probe, sections, capacity);
 }
 
-static inline leafless_status probe_bytes(const uint8_t *bytes, uint64_t length, leafless_probe *probe,
-                                          leafless_section *sections, uint64_t capacity) {
+static inline leafless_status probe_bytes(const uint8_t *bytes, uint64_t length, leafless_file_info *probe,
+                                          leafless_file_section *sections, uint64_t capacity) {
     const leafless_source source = leafless_from_bytes(bytes, length, LEAFLESS_ACCESS_COPY);
-    return leafless_file_probe(&source, probe, sections, capacity);
+    return leafless_file_describe(&source, probe, sections, capacity);
 }
 
 static inline leafless_status verify_path(const char *path, size_t path_length, leafless_access access) {

@@ -201,3 +201,29 @@ fn every_error_has_a_status() {
         assert!(is_named, "capi/src/boundary.rs does not say which status {named} has");
     }
 }
+
+/// The rule for names in the preface: members begin with the name of their enumeration, and UNDECIDED is one number.
+#[test]
+fn members_of_enumerations_go_by_its_name() {
+    let mut members = 0;
+    for part in generated().split("\nLEAFLESS_ENUM(").skip(1) {
+        let (name, rest) = part.split_once(',').unwrap();
+        if name == "leafless_status" {
+            continue;
+        }
+        let prefix = format!("{}_", name.to_uppercase());
+        let (_, body) = rest.split_once("{\n").unwrap();
+        for line in body.split_once("\n};").unwrap().0.lines().map(str::trim) {
+            let Some((member, number)) = line.split_once(" = ") else { continue };
+            if line.starts_with('/') {
+                continue;
+            }
+            assert!(member.starts_with(&prefix), "{member} of {name}");
+            if member.ends_with("_UNDECIDED") || member == "LEAFLESS_TAG_PARTIAL" {
+                assert!(number.starts_with("2,"), "{line}");
+            }
+            members += 1;
+        }
+    }
+    assert!(members > 150, "{members}");
+}

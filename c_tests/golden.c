@@ -29,8 +29,8 @@ static uint64_t whole(const char *text, char **end) {
     return (uint64_t)strtoull(text, end, 10);
 }
 
-static void check_fact(const char *line, const leafless_octree *octree, const leafless_probe *probe,
-                       const leafless_section *sections, uint64_t *metadata) {
+static void check_fact(const char *line, const leafless_octree *octree, const leafless_file_info *probe,
+                       const leafless_file_section *sections, uint64_t *metadata) {
     static const char *const ANSWERS[] = {"outside", "inside", "undecided"};
     leafless_octree_info info;
     leafless_statistics all, levels[32];
@@ -111,8 +111,8 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
 
 static void read_valid(const char *path, char *text) {
     leafless_octree *octrees[6];
-    leafless_probe probe;
-    leafless_section sections[64];
+    leafless_file_info probe;
+    leafless_file_section sections[64];
     size_t length, i;
     uint8_t *bytes = check_read(path, &length);
     char *line;
@@ -166,7 +166,7 @@ static bool is_tridexel(const char *path) {
 static void read_valid_tridexel(const char *path, const char *text) {
     leafless_tridexel *models[6];
     leafless_octree *octree = NULL;
-    leafless_probe probe;
+    leafless_file_info probe;
     size_t length, i;
     uint64_t again_length = 0;
     uint8_t *again, *bytes = check_read(path, &length);
@@ -215,7 +215,7 @@ static void read_valid_tridexel(const char *path, const char *text) {
 static void read_invalid(const char *path, char *text) {
     leafless_octree *octree = NULL;
     leafless_tridexel *model = NULL;
-    leafless_probe probe;
+    leafless_file_info probe;
     size_t length;
     uint8_t *bytes = check_read(path, &length);
     const char *by = NULL;

@@ -22,7 +22,7 @@ int main(void) {
     if (options.struct_size != sizeof options || options.max_nodes != 0) {
         return 4;
     }
-    if (leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &octree) != ALLOWED[0]) {
+    if (leafless_octree_new_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &octree) != ALLOWED[0]) {
         return 1;
     }
     if (leafless_octree_describe(octree, &info) != LEAFLESS_OK) {

@@ -35,7 +35,7 @@ int main() {
     }
     leafless_octree *octree = nullptr;
     // Enumerators convert to the numbers that functions take.
-    if (leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &octree) != LEAFLESS_OK) {
+    if (leafless_octree_new_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &octree) != LEAFLESS_OK) {
         return 1;
     }
     leafless_octree_info info;

@@ -15,7 +15,7 @@ static leafless_solid *ball(double at) {
 static leafless_solid *moved(const leafless_solid *operand, double offset) {
     const double matrix[12] = {1, 0, 0, offset, 0, 1, 0, offset, 0, 0, 1, offset};
     leafless_solid *solid = NULL;
-    OK(leafless_solid_new_transform(operand, &frame, matrix, &solid));
+    OK(leafless_solid_transformed(operand, &frame, matrix, &solid));
     return solid;
 }
 
@@ -42,13 +42,13 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
     OK(leafless_solid_clearance(a, apart, &frame, 0.5, NULL, &near));
     CHECK(near.distance_model.lower < 2.3538 && near.distance_model.upper > 2.3537 && near.has_nearest);
     CHECK(near.distance_model.upper - near.distance_model.lower <= 0.5 && !near.is_clipped);
-    CHECK(near.measured == LEAFLESS_MEASURED_TOLERANCE);
+    CHECK(near.measured == LEAFLESS_STOP_REASON_TOLERANCE);
     CHECK(near.nearest_a_level > 0 && near.nearest_b_level > 0 && near.nearest_a[0] < near.nearest_b[0]);
     OK(leafless_solid_clearance(a, over, &frame, 0.5, NULL, &near));
     CHECK(near.distance_model.lower == 0);
     /* Finer than the finest cells: they say when they have told all. */
     OK(leafless_solid_clearance(a, apart, &frame, 1e-6, NULL, &near));
-    CHECK(near.measured == LEAFLESS_MEASURED_EXHAUSTED && near.distance_model.upper < 2.8);
+    CHECK(near.measured == LEAFLESS_STOP_REASON_EXHAUSTED && near.distance_model.upper < 2.8);
 }
 
 /* Many placements are as one after the other, for any number of threads. */
@@ -70,7 +70,7 @@ static void many(const leafless_solid *a, const leafless_solid *b) {
         OK(leafless_solid_interfere_many(a, b, &frame, matrices[0], 40, &frame, INFINITY, &options, found));
         for (i = 0; i < 40; i++) {
             leafless_solid *placed = NULL;
-            OK(leafless_solid_new_transform(b, &frame, matrices[i], &placed));
+            OK(leafless_solid_transformed(b, &frame, matrices[i], &placed));
             OK(leafless_solid_interfere(a, placed, &frame, INFINITY, &options, &one));
             CHECK(found[i].verdict == one.verdict && found[i].splits_b == one.splits_b);
             CHECK(found[i].volume_model.upper == one.volume_model.upper);
@@ -91,16 +91,16 @@ static void refusals(const leafless_solid *a) {
     leafless_frame other = frame;
     leafless_octree *octree = NULL;
     leafless_solid *stored = NULL, *placed = NULL;
-    CHECK(leafless_solid_new_transform(a, &frame, singular, &never) == LEAFLESS_E_ARGUMENT && never == NULL);
+    CHECK(leafless_solid_transformed(a, &frame, singular, &never) == LEAFLESS_E_ARGUMENT && never == NULL);
     CHECK(leafless_solid_interfere_many(a, a, &frame, singular, 1, &frame, 0, NULL, &found) == LEAFLESS_E_ARGUMENT);
     CHECK(leafless_solid_interfere(a, a, &frame, NAN, NULL, &found) == LEAFLESS_E_ARGUMENT);
     CHECK(leafless_solid_clearance(a, a, &frame, NAN, NULL, &near) == LEAFLESS_E_ARGUMENT);
     other.depth = 0;
-    CHECK(leafless_solid_new_transform(a, &other, singular, &never) == LEAFLESS_E_ARGUMENT);
+    CHECK(leafless_solid_transformed(a, &other, singular, &never) == LEAFLESS_E_ARGUMENT);
     /* A stored octree is known on its own universe only. */
     other.depth = 6;
     OK(leafless_octree_build(a, &other, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
-    OK(leafless_octree_as_solid(octree, &stored));
+    OK(leafless_solid_from_octree(octree, &stored));
     other.edge = 256;
     CHECK(leafless_solid_interfere(stored, a, &other, 0, NULL, &found) == LEAFLESS_E_FRAME);
     placed = moved(stored, 1);

@@ -48,12 +48,12 @@ static void cell_by_cell(const leafless_solid *solid) {
         leafless_tag tags[8], tag, again[8];
         bool can_split = false;
         uint32_t k;
-        OK(leafless_lazy_tag(lazy, cell, cell[3], &tag, &can_split));
+        OK(leafless_lazy_tag_at(lazy, cell, cell[3], &tag, &can_split));
         CHECK(tag == LEAFLESS_TAG_PARTIAL && can_split);
         OK(leafless_lazy_split(lazy, cell, cell[3], tags));
         OK(leafless_lazy_split(lazy, cell, cell[3], again));
         CHECK(memcmp(tags, again, sizeof tags) == 0);
-        OK(leafless_lazy_tag(lazy, cell, cell[3], &tag, &can_split));
+        OK(leafless_lazy_tag_at(lazy, cell, cell[3], &tag, &can_split));
         CHECK(!can_split);
         for (k = 0; k < 8; k++) {
             if (tags[k] == LEAFLESS_TAG_PARTIAL && cell[3] + 1 < DEPTH) {
@@ -118,9 +118,9 @@ static void zones(const leafless_solid *solid) {
     OK(leafless_lazy_refine(lazy, NULL, DEPTH, NULL, &done));
     CHECK(done && is_built(lazy));
 
-    OK(leafless_lazy_tag(lazy, outside, 1, &tag, NULL));
+    OK(leafless_lazy_tag_at(lazy, outside, 1, &tag, NULL));
     CHECK(tag == LEAFLESS_TAG_PARTIAL);
-    OK(leafless_lazy_tag(lazy, universe, UINT32_MAX, &tag, &can_split));
+    OK(leafless_lazy_tag_at(lazy, universe, UINT32_MAX, &tag, &can_split));
     CHECK(tag == LEAFLESS_TAG_PARTIAL && !can_split);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_split(lazy, outside, 1, tags));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_lazy_split(lazy, finest, DEPTH, tags));
@@ -238,7 +238,7 @@ static int32_t gives_up(void *ctx, const double *min, const double *max) {
 static void taken_up(const leafless_solid *ball) {
     const double point[3] = {0.7, 0.1, 0.1};
     leafless_frame deep = frame;
-    leafless_callbacks callbacks;
+    leafless_solid_callbacks callbacks;
     leafless_solid *solid = NULL, *other = NULL, *nameless = NULL;
     leafless_lazy *lazy = NULL, *never = NULL;
     leafless_octree *octree, *loaded = NULL, *direct, *resumed;

@@ -28,7 +28,7 @@ static void frames(void) {
     frame = check_frame(3);
     OK(leafless_frame_cell_size(&frame, &size));
     CHECK(size == 0.25);
-    OK(leafless_frame_cell_of(&frame, inside, cell));
+    OK(leafless_frame_cell_at(&frame, inside, cell));
     CHECK(cell[0] == 6 && cell[1] == 2 && cell[2] == 0);
     OK(leafless_frame_plane(&frame, 0, 8, &plane));
     CHECK(plane.lower == 1.0 && plane.upper == 1.0);
@@ -60,7 +60,7 @@ static void meshes(void) {
     OK(leafless_mesh_volume(cube, &volume));
     CHECK(volume == 1.0);
     OK(leafless_mesh_check_closed(cube, LEAFLESS_FILL_NON_ZERO));
-    OK(leafless_mesh_describe(cube, &report));
+    OK(leafless_mesh_inspect(cube, &report));
     CHECK(report.facets_read == 12 && report.triangles == 12 && report.vertices == 8 && report.welded == 0);
     CHECK(report.boundary_edges == 0 && report.bodies == 1 && report.sewn == 0 && report.displacement_model == 0.0);
 
@@ -79,7 +79,7 @@ static void meshes(void) {
         other[0][0] = 8;
         arrays.vertex_stride = sizeof strided[0];
         OK(leafless_mesh_new(&arrays, &twice));
-        OK(leafless_mesh_describe(twice, &report));
+        OK(leafless_mesh_inspect(twice, &report));
         CHECK(report.vertices == 8 && report.welded == 1 && report.boundary_edges == 0);
     }
 
@@ -139,7 +139,7 @@ static void solids(void) {
     leafless_solid_free(solid);
 
     /* A solid keeps its mesh. */
-    OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
+    OK(leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
     leafless_mesh_free(mesh);
     OK(leafless_solid_ref(solid, &reference));
     CHECK(reference == solid);
@@ -155,13 +155,13 @@ static void solids(void) {
         leafless_motion motion;
         leafless_solid *moved = NULL;
         uint64_t evaluations = 77;
-        OK(leafless_solid_contains(reference, &deep, at[0], 2, NULL, answers));
+        OK(leafless_solid_contains_many(reference, &deep, at[0], 2, NULL, answers));
         CHECK(answers[0] == LEAFLESS_MEMBERSHIP_INSIDE && answers[1] == LEAFLESS_MEMBERSHIP_OUTSIDE);
         OK(leafless_solid_classify_box(reference, &frame, min, max, NULL, &region));
         CHECK(region == LEAFLESS_REGION_INSIDE);
         OK(leafless_solid_placed(reference, matrix, &motion, &moved));
         CHECK(motion == LEAFLESS_MOTION_VERTICES);
-        OK(leafless_solid_contains(moved, &deep, at[0], 2, NULL, answers));
+        OK(leafless_solid_contains_many(moved, &deep, at[0], 2, NULL, answers));
         CHECK(answers[0] == LEAFLESS_MEMBERSHIP_OUTSIDE && answers[1] == LEAFLESS_MEMBERSHIP_OUTSIDE);
         OK(leafless_solid_evaluations(moved, &evaluations));
         CHECK(evaluations == 0);
@@ -179,7 +179,7 @@ static void solids(void) {
     CHECK(info.is_binary && info.is_clipped && info.exterior == LEAFLESS_TAG_PARTIAL);
 
     /* A stored octree is a solid again, and the solid keeps it. */
-    OK(leafless_octree_as_solid(half, &solid));
+    OK(leafless_solid_from_octree(half, &solid));
     leafless_octree_free(half);
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &slab));
     leafless_solid_free(solid);
@@ -260,7 +260,7 @@ static void queries(void) {
     leafless_point_table *table = NULL;
     uint8_t level = 99;
     leafless_cursor *cursor = NULL;
-    leafless_cursor_state state;
+    leafless_cursor_info state;
     bool moved;
     int i;
 
@@ -306,14 +306,14 @@ static void queries(void) {
     CHECK(one == LEAFLESS_MEMBERSHIP_INSIDE);
     leafless_point_table_free(table);
 
-    OK(leafless_cursor_read(cursor, &state));
+    OK(leafless_cursor_describe(cursor, &state));
     CHECK(state.level == 0 && state.tag == LEAFLESS_TAG_BRANCH && state.children[7] == LEAFLESS_TAG_BRANCH);
     OK(leafless_cursor_ascend(cursor, &moved));
     CHECK(!moved);
     OK(leafless_cursor_descend(cursor, 7, &moved));
     CHECK(moved);
     OK(leafless_cursor_descend(cursor, 0, NULL));
-    OK(leafless_cursor_read(cursor, &state));
+    OK(leafless_cursor_describe(cursor, &state));
     CHECK(state.level == 2 && state.cell[0] == 2 && state.cell[1] == 2 && state.cell[2] == 2);
     CHECK(state.tag == LEAFLESS_TAG_BRANCH || state.tag == LEAFLESS_TAG_FULL);
     OK(leafless_cursor_ascend(cursor, NULL));
@@ -322,7 +322,7 @@ static void queries(void) {
     for (i = 0; i < 20 && moved; i++) {
         OK(leafless_cursor_descend(cursor, 0, &moved));
     }
-    OK(leafless_cursor_read(cursor, &state));
+    OK(leafless_cursor_describe(cursor, &state));
     CHECK(!moved && state.tag != LEAFLESS_TAG_BRANCH && state.children[3] == state.tag);
     leafless_cursor_free(cursor);
 }
@@ -445,7 +445,7 @@ static void octrees(void) {
     CHECK(count == 0 && check_same(fewer, more));
     leafless_octree_free(fewer);
 
-    OK(leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_PARTIAL, &full));
+    OK(leafless_octree_new_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_PARTIAL, &full));
     OK(leafless_octree_statistics(full, &t));
     CHECK(t.full == 1 && t.lower_cells == 64 * 64 * 64 && t.volume_model.lower == 8.0);
 

@@ -84,8 +84,8 @@ static void refused(uint8_t *bytes, uint64_t length, const leafless_octree *orig
 
 static void ways_in_and_out(void) {
     leafless_octree *ball = check_ball(6, LEAFLESS_RULE_CERTIFIED), *named = NULL, *octree = NULL;
-    leafless_probe probe, of_bytes;
-    leafless_section sections[16], same[16];
+    leafless_file_info probe, of_bytes;
+    leafless_file_section sections[16], same[16];
     uint64_t length, i;
     size_t on_disk;
     uint8_t *bytes, *file;
@@ -190,7 +190,7 @@ static void truncated(void) {
     uint64_t length, cut;
     size_t way;
     uint8_t *bytes = check_bytes(ball, &length);
-    leafless_probe probe;
+    leafless_file_info probe;
     OK(octree_save(ball, PATH("cut.lfl")));
     for (cut = length; cut-- > 0;) {
         /* Exactly as long, so that memory checkers see every byte beyond the end. */
@@ -252,7 +252,7 @@ static void removed_and_replaced(void) {
     leafless_octree *first = NULL, *second = NULL;
     leafless_solid *solid = NULL;
     leafless_cursor *cursor = NULL;
-    leafless_cursor_state state;
+    leafless_cursor_info state;
     leafless_frame frame = check_frame(6);
 
     OK(octree_save(ball, PATH("one.lfl")));
@@ -271,12 +271,12 @@ static void removed_and_replaced(void) {
     OK(octree_save(second, PATH("one.lfl")));
     CHECK(check_same(second, ball));
     /* What was made of the mapping keeps it. */
-    OK(leafless_octree_as_solid(second, &solid));
+    OK(leafless_solid_from_octree(second, &solid));
     OK(leafless_cursor_new(second, &cursor));
     leafless_octree_free(second);
     CHECK(unlink("one.lfl") == 0);
     OK(leafless_cursor_descend(cursor, 5, NULL));
-    OK(leafless_cursor_read(cursor, &state));
+    OK(leafless_cursor_describe(cursor, &state));
     CHECK(state.level == 1 && state.cell[0] == 1 && state.cell[1] == 0 && state.cell[2] == 1);
     leafless_cursor_free(cursor);
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &second));

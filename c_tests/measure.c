@@ -47,7 +47,7 @@ static void ball(void) {
     OK(leafless_solid_measure(solid, &frame, 0.05, 0.0, NULL, &measures));
     CHECK(measures.volume_model.lower < volume && volume < measures.volume_model.upper);
     CHECK(measures.volume_model.upper - measures.volume_model.lower <= 0.05 * measures.volume_model.upper);
-    CHECK(measures.measured == LEAFLESS_MEASURED_TOLERANCE && measures.has_centroid && !measures.is_clipped);
+    CHECK(measures.measured == LEAFLESS_STOP_REASON_TOLERANCE && measures.has_centroid && !measures.is_clipped);
     CHECK(!measures.is_exact);
     CHECK(measures.splits > 20 && measures.level >= 2 && measures.level < 12);
     for (i = 0; i < 3; i++) {
@@ -70,13 +70,13 @@ static void ball(void) {
     last = 0.0;
     OK(leafless_solid_measure(solid, &frame, 0.0, 0.0, &options, &again));
     /* The last whole pass counts. */
-    CHECK(again.measured == LEAFLESS_MEASURED_BUDGET && again.splits > 0 && again.splits <= 65 && last == 1.0);
+    CHECK(again.measured == LEAFLESS_STOP_REASON_BUDGET && again.splits > 0 && again.splits <= 65 && last == 1.0);
     CHECK(again.volume_model.lower < volume && volume < again.volume_model.upper);
 
     options.max_splits = 0;
     last = 0.0;
     OK(leafless_solid_bounding_box(solid, &frame, 0.01, &options, &extent));
-    CHECK(extent.measured == LEAFLESS_MEASURED_TOLERANCE && last == 1.0 && extent.splits < 20000);
+    CHECK(extent.measured == LEAFLESS_STOP_REASON_TOLERANCE && last == 1.0 && extent.splits < 20000);
     CHECK(extent.is_occupied && !extent.is_empty && !extent.is_clipped);
     for (i = 0; i < 3; i++) {
         CHECK(holds(extent.min_model[i], -0.75) && holds(extent.max_model[i], 0.75));
@@ -85,7 +85,7 @@ static void ball(void) {
 
     /* Either tolerance ends it. */
     OK(leafless_solid_measure(solid, &frame, 0.0, 0.01, NULL, &again));
-    CHECK(again.measured == LEAFLESS_MEASURED_TOLERANCE);
+    CHECK(again.measured == LEAFLESS_STOP_REASON_TOLERANCE);
     CHECK(again.volume_model.upper - again.volume_model.lower <= 0.01);
     CHECK(again.volume_model.lower < volume && volume < again.volume_model.upper);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, 0.0, -1.0, NULL, &again));
@@ -97,7 +97,7 @@ static void ball(void) {
         leafless_solid *block = NULL;
         leafless_surface_area surface, same;
         OK(leafless_solid_surface_area(solid, &frame, 0.001, 0.0, NULL, &surface));
-        CHECK(holds(surface.area_model, area) && surface.measured == LEAFLESS_MEASURED_TOLERANCE);
+        CHECK(holds(surface.area_model, area) && surface.measured == LEAFLESS_STOP_REASON_TOLERANCE);
         CHECK(surface.area_model.upper - surface.area_model.lower <= 0.001 * area && !surface.is_clipped);
         options.max_splits = 0;
         last = 0.0;
@@ -107,7 +107,7 @@ static void ball(void) {
         OK(leafless_solid_new_box(low, high, &block));
         OK(leafless_solid_surface_area(block, &frame, 0.001, 0.0, NULL, &same));
         CHECK(same.is_clipped);
-        CHECK(same.measured == LEAFLESS_MEASURED_EXHAUSTED && same.area_model.lower == 0.0);
+        CHECK(same.measured == LEAFLESS_STOP_REASON_EXHAUSTED && same.area_model.lower == 0.0);
         CHECK(same.area_model.upper == (double)INFINITY);
         FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_surface_area(solid, &frame, -1.0, 0.0, NULL, &same));
         options.progress = refuse;
@@ -122,7 +122,7 @@ static void ball(void) {
         const double none[3] = {0.0, 0.0, 0.0}, far[3] = {9.0, 9.0, 9.0}, wild[3] = {0.0, NAN, 0.0};
         leafless_section_area section, same;
         OK(leafless_solid_section_area(solid, &frame, point, normal, 1e-6, 0.0, NULL, &section));
-        CHECK(holds(section.area_model, PI * 0.36) && section.measured == LEAFLESS_MEASURED_TOLERANCE);
+        CHECK(holds(section.area_model, PI * 0.36) && section.measured == LEAFLESS_STOP_REASON_TOLERANCE);
         CHECK(section.area_model.upper - section.area_model.lower <= 1e-6 * section.area_model.upper);
         CHECK(section.proof.full && section.proof.empty && !section.is_clipped && section.splits > 10);
         options.max_splits = 0;
@@ -133,9 +133,9 @@ static void ball(void) {
         options.max_splits = 3;
         last = 0.0;
         OK(leafless_solid_section_area(solid, &frame, none, tilted, 0.0, 0.0, &options, &same));
-        CHECK(same.measured == LEAFLESS_MEASURED_BUDGET && same.splits == 3 && holds(same.area_model, PI * 0.5625));
+        CHECK(same.measured == LEAFLESS_STOP_REASON_BUDGET && same.splits == 3 && holds(same.area_model, PI * 0.5625));
         OK(leafless_solid_section_area(solid, &frame, none, tilted, 0.0, 1e-4, NULL, &same));
-        CHECK(same.measured == LEAFLESS_MEASURED_TOLERANCE && holds(same.area_model, PI * 0.5625));
+        CHECK(same.measured == LEAFLESS_STOP_REASON_TOLERANCE && holds(same.area_model, PI * 0.5625));
         OK(leafless_solid_section_area(solid, &frame, far, normal, 0.0, 0.0, NULL, &same));
         CHECK(same.area_model.lower == 0.0 && same.area_model.upper == 0.0 && same.splits == 0);
         memset(&same, 0x5a, sizeof same);
@@ -193,7 +193,7 @@ static void block(void) {
     leafless_measures measures;
     leafless_extent extent;
     int i;
-    OK(leafless_octree_as_solid(octree, &solid));
+    OK(leafless_solid_from_octree(octree, &solid));
     OK(leafless_solid_measure(solid, &frame, 0.0, 0.0, NULL, &measures));
     OK(leafless_solid_bounding_box(solid, &frame, 0.0, NULL, &extent));
     CHECK(measures.volume_model.lower == 0.421875 && measures.volume_model.upper == 0.421875);
@@ -225,7 +225,7 @@ static void block(void) {
 /* The host's own shapes: one that fails, and one that knows nothing. */
 static void host(void) {
     const leafless_frame frame = check_frame(3);
-    leafless_callbacks callbacks;
+    leafless_solid_callbacks callbacks;
     leafless_solid *solid = NULL;
     leafless_measures measures;
     leafless_extent extent;
@@ -239,7 +239,7 @@ static void host(void) {
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
     OK(leafless_solid_measure(solid, &frame, 0.0, 0.0, NULL, &measures));
     CHECK(measures.volume_model.lower == 0.0 && measures.volume_model.upper == 8.0);
-    CHECK(measures.measured == LEAFLESS_MEASURED_EXHAUSTED && !measures.has_centroid && measures.is_clipped);
+    CHECK(measures.measured == LEAFLESS_STOP_REASON_EXHAUSTED && !measures.has_centroid && measures.is_clipped);
     CHECK(measures.centroid_model[2].lower == -INFINITY && measures.centroid_model[2].upper == INFINITY);
     OK(leafless_solid_bounding_box(solid, &frame, 0.0, NULL, &extent));
     CHECK(!extent.is_empty && !extent.is_occupied && extent.is_clipped);

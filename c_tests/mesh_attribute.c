@@ -8,7 +8,7 @@ static const char PLY[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty flo
                           "0 0 0 0 7 7\n8 0 0 0 7 7\n8 8 0 240 7 7\n0 8 0 240 7 7\n3 0 1 2\n3 0 2 3\n";
 
 static void colours(void) {
-    leafless_mesh_found found;
+    leafless_mesh_file_info found;
     leafless_mesh *mesh;
     leafless_attribute *colour;
     leafless_channel *channel;
@@ -35,12 +35,12 @@ static void colours(void) {
     FAILS(LEAFLESS_E_BUFFER, leafless_mesh_attribute_values(mesh, 0, values, 23, &number));
     OK(leafless_mesh_attribute_values(mesh, 0, values, 24, &number));
     CHECK(values[0] == 0 && values[3] == 255 && values[8] == 240 && values[12] == 0 && values[16] == 240);
-    OK(leafless_mesh_as_attribute(mesh, "colour", 6, &colour));
+    OK(leafless_attribute_from_mesh(mesh, "colour", 6, &colour));
     leafless_mesh_free(mesh);
     OK(leafless_attribute_values(colour, &points[0][0], 2, &at[0][0]));
     CHECK(fabs(at[0][0] - 60) < 1e-9 && at[0][1] == 7 && at[0][3] == 255 && fabs(at[1][0] - 180) < 1e-9);
     OK(leafless_init(&fill, sizeof fill));
-    fill.scalar = LEAFLESS_SCALAR_U8;
+    fill.scalar = LEAFLESS_SCALAR_TYPE_U8;
     OK(leafless_channel_fill(colour, &frame, &fill, NULL, &channel));
     OK(leafless_channel_values(channel, &points[0][0], 2, &at[0][0]));
     /* Of the cells from y = 2 and from y = 6. */
@@ -81,14 +81,14 @@ static void parts(void) {
         own[2 * i] = 10 + labels[3 * i];
         own[2 * i + 1] = -labels[3 * i];
     }
-    OK(leafless_mesh_values_as_attribute(mesh, own, 8, 2, false, &attribute));
+    OK(leafless_attribute_from_mesh_values(mesh, own, 8, 2, false, &attribute));
     OK(leafless_attribute_values(attribute, below, 1, value));
     CHECK(value[0] == 10 && value[1] == 0);
     leafless_attribute_free(attribute);
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_values_as_attribute(mesh, own, 7, 2, false, &attribute));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_values_as_attribute(mesh, own, 8, 2, true, &attribute));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_values_as_attribute(mesh, own, 8, 5, false, &attribute));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_as_attribute(mesh, "colour", 6, &attribute));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_attribute_from_mesh_values(mesh, own, 7, 2, false, &attribute));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_attribute_from_mesh_values(mesh, own, 8, 2, true, &attribute));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_attribute_from_mesh_values(mesh, own, 8, 5, false, &attribute));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_attribute_from_mesh(mesh, "colour", 6, &attribute));
     OK(leafless_mesh_bodies(mesh, NULL, 0, &count));
     CHECK(count == 4);
     FAILS(LEAFLESS_E_BUFFER, leafless_mesh_bodies(mesh, bodies, 3, &count));

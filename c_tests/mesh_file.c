@@ -172,15 +172,15 @@ static leafless_mesh_options defaults(void) {
     return options;
 }
 
-static leafless_mesh_found nothing(void) {
-    leafless_mesh_found found;
+static leafless_mesh_file_info nothing(void) {
+    leafless_mesh_file_info found;
     memset(&found, 0x5a, sizeof found);
     return found;
 }
 
 /* Reads the sample and checks the result. */
 static void reads(const sample *one, const leafless_mesh_options *options, uint32_t unit, double edge) {
-    leafless_mesh_found found = nothing();
+    leafless_mesh_file_info found = nothing();
     leafless_mesh *mesh = NULL;
     OK(mesh_from_bytes((const uint8_t *)one->bytes, one->length, options, &found, &mesh));
     CHECK(found.format == one->format && found.unit == unit && found.skipped == 0);
@@ -197,10 +197,10 @@ static void reads(const sample *one, const leafless_mesh_options *options, uint3
 
 static void refused(leafless_status status, const void *bytes, uint64_t length, const leafless_mesh_options *options,
                     const char *part) {
-    const leafless_mesh_found untouched_found = nothing();
+    const leafless_mesh_file_info untouched_found = nothing();
     leafless_mesh *const untouched = (leafless_mesh *)(uintptr_t)0x5a5a5a58;
     leafless_mesh *mesh = untouched;
-    leafless_mesh_found found = nothing();
+    leafless_mesh_file_info found = nothing();
     char message[512];
     FAILS(status, mesh_from_bytes((const uint8_t *)bytes, length, options, &found, &mesh));
     CHECK(mesh == untouched && memcmp(&found, &untouched_found, sizeof found) == 0);

@@ -42,7 +42,7 @@ static leafless_mesh_report told(const surface *all, uint64_t count, leafless_me
     leafless_mesh_defect defects[8];
     leafless_mesh_report report;
     uint64_t found = 77, limit;
-    OK(leafless_mesh_describe(mesh, &report));
+    OK(leafless_mesh_inspect(mesh, &report));
     CHECK(report.facets_read == all->triangle_count && report.triangles + report.degenerate == all->triangle_count);
     OK(leafless_mesh_defects(mesh, UINT64_MAX, NULL, 0, &found));
     CHECK(found == count && count <= COUNT(defects));
@@ -80,7 +80,7 @@ static void encloses(void) {
     leafless_mesh_moments moments;
     int i, j;
     OK(leafless_mesh_measure(mesh, LEAFLESS_FILL_NON_ZERO, NULL, &moments));
-    CHECK(moments.known == LEAFLESS_MOMENTS_KNOWN && moments.has_centroid && moments.triangles[1] == 0);
+    CHECK(moments.known == LEAFLESS_MOMENTS_VERDICT_KNOWN && moments.has_centroid && moments.triangles[1] == 0);
     CHECK(holds(moments.volume_model, 1.0, 1e-13));
     for (i = 0; i < 3; i++) {
         CHECK(holds(moments.centroid_model[i], 0.5, 1e-13));
@@ -94,7 +94,7 @@ static void encloses(void) {
     all.triangle_count--;
     mesh = made(&all);
     OK(leafless_mesh_measure(mesh, LEAFLESS_FILL_NON_ZERO, NULL, &moments));
-    CHECK(moments.known == LEAFLESS_MOMENTS_OPEN && !moments.has_centroid);
+    CHECK(moments.known == LEAFLESS_MOMENTS_VERDICT_OPEN && !moments.has_centroid);
     CHECK(moments.volume_model.lower == 0.0 && moments.volume_model.upper == INFINITY);
     CHECK(moments.inertia_origin_model[4].lower == -INFINITY && moments.centroid_model[2].upper == INFINITY);
     leafless_mesh_free(mesh);
@@ -130,7 +130,7 @@ static void intersects(void) {
     CHECK(again == found && is_complete && memcmp(some, pairs, 2 * sizeof *some) == 0);
     CHECK(((const unsigned char *)&some[2])[0] == 0xc3);
     OK(leafless_mesh_measure(mesh, LEAFLESS_FILL_NON_ZERO, NULL, &moments));
-    CHECK(moments.known == LEAFLESS_MOMENTS_INTERSECTING);
+    CHECK(moments.known == LEAFLESS_MOMENTS_VERDICT_INTERSECTING);
     CHECK(moments.triangles[0] < 12 && 12 <= moments.triangles[1] && moments.triangles[1] < 16);
     leafless_mesh_free(mesh);
 }
@@ -242,7 +242,7 @@ int main(void) {
         static const char OFF[] = "OFF 4 1 0\n0 0 0\n2 0 0\n2 2 0.25\n0 2 0\n4 0 1 2 3\n";
         leafless_mesh *mesh = NULL;
         OK(mesh_from_bytes((const uint8_t *)OFF, sizeof OFF - 1, NULL, NULL, &mesh));
-        OK(leafless_mesh_describe(mesh, &report));
+        OK(leafless_mesh_inspect(mesh, &report));
         CHECK(report.polygons == 1 && report.bent_polygons == 1);
         CHECK(fabs(report.polygon_deviation_model - 0.0625) < 0.001);
         leafless_mesh_free(mesh);

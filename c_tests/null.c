@@ -55,8 +55,8 @@ static void null_pointers(void) {
     uint32_t operation;
     const uint32_t exponents[3] = {2, 4, 3};
     const double triangle[6] = {0, 0, 1, 0, 0, 1};
-    leafless_function function;
-    leafless_callbacks callbacks;
+    leafless_solid_function function;
+    leafless_solid_callbacks callbacks;
     const uint32_t cell[3] = {0, 0, 0};
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, 12);
     static const uint32_t faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, loops[] = {0, 3, 6, 9, 12};
@@ -119,9 +119,9 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_frame_with_cells, frame, leafless_frame_with_cells(point, above, 0.5, NULL));
     NULL_POINTER(leafless_frame_cell_size, frame, leafless_frame_cell_size(NULL, (double *)out));
     NULL_POINTER(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, NULL));
-    NULL_POINTER(leafless_frame_cell_of, frame, leafless_frame_cell_of(NULL, point, (uint32_t *)out));
-    NULL_POINTER(leafless_frame_cell_of, point_model, leafless_frame_cell_of(&frame, NULL, (uint32_t *)out));
-    NULL_POINTER(leafless_frame_cell_of, cell, leafless_frame_cell_of(&frame, point, NULL));
+    NULL_POINTER(leafless_frame_cell_at, frame, leafless_frame_cell_at(NULL, point, (uint32_t *)out));
+    NULL_POINTER(leafless_frame_cell_at, point_model, leafless_frame_cell_at(&frame, NULL, (uint32_t *)out));
+    NULL_POINTER(leafless_frame_cell_at, cell, leafless_frame_cell_at(&frame, point, NULL));
     NULL_POINTER(leafless_frame_plane, frame, leafless_frame_plane(NULL, 0, 0, (leafless_interval *)out));
     NULL_POINTER(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, NULL));
 
@@ -180,17 +180,17 @@ static void null_pointers(void) {
         NULL_POINTER(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, NULL, 12, total));
         MISALIGNED(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, (uint32_t *)WRONG(out), 12, total));
         MAY_BE_NULL(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, NULL, 0, &number));
-        NULL_POINTER(leafless_mesh_as_attribute, mesh, leafless_mesh_as_attribute(NULL, "a", 1, made));
-        NULL_POINTER(leafless_mesh_as_attribute, name, leafless_mesh_as_attribute(mesh, NULL, 1, made));
-        NULL_POINTER(leafless_mesh_as_attribute, attribute, leafless_mesh_as_attribute(mesh, "a", 1, NULL));
-        NULL_POINTER(leafless_mesh_values_as_attribute, mesh,
-                     leafless_mesh_values_as_attribute(NULL, four, 12, 1, false, made));
-        NULL_POINTER(leafless_mesh_values_as_attribute, values,
-                     leafless_mesh_values_as_attribute(mesh, NULL, 12, 1, false, made));
-        NULL_POINTER(leafless_mesh_values_as_attribute, attribute,
-                     leafless_mesh_values_as_attribute(mesh, four, 12, 1, false, NULL));
-        MISALIGNED(leafless_mesh_values_as_attribute, values,
-                   leafless_mesh_values_as_attribute(mesh, (const double *)WRONG(four), 11, 1, false, made));
+        NULL_POINTER(leafless_attribute_from_mesh, mesh, leafless_attribute_from_mesh(NULL, "a", 1, made));
+        NULL_POINTER(leafless_attribute_from_mesh, name, leafless_attribute_from_mesh(mesh, NULL, 1, made));
+        NULL_POINTER(leafless_attribute_from_mesh, attribute, leafless_attribute_from_mesh(mesh, "a", 1, NULL));
+        NULL_POINTER(leafless_attribute_from_mesh_values, mesh,
+                     leafless_attribute_from_mesh_values(NULL, four, 12, 1, false, made));
+        NULL_POINTER(leafless_attribute_from_mesh_values, values,
+                     leafless_attribute_from_mesh_values(mesh, NULL, 12, 1, false, made));
+        NULL_POINTER(leafless_attribute_from_mesh_values, attribute,
+                     leafless_attribute_from_mesh_values(mesh, four, 12, 1, false, NULL));
+        MISALIGNED(leafless_attribute_from_mesh_values, values,
+                   leafless_attribute_from_mesh_values(mesh, (const double *)WRONG(four), 11, 1, false, made));
     }
     NULL_POINTER(leafless_mesh_bounds, mesh, leafless_mesh_bounds(NULL, (double *)out, (double *)out + 3));
     NULL_POINTER(leafless_mesh_bounds, min_model, leafless_mesh_bounds(mesh, NULL, (double *)out));
@@ -204,8 +204,8 @@ static void null_pointers(void) {
                  leafless_mesh_peek_warning_at(mesh, 0, (uint64_t *)out, (const char **)out + 1, NULL));
     NULL_POINTER(leafless_mesh_volume, mesh, leafless_mesh_volume(NULL, (double *)out));
     NULL_POINTER(leafless_mesh_volume, volume_model, leafless_mesh_volume(mesh, NULL));
-    NULL_POINTER(leafless_mesh_describe, mesh, leafless_mesh_describe(NULL, (leafless_mesh_report *)out));
-    NULL_POINTER(leafless_mesh_describe, report, leafless_mesh_describe(mesh, NULL));
+    NULL_POINTER(leafless_mesh_inspect, mesh, leafless_mesh_inspect(NULL, (leafless_mesh_report *)out));
+    NULL_POINTER(leafless_mesh_inspect, report, leafless_mesh_inspect(mesh, NULL));
     NULL_POINTER(leafless_mesh_defects, mesh, leafless_mesh_defects(NULL, 9, NULL, 0, (uint64_t *)out));
     NULL_POINTER(leafless_mesh_defects, defects, leafless_mesh_defects(mesh, 9, NULL, 9, (uint64_t *)out));
     MAY_BE_NULL(leafless_mesh_defects, defects, leafless_mesh_defects(mesh, 9, NULL, 0, &number));
@@ -311,11 +311,11 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_placed, solid, leafless_solid_placed(solid, matrix, (leafless_motion *)out, NULL));
     NULL_POINTER(leafless_solid_evaluations, solid, leafless_solid_evaluations(NULL, (uint64_t *)out));
     NULL_POINTER(leafless_solid_evaluations, evaluations, leafless_solid_evaluations(solid, NULL));
-    NULL_POINTER(leafless_solid_new_transform, operand,
-                 leafless_solid_new_transform(NULL, &frame, matrix, solid_result));
-    NULL_POINTER(leafless_solid_new_transform, own, leafless_solid_new_transform(solid, NULL, matrix, solid_result));
-    NULL_POINTER(leafless_solid_new_transform, matrix, leafless_solid_new_transform(solid, &frame, NULL, solid_result));
-    NULL_POINTER(leafless_solid_new_transform, solid, leafless_solid_new_transform(solid, &frame, matrix, NULL));
+    NULL_POINTER(leafless_solid_transformed, operand,
+                 leafless_solid_transformed(NULL, &frame, matrix, solid_result));
+    NULL_POINTER(leafless_solid_transformed, own, leafless_solid_transformed(solid, NULL, matrix, solid_result));
+    NULL_POINTER(leafless_solid_transformed, matrix, leafless_solid_transformed(solid, &frame, NULL, solid_result));
+    NULL_POINTER(leafless_solid_transformed, solid, leafless_solid_transformed(solid, &frame, matrix, NULL));
     NULL_POINTER(leafless_solid_interfere, a,
                  leafless_solid_interfere(NULL, solid, &frame, 0, NULL, (leafless_interference *)out));
     NULL_POINTER(leafless_solid_interfere, b,
@@ -346,26 +346,26 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_with_touch, solid, leafless_solid_with_touch(solid, 0, NULL));
     BAD_NUMBER(leafless_solid_with_touch, touch, leafless_solid_with_touch(solid, 7, solid_result));
     OK(scene_from_text("mesh(\"null.stl\");", "", LEAFLESS_FACETS_AUTO, &scene));
-    NULL_POINTER(leafless_scene_describe, scene, leafless_scene_describe(NULL, (leafless_scene_report *)out));
+    NULL_POINTER(leafless_scene_describe, scene, leafless_scene_describe(NULL, (leafless_scene_info *)out));
     NULL_POINTER(leafless_scene_describe, report, leafless_scene_describe(scene, NULL));
-    NULL_POINTER(leafless_scene_describe_mesh, scene,
-                 leafless_scene_describe_mesh(NULL, 0, (leafless_scene_mesh *)out));
-    NULL_POINTER(leafless_scene_describe_mesh, mesh, leafless_scene_describe_mesh(scene, 0, NULL));
-    MAY_BE_NULL(leafless_scene_mesh_file, bytes, leafless_scene_mesh_file(scene, 0, NULL, 0, &number));
-    NULL_POINTER(leafless_scene_mesh_file, length, leafless_scene_mesh_file(scene, 0, NULL, 0, NULL));
-    NULL_POINTER(leafless_scene_mesh_file, scene, leafless_scene_mesh_file(NULL, 0, NULL, 0, (uint64_t *)out));
+    NULL_POINTER(leafless_scene_describe_mesh_at, scene,
+                 leafless_scene_describe_mesh_at(NULL, 0, (leafless_scene_mesh_info *)out));
+    NULL_POINTER(leafless_scene_describe_mesh_at, mesh, leafless_scene_describe_mesh_at(scene, 0, NULL));
+    MAY_BE_NULL(leafless_scene_mesh_file_at, bytes, leafless_scene_mesh_file_at(scene, 0, NULL, 0, &number));
+    NULL_POINTER(leafless_scene_mesh_file_at, length, leafless_scene_mesh_file_at(scene, 0, NULL, 0, NULL));
+    NULL_POINTER(leafless_scene_mesh_file_at, scene, leafless_scene_mesh_file_at(NULL, 0, NULL, 0, (uint64_t *)out));
     NULL_POINTER(leafless_scene_bounds, scene, leafless_scene_bounds(NULL, (double *)out, (double *)out + 3));
     NULL_POINTER(leafless_scene_bounds, min_model, leafless_scene_bounds(scene, NULL, (double *)out));
     NULL_POINTER(leafless_scene_bounds, max_model, leafless_scene_bounds(scene, (double *)out, NULL));
     NULL_POINTER(leafless_scene_ref, scene, leafless_scene_ref(NULL, scene_result));
     NULL_POINTER(leafless_scene_ref, reference, leafless_scene_ref(scene, NULL));
-    NULL_POINTER(leafless_solid_new_scene, scene, leafless_solid_new_scene(NULL, &frame, solid_result));
-    NULL_POINTER(leafless_solid_new_scene, frame, leafless_solid_new_scene(scene, NULL, solid_result));
-    NULL_POINTER(leafless_solid_new_scene, solid, leafless_solid_new_scene(scene, &frame, NULL));
+    NULL_POINTER(leafless_solid_from_scene, scene, leafless_solid_from_scene(NULL, &frame, solid_result));
+    NULL_POINTER(leafless_solid_from_scene, frame, leafless_solid_from_scene(scene, NULL, solid_result));
+    NULL_POINTER(leafless_solid_from_scene, solid, leafless_solid_from_scene(scene, &frame, NULL));
     leafless_scene_free(scene);
     leafless_scene_free(NULL);
-    NULL_POINTER(leafless_solid_new_mesh, mesh, leafless_solid_new_mesh(NULL, 0, solid_result));
-    NULL_POINTER(leafless_solid_new_mesh, solid, leafless_solid_new_mesh(mesh, 0, NULL));
+    NULL_POINTER(leafless_solid_from_mesh, mesh, leafless_solid_from_mesh(NULL, 0, solid_result));
+    NULL_POINTER(leafless_solid_from_mesh, solid, leafless_solid_from_mesh(mesh, 0, NULL));
     NULL_POINTER(leafless_solid_new_callbacks, callbacks, leafless_solid_new_callbacks(NULL, solid_result));
     NULL_POINTER(leafless_solid_new_callbacks, solid, leafless_solid_new_callbacks(&callbacks, NULL));
     callbacks.classify = NULL;
@@ -379,16 +379,16 @@ static void null_pointers(void) {
             leafless_solid_new_callbacks(&callbacks, solid_result));
     callbacks.classify_many = NULL;
     NULL_POINTER(leafless_solid_new_callbacks, solid, leafless_solid_new_callbacks(&callbacks, NULL));
-    NULL_POINTER(leafless_octree_as_solid, octree, leafless_octree_as_solid(NULL, solid_result));
-    NULL_POINTER(leafless_octree_as_solid, solid, leafless_octree_as_solid(octree, NULL));
+    NULL_POINTER(leafless_solid_from_octree, octree, leafless_solid_from_octree(NULL, solid_result));
+    NULL_POINTER(leafless_solid_from_octree, solid, leafless_solid_from_octree(octree, NULL));
     NULL_POINTER(leafless_solid_ref, solid, leafless_solid_ref(NULL, solid_result));
     NULL_POINTER(leafless_solid_ref, reference, leafless_solid_ref(solid, NULL));
 
     NULL_POINTER(leafless_octree_build, solid, leafless_octree_build(NULL, &frame, 0, NULL, result));
     NULL_POINTER(leafless_octree_build, frame, leafless_octree_build(solid, NULL, 0, NULL, result));
     NULL_POINTER(leafless_octree_build, octree, leafless_octree_build(solid, &frame, 0, NULL, NULL));
-    NULL_POINTER(leafless_octree_uniform, frame, leafless_octree_uniform(NULL, 0, 0, result));
-    NULL_POINTER(leafless_octree_uniform, octree, leafless_octree_uniform(&frame, 0, 0, NULL));
+    NULL_POINTER(leafless_octree_new_uniform, frame, leafless_octree_new_uniform(NULL, 0, 0, result));
+    NULL_POINTER(leafless_octree_new_uniform, octree, leafless_octree_new_uniform(&frame, 0, 0, NULL));
     NULL_POINTER(leafless_octree_resolve, octree, leafless_octree_resolve(NULL, 2, NULL, result));
     NULL_POINTER(leafless_octree_resolve, resolved, leafless_octree_resolve(octree, 2, NULL, NULL));
     NULL_POINTER(leafless_octree_compact, octree, leafless_octree_compact(NULL, result));
@@ -478,16 +478,16 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_octree_classify_box, max_model,
                  leafless_octree_classify_box(octree, point, NULL, (leafless_region *)out));
     NULL_POINTER(leafless_octree_classify_box, region, leafless_octree_classify_box(octree, point, above, NULL));
-    NULL_POINTER(leafless_solid_contains, solid,
-                 leafless_solid_contains(NULL, &frame, point, 1, NULL, (leafless_membership *)out));
-    NULL_POINTER(leafless_solid_contains, solid, leafless_solid_contains(NULL, &frame, NULL, 0, NULL, NULL));
-    NULL_POINTER(leafless_solid_contains, frame,
-                 leafless_solid_contains(solid, NULL, point, 1, NULL, (leafless_membership *)out));
-    NULL_POINTER(leafless_solid_contains, frame, leafless_solid_contains(solid, NULL, NULL, 0, NULL, NULL));
-    NULL_POINTER(leafless_solid_contains, points_model,
-                 leafless_solid_contains(solid, &frame, NULL, 1, NULL, (leafless_membership *)out));
-    NULL_POINTER(leafless_solid_contains, memberships,
-                 leafless_solid_contains(solid, &frame, point, 1, NULL, NULL));
+    NULL_POINTER(leafless_solid_contains_many, solid,
+                 leafless_solid_contains_many(NULL, &frame, point, 1, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_solid_contains_many, solid, leafless_solid_contains_many(NULL, &frame, NULL, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_contains_many, frame,
+                 leafless_solid_contains_many(solid, NULL, point, 1, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_solid_contains_many, frame, leafless_solid_contains_many(solid, NULL, NULL, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_contains_many, points_model,
+                 leafless_solid_contains_many(solid, &frame, NULL, 1, NULL, (leafless_membership *)out));
+    NULL_POINTER(leafless_solid_contains_many, memberships,
+                 leafless_solid_contains_many(solid, &frame, point, 1, NULL, NULL));
     NULL_POINTER(leafless_solid_classify_box, solid,
                  leafless_solid_classify_box(NULL, &frame, point, above, NULL, (leafless_region *)out));
     NULL_POINTER(leafless_solid_classify_box, frame,
@@ -527,8 +527,8 @@ static void null_pointers(void) {
                  leafless_point_table_contains_many(point_table, point, 1, NULL));
     NULL_POINTER(leafless_cursor_new, octree, leafless_cursor_new(NULL, (leafless_cursor **)out));
     NULL_POINTER(leafless_cursor_new, cursor, leafless_cursor_new(octree, NULL));
-    NULL_POINTER(leafless_cursor_read, cursor, leafless_cursor_read(NULL, (leafless_cursor_state *)out));
-    NULL_POINTER(leafless_cursor_read, state, leafless_cursor_read(cursor, NULL));
+    NULL_POINTER(leafless_cursor_describe, cursor, leafless_cursor_describe(NULL, (leafless_cursor_info *)out));
+    NULL_POINTER(leafless_cursor_describe, state, leafless_cursor_describe(cursor, NULL));
     NULL_POINTER(leafless_cursor_descend, cursor, leafless_cursor_descend(NULL, 0, (bool *)out));
     MAY_BE_NULL(leafless_cursor_descend, moved, leafless_cursor_descend(cursor, 0, NULL));
     NULL_POINTER(leafless_cursor_ascend, cursor, leafless_cursor_ascend(NULL, (bool *)out));
@@ -563,13 +563,13 @@ static void null_pointers(void) {
         leafless_membership membership;
         leafless_region region;
         leafless_motion motion = 77;
-        MAY_BE_NULL(leafless_solid_contains, options,
-                    leafless_solid_contains(solid, &frame, point, 1, NULL, &membership));
+        MAY_BE_NULL(leafless_solid_contains_many, options,
+                    leafless_solid_contains_many(solid, &frame, point, 1, NULL, &membership));
         CHECK(membership == LEAFLESS_MEMBERSHIP_INSIDE);
-        MAY_BE_NULL(leafless_solid_contains, points_model,
-                    leafless_solid_contains(solid, &frame, NULL, 0, &options, &membership));
-        MAY_BE_NULL(leafless_solid_contains, memberships,
-                    leafless_solid_contains(solid, &frame, NULL, 0, &options, NULL));
+        MAY_BE_NULL(leafless_solid_contains_many, points_model,
+                    leafless_solid_contains_many(solid, &frame, NULL, 0, &options, &membership));
+        MAY_BE_NULL(leafless_solid_contains_many, memberships,
+                    leafless_solid_contains_many(solid, &frame, NULL, 0, &options, NULL));
         MAY_BE_NULL(leafless_solid_classify_box, options,
                     leafless_solid_classify_box(solid, &frame, point, above, NULL, &region));
         CHECK(region == LEAFLESS_REGION_CROSSING);
@@ -679,7 +679,7 @@ static void misaligned(void) {
     MISALIGNED(leafless_frame_with_cells, max_model, leafless_frame_with_cells(point, numbers, 0.5, (leafless_frame *)out));
     MISALIGNED(leafless_frame_with_cells, frame, leafless_frame_with_cells(point, above, 0.5, (leafless_frame *)WRONG(out)));
     MISALIGNED(leafless_frame_cell_size, cell_size_model, leafless_frame_cell_size(&frame, (double *)WRONG(out)));
-    MISALIGNED(leafless_frame_cell_of, cell, leafless_frame_cell_of(&frame, point, (uint32_t *)WRONG(out)));
+    MISALIGNED(leafless_frame_cell_at, cell, leafless_frame_cell_at(&frame, point, (uint32_t *)WRONG(out)));
     MISALIGNED(leafless_frame_plane, plane_model, leafless_frame_plane(&frame, 0, 0, (leafless_interval *)WRONG(out)));
     MISALIGNED(leafless_mesh_from_polyhedron, arrays,
                leafless_mesh_from_polyhedron((const leafless_polyhedron_arrays *)WRONG(out), NULL, mesh_result));
@@ -691,7 +691,7 @@ static void misaligned(void) {
     MISALIGNED(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, (double *)WRONG(out), 8, NULL, 0));
     MISALIGNED(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, NULL, 0, (uint32_t *)WRONG(out), 12));
     MISALIGNED(leafless_mesh_bounds, max_model, leafless_mesh_bounds(mesh, (double *)out, (double *)WRONG(out)));
-    MISALIGNED(leafless_mesh_describe, report, leafless_mesh_describe(mesh, (leafless_mesh_report *)WRONG(out)));
+    MISALIGNED(leafless_mesh_inspect, report, leafless_mesh_inspect(mesh, (leafless_mesh_report *)WRONG(out)));
     MISALIGNED(leafless_mesh_defects, defects,
                leafless_mesh_defects(mesh, 9, (leafless_mesh_defect *)WRONG(out), 2, (uint64_t *)out));
     MISALIGNED(leafless_mesh_defects, count, leafless_mesh_defects(mesh, 9, NULL, 0, (uint64_t *)WRONG(out)));
@@ -785,13 +785,13 @@ static void misaligned(void) {
     MISALIGNED(leafless_octree_tag_at, cell, leafless_octree_tag_at(octree, cell, (leafless_tag *)out));
     MISALIGNED(leafless_octree_classify_box, max_model,
                leafless_octree_classify_box(octree, point, numbers, (leafless_region *)out));
-    MISALIGNED(leafless_solid_contains, solid,
-               leafless_solid_contains((leafless_solid *)WRONG(solid), &frame, point, 1, NULL,
+    MISALIGNED(leafless_solid_contains_many, solid,
+               leafless_solid_contains_many((leafless_solid *)WRONG(solid), &frame, point, 1, NULL,
                                        (leafless_membership *)out));
-    MISALIGNED(leafless_solid_contains, frame,
-               leafless_solid_contains(solid, bad_frame, point, 1, NULL, (leafless_membership *)out));
-    MISALIGNED(leafless_solid_contains, points_model,
-               leafless_solid_contains(solid, &frame, numbers, 1, NULL, (leafless_membership *)out));
+    MISALIGNED(leafless_solid_contains_many, frame,
+               leafless_solid_contains_many(solid, bad_frame, point, 1, NULL, (leafless_membership *)out));
+    MISALIGNED(leafless_solid_contains_many, points_model,
+               leafless_solid_contains_many(solid, &frame, numbers, 1, NULL, (leafless_membership *)out));
     MISALIGNED(leafless_solid_classify_box, frame,
                leafless_solid_classify_box(solid, bad_frame, point, above, NULL, (leafless_region *)out));
     MISALIGNED(leafless_solid_classify_box, min_model,
@@ -808,9 +808,9 @@ static void misaligned(void) {
                leafless_solid_placed(solid, matrix, (leafless_motion *)WRONG(out), solid_result));
     MISALIGNED(leafless_solid_placed, solid,
                leafless_solid_placed(solid, matrix, (leafless_motion *)out, (leafless_solid **)WRONG(out)));
-    MISALIGNED(leafless_cursor_read, cursor,
-               leafless_cursor_read((leafless_cursor *)WRONG(cursor), (leafless_cursor_state *)out));
-    MISALIGNED(leafless_cursor_read, state, leafless_cursor_read(cursor, (leafless_cursor_state *)WRONG(out)));
+    MISALIGNED(leafless_cursor_describe, cursor,
+               leafless_cursor_describe((leafless_cursor *)WRONG(cursor), (leafless_cursor_info *)out));
+    MISALIGNED(leafless_cursor_describe, state, leafless_cursor_describe(cursor, (leafless_cursor_info *)WRONG(out)));
 
     untouched();
     CHECK(never == UNTOUCHED);
@@ -821,7 +821,7 @@ static void numbers(void) {
     static const double not_finite[] = {NAN, -NAN, INFINITY, -INFINITY};
     static const double not_in_range[] = {NAN, INFINITY, -INFINITY, 1e300, -1e300, 0x1.8p256, 1e-300, -1e-300, 4e-324};
     static const uint32_t not_a_depth[] = {0, 21, 22, 255, 256, 257, 65536 + 4, UINT32_MAX};
-    static const uint32_t not_a_tag[] = {1, 4, 255, 256, 256 + 3, UINT32_MAX};
+    static const leafless_tag not_a_tag[] = {1, 4, 128, 255};
     static const uint32_t not_a_rule[] = {4, 255, 256, UINT32_MAX};
     void *out = fresh();
     void *never = UNTOUCHED;
@@ -829,7 +829,7 @@ static void numbers(void) {
     leafless_mesh **mesh_result = (leafless_mesh **)&never;
     leafless_solid **solid_result = (leafless_solid **)&never;
     leafless_frame bad;
-    leafless_callbacks callbacks;
+    leafless_solid_callbacks callbacks;
     size_t i, axis;
 
     for (i = 0; i < COUNT(not_a_depth); i++) {
@@ -848,9 +848,9 @@ static void numbers(void) {
                    leafless_solid_section_area(solid, &bad, point, above, 0, 0.0, NULL, (leafless_section_area *)out));
         BAD_NUMBER(leafless_solid_bounding_box, depth,
                    leafless_solid_bounding_box(solid, &bad, 0, NULL, (leafless_extent *)out));
-        BAD_NUMBER(leafless_solid_contains, depth,
-                   leafless_solid_contains(solid, &bad, point, 1, NULL, (leafless_membership *)out));
-        BAD_NUMBER(leafless_solid_contains, depth, leafless_solid_contains(solid, &bad, NULL, 0, NULL, NULL));
+        BAD_NUMBER(leafless_solid_contains_many, depth,
+                   leafless_solid_contains_many(solid, &bad, point, 1, NULL, (leafless_membership *)out));
+        BAD_NUMBER(leafless_solid_contains_many, depth, leafless_solid_contains_many(solid, &bad, NULL, 0, NULL, NULL));
         BAD_NUMBER(leafless_solid_classify_box, depth,
                    leafless_solid_classify_box(solid, &bad, point, above, NULL, (leafless_region *)out));
     }
@@ -858,12 +858,12 @@ static void numbers(void) {
         bad = frame;
         bad.edge = not_in_range[i];
         BAD_NUMBER(leafless_frame_check, edge, leafless_frame_check(&bad));
-        BAD_NUMBER(leafless_octree_uniform, edge, leafless_octree_uniform(&bad, 0, 0, result));
+        BAD_NUMBER(leafless_octree_new_uniform, edge, leafless_octree_new_uniform(&bad, 0, 0, result));
         BAD_NUMBER(leafless_frame_cell_size, edge, leafless_frame_cell_size(&bad, (double *)out));
-        BAD_NUMBER(leafless_frame_cell_of, edge, leafless_frame_cell_of(&bad, point, (uint32_t *)out));
+        BAD_NUMBER(leafless_frame_cell_at, edge, leafless_frame_cell_at(&bad, point, (uint32_t *)out));
         BAD_NUMBER(leafless_frame_plane, edge, leafless_frame_plane(&bad, 0, 0, (leafless_interval *)out));
-        BAD_NUMBER(leafless_solid_contains, edge,
-                   leafless_solid_contains(solid, &bad, point, 1, NULL, (leafless_membership *)out));
+        BAD_NUMBER(leafless_solid_contains_many, edge,
+                   leafless_solid_contains_many(solid, &bad, point, 1, NULL, (leafless_membership *)out));
         BAD_NUMBER(leafless_solid_classify_box, edge,
                    leafless_solid_classify_box(solid, &bad, point, above, NULL, (leafless_region *)out));
         BAD_NUMBER(leafless_solid_new_ball, radius, leafless_solid_new_ball(point, not_in_range[i], solid_result));
@@ -899,7 +899,7 @@ static void numbers(void) {
             BAD_NUMBER(leafless_mesh_translated, offset_model, leafless_mesh_translated(mesh, vector, mesh_result));
             refused(LEAFLESS_E_ARGUMENT, "leafless_frame_around", "",
                     leafless_frame_around(vector, above, 4, (leafless_frame *)out));
-            BAD_NUMBER(leafless_frame_cell_of, point_model, leafless_frame_cell_of(&frame, vector, (uint32_t *)out));
+            BAD_NUMBER(leafless_frame_cell_at, point_model, leafless_frame_cell_at(&frame, vector, (uint32_t *)out));
         }
     }
     {
@@ -913,7 +913,7 @@ static void numbers(void) {
                 leafless_frame_around(near, near, 4, (leafless_frame *)out));
         refused(LEAFLESS_E_ARGUMENT, "leafless_frame_around", "",
                 leafless_frame_around(above, point, 4, (leafless_frame *)out));
-        BAD_NUMBER(leafless_frame_cell_of, point_model, leafless_frame_cell_of(&frame, outside, (uint32_t *)out));
+        BAD_NUMBER(leafless_frame_cell_at, point_model, leafless_frame_cell_at(&frame, outside, (uint32_t *)out));
         BAD_NUMBER(leafless_octree_classify_box, min,
                    leafless_octree_classify_box(octree, above, point, (leafless_region *)out));
         refused(LEAFLESS_E_ARGUMENT, "leafless_octree_classify_box", "",
@@ -931,8 +931,8 @@ static void numbers(void) {
                 leafless_solid_new_halfspace(point, 1, solid_result));
     }
     for (i = 0; i < COUNT(not_a_tag); i++) {
-        BAD_NUMBER(leafless_octree_uniform, tag, leafless_octree_uniform(&frame, not_a_tag[i], 0, result));
-        BAD_NUMBER(leafless_octree_uniform, exterior, leafless_octree_uniform(&frame, 0, not_a_tag[i], result));
+        BAD_NUMBER(leafless_octree_new_uniform, tag, leafless_octree_new_uniform(&frame, not_a_tag[i], 0, result));
+        BAD_NUMBER(leafless_octree_new_uniform, exterior, leafless_octree_new_uniform(&frame, 0, not_a_tag[i], result));
     }
     for (i = 0; i < COUNT(not_a_rule); i++) {
         BAD_NUMBER(leafless_octree_build, rule, leafless_octree_build(solid, &frame, not_a_rule[i], NULL, result));
@@ -943,7 +943,7 @@ static void numbers(void) {
         BAD_NUMBER(leafless_mesh_check_closed, fill, leafless_mesh_check_closed(mesh, not_a_rule[i] - 1));
         BAD_NUMBER(leafless_mesh_measure, fill,
                    leafless_mesh_measure(mesh, not_a_rule[i] - 1, NULL, (leafless_mesh_moments *)out));
-        BAD_NUMBER(leafless_solid_new_mesh, fill, leafless_solid_new_mesh(mesh, not_a_rule[i] - 1, solid_result));
+        BAD_NUMBER(leafless_solid_from_mesh, fill, leafless_solid_from_mesh(mesh, not_a_rule[i] - 1, solid_result));
         memset(&callbacks, 0, sizeof callbacks);
         callbacks.struct_size = sizeof callbacks;
         callbacks.classify = classify;
@@ -1002,9 +1002,9 @@ static void lazy_octrees(void) {
     NULL_POINTER(leafless_lazy_split, cell, leafless_lazy_split(lazy, NULL, 0, tags));
     NULL_POINTER(leafless_lazy_split, tags, leafless_lazy_split(lazy, universe, 0, NULL));
     NULL_POINTER(leafless_lazy_refine, lazy, leafless_lazy_refine(NULL, &zone, 1, NULL, flag));
-    NULL_POINTER(leafless_lazy_tag, lazy, leafless_lazy_tag(NULL, universe, 0, tags, flag));
-    NULL_POINTER(leafless_lazy_tag, cell, leafless_lazy_tag(lazy, NULL, 0, tags, flag));
-    NULL_POINTER(leafless_lazy_tag, tag, leafless_lazy_tag(lazy, universe, 0, NULL, flag));
+    NULL_POINTER(leafless_lazy_tag_at, lazy, leafless_lazy_tag_at(NULL, universe, 0, tags, flag));
+    NULL_POINTER(leafless_lazy_tag_at, cell, leafless_lazy_tag_at(lazy, NULL, 0, tags, flag));
+    NULL_POINTER(leafless_lazy_tag_at, tag, leafless_lazy_tag_at(lazy, universe, 0, NULL, flag));
     NULL_POINTER(leafless_lazy_contains, lazy, leafless_lazy_contains(NULL, point, membership));
     NULL_POINTER(leafless_lazy_contains, point_model, leafless_lazy_contains(lazy, NULL, membership));
     NULL_POINTER(leafless_lazy_contains, membership, leafless_lazy_contains(lazy, point, NULL));
@@ -1025,7 +1025,7 @@ static void lazy_octrees(void) {
     MISALIGNED(leafless_lazy_refine, options,
                leafless_lazy_refine(lazy, &zone, 1, (const leafless_options *)WRONG(&options), flag));
     MISALIGNED(leafless_lazy_refine, zone, leafless_lazy_refine(lazy, (const leafless_zone *)WRONG(&zone), 1, NULL, flag));
-    MISALIGNED(leafless_lazy_tag, cell, leafless_lazy_tag(lazy, cell, 0, tags, flag));
+    MISALIGNED(leafless_lazy_tag_at, cell, leafless_lazy_tag_at(lazy, cell, 0, tags, flag));
     MISALIGNED(leafless_lazy_contains, point_model, leafless_lazy_contains(lazy, numbers, membership));
     MISALIGNED(leafless_lazy_describe, info, leafless_lazy_describe(lazy, (leafless_lazy_info *)WRONG(out)));
     MISALIGNED(leafless_lazy_levels, levels, leafless_lazy_levels(lazy, (leafless_statistics *)WRONG(out), 5, count));
@@ -1054,7 +1054,7 @@ static void lazy_octrees(void) {
     MAY_BE_NULL(leafless_lazy_refine, zone, leafless_lazy_refine(lazy, NULL, 1, &options, &done));
     MAY_BE_NULL(leafless_lazy_refine, options, leafless_lazy_refine(lazy, &zone, 1, NULL, &done));
     MAY_BE_NULL(leafless_lazy_refine, done, leafless_lazy_refine(lazy, &zone, 1, &options, NULL));
-    MAY_BE_NULL(leafless_lazy_tag, can_split, leafless_lazy_tag(lazy, universe, 0, &tag, NULL));
+    MAY_BE_NULL(leafless_lazy_tag_at, can_split, leafless_lazy_tag_at(lazy, universe, 0, &tag, NULL));
     MAY_BE_NULL(leafless_lazy_levels, levels, leafless_lazy_levels(lazy, NULL, 0, &number));
     MAY_BE_NULL(leafless_lazy_splits, splits, leafless_lazy_splits(lazy, NULL, 0, &number));
     MAY_BE_NULL(leafless_lazy_freeze, options, leafless_lazy_freeze(lazy, NULL, &frozen));
@@ -1118,8 +1118,8 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_volume_bounds, max_model, leafless_volume_bounds(volume, (double *)out, NULL));
     NULL_POINTER(leafless_volume_range, volume, leafless_volume_range(NULL, NULL, interval));
     NULL_POINTER(leafless_volume_range, range, leafless_volume_range(volume, NULL, NULL));
-    NULL_POINTER(leafless_solid_new_volume, volume, leafless_solid_new_volume(NULL, band, NULL, solid_result));
-    NULL_POINTER(leafless_solid_new_volume, solid, leafless_solid_new_volume(volume, band, NULL, NULL));
+    NULL_POINTER(leafless_solid_from_volume, volume, leafless_solid_from_volume(NULL, band, NULL, solid_result));
+    NULL_POINTER(leafless_solid_from_volume, solid, leafless_solid_from_volume(volume, band, NULL, NULL));
     NULL_POINTER(leafless_volume_data_file, bytes, leafless_volume_data_file(NULL, 9, NULL, 0, count));
     NULL_POINTER(leafless_volume_data_file, name, leafless_volume_data_file(header, length, NULL, 9, count));
     NULL_POINTER(leafless_volume_data_file, name_length,
@@ -1154,7 +1154,7 @@ static void volumes_and_surfaces(void) {
     MISALIGNED(leafless_volume_new, layout,
                volume_of_array((leafless_volume_layout *)WRONG(&layout), samples, 8, made));
     MISALIGNED(leafless_volume_new, volume, volume_of_array(&layout, samples, 8, (leafless_volume **)WRONG(out)));
-    layout.sample_type = LEAFLESS_SAMPLE_U16;
+    layout.sample_type = LEAFLESS_SAMPLE_TYPE_U16;
     MISALIGNED(leafless_volume_new, source.bytes, volume_in_place(&layout, WRONG(samples), 16, made));
     MISALIGNED(leafless_volume_describe, volume, leafless_volume_describe((leafless_volume *)WRONG(volume), info));
     MISALIGNED(leafless_volume_describe, info,
@@ -1169,12 +1169,12 @@ static void volumes_and_surfaces(void) {
                leafless_volume_surface(volume, band, (leafless_options *)WRONG(&options), mesh_result));
     MISALIGNED(leafless_volume_surface, band,
                leafless_volume_surface(volume, (leafless_interval *)WRONG(band), NULL, mesh_result));
-    MISALIGNED(leafless_solid_new_volume, band,
-               leafless_solid_new_volume(volume, (leafless_interval *)WRONG(band), NULL, solid_result));
-    MISALIGNED(leafless_solid_new_volume, options,
-               leafless_solid_new_volume(volume, band, (leafless_options *)WRONG(&options), solid_result));
-    MISALIGNED(leafless_solid_new_volume, solid,
-               leafless_solid_new_volume(volume, band, NULL, (leafless_solid **)WRONG(out)));
+    MISALIGNED(leafless_solid_from_volume, band,
+               leafless_solid_from_volume(volume, (leafless_interval *)WRONG(band), NULL, solid_result));
+    MISALIGNED(leafless_solid_from_volume, options,
+               leafless_solid_from_volume(volume, band, (leafless_options *)WRONG(&options), solid_result));
+    MISALIGNED(leafless_solid_from_volume, solid,
+               leafless_solid_from_volume(volume, band, NULL, (leafless_solid **)WRONG(out)));
     MISALIGNED(leafless_octree_bitmap, min_cell,
                leafless_octree_bitmap(octree, 4, cell, high, NULL, NULL, NULL, 0, count));
     MISALIGNED(leafless_octree_bitmap, max_cell,
@@ -1205,7 +1205,7 @@ static void volumes_and_surfaces(void) {
     MISALIGNED(leafless_mesh_written_form, options,
                leafless_mesh_written_form(mesh, (leafless_mesh_write_options *)WRONG(&write), mesh_result));
 
-    layout.sample_type = LEAFLESS_SAMPLE_U8;
+    layout.sample_type = LEAFLESS_SAMPLE_TYPE_U8;
     BAD_NUMBER(leafless_octree_bitmap, level,
                leafless_octree_bitmap(octree, 5, low, high, NULL, NULL, NULL, 0, count));
     BAD_NUMBER(leafless_octree_bitmap, level,
@@ -1216,9 +1216,9 @@ static void volumes_and_surfaces(void) {
     CHECK(never == UNTOUCHED);
 
     MAY_BE_NULL(leafless_volume_range, options, leafless_volume_range(volume, NULL, &range));
-    MAY_BE_NULL(leafless_solid_new_volume, band, leafless_solid_new_volume(volume, NULL, &options, solid_result));
+    MAY_BE_NULL(leafless_solid_from_volume, band, leafless_solid_from_volume(volume, NULL, &options, solid_result));
     leafless_solid_free(*solid_result);
-    MAY_BE_NULL(leafless_solid_new_volume, options, leafless_solid_new_volume(volume, band, NULL, solid_result));
+    MAY_BE_NULL(leafless_solid_from_volume, options, leafless_solid_from_volume(volume, band, NULL, solid_result));
     leafless_solid_free(*solid_result);
     MAY_BE_NULL(leafless_volume_data_file, name, leafless_volume_data_file(header, length, NULL, 0, &number));
     {
@@ -1239,7 +1239,7 @@ static void volumes_and_surfaces(void) {
     leafless_mesh_free(*mesh_result);
     {
         leafless_octree *full = NULL;
-        OK(leafless_octree_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &full));
+        OK(leafless_octree_new_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &full));
         MAY_BE_NULL(leafless_octree_surface, surface, leafless_octree_surface(full, NULL, &options, mesh_result));
         leafless_mesh_free(*mesh_result);
         leafless_octree_free(full);
@@ -1648,12 +1648,12 @@ static void columns(void) {
     NULL_POINTER(leafless_solid_columns, first, leafless_solid_columns(solid, &frame, 0, NULL, end, NULL, result));
     NULL_POINTER(leafless_solid_columns, end, leafless_solid_columns(solid, &frame, 0, first, NULL, NULL, result));
     NULL_POINTER(leafless_solid_columns, columns, leafless_solid_columns(solid, &frame, 0, first, end, NULL, NULL));
-    NULL_POINTER(leafless_columns_read, columns, leafless_columns_read(NULL, 0, NULL, 0, count, NULL, 0, count));
-    NULL_POINTER(leafless_columns_read, offsets, leafless_columns_read(columns, 0, NULL, 1, count, NULL, 0, count));
-    NULL_POINTER(leafless_columns_read, offset_count,
-                 leafless_columns_read(columns, 0, NULL, 0, NULL, NULL, 0, count));
-    NULL_POINTER(leafless_columns_read, runs, leafless_columns_read(columns, 0, NULL, 0, count, NULL, 1, count));
-    NULL_POINTER(leafless_columns_read, run_count, leafless_columns_read(columns, 0, NULL, 0, count, NULL, 0, NULL));
+    NULL_POINTER(leafless_columns_copy, columns, leafless_columns_copy(NULL, 0, NULL, 0, count, NULL, 0, count));
+    NULL_POINTER(leafless_columns_copy, offsets, leafless_columns_copy(columns, 0, NULL, 1, count, NULL, 0, count));
+    NULL_POINTER(leafless_columns_copy, offset_count,
+                 leafless_columns_copy(columns, 0, NULL, 0, NULL, NULL, 0, count));
+    NULL_POINTER(leafless_columns_copy, runs, leafless_columns_copy(columns, 0, NULL, 0, count, NULL, 1, count));
+    NULL_POINTER(leafless_columns_copy, run_count, leafless_columns_copy(columns, 0, NULL, 0, count, NULL, 0, NULL));
     NULL_POINTER(leafless_octree_heights, octree, leafless_octree_heights(NULL, 0, first, end, 0, map, 16, count));
     NULL_POINTER(leafless_octree_heights, first, leafless_octree_heights(octree, 0, NULL, end, 0, map, 16, count));
     NULL_POINTER(leafless_octree_heights, end, leafless_octree_heights(octree, 0, first, NULL, 0, map, 16, count));
@@ -1678,12 +1678,12 @@ static void columns(void) {
     MISALIGNED(leafless_octree_columns, columns,
                leafless_octree_columns(octree, 0, first, end, (leafless_columns **)WRONG(out)));
     MISALIGNED(leafless_solid_columns, end, leafless_solid_columns(solid, &frame, 0, first, wrong, NULL, result));
-    MISALIGNED(leafless_columns_read, columns,
-               leafless_columns_read((leafless_columns *)WRONG(columns), 0, NULL, 0, count, NULL, 0, count));
-    MISALIGNED(leafless_columns_read, offsets,
-               leafless_columns_read(columns, 0, (uint64_t *)WRONG(out), 1, count, NULL, 0, count));
-    MISALIGNED(leafless_columns_read, runs,
-               leafless_columns_read(columns, 0, NULL, 0, count, (leafless_run *)WRONG(out), 1, count));
+    MISALIGNED(leafless_columns_copy, columns,
+               leafless_columns_copy((leafless_columns *)WRONG(columns), 0, NULL, 0, count, NULL, 0, count));
+    MISALIGNED(leafless_columns_copy, offsets,
+               leafless_columns_copy(columns, 0, (uint64_t *)WRONG(out), 1, count, NULL, 0, count));
+    MISALIGNED(leafless_columns_copy, runs,
+               leafless_columns_copy(columns, 0, NULL, 0, count, (leafless_run *)WRONG(out), 1, count));
     MISALIGNED(leafless_octree_heights, heights_model,
                leafless_octree_heights(octree, 0, first, end, 0, (leafless_interval *)WRONG(out), 256, count));
     MISALIGNED(leafless_solid_heights, count,
@@ -1694,10 +1694,10 @@ static void columns(void) {
     BAD_NUMBER(leafless_octree_columns, columns, leafless_octree_columns(octree, 0, first, far, result));
     BAD_NUMBER(leafless_octree_columns, end, leafless_octree_columns(octree, 0, end, first, result));
     BAD_NUMBER(leafless_solid_columns, columns, leafless_solid_columns(solid, &frame, 1, first, far, NULL, result));
-    BAD_NUMBER(leafless_columns_read, on, leafless_columns_read(columns, 2, NULL, 0, count, NULL, 0, count));
-    BAD_NUMBER(leafless_columns_read, runs, leafless_columns_read(columns, 0, NULL, 0, count, runs, UINT64_MAX, count));
-    BAD_NUMBER(leafless_columns_read, offsets,
-               leafless_columns_read(columns, 0, offsets, UINT64_MAX, count, NULL, 0, count));
+    BAD_NUMBER(leafless_columns_copy, on, leafless_columns_copy(columns, 2, NULL, 0, count, NULL, 0, count));
+    BAD_NUMBER(leafless_columns_copy, runs, leafless_columns_copy(columns, 0, NULL, 0, count, runs, UINT64_MAX, count));
+    BAD_NUMBER(leafless_columns_copy, offsets,
+               leafless_columns_copy(columns, 0, offsets, UINT64_MAX, count, NULL, 0, count));
     BAD_NUMBER(leafless_octree_heights, side, leafless_octree_heights(octree, 0, first, end, 2, map, 256, count));
     BAD_NUMBER(leafless_solid_heights, side,
                leafless_solid_heights(solid, &frame, 0, first, end, 2, NULL, map, 256, count));
@@ -1706,8 +1706,8 @@ static void columns(void) {
     untouched();
     CHECK(never == UNTOUCHED);
 
-    MAY_BE_NULL(leafless_columns_read, offsets, leafless_columns_read(columns, 0, NULL, 0, &number, NULL, 0, &other));
-    MAY_BE_NULL(leafless_columns_read, runs, leafless_columns_read(columns, 0, NULL, 0, &number, NULL, 0, &other));
+    MAY_BE_NULL(leafless_columns_copy, offsets, leafless_columns_copy(columns, 0, NULL, 0, &number, NULL, 0, &other));
+    MAY_BE_NULL(leafless_columns_copy, runs, leafless_columns_copy(columns, 0, NULL, 0, &number, NULL, 0, &other));
     CHECK(number == 257 && other > 0);
     MAY_BE_NULL(leafless_octree_heights, heights_model,
                 leafless_octree_heights(octree, 0, NULL, NULL, 1, NULL, 0, &number));
@@ -1929,9 +1929,9 @@ static void summaries(const leafless_channel *channel) {
                  leafless_solid_materials(solid, channel, &frame, 1, 0, NULL, materials, 0, NULL));
     BAD_NUMBER(leafless_solid_materials, tolerance,
                leafless_solid_materials(solid, channel, &frame, -1, 0, NULL, NULL, 0, count));
-    NULL_POINTER(leafless_volume_as_attribute, volume, leafless_volume_as_attribute(NULL, 0, NULL, made));
-    NULL_POINTER(leafless_volume_as_attribute, attribute, leafless_volume_as_attribute(volume, 0, NULL, NULL));
-    BAD_NUMBER(leafless_volume_as_attribute, interpolation, leafless_volume_as_attribute(volume, 2, NULL, made));
+    NULL_POINTER(leafless_attribute_from_volume, volume, leafless_attribute_from_volume(NULL, 0, NULL, made));
+    NULL_POINTER(leafless_attribute_from_volume, attribute, leafless_attribute_from_volume(volume, 0, NULL, NULL));
+    BAD_NUMBER(leafless_attribute_from_volume, interpolation, leafless_attribute_from_volume(volume, 2, NULL, made));
     MISALIGNED(leafless_channel_summarise, summary,
                leafless_channel_summarise(channel, octree, NULL, NULL, NULL, (leafless_channel_summary *)WRONG(out)));
     MISALIGNED(leafless_channel_region, low,
@@ -1945,7 +1945,7 @@ static void summaries(const leafless_channel *channel) {
     MAY_BE_NULL(leafless_solid_materials, options,
                 leafless_solid_materials(solid, channel, &frame, 1, 0, NULL, all, 4, &number));
     CHECK(number == 1);
-    MAY_BE_NULL(leafless_volume_as_attribute, options, leafless_volume_as_attribute(volume, 0, NULL, &attribute));
+    MAY_BE_NULL(leafless_attribute_from_volume, options, leafless_attribute_from_volume(volume, 0, NULL, &attribute));
     leafless_attribute_free(attribute);
     leafless_octree_free(region);
     leafless_volume_free(volume);
@@ -2046,8 +2046,8 @@ static void attributes_and_channels(void) {
     NULL_POINTER(leafless_channel_equal, a, leafless_channel_equal(NULL, channel, (bool *)out));
     NULL_POINTER(leafless_channel_equal, b, leafless_channel_equal(channel, NULL, (bool *)out));
     NULL_POINTER(leafless_channel_equal, equal, leafless_channel_equal(channel, channel, NULL));
-    NULL_POINTER(leafless_channel_as_attribute, channel, leafless_channel_as_attribute(NULL, made));
-    NULL_POINTER(leafless_channel_as_attribute, attribute, leafless_channel_as_attribute(channel, NULL));
+    NULL_POINTER(leafless_attribute_from_channel, channel, leafless_attribute_from_channel(NULL, made));
+    NULL_POINTER(leafless_attribute_from_channel, attribute, leafless_attribute_from_channel(channel, NULL));
     NULL_POINTER(leafless_channel_with_metadata, channel,
                  leafless_channel_with_metadata(NULL, "k", 1, "v", 1, channel_result));
     NULL_POINTER(leafless_channel_with_metadata, key,
@@ -2089,9 +2089,9 @@ static void attributes_and_channels(void) {
     NULL_POINTER(leafless_channel_value, channel, leafless_channel_value(NULL, point, values));
     NULL_POINTER(leafless_channel_value, point_model, leafless_channel_value(channel, NULL, values));
     NULL_POINTER(leafless_channel_value, value, leafless_channel_value(channel, point, NULL));
-    NULL_POINTER(leafless_channel_value_of_cell, channel, leafless_channel_value_of_cell(NULL, cell, values));
-    NULL_POINTER(leafless_channel_value_of_cell, cell, leafless_channel_value_of_cell(channel, NULL, values));
-    NULL_POINTER(leafless_channel_value_of_cell, value, leafless_channel_value_of_cell(channel, cell, NULL));
+    NULL_POINTER(leafless_channel_value_at, channel, leafless_channel_value_at(NULL, cell, values));
+    NULL_POINTER(leafless_channel_value_at, cell, leafless_channel_value_at(channel, NULL, values));
+    NULL_POINTER(leafless_channel_value_at, value, leafless_channel_value_at(channel, cell, NULL));
     NULL_POINTER(leafless_channel_with_value_in, channel,
                  leafless_channel_with_value_in(NULL, octree, one, NULL, channel_result));
     NULL_POINTER(leafless_channel_with_value_in, region,
@@ -2155,8 +2155,8 @@ static void attributes_and_channels(void) {
     MISALIGNED(leafless_channel_describe, info, leafless_channel_describe(channel, (leafless_channel_info *)WRONG(out)));
     MISALIGNED(leafless_channel_values, values, leafless_channel_values(channel, point, 1, (double *)WRONG(out)));
     MISALIGNED(leafless_channel_value, value, leafless_channel_value(channel, point, (double *)WRONG(out)));
-    MISALIGNED(leafless_channel_value_of_cell, cell,
-               leafless_channel_value_of_cell(channel, (const uint32_t *)WRONG(cell), values));
+    MISALIGNED(leafless_channel_value_at, cell,
+               leafless_channel_value_at(channel, (const uint32_t *)WRONG(cell), values));
     MISALIGNED(leafless_channel_with_value_in, value,
                leafless_channel_with_value_in(channel, octree, (const double *)WRONG(one), NULL, channel_result));
     MISALIGNED(leafless_octree_carry_channels, rules,

@@ -61,36 +61,36 @@ static void layers(void) {
     NULL_POINTER(leafless_layer_ref, reference, leafless_layer_ref(layer, NULL));
     leafless_layer_free(NULL);
 
-    NULL_POINTER(leafless_layer_new_octree, octree, leafless_layer_new_octree(NULL, NULL, result));
-    MAY_BE_NULL(leafless_layer_new_octree, look, leafless_layer_new_octree(octree, NULL, &made));
+    NULL_POINTER(leafless_layer_from_octree, octree, leafless_layer_from_octree(NULL, NULL, result));
+    MAY_BE_NULL(leafless_layer_from_octree, look, leafless_layer_from_octree(octree, NULL, &made));
     drop();
-    NULL_POINTER(leafless_layer_new_octree, layer, leafless_layer_new_octree(octree, NULL, NULL));
-    NULL_POINTER(leafless_layer_new_solid, solid, leafless_layer_new_solid(NULL, &frame, NULL, result));
-    NULL_POINTER(leafless_layer_new_solid, frame, leafless_layer_new_solid(solid, NULL, NULL, result));
-    MAY_BE_NULL(leafless_layer_new_solid, look, leafless_layer_new_solid(solid, &frame, NULL, &made));
+    NULL_POINTER(leafless_layer_from_octree, layer, leafless_layer_from_octree(octree, NULL, NULL));
+    NULL_POINTER(leafless_layer_from_solid, solid, leafless_layer_from_solid(NULL, &frame, NULL, result));
+    NULL_POINTER(leafless_layer_from_solid, frame, leafless_layer_from_solid(solid, NULL, NULL, result));
+    MAY_BE_NULL(leafless_layer_from_solid, look, leafless_layer_from_solid(solid, &frame, NULL, &made));
     drop();
-    NULL_POINTER(leafless_layer_new_solid, layer, leafless_layer_new_solid(solid, &frame, NULL, NULL));
-    BAD_NUMBER(leafless_layer_new_solid, depth, leafless_layer_new_solid(solid, &deep, NULL, result));
-    NULL_POINTER(leafless_layer_new_mesh, mesh, leafless_layer_new_mesh(NULL, NULL, result));
-    MAY_BE_NULL(leafless_layer_new_mesh, look, leafless_layer_new_mesh(mesh, NULL, &made));
+    NULL_POINTER(leafless_layer_from_solid, layer, leafless_layer_from_solid(solid, &frame, NULL, NULL));
+    BAD_NUMBER(leafless_layer_from_solid, depth, leafless_layer_from_solid(solid, &deep, NULL, result));
+    NULL_POINTER(leafless_layer_from_mesh, mesh, leafless_layer_from_mesh(NULL, NULL, result));
+    MAY_BE_NULL(leafless_layer_from_mesh, look, leafless_layer_from_mesh(mesh, NULL, &made));
     drop();
-    NULL_POINTER(leafless_layer_new_mesh, layer, leafless_layer_new_mesh(mesh, NULL, NULL));
+    NULL_POINTER(leafless_layer_from_mesh, layer, leafless_layer_from_mesh(mesh, NULL, NULL));
     OK(leafless_init(&look, sizeof look));
     look.faces = 2;
-    BAD_NUMBER(leafless_layer_new_octree, faces, leafless_layer_new_octree(octree, &look, result));
-    BAD_NUMBER(leafless_layer_new_mesh, faces, leafless_layer_new_mesh(mesh, &look, result));
+    BAD_NUMBER(leafless_layer_from_octree, faces, leafless_layer_from_octree(octree, &look, result));
+    BAD_NUMBER(leafless_layer_from_mesh, faces, leafless_layer_from_mesh(mesh, &look, result));
     look.faces = 1;
-    BAD_NUMBER(leafless_layer_new_solid, faces, leafless_layer_new_solid(solid, &frame, &look, result));
+    BAD_NUMBER(leafless_layer_from_solid, faces, leafless_layer_from_solid(solid, &frame, &look, result));
     look.faces = 0;
     look.edges = 3;
-    BAD_NUMBER(leafless_layer_new_octree, edges, leafless_layer_new_octree(octree, &look, result));
-    BAD_NUMBER(leafless_layer_new_mesh, edges, leafless_layer_new_mesh(mesh, &look, result));
+    BAD_NUMBER(leafless_layer_from_octree, edges, leafless_layer_from_octree(octree, &look, result));
+    BAD_NUMBER(leafless_layer_from_mesh, edges, leafless_layer_from_mesh(mesh, &look, result));
     look.edges = 0;
     look.triangle_count = 1;
-    NULL_POINTER(leafless_layer_new_mesh, triangle_colours, leafless_layer_new_mesh(mesh, &look, result));
-    BAD_NUMBER(leafless_layer_new_solid, triangle_count, leafless_layer_new_solid(solid, &frame, &look, result));
+    NULL_POINTER(leafless_layer_from_mesh, triangle_colours, leafless_layer_from_mesh(mesh, &look, result));
+    BAD_NUMBER(leafless_layer_from_solid, triangle_count, leafless_layer_from_solid(solid, &frame, &look, result));
     look.struct_size = 7;
-    BAD_NUMBER(leafless_layer_new_octree, look, leafless_layer_new_octree(octree, &look, result));
+    BAD_NUMBER(leafless_layer_from_octree, look, leafless_layer_from_octree(octree, &look, result));
 
     NULL_POINTER(leafless_layer_new_lines, points_model, leafless_layer_new_lines(NULL, 1, 1, colour, result));
     MAY_BE_NULL(leafless_layer_new_lines, colour, leafless_layer_new_lines(ends, 1, 1, NULL, &made));
@@ -102,26 +102,26 @@ static void layers(void) {
     drop();
     NULL_POINTER(leafless_layer_new_cells, layer, leafless_layer_new_cells(&frame, cells, 2, 1, colour, NULL));
 
-    NULL_POINTER(leafless_layer_new_slice, octree, leafless_layer_new_slice(NULL, plane, NULL, result));
-    NULL_POINTER(leafless_layer_new_slice, plane, leafless_layer_new_slice(octree, NULL, NULL, result));
-    MAY_BE_NULL(leafless_layer_new_slice, look, leafless_layer_new_slice(octree, plane, NULL, &made));
+    NULL_POINTER(leafless_layer_from_octree_slice, octree, leafless_layer_from_octree_slice(NULL, plane, NULL, result));
+    NULL_POINTER(leafless_layer_from_octree_slice, plane, leafless_layer_from_octree_slice(octree, NULL, NULL, result));
+    MAY_BE_NULL(leafless_layer_from_octree_slice, look, leafless_layer_from_octree_slice(octree, plane, NULL, &made));
     drop();
-    NULL_POINTER(leafless_layer_new_slice, layer, leafless_layer_new_slice(octree, plane, NULL, NULL));
-    BAD_NUMBER(leafless_layer_new_slice, normal, leafless_layer_new_slice(octree, flat, NULL, result));
+    NULL_POINTER(leafless_layer_from_octree_slice, layer, leafless_layer_from_octree_slice(octree, plane, NULL, NULL));
+    BAD_NUMBER(leafless_layer_from_octree_slice, normal, leafless_layer_from_octree_slice(octree, flat, NULL, result));
     OK(leafless_init(&slice_look, sizeof slice_look));
     slice_look.is_plain = 2;
-    BAD_NUMBER(leafless_layer_new_slice, is_plain, leafless_layer_new_slice(octree, plane, &slice_look, result));
-    NULL_POINTER(leafless_layer_new_slice_of_solid, solid,
-                 leafless_layer_new_slice_of_solid(NULL, &frame, plane, NULL, result));
-    NULL_POINTER(leafless_layer_new_slice_of_solid, frame,
-                 leafless_layer_new_slice_of_solid(solid, NULL, plane, NULL, result));
-    NULL_POINTER(leafless_layer_new_slice_of_solid, plane,
-                 leafless_layer_new_slice_of_solid(solid, &frame, NULL, NULL, result));
-    MAY_BE_NULL(leafless_layer_new_slice_of_solid, look,
-                leafless_layer_new_slice_of_solid(solid, &frame, plane, NULL, &made));
+    BAD_NUMBER(leafless_layer_from_octree_slice, is_plain, leafless_layer_from_octree_slice(octree, plane, &slice_look, result));
+    NULL_POINTER(leafless_layer_from_solid_slice, solid,
+                 leafless_layer_from_solid_slice(NULL, &frame, plane, NULL, result));
+    NULL_POINTER(leafless_layer_from_solid_slice, frame,
+                 leafless_layer_from_solid_slice(solid, NULL, plane, NULL, result));
+    NULL_POINTER(leafless_layer_from_solid_slice, plane,
+                 leafless_layer_from_solid_slice(solid, &frame, NULL, NULL, result));
+    MAY_BE_NULL(leafless_layer_from_solid_slice, look,
+                leafless_layer_from_solid_slice(solid, &frame, plane, NULL, &made));
     drop();
-    NULL_POINTER(leafless_layer_new_slice_of_solid, layer,
-                 leafless_layer_new_slice_of_solid(solid, &frame, plane, NULL, NULL));
+    NULL_POINTER(leafless_layer_from_solid_slice, layer,
+                 leafless_layer_from_solid_slice(solid, &frame, plane, NULL, NULL));
     CHECK(never == UNTOUCHED);
 }
 
@@ -129,7 +129,7 @@ static void voxels(void) {
     void *out = fresh(), *never = UNTOUCHED;
     leafless_layer **result = (leafless_layer **)&never;
     const uint64_t code = 0;
-    const uint8_t level = 0, kind = LEAFLESS_VOXEL_BOUNDARY;
+    const uint8_t level = 0, kind = LEAFLESS_VOXEL_KIND_BOUNDARY;
     const double value = 1;
     double *parts = (double *)out, part;
     leafless_voxel_arrays arrays;
@@ -253,7 +253,7 @@ int main(void) {
     solid = check_ball_solid();
     octree = check_ball(3, LEAFLESS_RULE_CERTIFIED);
     OK(leafless_mesh_new(&arrays, &mesh));
-    OK(leafless_layer_new_octree(octree, NULL, &layer));
+    OK(leafless_layer_from_octree(octree, NULL, &layer));
     cameras();
     structs();
     layers();

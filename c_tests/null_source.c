@@ -8,7 +8,7 @@ static leafless_volume *volume;
 
 /* Where readers put what they read; they put nothing there if they refuse. */
 static void *result;
-static leafless_probe probe;
+static leafless_file_info probe;
 
 static leafless_status reads_octree(const leafless_source *source) {
     return leafless_octree_read(source, (leafless_octree **)&result);
@@ -31,7 +31,7 @@ static leafless_status reads_scene(const leafless_source *source) {
 }
 
 static leafless_status reads_probe(const leafless_source *source) {
-    return leafless_file_probe(source, &probe, NULL, 0);
+    return leafless_file_describe(source, &probe, NULL, 0);
 }
 
 static leafless_status reads_nothing(const leafless_source *source) {
@@ -76,7 +76,7 @@ static reader READERS[] = {
     {"leafless_mesh_read", reads_mesh, free_mesh, "source.ply", LEAFLESS_E_MESH_FILE, false, false, NULL, 0},
     {"leafless_volume_read", reads_volume, free_volume, "source.nrrd", LEAFLESS_E_VOLUME_FILE, false, false, NULL, 0},
     {"leafless_scene_read", reads_scene, free_scene, "source.csg", LEAFLESS_OK, false, false, NULL, 0},
-    {"leafless_file_probe", reads_probe, NULL, "source.lfl", LEAFLESS_E_FORMAT, true, false, NULL, 0},
+    {"leafless_file_describe", reads_probe, NULL, "source.lfl", LEAFLESS_E_FORMAT, true, false, NULL, 0},
     {"leafless_file_verify", reads_nothing, NULL, "source.lfl", LEAFLESS_E_FORMAT, true, true, NULL, 0},
     {"leafless_file_verify", reads_nothing, NULL, "rays.lfl", LEAFLESS_E_FORMAT, true, true, NULL, 0},
 };
@@ -178,7 +178,7 @@ static uint8_t *written(leafless_status (*write)(const leafless_sink *sink), con
 
 /* The call is refused, with these words in the message, and nothing comes of it. */
 static void refuses(leafless_status status, const reader *one, const char *words, const leafless_source *source) {
-    const leafless_probe before = probe;
+    const leafless_file_info before = probe;
     result = UNTOUCHED;
     refused(status, one->name, words, one->read(source));
     CHECK(result == UNTOUCHED && memcmp(&probe, &before, sizeof probe) == 0);
@@ -426,7 +426,7 @@ static void parameters(void) {
     leafless_mesh_options read = LEAFLESS_INIT(leafless_mesh_options);
     leafless_mesh_write_options write = LEAFLESS_INIT(leafless_mesh_write_options);
     leafless_scene_options options = LEAFLESS_INIT(leafless_scene_options);
-    leafless_mesh_found found;
+    leafless_mesh_file_info found;
     write.format = LEAFLESS_MESH_FORMAT_OFF;
 
     NULL_POINTER(leafless_octree_read, source, leafless_octree_read(NULL, octree_result));
@@ -446,11 +446,11 @@ static void parameters(void) {
     refused(LEAFLESS_E_ARGUMENT, "leafless_octree_read", "", leafless_octree_read(&rays, octree_result));
     refused(LEAFLESS_E_ARGUMENT, "leafless_tridexel_read", "", leafless_tridexel_read(&solid, tridexel_result));
 
-    NULL_POINTER(leafless_mesh_read, source, leafless_mesh_read(NULL, &read, (leafless_mesh_found *)out, mesh_result));
-    NULL_POINTER(leafless_mesh_read, mesh, leafless_mesh_read(&ply, &read, (leafless_mesh_found *)out, NULL));
+    NULL_POINTER(leafless_mesh_read, source, leafless_mesh_read(NULL, &read, (leafless_mesh_file_info *)out, mesh_result));
+    NULL_POINTER(leafless_mesh_read, mesh, leafless_mesh_read(&ply, &read, (leafless_mesh_file_info *)out, NULL));
     MISALIGNED(leafless_mesh_read, options,
                leafless_mesh_read(&ply, (const leafless_mesh_options *)WRONG(&read), NULL, mesh_result));
-    MISALIGNED(leafless_mesh_read, found, leafless_mesh_read(&ply, NULL, (leafless_mesh_found *)WRONG(out), mesh_result));
+    MISALIGNED(leafless_mesh_read, found, leafless_mesh_read(&ply, NULL, (leafless_mesh_file_info *)WRONG(out), mesh_result));
     MISALIGNED(leafless_mesh_read, mesh, leafless_mesh_read(&ply, NULL, NULL, (leafless_mesh **)WRONG(out)));
     NULL_POINTER(leafless_mesh_write, mesh, leafless_mesh_write(NULL, &write, &sink));
     NULL_POINTER(leafless_mesh_write, sink, leafless_mesh_write(mesh, &write, NULL));
@@ -485,12 +485,12 @@ static void parameters(void) {
     options.folder_length = 0;
     BAD_NUMBER(leafless_scene_read, options.folder, leafless_scene_read(&csg, &options, scene_result));
 
-    NULL_POINTER(leafless_file_probe, source, leafless_file_probe(NULL, (leafless_probe *)out, NULL, 0));
-    NULL_POINTER(leafless_file_probe, probe, leafless_file_probe(&solid, NULL, NULL, 0));
-    NULL_POINTER(leafless_file_probe, sections, leafless_file_probe(&solid, (leafless_probe *)out, NULL, 4));
-    MISALIGNED(leafless_file_probe, probe, leafless_file_probe(&solid, (leafless_probe *)WRONG(out), NULL, 0));
-    MISALIGNED(leafless_file_probe, sections,
-               leafless_file_probe(&solid, (leafless_probe *)out, (leafless_section *)WRONG(out), 4));
+    NULL_POINTER(leafless_file_describe, source, leafless_file_describe(NULL, (leafless_file_info *)out, NULL, 0));
+    NULL_POINTER(leafless_file_describe, probe, leafless_file_describe(&solid, NULL, NULL, 0));
+    NULL_POINTER(leafless_file_describe, sections, leafless_file_describe(&solid, (leafless_file_info *)out, NULL, 4));
+    MISALIGNED(leafless_file_describe, probe, leafless_file_describe(&solid, (leafless_file_info *)WRONG(out), NULL, 0));
+    MISALIGNED(leafless_file_describe, sections,
+               leafless_file_describe(&solid, (leafless_file_info *)out, (leafless_file_section *)WRONG(out), 4));
     NULL_POINTER(leafless_file_verify, source, leafless_file_verify(NULL));
     untouched();
     CHECK(never == UNTOUCHED && length == 0);
@@ -505,7 +505,7 @@ static void parameters(void) {
     leafless_volume_free(*volume_result);
     MAY_BE_NULL(leafless_scene_read, options, leafless_scene_read(&csg, NULL, scene_result));
     leafless_scene_free(*scene_result);
-    MAY_BE_NULL(leafless_file_probe, sections, leafless_file_probe(&solid, &probe, NULL, 0));
+    MAY_BE_NULL(leafless_file_describe, sections, leafless_file_describe(&solid, &probe, NULL, 0));
 }
 
 /* The second source of a volume: the file of the samples, wherever it and the header are. */
@@ -574,7 +574,7 @@ static void large_files(void) {
     for (i = 0; i < SIDE * SIDE * SIDE; i++) {
         samples[i] = (uint8_t)(i * 2654435761u >> 24);
     }
-    layout.sample_type = LEAFLESS_SAMPLE_U8;
+    layout.sample_type = LEAFLESS_SAMPLE_TYPE_U8;
     layout.extents[0] = layout.extents[1] = layout.extents[2] = SIDE;
     OK(volume_of_array(&layout, samples, SIDE * SIDE * SIDE, &large));
     OK(leafless_volume_write(large, LEAFLESS_VOLUME_FORMAT_RAW, &sink));
@@ -594,8 +594,8 @@ int main(void) {
     size_t i, length;
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
-    OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
-    layout.sample_type = LEAFLESS_SAMPLE_U8;
+    OK(leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
+    layout.sample_type = LEAFLESS_SAMPLE_TYPE_U8;
     layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
     OK(volume_of_array(&layout, SAMPLES, sizeof SAMPLES, &volume));
     for (i = 1; i < 3; i++) {

@@ -16,19 +16,19 @@ static void models(void) {
     const uint32_t cell[4] = {8, 8, 8, 8};
     OK(leafless_init(&options, sizeof options));
     OK(leafless_init(&format, sizeof format));
-#define MAKE(solid, frame, rule, format, result) leafless_tridexel_make(solid, frame, rule, format, &options, result)
-    NULL_POINTER(leafless_tridexel_make, solid, MAKE(NULL, &frame, 1, &format, result));
-    NULL_POINTER(leafless_tridexel_make, frame, MAKE(solid, NULL, 1, &format, result));
-    NULL_POINTER(leafless_tridexel_make, tridexel, MAKE(solid, &frame, 1, &format, NULL));
-    BAD_NUMBER(leafless_tridexel_make, rule, MAKE(solid, &frame, 0, &format, result));
-    BAD_NUMBER(leafless_tridexel_make, rule, MAKE(solid, &frame, 4, &format, result));
-    BAD_NUMBER(leafless_tridexel_make, rule, MAKE(solid, &frame, UINT32_MAX, &format, result));
-    MISALIGNED(leafless_tridexel_make, format, MAKE(solid, &frame, 1, (leafless_tridexel_format *)WRONG(&format), result));
+#define MAKE(solid, frame, rule, format, result) leafless_tridexel_build(solid, frame, rule, format, &options, result)
+    NULL_POINTER(leafless_tridexel_build, solid, MAKE(NULL, &frame, 1, &format, result));
+    NULL_POINTER(leafless_tridexel_build, frame, MAKE(solid, NULL, 1, &format, result));
+    NULL_POINTER(leafless_tridexel_build, tridexel, MAKE(solid, &frame, 1, &format, NULL));
+    BAD_NUMBER(leafless_tridexel_build, rule, MAKE(solid, &frame, 0, &format, result));
+    BAD_NUMBER(leafless_tridexel_build, rule, MAKE(solid, &frame, 4, &format, result));
+    BAD_NUMBER(leafless_tridexel_build, rule, MAKE(solid, &frame, UINT32_MAX, &format, result));
+    MISALIGNED(leafless_tridexel_build, format, MAKE(solid, &frame, 1, (leafless_tridexel_format *)WRONG(&format), result));
 #define FORMAT(field, wrong)                                                                                     \
     format.field = wrong;                                                                                        \
-    BAD_NUMBER(leafless_tridexel_make, format.field, MAKE(solid, &frame, 1, &format, result));                   \
-    BAD_NUMBER(leafless_tridexel_to_format, format.field,                                                        \
-               leafless_tridexel_to_format(model, &format, NULL, result));                                       \
+    BAD_NUMBER(leafless_tridexel_build, format.field, MAKE(solid, &frame, 1, &format, result));                   \
+    BAD_NUMBER(leafless_tridexel_with_format, format.field,                                                        \
+               leafless_tridexel_with_format(model, &format, NULL, result));                                       \
     format.field = 0
     FORMAT(directions, 8);
     FORMAT(directions, UINT32_MAX);
@@ -39,12 +39,12 @@ static void models(void) {
     FORMAT(has_materials, UINT32_MAX);
 #undef FORMAT
     format.struct_size = 3;
-    BAD_NUMBER(leafless_tridexel_make, format, MAKE(solid, &frame, 1, &format, result));
+    BAD_NUMBER(leafless_tridexel_build, format, MAKE(solid, &frame, 1, &format, result));
 #undef MAKE
     format.struct_size = sizeof format;
-    MAY_BE_NULL(leafless_tridexel_make, format, leafless_tridexel_make(solid, &frame, 1, NULL, &options, &other));
+    MAY_BE_NULL(leafless_tridexel_build, format, leafless_tridexel_build(solid, &frame, 1, NULL, &options, &other));
     leafless_tridexel_free(other);
-    MAY_BE_NULL(leafless_tridexel_make, options, leafless_tridexel_make(solid, &frame, 1, &format, NULL, &other));
+    MAY_BE_NULL(leafless_tridexel_build, options, leafless_tridexel_build(solid, &frame, 1, &format, NULL, &other));
     leafless_tridexel_free(other);
 
     NULL_POINTER(leafless_tridexel_ref, tridexel, leafless_tridexel_ref(NULL, result));
@@ -181,11 +181,11 @@ static void operations(void) {
     NULL_POINTER(leafless_tridexel_complement, result, leafless_tridexel_complement(model, NULL, NULL));
     MAY_BE_NULL(leafless_tridexel_complement, options, leafless_tridexel_complement(model, NULL, &other));
     leafless_tridexel_free(other);
-    NULL_POINTER(leafless_tridexel_to_format, tridexel, leafless_tridexel_to_format(NULL, &format, NULL, result));
-    NULL_POINTER(leafless_tridexel_to_format, result, leafless_tridexel_to_format(model, &format, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_to_format, format, leafless_tridexel_to_format(model, NULL, NULL, &other));
+    NULL_POINTER(leafless_tridexel_with_format, tridexel, leafless_tridexel_with_format(NULL, &format, NULL, result));
+    NULL_POINTER(leafless_tridexel_with_format, result, leafless_tridexel_with_format(model, &format, NULL, NULL));
+    MAY_BE_NULL(leafless_tridexel_with_format, format, leafless_tridexel_with_format(model, NULL, NULL, &other));
     leafless_tridexel_free(other);
-    MAY_BE_NULL(leafless_tridexel_to_format, options, leafless_tridexel_to_format(model, &format, NULL, &other));
+    MAY_BE_NULL(leafless_tridexel_with_format, options, leafless_tridexel_with_format(model, &format, NULL, &other));
     leafless_tridexel_free(other);
     NULL_POINTER(leafless_tridexel_with_material, tridexel, leafless_tridexel_with_material(NULL, 1, NULL, result));
     NULL_POINTER(leafless_tridexel_with_material, result, leafless_tridexel_with_material(model, 1, NULL, NULL));
@@ -245,13 +245,13 @@ static void uses(void) {
     leafless_mesh_free(made);
     MAY_BE_NULL(leafless_tridexel_surface, options, leafless_tridexel_surface(model, 1, NULL, NULL, &made));
     leafless_mesh_free(made);
-    NULL_POINTER(leafless_tridexel_to_octree, tridexel, leafless_tridexel_to_octree(NULL, NULL, octree));
-    NULL_POINTER(leafless_tridexel_to_octree, octree, leafless_tridexel_to_octree(model, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_to_octree, options, leafless_tridexel_to_octree(model, NULL, &tree));
+    NULL_POINTER(leafless_octree_from_tridexel, tridexel, leafless_octree_from_tridexel(NULL, NULL, octree));
+    NULL_POINTER(leafless_octree_from_tridexel, octree, leafless_octree_from_tridexel(model, NULL, NULL));
+    MAY_BE_NULL(leafless_octree_from_tridexel, options, leafless_octree_from_tridexel(model, NULL, &tree));
     leafless_octree_free(tree);
-    NULL_POINTER(leafless_tridexel_as_solid, tridexel, leafless_tridexel_as_solid(NULL, false, NULL, result));
-    NULL_POINTER(leafless_tridexel_as_solid, solid, leafless_tridexel_as_solid(model, false, NULL, NULL));
-    MAY_BE_NULL(leafless_tridexel_as_solid, options, leafless_tridexel_as_solid(model, true, NULL, &again));
+    NULL_POINTER(leafless_solid_from_tridexel, tridexel, leafless_solid_from_tridexel(NULL, false, NULL, result));
+    NULL_POINTER(leafless_solid_from_tridexel, solid, leafless_solid_from_tridexel(model, false, NULL, NULL));
+    MAY_BE_NULL(leafless_solid_from_tridexel, options, leafless_solid_from_tridexel(model, true, NULL, &again));
     leafless_solid_free(again);
     NULL_POINTER(leafless_tridexel_voxels, tridexel, leafless_tridexel_voxels(NULL, NULL, NULL, 0, voxels, 1, count));
     NULL_POINTER(leafless_tridexel_voxels, voxels, leafless_tridexel_voxels(model, NULL, NULL, 0, NULL, 1, count));
@@ -271,7 +271,7 @@ static void arrays(void) {
     static const double ends[2] = {-0.5, 0.25};
     leafless_tridexel **result = (leafless_tridexel **)&never, *other = NULL;
     leafless_tridexel_format format;
-    leafless_ray_arrays rays, good;
+    leafless_tridexel_arrays rays, good;
     OK(leafless_init(&format, sizeof format));
     memset(&rays, 0, sizeof rays);
     rays.first[0] = rays.first[1] = 3;
@@ -284,7 +284,7 @@ static void arrays(void) {
     NULL_POINTER(leafless_tridexel_new, rays, leafless_tridexel_new(&frame, &format, NULL, 1, NULL, result));
     NULL_POINTER(leafless_tridexel_new, tridexel, leafless_tridexel_new(&frame, &format, &rays, 1, NULL, NULL));
     MISALIGNED(leafless_tridexel_new, rays,
-               leafless_tridexel_new(&frame, &format, (leafless_ray_arrays *)WRONG(out), 1, NULL, result));
+               leafless_tridexel_new(&frame, &format, (leafless_tridexel_arrays *)WRONG(out), 1, NULL, result));
     BAD_NUMBER(leafless_tridexel_new, count, leafless_tridexel_new(&frame, &format, &rays, 0, NULL, result));
     BAD_NUMBER(leafless_tridexel_new, count, leafless_tridexel_new(&frame, &format, &rays, UINT64_MAX, NULL, result));
     rays.offsets = NULL;
@@ -378,7 +378,7 @@ static void editors(void) {
 
 int main(void) {
     solid = check_ball_solid();
-    OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
+    OK(leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &model));
     OK(leafless_tridexel_editor_new(model, &editor));
     models();
     intervals();

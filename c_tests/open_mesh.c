@@ -105,7 +105,7 @@ static leafless_octree *built(const surface *all, uint32_t fill, uint32_t rule) 
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
     OK(leafless_mesh_new(&arrays, &mesh));
-    OK(leafless_solid_new_mesh(mesh, fill, &solid));
+    OK(leafless_solid_from_mesh(mesh, fill, &solid));
     leafless_mesh_free(mesh);
     OK(leafless_octree_build(solid, &frame, rule, NULL, &octree));
     leafless_solid_free(solid);
@@ -279,14 +279,14 @@ int main(void) {
     {
         leafless_mesh *open = check_some_of_cube(11), *none = check_some_of_cube(0);
         leafless_solid *solid = NULL;
-        FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(open, LEAFLESS_FILL_EVEN_ODD, &solid));
+        FAILS(LEAFLESS_E_MESH, leafless_solid_from_mesh(open, LEAFLESS_FILL_EVEN_ODD, &solid));
         FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(open, LEAFLESS_FILL_NON_ZERO));
         FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(open, LEAFLESS_FILL_POSITIVE));
         for (fill = 0; fill < 3; fill++) {
-            FAILS(LEAFLESS_E_MESH, leafless_solid_new_mesh(none, fill, &solid));
+            FAILS(LEAFLESS_E_MESH, leafless_solid_from_mesh(none, fill, &solid));
         }
         CHECK(solid == NULL);
-        OK(leafless_solid_new_mesh(open, LEAFLESS_FILL_POSITIVE, &solid));
+        OK(leafless_solid_from_mesh(open, LEAFLESS_FILL_POSITIVE, &solid));
         leafless_solid_free(solid);
         leafless_mesh_free(open);
         leafless_mesh_free(none);

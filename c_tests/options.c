@@ -48,7 +48,7 @@ static int32_t count(void *ctx, double fraction) {
 
 int main(void) {
     leafless_options options;
-    leafless_callbacks callbacks;
+    leafless_solid_callbacks callbacks;
     newer_options newer;
     size_t size, i;
 
@@ -165,9 +165,9 @@ int main(void) {
 
     /* The same for callbacks. */
     {
-        leafless_callbacks callbacks;
+        leafless_solid_callbacks callbacks;
         struct {
-            leafless_callbacks known;
+            leafless_solid_callbacks known;
             uint64_t unknown;
         } longer;
         leafless_solid *all = NULL;
@@ -177,9 +177,9 @@ int main(void) {
             callbacks.struct_size = (uint32_t)size;
             FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_callbacks(&callbacks, &all));
         }
-        callbacks.struct_size = offsetof(leafless_callbacks, classify);
+        callbacks.struct_size = offsetof(leafless_solid_callbacks, classify);
         FAILS(LEAFLESS_E_NULL, leafless_solid_new_callbacks(&callbacks, &all));
-        callbacks.struct_size = offsetof(leafless_callbacks, contains);
+        callbacks.struct_size = offsetof(leafless_solid_callbacks, contains);
         OK(leafless_solid_new_callbacks(&callbacks, &all));
         leafless_solid_free(all);
         all = NULL;
@@ -195,7 +195,7 @@ int main(void) {
         all = NULL;
         /* A program of before there were distances: what lies where they are now is not called. */
         callbacks.distance_many = distance;
-        callbacks.struct_size = offsetof(leafless_callbacks, distance_many);
+        callbacks.struct_size = offsetof(leafless_solid_callbacks, distance_many);
         {
             leafless_octree *octree = NULL;
             leafless_statistics statistics;

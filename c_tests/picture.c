@@ -86,7 +86,7 @@ static void surfaces(void) {
     leafless_mesh *mesh;
     leafless_look look;
     int x, y;
-    OK(leafless_layer_new_solid(solid, &frame, NULL, &layer));
+    OK(leafless_layer_from_solid(solid, &frame, NULL, &layer));
     take(&shot, layer);
     check_ball_depths(-1, 2e-3);
     /* Cut by the picture, and by the layer alone. */
@@ -110,7 +110,7 @@ static void surfaces(void) {
     /* A layer keeps its octree. */
     OK(leafless_init(&look, sizeof look));
     look.colour[1] = look.colour[3] = 255;
-    OK(leafless_layer_new_octree(octree, &look, &layer));
+    OK(leafless_layer_from_octree(octree, &look, &layer));
     leafless_octree_free(octree);
     take(&shot, layer);
     /* A cell is seen where the surface is anywhere in it, and that rises by up to three cells a cell. */
@@ -122,14 +122,14 @@ static void surfaces(void) {
     leafless_layer_free(again);
     look.edges = LEAFLESS_EDGES_ALL;
     octree = check_ball(3, LEAFLESS_RULE_CERTIFIED);
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_new_octree(octree, &look, &layer));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_from_octree(octree, &look, &layer));
     /* The silhouette of a ball is black, its middle is not. */
     look.edges = LEAFLESS_EDGES_FEATURES;
     look.edge_colour[3] = 255;
     look.edge_width = 9;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_new_solid(solid, &frame, &look, &layer));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_from_solid(solid, &frame, &look, &layer));
     look.edge_width = 3;
-    OK(leafless_layer_new_solid(solid, &frame, &look, &layer));
+    OK(leafless_layer_from_solid(solid, &frame, &look, &layer));
     take(&shot, layer);
     for (x = 0; x < SIDE; x++) {
         const double from_rim = (0.75 - fabs(across(x))) / front.height_model * SIDE;
@@ -164,9 +164,9 @@ static void surfaces(void) {
         OK(leafless_init(&look, sizeof look));
         look.triangle_colours = &triangle_colours[0][0];
         look.triangle_count = 11;
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_new_mesh(mesh, &look, &layer));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_from_mesh(mesh, &look, &layer));
         look.triangle_count = 12;
-        OK(leafless_layer_new_mesh(mesh, &look, &layer));
+        OK(leafless_layer_from_mesh(mesh, &look, &layer));
         memset(triangle_colours, 0, sizeof triangle_colours);
         take(&shot, layer);
         for (y = 0; y < SIDE; y++) {
@@ -180,7 +180,7 @@ static void surfaces(void) {
         }
         leafless_layer_free(layer);
         look.edges = 7;
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_new_mesh(mesh, &look, &layer));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_from_mesh(mesh, &look, &layer));
     }
     leafless_mesh_free(mesh);
     leafless_solid_free(solid);
@@ -236,7 +236,7 @@ static void sections(void) {
     OK(leafless_init(&look, sizeof look));
     look.is_plain = 1;
     memcpy(look.full_colour, FULL, 4);
-    OK(leafless_layer_new_slice(octree, plane, &look, &layer));
+    OK(leafless_layer_from_octree_slice(octree, plane, &look, &layer));
     take(&shot, layer);
     for (y = 0; y < SIDE; y++) {
         for (x = 0; x < SIDE; x++) {
@@ -253,19 +253,19 @@ static void sections(void) {
     leafless_layer_free(layer);
     /* A solid that is split on the way shows the same. */
     memcpy(first, colours, sizeof colours);
-    OK(leafless_layer_new_slice_of_solid(solid, &frame, plane, &look, &layer));
+    OK(leafless_layer_from_solid_slice(solid, &frame, plane, &look, &layer));
     take(&shot, layer);
     CHECK(memcmp(first, colours, sizeof colours) == 0);
     leafless_layer_free(layer);
     OK(leafless_attribute_new_constant(&value, 1, &attribute));
     OK(leafless_init(&transfer, sizeof transfer));
     look.attribute = attribute;
-    FAILS(LEAFLESS_E_NULL, leafless_layer_new_slice(octree, plane, &look, &layer));
+    FAILS(LEAFLESS_E_NULL, leafless_layer_from_octree_slice(octree, plane, &look, &layer));
     look.transfer = &transfer;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_new_slice(octree, plane, &look, &layer));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_layer_from_octree_slice(octree, plane, &look, &layer));
     transfer.range_lower = 20;
     transfer.range_upper = 80;
-    OK(leafless_layer_new_slice(octree, plane, &look, &layer));
+    OK(leafless_layer_from_octree_slice(octree, plane, &look, &layer));
     leafless_attribute_free(attribute);
     take(&shot, layer);
     CHECK(is(pixel(SIDE / 2, SIDE / 2), VIOLET));
@@ -286,9 +286,9 @@ static void sections(void) {
     surface.transfer = &transfer;
     for (x = 0; x < 2; x++) {
         if (x == 0) {
-            OK(leafless_layer_new_octree(octree, &surface, &layer));
+            OK(leafless_layer_from_octree(octree, &surface, &layer));
         } else {
-            OK(leafless_layer_new_solid(solid, &frame, &surface, &layer));
+            OK(leafless_layer_from_solid(solid, &frame, &surface, &layer));
         }
         take(&shot, layer);
         CHECK(pixel(SIDE / 2, SIDE / 2)[1] < 3 && pixel(SIDE / 2, SIDE / 2)[2] > 60);
@@ -301,7 +301,7 @@ static void sections(void) {
 
 static void volumes(void) {
     const uint64_t code = 0;
-    const uint8_t level = 0, inside = LEAFLESS_VOXEL_INSIDE;
+    const uint8_t level = 0, inside = LEAFLESS_VOXEL_KIND_INSIDE;
     const leafless_frame frame = check_frame(4);
     leafless_voxel_arrays voxels;
     leafless_transfer transfer;
@@ -378,7 +378,7 @@ static void buffers(void) {
     uint8_t first[sizeof colours];
     float one_depth = 5;
     size_t i;
-    OK(leafless_layer_new_octree(octree, NULL, &layer));
+    OK(leafless_layer_from_octree(octree, NULL, &layer));
     take(&shot, layer);
     memcpy(first, colours, sizeof colours);
     /* The same for any number of threads; with and without buffers. */
@@ -457,10 +457,10 @@ static void files(void) {
     memset(large, 255, sizeof large);
     OK(leafless_init(&transfer, sizeof transfer));
     transfer.range_upper = 100;
-    OK(leafless_picture_draw_bar(large, WIDE, HIGH, "heat", 4, &transfer, LEAFLESS_LEGEND_RIGHT, &box));
+    OK(leafless_picture_draw_bar(large, WIDE, HIGH, "heat", 4, &transfer, LEAFLESS_LEGEND_SIDE_RIGHT, &box));
     CHECK(box.width > 0 && box.left + box.width == WIDE && box.top + box.height <= HIGH);
     memcpy(before, large, sizeof large);
-    OK(leafless_picture_draw_names(large, WIDE, HIGH, "tags", 4, names, 2, LEAFLESS_LEGEND_BOTTOM, &box));
+    OK(leafless_picture_draw_names(large, WIDE, HIGH, "tags", 4, names, 2, LEAFLESS_LEGEND_SIDE_BOTTOM, &box));
     CHECK(box.height > 0 && box.height <= HIGH / 3 && box.top + box.height == HIGH);
     for (y = 0; y < HIGH; y++) {
         for (x = 0; x < WIDE; x++) {

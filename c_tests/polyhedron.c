@@ -74,15 +74,15 @@ static void refused(leafless_status status, const leafless_polyhedron_arrays *ar
 
 /* Indices of a type, `offset` bytes beside an aligned address, in memory that ends with the last. */
 static unsigned char *indices(const uint32_t *from, size_t count, uint32_t type, size_t offset) {
-    const size_t size = type == LEAFLESS_INDEX_U16 ? 2 : type == LEAFLESS_INDEX_U64 ? 8 : 4;
+    const size_t size = type == LEAFLESS_INDEX_TYPE_U16 ? 2 : type == LEAFLESS_INDEX_TYPE_U64 ? 8 : 4;
     unsigned char *memory = (unsigned char *)malloc(offset + count * size);
     size_t i;
     CHECK(memory != NULL);
     for (i = 0; i < count; i++) {
         const uint64_t whole = from[i];
         const uint16_t quarter = (uint16_t)from[i];
-        const void *value = type == LEAFLESS_INDEX_U16   ? (const void *)&quarter
-                            : type == LEAFLESS_INDEX_U64 ? (const void *)&whole
+        const void *value = type == LEAFLESS_INDEX_TYPE_U16   ? (const void *)&quarter
+                            : type == LEAFLESS_INDEX_TYPE_U64 ? (const void *)&whole
                                                          : (const void *)&from[i];
         memcpy(memory + offset + i * size, value, size);
     }
@@ -96,7 +96,7 @@ static void all_types(void) {
         for (index_type = 0; index_type < 3; index_type++) {
             for (offset = 0; offset < 9; offset++) {
                 for (gap = 0; gap < 9; gap += 4) {
-                    const size_t size = vertex_type == LEAFLESS_VERTEX_F32 ? 12 : 24;
+                    const size_t size = vertex_type == LEAFLESS_VERTEX_TYPE_F32 ? 12 : 24;
                     leafless_polyhedron_arrays arrays = block();
                     leafless_mesh *mesh;
                     double copied[16][3];
@@ -106,7 +106,7 @@ static void all_types(void) {
                     for (i = 0; i < 16; i++) {
                         for (k = 0; k < 3; k++) {
                             const float single = (float)BLOCK[i][k];
-                            const void *value = vertex_type == LEAFLESS_VERTEX_F32 ? (const void *)&single : &BLOCK[i][k];
+                            const void *value = vertex_type == LEAFLESS_VERTEX_TYPE_F32 ? (const void *)&single : &BLOCK[i][k];
                             memcpy(memory[0] + offset + i * (size + gap) + k * size / 3, value, size / 3);
                         }
                     }
@@ -150,10 +150,10 @@ static void block_with_a_hole(void) {
     double found;
     OK(leafless_mesh_volume(mesh, &found));
     CHECK(near(found, 24.0));
-    OK(leafless_mesh_describe(mesh, &report));
+    OK(leafless_mesh_inspect(mesh, &report));
     /* Euler: of genus 1 are V - E + F = 0, so twice as many triangles as vertices. */
     CHECK(report.triangles == 32 && report.vertices == 16 && report.bodies == 1 && report.boundary_edges == 0);
-    OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
+    OK(leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
     OK(leafless_octree_statistics(octree, &statistics));
     CHECK(statistics.volume_model.lower <= 24.0 && 24.0 <= statistics.volume_model.upper);
@@ -180,7 +180,7 @@ static void block_with_a_hole(void) {
     arrays.face_count = 0;
     CHECK(near(volume(&arrays), 24.0));
     mesh = made(&arrays);
-    OK(leafless_mesh_describe(mesh, &report));
+    OK(leafless_mesh_inspect(mesh, &report));
     CHECK(report.triangles == 24 && report.bodies == 2);
     leafless_mesh_free(mesh);
 }
@@ -230,7 +230,7 @@ static void shells_and_solids(void) {
     arrays.solid_count = 2;
     CHECK(near(volume(&arrays), 64.0 - 1.0 - 3.375 + 8.0));
     mesh = made(&arrays);
-    OK(leafless_mesh_describe(mesh, &report));
+    OK(leafless_mesh_inspect(mesh, &report));
     CHECK(report.bodies == 4 && report.triangles == 48);
     leafless_mesh_free(mesh);
     /* The first solid alone; by default it is one. */
@@ -303,7 +303,7 @@ static void bad_arrays(void) {
             wide_faces[i] = BLOCK_FACES[i];
         }
         arrays = block();
-        arrays.index_type = LEAFLESS_INDEX_U64;
+        arrays.index_type = LEAFLESS_INDEX_TYPE_U64;
         arrays.corners = wide;
         arrays.loops = wide_loops;
         arrays.faces = wide_faces;

@@ -24,20 +24,20 @@ static void asked(const leafless_solid *solid, const leafless_frame *frame, leaf
     leafless_options options = threads(1);
     uint32_t count;
     memset(answers, 0x5a, POINTS);
-    OK(leafless_solid_contains(solid, frame, points[0], POINTS, &options, answers));
+    OK(leafless_solid_contains_many(solid, frame, points[0], POINTS, &options, answers));
     for (count = 0; count < 5; count++) {
         options.threads = count;
         options.max_splits = options.max_nodes = options.max_bytes = count % 2;
         memset(again, 0xa5, POINTS);
-        OK(leafless_solid_contains(solid, frame, points[0], POINTS, &options, again));
+        OK(leafless_solid_contains_many(solid, frame, points[0], POINTS, &options, again));
         CHECK(memcmp(again, answers, POINTS) == 0);
     }
     memset(again, 0xa5, POINTS);
-    OK(leafless_solid_contains(solid, frame, points[0], POINTS, NULL, again));
+    OK(leafless_solid_contains_many(solid, frame, points[0], POINTS, NULL, again));
     CHECK(memcmp(again, answers, POINTS) == 0);
     /* One by one they are no others. */
     for (count = 0; count < 100; count++) {
-        OK(leafless_solid_contains(solid, frame, points[count], 1, NULL, again));
+        OK(leafless_solid_contains_many(solid, frame, points[count], 1, NULL, again));
         CHECK(again[0] == answers[count] && again[1] == answers[1]);
     }
 }
@@ -97,14 +97,14 @@ static void ball(void) {
         const double odd[6][3] = {{NAN, 0, 0}, {0, INFINITY, 0}, {0, 0, -INFINITY}, {0, 0, 1.5}, {0, 0, 0}, {1e300, 0, 0}};
         leafless_membership of_odd[8];
         memset(of_odd, 0x5a, sizeof of_odd);
-        OK(leafless_solid_contains(solid, &frame, odd[0], 6, NULL, of_odd));
+        OK(leafless_solid_contains_many(solid, &frame, odd[0], 6, NULL, of_odd));
         for (i = 0; i < 6; i++) {
             CHECK(of_odd[i] == (i == 4 ? LEAFLESS_MEMBERSHIP_INSIDE : LEAFLESS_MEMBERSHIP_UNDECIDED));
         }
         /* No more is written than was asked for; of no points nothing. */
         CHECK(of_odd[6] == 0x5a);
-        OK(leafless_solid_contains(solid, &frame, odd[0], 0, NULL, of_odd + 6));
-        OK(leafless_solid_contains(solid, &frame, NULL, 0, NULL, NULL));
+        OK(leafless_solid_contains_many(solid, &frame, odd[0], 0, NULL, of_odd + 6));
+        OK(leafless_solid_contains_many(solid, &frame, NULL, 0, NULL, NULL));
         CHECK(of_odd[6] == 0x5a);
     }
     leafless_solid_free(solid);
@@ -152,7 +152,7 @@ static void mesh(void) {
     const double middle[12] = {0.8, -0.6, 0, 0, 0.6, 0.8, 0, -0.5, 0, 0, 1, -0.4};
     size_t i;
     OK(leafless_mesh_transformed(cube, middle, &moved));
-    OK(leafless_solid_new_mesh(moved, LEAFLESS_FILL_NON_ZERO, &solid));
+    OK(leafless_solid_from_mesh(moved, LEAFLESS_FILL_NON_ZERO, &solid));
     leafless_mesh_free(moved);
     leafless_mesh_free(cube);
     for (i = 0; i < 6; i++) {
@@ -187,7 +187,7 @@ static void own_points(void) {
     const leafless_options options = threads(1);
     static leafless_membership answers[POINTS];
     host h = {0, 0};
-    leafless_callbacks callbacks;
+    leafless_solid_callbacks callbacks;
     leafless_solid *solid = NULL;
     uint64_t i;
     bool in_universe = false;
@@ -195,13 +195,13 @@ static void own_points(void) {
     callbacks.classify = half;
     callbacks.ctx = &h;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
-    OK(leafless_solid_contains(solid, &frame, points[0], 1000, &options, answers));
+    OK(leafless_solid_contains_many(solid, &frame, points[0], 1000, &options, answers));
     CHECK(h.classified > 1 && h.decided == 0);
     leafless_solid_free(solid);
     callbacks.contains_many = in_half;
     h.classified = 0;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));
-    OK(leafless_solid_contains(solid, &frame, points[0], POINTS, &options, answers));
+    OK(leafless_solid_contains_many(solid, &frame, points[0], POINTS, &options, answers));
     CHECK(h.classified < 10 && h.decided > POINTS / 2 && h.decided <= POINTS);
     for (i = 0; i < POINTS; i++) {
         const double *p = points[i];
@@ -232,7 +232,7 @@ static void refusals(void) {
     OK(leafless_control_new(&control));
     OK(leafless_control_cancel(control));
     options.control = control;
-    FAILS(LEAFLESS_E_CANCELLED, leafless_solid_contains(solid, &frame, points[0], POINTS, &options, answers));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_solid_contains_many(solid, &frame, points[0], POINTS, &options, answers));
     FAILS(LEAFLESS_E_CANCELLED, leafless_solid_classify_box(solid, &frame, low, high, &options, &region));
     OK(leafless_control_reset(control));
     options.progress = stop;
@@ -240,7 +240,7 @@ static void refusals(void) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_classify_box(solid, &frame, high, low, &options, &region));
     CHECK(calls == 0 && region == 77);
     options.progress = NULL;
-    OK(leafless_solid_contains(solid, &frame, low, 1, &options, answers));
+    OK(leafless_solid_contains_many(solid, &frame, low, 1, &options, answers));
     CHECK(answers[0] == LEAFLESS_MEMBERSHIP_INSIDE);
     OK(leafless_solid_classify_box(solid, &frame, low, high, &options, &region));
     CHECK(region == LEAFLESS_REGION_CROSSING);
@@ -260,7 +260,7 @@ int main(void) {
         }
     }
     agrees(solid, &frame);
-    OK(leafless_octree_as_solid(octree, &stored));
+    OK(leafless_solid_from_octree(octree, &stored));
     leafless_octree_free(octree);
     agrees(stored, &frame);
     leafless_solid_free(stored);

@@ -14,7 +14,7 @@ static leafless_interval volume_of(leafless_scene *scene) {
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
     leafless_statistics statistics;
-    OK(leafless_solid_new_scene(scene, &frame, &solid));
+    OK(leafless_solid_from_scene(scene, &frame, &solid));
     leafless_scene_free(scene);
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
     leafless_solid_free(solid);
@@ -44,8 +44,8 @@ static void reports(void) {
     const uint32_t facets[] = {LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON};
     const leafless_source nothing = leafless_from_bytes(NULL, 0, LEAFLESS_ACCESS_COPY);
     leafless_scene_options options;
-    leafless_scene_report report;
-    leafless_scene_mesh mesh;
+    leafless_scene_info report;
+    leafless_scene_mesh_info mesh;
     leafless_scene *scene = NULL;
     uint64_t length = 7;
     size_t i;
@@ -57,13 +57,13 @@ static void reports(void) {
         OK(leafless_scene_describe(scene, &report));
         CHECK(report.polygons == polygons[i] && report.exact == 1 - polygons[i] && report.ignored_slices == 0);
         CHECK(report.meshes == 1 && !report.is_empty);
-        OK(leafless_scene_describe_mesh(scene, 0, &mesh));
+        OK(leafless_scene_describe_mesh_at(scene, 0, &mesh));
         CHECK(mesh.line == 2 && mesh.column == 2 && mesh.turned == 1);
         CHECK(mesh.report.triangles == 4 && mesh.report.misoriented_edges == 3 && mesh.report.boundary_edges == 0);
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_describe_mesh(scene, 1, &mesh));
-        OK(leafless_scene_mesh_file(scene, 0, NULL, 0, &length));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_describe_mesh_at(scene, 1, &mesh));
+        OK(leafless_scene_mesh_file_at(scene, 0, NULL, 0, &length));
         CHECK(length == 0);
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_mesh_file(scene, 1, NULL, 0, &length));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_mesh_file_at(scene, 1, NULL, 0, &length));
         leafless_scene_free(scene);
     }
     FAILS(LEAFLESS_E_ARGUMENT, scene_from_text(text, NULL, 3, &scene));
@@ -75,10 +75,10 @@ static void reports(void) {
     check_write("t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 36);
     check_write("mesh.csg", "mesh(\"t.off\");", 14);
     OK(scene_open("mesh.csg", 8, NULL, &scene));
-    OK(leafless_scene_describe_mesh(scene, 0, &mesh));
+    OK(leafless_scene_describe_mesh_at(scene, 0, &mesh));
     CHECK(mesh.line == 1 && mesh.column == 1 && mesh.report.boundary_edges == 3);
-    FAILS(LEAFLESS_E_BUFFER, leafless_scene_mesh_file(scene, 0, name, 4, &length));
-    OK(leafless_scene_mesh_file(scene, 0, name, sizeof name, &length));
+    FAILS(LEAFLESS_E_BUFFER, leafless_scene_mesh_file_at(scene, 0, name, 4, &length));
+    OK(leafless_scene_mesh_file_at(scene, 0, name, sizeof name, &length));
     CHECK(length == 5 && memcmp(name, "t.off", 5) == 0);
     leafless_scene_free(scene);
 }
@@ -112,7 +112,7 @@ int main(void) {
     leafless_scene_free(scene);
     OK(leafless_scene_bounds(other, low, high));
     CHECK(low[0] == -2 && low[1] == -2 && low[2] == -1 && high[0] == 2 && high[1] == 2 && high[2] == 1);
-    OK(leafless_solid_new_scene(other, &frame, &solid));
+    OK(leafless_solid_from_scene(other, &frame, &solid));
     leafless_scene_free(other);
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree));
     leafless_solid_free(solid);

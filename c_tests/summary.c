@@ -128,12 +128,12 @@ static void volumes(void) {
         samples[i] = (uint8_t)(10 * (i % 4));
     }
     OK(leafless_init(&layout, sizeof layout));
-    layout.sample_type = LEAFLESS_SAMPLE_U8;
+    layout.sample_type = LEAFLESS_SAMPLE_TYPE_U8;
     layout.extents[0] = 4;
     layout.extents[1] = layout.extents[2] = 2;
     OK(volume_of_array(&layout, samples, sizeof samples, &volume));
-    OK(leafless_volume_as_attribute(volume, LEAFLESS_INTERPOLATION_TRILINEAR, NULL, &smooth));
-    OK(leafless_volume_as_attribute(volume, LEAFLESS_INTERPOLATION_NEAREST, NULL, &steps));
+    OK(leafless_attribute_from_volume(volume, LEAFLESS_INTERPOLATION_TRILINEAR, NULL, &smooth));
+    OK(leafless_attribute_from_volume(volume, LEAFLESS_INTERPOLATION_NEAREST, NULL, &steps));
     leafless_volume_free(volume);
     volume = NULL;
     OK(leafless_attribute_values(steps, &points[0][0], 3, values));
@@ -141,11 +141,11 @@ static void volumes(void) {
     OK(leafless_attribute_values(smooth, &points[0][0], 3, values));
     CHECK(fabs(values[0] - 5) < 1e-9 && fabs(values[1] - 17.5) < 1e-9 && isnan(values[2]));
     OK(leafless_attribute_range(smooth, low, high, &range));
-    CHECK(range.kind == LEAFLESS_RANGE_WITHIN && range.values[0].lower <= 5 && range.values[0].upper >= 15);
+    CHECK(range.kind == LEAFLESS_RANGE_KIND_WITHIN && range.values[0].lower <= 5 && range.values[0].upper >= 15);
     leafless_attribute_free(smooth);
     leafless_attribute_free(steps);
     OK(volume_from_bytes((const uint8_t *)NRRD, sizeof NRRD - 1, NULL, 0, &volume));
-    OK(leafless_volume_as_attribute(volume, LEAFLESS_INTERPOLATION_NEAREST, NULL, &turned));
+    OK(leafless_attribute_from_volume(volume, LEAFLESS_INTERPOLATION_NEAREST, NULL, &turned));
     OK(leafless_attribute_values(turned, &first[0][0], 2, values));
     CHECK(values[0] == 5 && values[1] == 9);
     leafless_attribute_free(turned);

@@ -68,7 +68,7 @@ static leafless_mesh_report told(const leafless_mesh *mesh) {
     bool is_balanced;
     uint64_t i, edges = edges_of(&s, &is_balanced);
     int k;
-    OK(leafless_mesh_describe(mesh, &report));
+    OK(leafless_mesh_inspect(mesh, &report));
     CHECK(report.is_closed && is_balanced && report.is_manifold == (edges > 0 || s.triangle_count == 0));
     CHECK(report.boundary_edges == 0 && report.misoriented_edges == 0);
     CHECK(report.vertices == s.vertex_count && report.triangles == s.triangle_count);
@@ -203,7 +203,7 @@ static void octrees(void) {
     /* Simple marching cubes: all vertices are centres of cells, all normals have one of 13 directions. */
     for (snap = LEAFLESS_SNAP_FAT; snap <= LEAFLESS_SNAP_THIN; snap++) {
         surface = defaults();
-        surface.method = LEAFLESS_SURFACE_SMC;
+        surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
         surface.snap = snap;
         OK(leafless_octree_surface(sampled, &surface, NULL, &other));
         report = told(other);
@@ -236,7 +236,7 @@ static void solids(void) {
     CHECK(told(mesh).is_manifold);
     on_lattice(mesh, 1.0 / 32, 0);
     leafless_mesh_free(mesh);
-    surface.placement = LEAFLESS_PLACEMENT_CROSSING;
+    surface.placement = LEAFLESS_VERTEX_PLACEMENT_CROSSING;
     for (k = 0; k < 2; k++) {
         frame.depth = 5 + k;
         OK(leafless_solid_surface(solid, &frame, &surface, NULL, &mesh));
@@ -265,7 +265,7 @@ static void solids(void) {
     leafless_mesh_free(mesh);
     /* Simple marching cubes has vertices at corners. */
     surface = defaults();
-    surface.method = LEAFLESS_SURFACE_SMC;
+    surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
     OK(leafless_solid_surface(solid, &frame, &surface, NULL, &mesh));
     told(mesh);
     on_lattice(mesh, 1.0 / 32, 0);
@@ -275,7 +275,7 @@ static void solids(void) {
     frame.edge = 1;
     frame.depth = 4;
     surface = defaults();
-    surface.placement = LEAFLESS_PLACEMENT_CROSSING;
+    surface.placement = LEAFLESS_VERTEX_PLACEMENT_CROSSING;
     OK(leafless_solid_surface(solid, &frame, &surface, NULL, &cut));
     CHECK(told(cut).is_closed);
     CHECK(fabs(volume_of(cut) - ball / 8) < 0.02 * ball);
@@ -283,7 +283,7 @@ static void solids(void) {
 
     /* An octree has samples of its own. */
     mesh = other = NULL;
-    OK(leafless_octree_as_solid(octree, &stored));
+    OK(leafless_solid_from_octree(octree, &stored));
     FAILS(LEAFLESS_E_FRAME, leafless_solid_surface(stored, &frame, NULL, NULL, &mesh));
     frame.depth = 20;
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_surface(solid, &frame, NULL, NULL, &mesh));
@@ -309,16 +309,16 @@ static void shrink(void) {
             leafless_mesh_report reports[3];
             double areas[2];
             surface.snap = snap;
-            surface.method = LEAFLESS_SURFACE_SMC;
+            surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
             OK(leafless_octree_surface(octrees[i], &surface, NULL, &all));
-            surface.method = LEAFLESS_SURFACE_SHRINK;
+            surface.method = LEAFLESS_SURFACE_METHOD_SHRINK;
             OK(leafless_octree_surface(octrees[i], &surface, NULL, &few));
             OK(leafless_octree_surface(octrees[i], &surface, &options, &again));
-            surface.method = LEAFLESS_SURFACE_SHRINK_PUBLISHED;
+            surface.method = LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED;
             OK(leafless_octree_surface(octrees[i], &surface, NULL, &published));
             reports[0] = told(all);
             reports[1] = told(few);
-            OK(leafless_mesh_describe(published, &reports[2]));
+            OK(leafless_mesh_inspect(published, &reports[2]));
             CHECK(same(few, again));
             on_lattice(few, 1.0 / 32, 0.5);
             thirteen_directions(few);
@@ -337,11 +337,11 @@ static void shrink(void) {
         }
         leafless_octree_free(octrees[i]);
     }
-    for (i = LEAFLESS_SURFACE_SHRINK; i <= LEAFLESS_SURFACE_SHRINK_PUBLISHED; i++) {
+    for (i = LEAFLESS_SURFACE_METHOD_SHRINK; i <= LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED; i++) {
         surface = defaults();
         surface.method = i;
         OK(leafless_solid_surface(solid, &frame, &surface, NULL, &few));
-        if (i == LEAFLESS_SURFACE_SHRINK) {
+        if (i == LEAFLESS_SURFACE_METHOD_SHRINK) {
             CHECK(told(few).is_closed);
             on_lattice(few, 1.0 / 16, 0);
         }
@@ -361,7 +361,7 @@ static void sharp(void) {
     double low[3], high[3];
     int axis;
     OK(leafless_solid_new_box(min, max, &block));
-    surface.method = LEAFLESS_SURFACE_DUAL_CONTOURING;
+    surface.method = LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING;
     OK(leafless_solid_surface(block, &frame, &surface, NULL, &mesh));
     CHECK(told(mesh).is_manifold && fabs(volume_of(mesh) - 1.13 * 0.8) < 1e-6);
     OK(leafless_mesh_bounds(mesh, low, high));
@@ -372,9 +372,9 @@ static void sharp(void) {
     surface.snap = LEAFLESS_SNAP_THIN;
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_surface(block, &frame, &surface, NULL, &mesh));
     surface.snap = LEAFLESS_SNAP_FAT;
-    surface.placement = LEAFLESS_PLACEMENT_CROSSING;
+    surface.placement = LEAFLESS_VERTEX_PLACEMENT_CROSSING;
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_surface(block, &frame, &surface, NULL, &mesh));
-    surface.placement = LEAFLESS_PLACEMENT_MIDPOINT;
+    surface.placement = LEAFLESS_VERTEX_PLACEMENT_MIDPOINT;
     OK(leafless_octree_build(block, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_surface(octree, &surface, NULL, &mesh));
     leafless_octree_free(octree);
@@ -388,8 +388,8 @@ static void meshes(void) {
     leafless_solid *solid = NULL;
     const leafless_frame frame = {{-0.3, -0.3, -0.3}, 1.6, 5};
     double min[3], max[3];
-    surface.placement = LEAFLESS_PLACEMENT_CROSSING;
-    OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &solid));
+    surface.placement = LEAFLESS_VERTEX_PLACEMENT_CROSSING;
+    OK(leafless_solid_from_mesh(cube, LEAFLESS_FILL_NON_ZERO, &solid));
     OK(leafless_solid_surface(solid, &frame, &surface, NULL, &mesh));
     CHECK(told(mesh).is_manifold);
     OK(leafless_mesh_bounds(mesh, min, max));
@@ -432,7 +432,7 @@ static void volumes(void) {
     leafless_mesh_free(mesh);
     band.lower = NAN;
     FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_surface(volume, &band, NULL, &mesh));
-    OK(leafless_solid_new_volume(volume, NULL, NULL, &solid));
+    OK(leafless_solid_from_volume(volume, NULL, NULL, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
     OK(leafless_octree_surface(octree, NULL, NULL, &mesh));
     report = told(mesh);
@@ -441,7 +441,7 @@ static void volumes(void) {
     CHECK(fabs(volume_of(mesh) - 3 * 4.0 / 3 * 0.125) < 1e-12);
     leafless_mesh_free(mesh);
     /* One cell thick, they have no thickness. */
-    surface.method = LEAFLESS_SURFACE_SMC;
+    surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
     surface.snap = LEAFLESS_SNAP_THIN;
     OK(leafless_octree_surface(octree, &surface, NULL, &mesh));
     CHECK(told(mesh).triangles == 0);
@@ -483,7 +483,7 @@ static void refusals(void) {
     surface = defaults()
     surface = defaults();
     REFUSED(method, 5, true, true);
-    REFUSED(method, LEAFLESS_SURFACE_DUAL_CONTOURING, true, false);
+    REFUSED(method, LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING, true, false);
     REFUSED(method, UINT32_MAX, true, true);
     REFUSED(snap, 2, true, true);
     REFUSED(snap, LEAFLESS_SNAP_THIN, true, true);
@@ -491,13 +491,13 @@ static void refusals(void) {
     REFUSED(resolve, LEAFLESS_RESOLVE_INNER, false, true);
     REFUSED(source, solid, true, true);
     REFUSED(placement, 2, true, true);
-    REFUSED(placement, LEAFLESS_PLACEMENT_CROSSING, true, false);
+    REFUSED(placement, LEAFLESS_VERTEX_PLACEMENT_CROSSING, true, false);
     REFUSED(reserved, 1, true, true);
-    surface.method = LEAFLESS_SURFACE_SMC;
-    REFUSED(placement, LEAFLESS_PLACEMENT_CROSSING, true, true);
-    surface.method = LEAFLESS_SURFACE_SHRINK;
-    REFUSED(placement, LEAFLESS_PLACEMENT_CROSSING, true, true);
-    surface.method = LEAFLESS_SURFACE_SMC;
+    surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
+    REFUSED(placement, LEAFLESS_VERTEX_PLACEMENT_CROSSING, true, true);
+    surface.method = LEAFLESS_SURFACE_METHOD_SHRINK;
+    REFUSED(placement, LEAFLESS_VERTEX_PLACEMENT_CROSSING, true, true);
+    surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
     REFUSED(snap, 7, true, true);
     /* Older programs have shorter structs. */
     for (size = 8; size <= sizeof surface; size += 8) {
@@ -528,7 +528,7 @@ static void refusals(void) {
     leafless_solid_free(solid);
     leafless_octree_free(octree);
     /* Nothing has no surface. */
-    OK(leafless_octree_uniform(&frame, LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_EMPTY, &octree));
+    OK(leafless_octree_new_uniform(&frame, LEAFLESS_TAG_EMPTY, LEAFLESS_TAG_EMPTY, &octree));
     OK(leafless_octree_surface(octree, NULL, NULL, &mesh));
     CHECK(told(mesh).triangles == 0);
     leafless_mesh_free(mesh);

@@ -77,12 +77,12 @@ void reads(const leafless_octree *octree) {
         unsigned path[4] = {0, 0, 0, 0};
         int level = 0;
         for (;;) {
-            leafless_cursor_state state;
+            leafless_cursor_info state;
             bool moved = false;
             if (level < 4 && path[level] < 8) {
                 OK(leafless_cursor_descend(cursor, path[level]++, &moved));
                 if (moved) {
-                    OK(leafless_cursor_read(cursor, &state));
+                    OK(leafless_cursor_describe(cursor, &state));
                     CHECK(int(state.level) == level + 1);
                     cells++;
                     branches += state.tag == LEAFLESS_TAG_BRANCH;
@@ -158,7 +158,7 @@ int32_t half(void *, const double *min, const double *max) {
 
 // A solid and a mesh in all threads; the host's context goes once, with the last reference.
 void solids() {
-    leafless_callbacks callbacks = {};
+    leafless_solid_callbacks callbacks = {};
     callbacks.struct_size = sizeof callbacks;
     callbacks.classify = half;
     callbacks.destroy = gone;
@@ -179,10 +179,10 @@ void solids() {
         OK(leafless_octree_build(own[number], &frame, LEAFLESS_RULE_CERTIFIED, &options, &built[number]));
         leafless_mesh_report report;
         // Its edges are analysed once, by whoever asks first.
-        OK(leafless_mesh_describe(mesh, &report));
+        OK(leafless_mesh_inspect(mesh, &report));
         CHECK(report.bodies == 1 && report.boundary_edges == 0);
         leafless_solid *cube = nullptr;
-        OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &cube));
+        OK(leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &cube));
         leafless_solid_free(cube);
         leafless_solid_free(own[number]);
     });
@@ -298,19 +298,19 @@ void open_mesh() {
         uint64_t count = 0;
         const bool asks_first = number % 2 == 0;
         if (asks_first) {
-            OK(leafless_mesh_describe(mesh, &report));
+            OK(leafless_mesh_inspect(mesh, &report));
         }
         OK(leafless_mesh_defects(mesh, 1, &defect, 1, &count));
         CHECK(count == 1 && defect.kind == LEAFLESS_DEFECT_HOLE);
         FAILS(LEAFLESS_E_MESH, leafless_mesh_check_closed(mesh, LEAFLESS_FILL_NON_ZERO));
         leafless_solid *solid = nullptr;
-        OK(leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
+        OK(leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid));
         leafless_options options;
         OK(leafless_init(&options, sizeof options));
         options.threads = uint32_t(number) % 4 + 1;
         OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octrees[number]));
         leafless_solid_free(solid);
-        OK(leafless_mesh_describe(mesh, &report));
+        OK(leafless_mesh_inspect(mesh, &report));
         CHECK(report.boundary_edges > 0 && report.open_bodies == 1 && report.triangles == 9);
     });
     for (leafless_octree *octree : octrees) {
@@ -344,7 +344,7 @@ Answers ask(const leafless_solid *solid, const leafless_frame &frame, uint32_t t
     leafless_options options;
     OK(leafless_init(&options, sizeof options));
     options.threads = threads;
-    OK(leafless_solid_contains(solid, &frame, numbers.data(), POINTS, &options, answers.memberships.data()));
+    OK(leafless_solid_contains_many(solid, &frame, numbers.data(), POINTS, &options, answers.memberships.data()));
     for (int i = 0; i < POINTS; i += 50) {
         const double *const p = &numbers[3 * i];
         const double high[3] = {p[0] + 0.2, p[1] + 0.1, p[2] + 0.3};
@@ -419,7 +419,7 @@ void one_solid() {
             leafless_mesh *moved = nullptr;
             leafless_solid *solid = nullptr;
             OK(leafless_mesh_transformed(mesh, turn, &moved));
-            OK(leafless_solid_new_mesh(moved, LEAFLESS_FILL_NON_ZERO, &solid));
+            OK(leafless_solid_from_mesh(moved, LEAFLESS_FILL_NON_ZERO, &solid));
             leafless_mesh_free(moved);
             return solid;
         });
@@ -427,7 +427,7 @@ void one_solid() {
     // An expression that holds a mesh, moved.
     on_frames([&] {
         leafless_solid *solid = nullptr, *ball = check_ball_solid(), *both = nullptr, *moved = nullptr;
-        OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &solid));
+        OK(leafless_solid_from_mesh(cube, LEAFLESS_FILL_NON_ZERO, &solid));
         OK(check_solids(LEAFLESS_OPERATION_DIFFERENCE, solid, ball, &both));
         OK(leafless_solid_placed(both, turn, nullptr, &moved));
         leafless_solid_free(both);
@@ -515,7 +515,7 @@ void lazy_at_once() {
 
     // The host's function that is asked about a cell comes back to the octree.
     Asking asking{nullptr, {0}};
-    leafless_callbacks callbacks;
+    leafless_solid_callbacks callbacks;
     leafless_solid *host = nullptr;
     OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = asks_back;

@@ -16,7 +16,7 @@ static leafless_tridexel_format format_of(uint32_t ends, uint32_t normals, uint3
 static leafless_tridexel *made(const leafless_solid *solid, uint32_t depth, const leafless_tridexel_format *format) {
     const leafless_frame frame = check_frame(depth);
     leafless_tridexel *model = NULL;
-    OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, format, NULL, &model));
+    OK(leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, format, NULL, &model));
     OK(leafless_tridexel_check(model));
     return model;
 }
@@ -278,7 +278,7 @@ static void places(void) {
         const bool is_far = code >= 2;
         double model_ends[4], cells[4], also[4];
         leafless_tridexel *models[3] = {NULL, NULL, NULL};
-        leafless_ray_arrays rays;
+        leafless_tridexel_arrays rays;
         leafless_frame frame = check_frame(DEPTH);
         leafless_dexel dexels[2];
         uint64_t count, offset_count;
@@ -354,7 +354,7 @@ static void sources(void) {
     uint32_t axis, at[3];
     arrays.scale = 0.5;
     OK(leafless_mesh_new(&arrays, &cube));
-    OK(leafless_solid_new_mesh(cube, LEAFLESS_FILL_NON_ZERO, &solid));
+    OK(leafless_solid_from_mesh(cube, LEAFLESS_FILL_NON_ZERO, &solid));
     leafless_mesh_free(cube);
     model = made_of(solid, DEPTH, &marked);
     for (axis = 0; axis < 3; axis++) {
@@ -372,7 +372,7 @@ static void sources(void) {
     }
     leafless_tridexel_free(model);
     solid = NULL;
-    OK(leafless_octree_as_solid(octree, &solid));
+    OK(leafless_solid_from_octree(octree, &solid));
     model = made_of(solid, DEPTH, NULL);
     solid = NULL;
     for (at[2] = 0; at[2] < SIDE; at[2]++) {
@@ -394,11 +394,11 @@ static void sources(void) {
     leafless_tridexel_free(model);
     leafless_octree_free(octree);
 
-    OK(leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_INNER, NULL, NULL, &inner));
-    OK(leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_OUTER, NULL, NULL, &outer));
+    OK(leafless_tridexel_build(ball, &frame, LEAFLESS_RULE_INNER, NULL, NULL, &inner));
+    OK(leafless_tridexel_build(ball, &frame, LEAFLESS_RULE_OUTER, NULL, NULL, &outer));
     OK(leafless_init(&options, sizeof options));
     options.threads = 3;
-    OK(leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &threads));
+    OK(leafless_tridexel_build(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &threads));
     model = made(ball, DEPTH, NULL);
     CHECK(same(model, threads));
     for (axis = 0; axis < 3; axis++) {
@@ -503,23 +503,23 @@ static void contents(void) {
     leafless_tridexel_info info;
     leafless_dexel dexels[3];
     uint64_t count;
-    OK(leafless_tridexel_to_format(ball, &least, NULL, &plain));
+    OK(leafless_tridexel_with_format(ball, &least, NULL, &plain));
     OK(leafless_tridexel_describe(plain, &info));
     CHECK(info.bytes_per_interval == 8 && info.ends == LEAFLESS_DEXEL_ENDS_FIXED && info.has_materials == 0);
     CHECK(same_and_free(plain, made_of(check_ball_solid(), DEPTH, NULL)));
-    OK(leafless_tridexel_to_format(box, &most, NULL, &back));
+    OK(leafless_tridexel_with_format(box, &most, NULL, &back));
     OK(leafless_tridexel_describe(back, &info));
     CHECK(info.bytes_per_interval == 16 + 8 + 8 + 4);
     OK(leafless_tridexel_ray(back, 0, ray, dexels, 1, &count));
     CHECK(count == 1 && dexels[0].start.surface == UINT32_MAX && dexels[0].start.normal[0] == 0);
     least.directions = LEAFLESS_AXES_ALL;
-    OK(leafless_tridexel_to_format(back, &least, NULL, &plain));
+    OK(leafless_tridexel_with_format(back, &least, NULL, &plain));
     CHECK(same(plain, box));
     leafless_tridexel_free(plain);
     leafless_tridexel_free(back);
     plain = NULL;
     least.directions = LEAFLESS_AXES_X;
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_to_format(box, &least, NULL, &plain));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_with_format(box, &least, NULL, &plain));
     CHECK(plain == NULL);
 
     /* Along x through (1/32, 1/32): steel to about 0.75, there copper begins or ends, by whose turn it is. */
@@ -629,8 +629,8 @@ static void cuts(void) {
         /* Which step shows at an end is another question. */
         const leafless_tridexel_format plain = format_of(0, 0, 0, 0);
         leafless_tridexel *whole = both(LEAFLESS_OPERATION_DIFFERENCE, block, path), *one = NULL, *other = NULL;
-        OK(leafless_tridexel_to_format(whole, &plain, NULL, &one));
-        OK(leafless_tridexel_to_format(part, &plain, NULL, &other));
+        OK(leafless_tridexel_with_format(whole, &plain, NULL, &one));
+        OK(leafless_tridexel_with_format(part, &plain, NULL, &other));
         CHECK(same_and_free(one, other));
         leafless_tridexel_free(whole);
     }
@@ -725,7 +725,7 @@ static void refused(void) {
     leafless_solid *ball = check_ball_solid(), *busy = NULL;
     leafless_tridexel *model = made(ball, 5, NULL), *finer = made(ball, 6, NULL), *columns, *result = NULL;
     leafless_tridexel_editor *editor = NULL;
-    leafless_callbacks callbacks;
+    leafless_solid_callbacks callbacks;
     leafless_control *control = NULL;
     leafless_options options;
     along_z.directions = LEAFLESS_AXES_Z;
@@ -737,20 +737,20 @@ static void refused(void) {
     OK(leafless_solid_new_callbacks(&callbacks, &busy));
     OK(leafless_control_new(&control));
     OK(leafless_init(&options, sizeof options));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_build(ball, &frame, LEAFLESS_RULE_CERTIFIED, NULL, NULL, &result));
     FAILS(LEAFLESS_E_CALLBACK, leafless_tridexel_editor_combine_solid(editor, LEAFLESS_OPERATION_DIFFERENCE, busy, NULL, NULL));
     FAILS(LEAFLESS_E_FRAME, check_tridexels(LEAFLESS_OPERATION_UNION, model, finer, NULL, &result));
     FAILS(LEAFLESS_E_FRAME, leafless_tridexel_editor_combine(editor, LEAFLESS_OPERATION_DIFFERENCE, finer, NULL, NULL));
     FAILS(LEAFLESS_E_ARGUMENT, check_tridexels(LEAFLESS_OPERATION_DIFFERENCE, model, columns, NULL, &result));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_editor_combine(editor, LEAFLESS_OPERATION_UNION, columns, NULL, NULL));
     options.max_bytes = 1000;
-    FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
+    FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_build(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
     FAILS(LEAFLESS_E_LIMIT, check_tridexels(LEAFLESS_OPERATION_UNION, model, model, &options, &result));
     FAILS(LEAFLESS_E_LIMIT, leafless_tridexel_complement(model, &options, &result));
     options.max_bytes = 0;
     options.control = control;
     OK(leafless_control_cancel(control));
-    FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_make(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
+    FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_build(ball, &frame, LEAFLESS_RULE_SAMPLED, NULL, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, check_tridexels(LEAFLESS_OPERATION_XOR, model, model, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_with_material(model, 1, &options, &result));
     FAILS(LEAFLESS_E_CANCELLED, leafless_tridexel_editor_combine_solid(editor, LEAFLESS_OPERATION_DIFFERENCE, ball, &options, NULL));

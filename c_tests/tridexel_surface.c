@@ -14,7 +14,7 @@ static leafless_tridexel *made(leafless_solid *solid, uint32_t normals) {
     OK(leafless_init(&format, sizeof format));
     format.normals = normals;
     format.has_surfaces = format.has_materials = normals != 0;
-    OK(leafless_tridexel_make(solid, &frame, LEAFLESS_RULE_SAMPLED, &format, NULL, &model));
+    OK(leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, &format, NULL, &model));
     leafless_solid_free(solid);
     return model;
 }
@@ -64,8 +64,8 @@ static void surfaces(void) {
     double(*vertices)[3];
     uint32_t(*triangles)[3];
     uint64_t vertex_count, triangle_count, i;
-    OK(leafless_tridexel_surface(model, LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES, NULL, &found, &cubes));
-    OK(leafless_mesh_describe(cubes, &report));
+    OK(leafless_tridexel_surface(model, LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES, NULL, &found, &cubes));
+    OK(leafless_mesh_inspect(cubes, &report));
     CHECK(report.is_closed && report.is_manifold && report.bodies == 1);
     copied(cubes, &vertices, &vertex_count, &triangles, &triangle_count);
     CHECK(found.crossings >= vertex_count && found.without_rays == 0 && found.disagreeing == 0);
@@ -77,19 +77,19 @@ static void surfaces(void) {
     free(vertices);
     free(triangles);
     CHECK(fabs(volume_of(cubes) - 4.0 / 3 * 3.14159265358979 * RADIUS * RADIUS * RADIUS) < 0.01);
-    OK(leafless_tridexel_surface(model, LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING, NULL, NULL, &dual));
-    OK(leafless_mesh_describe(dual, &report));
+    OK(leafless_tridexel_surface(model, LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING, NULL, NULL, &dual));
+    OK(leafless_mesh_inspect(dual, &report));
     CHECK(report.is_closed && report.bodies == 1);
     leafless_tridexel_free(model);
     /* The faces of a box lie between the planes of cells; its edges and corners are sharp. */
     OK(leafless_solid_new_box(min, max, &solid));
     box = made(solid, LEAFLESS_DEXEL_NORMALS_32);
-    OK(leafless_tridexel_surface(box, LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING, NULL, &found, &sharp));
+    OK(leafless_tridexel_surface(box, LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING, NULL, &found, &sharp));
     CHECK(found.without_normals == 0 && found.means == 0);
     CHECK(fabs(volume_of(sharp) - 0.9 * 0.9 * 0.95) < 1e-7);
     leafless_mesh_free(sharp);
     sharp = NULL;
-    OK(leafless_tridexel_surface(box, LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES, NULL, NULL, &sharp));
+    OK(leafless_tridexel_surface(box, LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES, NULL, NULL, &sharp));
     CHECK(volume_of(sharp) < 0.9 * 0.9 * 0.95 - 1e-4);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_tridexel_surface(box, 2, NULL, NULL, &sharp));
     leafless_mesh_free(sharp);
@@ -108,21 +108,21 @@ static void octrees_and_solids(void) {
     size_t length = 0;
     leafless_measures measures;
     OK(leafless_tridexel_with_metadata(model, "name", 4, "ball", 4, &named));
-    OK(leafless_tridexel_to_octree(named, NULL, &tree));
+    OK(leafless_octree_from_tridexel(named, NULL, &tree));
     CHECK(check_same(tree, expected));
     OK(leafless_octree_describe(tree, &info));
     CHECK(!info.proof.full && !info.proof.empty && info.is_binary);
     OK(leafless_octree_peek_metadata(tree, "name", 4, &value, &length));
     CHECK(length == 4 && memcmp(value, "ball", 4) == 0);
     /* And back: what an octree's cells are. */
-    OK(leafless_octree_as_solid(tree, &source));
-    OK(leafless_tridexel_make(source, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &again));
+    OK(leafless_solid_from_octree(tree, &source));
+    OK(leafless_tridexel_build(source, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &again));
     leafless_octree_free(tree);
     tree = NULL;
-    OK(leafless_tridexel_to_octree(again, NULL, &tree));
+    OK(leafless_octree_from_tridexel(again, NULL, &tree));
     CHECK(check_same(tree, expected));
     /* As a solid on another frame. */
-    OK(leafless_tridexel_as_solid(model, false, NULL, &solid));
+    OK(leafless_solid_from_tridexel(model, false, NULL, &solid));
     OK(leafless_octree_build(solid, &other, LEAFLESS_RULE_CERTIFIED, NULL, &anew));
     OK(leafless_octree_describe(anew, &info));
     CHECK(!info.proof.full && !info.proof.empty);
@@ -130,7 +130,7 @@ static void octrees_and_solids(void) {
     leafless_solid_free(solid);
     anew = NULL;
     solid = NULL;
-    OK(leafless_tridexel_as_solid(model, true, NULL, &solid));
+    OK(leafless_solid_from_tridexel(model, true, NULL, &solid));
     OK(leafless_octree_build(solid, &other, LEAFLESS_RULE_CERTIFIED, NULL, &anew));
     OK(leafless_octree_describe(anew, &info));
     CHECK(info.proof.full && info.proof.empty);
@@ -139,13 +139,13 @@ static void octrees_and_solids(void) {
     CHECK(measures.volume_model.upper < 1.85);
     leafless_solid_free(solid);
     solid = NULL;
-    OK(leafless_tridexel_make(source, &frame, LEAFLESS_RULE_INNER, NULL, NULL, &empty));
+    OK(leafless_tridexel_build(source, &frame, LEAFLESS_RULE_INNER, NULL, NULL, &empty));
     leafless_tridexel_free(empty);
     empty = NULL;
     {
         leafless_solid *small = check_ball_solid();
-        OK(leafless_tridexel_make(small, &nowhere, LEAFLESS_RULE_SAMPLED, NULL, NULL, &empty));
-        FAILS(LEAFLESS_E_MESH, leafless_tridexel_as_solid(empty, true, NULL, &solid));
+        OK(leafless_tridexel_build(small, &nowhere, LEAFLESS_RULE_SAMPLED, NULL, NULL, &empty));
+        FAILS(LEAFLESS_E_MESH, leafless_solid_from_tridexel(empty, true, NULL, &solid));
         CHECK(solid == NULL);
         leafless_solid_free(small);
         leafless_tridexel_free(empty);
@@ -177,8 +177,8 @@ static void voxels(void) {
     for (i = 0; i < count; i++) {
         CHECK(list[i].material == 7 && list[i].length > 0 && list[i].first[1] + list[i].length <= SIDE + 1);
         CHECK(memcmp(list[i].colour, colours + 7 * 4, 4) == 0);
-        CHECK(list[i].kind == LEAFLESS_VOXEL_INSIDE || list[i].kind == LEAFLESS_VOXEL_BOUNDARY);
-        *(list[i].kind == LEAFLESS_VOXEL_INSIDE ? &inside : &boundary) += list[i].length;
+        CHECK(list[i].kind == LEAFLESS_VOXEL_KIND_INSIDE || list[i].kind == LEAFLESS_VOXEL_KIND_BOUNDARY);
+        *(list[i].kind == LEAFLESS_VOXEL_KIND_INSIDE ? &inside : &boundary) += list[i].length;
     }
     for (z = 0; z <= SIDE; z++) {
         for (y = 0; y <= SIDE; y++) {
@@ -210,7 +210,7 @@ static void arrays(void) {
     const leafless_frame frame = check_frame(DEPTH);
     leafless_tridexel *plain = ball(LEAFLESS_DEXEL_NORMALS_32), *model = NULL, *back = NULL;
     leafless_tridexel_format format;
-    leafless_ray_arrays rays[3];
+    leafless_tridexel_arrays rays[3];
     static uint64_t offsets[3][SIDE * SIDE + 1];
     static double ends[3][SIDE * SIDE][2], normals[3][SIDE * SIDE][6];
     static uint32_t surfaces_of[3][SIDE * SIDE][2], materials[3][SIDE * SIDE];
@@ -220,7 +220,7 @@ static void arrays(void) {
     format.normals = LEAFLESS_DEXEL_NORMALS_32;
     format.has_surfaces = format.has_materials = 1;
     for (axis = 0; axis < 3; axis++) {
-        leafless_ray_arrays *const to = &rays[axis];
+        leafless_tridexel_arrays *const to = &rays[axis];
         uint64_t offset_count;
         memset(to, 0, sizeof *to);
         to->axis = axis;
@@ -241,7 +241,7 @@ static void arrays(void) {
     back = NULL;
     {
         /* One axis, ends alone. */
-        leafless_ray_arrays one = rays[1];
+        leafless_tridexel_arrays one = rays[1];
         leafless_dexel_statistics a, b;
         leafless_tridexel_info info;
         one.normals = NULL;
@@ -310,8 +310,8 @@ static void files(void) {
     uint64_t length = 0, again = 0, k;
     uint8_t *bytes, *copy;
     sink to = {NULL, 0, 0};
-    leafless_probe probe;
-    leafless_section sections[64];
+    leafless_file_info probe;
+    leafless_file_section sections[64];
     int way;
     const char *value;
     size_t value_length;

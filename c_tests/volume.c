@@ -42,7 +42,7 @@ static leafless_octree *same_voxels(const leafless_volume *volume, const leafles
     uint32_t cell[3];
     OK(leafless_volume_frame(volume, &frame));
     CHECK(frame.depth == 5);
-    OK(leafless_solid_new_volume(volume, band, NULL, &solid));
+    OK(leafless_solid_from_volume(volume, band, NULL, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
     OK(leafless_octree_describe(octree, &info));
     CHECK(info.is_binary);
@@ -70,15 +70,15 @@ static size_t put(uint8_t *to, uint32_t type, int number) {
         return sizeof typed;                                                                                     \
     }
     switch (type) {
-    case LEAFLESS_SAMPLE_U8: PUT(uint8_t)
-    case LEAFLESS_SAMPLE_I8: PUT(int8_t)
-    case LEAFLESS_SAMPLE_U16: PUT(uint16_t)
-    case LEAFLESS_SAMPLE_I16: PUT(int16_t)
-    case LEAFLESS_SAMPLE_U32: PUT(uint32_t)
-    case LEAFLESS_SAMPLE_I32: PUT(int32_t)
-    case LEAFLESS_SAMPLE_U64: PUT(uint64_t)
-    case LEAFLESS_SAMPLE_I64: PUT(int64_t)
-    case LEAFLESS_SAMPLE_F32: PUT(float)
+    case LEAFLESS_SAMPLE_TYPE_U8: PUT(uint8_t)
+    case LEAFLESS_SAMPLE_TYPE_I8: PUT(int8_t)
+    case LEAFLESS_SAMPLE_TYPE_U16: PUT(uint16_t)
+    case LEAFLESS_SAMPLE_TYPE_I16: PUT(int16_t)
+    case LEAFLESS_SAMPLE_TYPE_U32: PUT(uint32_t)
+    case LEAFLESS_SAMPLE_TYPE_I32: PUT(int32_t)
+    case LEAFLESS_SAMPLE_TYPE_U64: PUT(uint64_t)
+    case LEAFLESS_SAMPLE_TYPE_I64: PUT(int64_t)
+    case LEAFLESS_SAMPLE_TYPE_F32: PUT(float)
     default: PUT(double)
     }
 #undef PUT
@@ -114,11 +114,11 @@ static bool is_little(void) {
 static void arrays(void) {
     /* What each type becomes. */
     static const uint32_t TYPES[][2] = {
-        {LEAFLESS_SAMPLE_U8, LEAFLESS_SAMPLE_U8},   {LEAFLESS_SAMPLE_U16, LEAFLESS_SAMPLE_U16},
-        {LEAFLESS_SAMPLE_I16, LEAFLESS_SAMPLE_I16}, {LEAFLESS_SAMPLE_F32, LEAFLESS_SAMPLE_F32},
-        {LEAFLESS_SAMPLE_I8, LEAFLESS_SAMPLE_I16},  {LEAFLESS_SAMPLE_I32, LEAFLESS_SAMPLE_F32},
-        {LEAFLESS_SAMPLE_U32, LEAFLESS_SAMPLE_F32}, {LEAFLESS_SAMPLE_I64, LEAFLESS_SAMPLE_F32},
-        {LEAFLESS_SAMPLE_U64, LEAFLESS_SAMPLE_F32}, {LEAFLESS_SAMPLE_F64, LEAFLESS_SAMPLE_F32}};
+        {LEAFLESS_SAMPLE_TYPE_U8, LEAFLESS_SAMPLE_TYPE_U8},   {LEAFLESS_SAMPLE_TYPE_U16, LEAFLESS_SAMPLE_TYPE_U16},
+        {LEAFLESS_SAMPLE_TYPE_I16, LEAFLESS_SAMPLE_TYPE_I16}, {LEAFLESS_SAMPLE_TYPE_F32, LEAFLESS_SAMPLE_TYPE_F32},
+        {LEAFLESS_SAMPLE_TYPE_I8, LEAFLESS_SAMPLE_TYPE_I16},  {LEAFLESS_SAMPLE_TYPE_I32, LEAFLESS_SAMPLE_TYPE_F32},
+        {LEAFLESS_SAMPLE_TYPE_U32, LEAFLESS_SAMPLE_TYPE_F32}, {LEAFLESS_SAMPLE_TYPE_I64, LEAFLESS_SAMPLE_TYPE_F32},
+        {LEAFLESS_SAMPLE_TYPE_U64, LEAFLESS_SAMPLE_TYPE_F32}, {LEAFLESS_SAMPLE_TYPE_F64, LEAFLESS_SAMPLE_TYPE_F32}};
     static uint64_t samples[COUNT_ALL + 8];
     static uint8_t becomes[COUNT_ALL * 4];
     uint8_t *const bytes = (uint8_t *)samples;
@@ -185,7 +185,7 @@ static void bits(void) {
     static uint8_t bytes[3 * NY * NZ];
     const leafless_interval band = {60, INFINITY}, zeros = {-INFINITY, 0};
     const uint32_t min[3] = {0, 0, 0}, max[3] = {NX, NY, NZ};
-    leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_BITS);
+    leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_TYPE_BITS);
     leafless_volume *in_place = NULL, *copied = NULL, *packed = NULL;
     leafless_octree *octree[3], *outside;
     leafless_solid *solid = NULL;
@@ -208,11 +208,11 @@ static void bits(void) {
     }
     OK(volume_in_place(&layout, words, sizeof words, &in_place));
     OK(volume_of_array(&layout, words, sizeof words, &copied));
-    layout.sample_type = LEAFLESS_SAMPLE_BITS_IN_BYTES;
+    layout.sample_type = LEAFLESS_SAMPLE_TYPE_BITS_IN_BYTES;
     OK(volume_of_array(&layout, bytes, sizeof bytes, &packed));
     FAILS(LEAFLESS_E_ARGUMENT, volume_in_place(&layout, bytes, sizeof bytes, &packed));
     OK(leafless_volume_describe(packed, &info));
-    CHECK(info.sample_type == LEAFLESS_SAMPLE_BITS && info.file_type == LEAFLESS_SAMPLE_BITS_IN_BYTES);
+    CHECK(info.sample_type == LEAFLESS_SAMPLE_TYPE_BITS && info.file_type == LEAFLESS_SAMPLE_TYPE_BITS_IN_BYTES);
     CHECK(info.default_threshold == 0.5);
     OK(leafless_volume_range(packed, NULL, &range));
     CHECK(range.lower == 0 && range.upper == 1);
@@ -221,22 +221,22 @@ static void bits(void) {
         const leafless_interval ones = {0.5, INFINITY};
         leafless_solid *of_band = NULL;
         OK(leafless_volume_frame(in_place, &frame));
-        OK(leafless_solid_new_volume(in_place, NULL, NULL, &solid));
-        OK(leafless_solid_new_volume(in_place, &ones, NULL, &of_band));
+        OK(leafless_solid_from_volume(in_place, NULL, NULL, &solid));
+        OK(leafless_solid_from_volume(in_place, &ones, NULL, &of_band));
         OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree[0]));
         OK(leafless_octree_build(of_band, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree[1]));
         CHECK(check_same(octree[0], octree[1]));
         leafless_octree_free(octree[1]);
         leafless_solid_free(of_band);
         leafless_solid_free(solid);
-        OK(leafless_solid_new_volume(in_place, &zeros, NULL, &solid));
+        OK(leafless_solid_from_volume(in_place, &zeros, NULL, &solid));
         OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &outside));
         leafless_solid_free(solid);
     }
-    OK(leafless_solid_new_volume(copied, NULL, NULL, &solid));
+    OK(leafless_solid_from_volume(copied, NULL, NULL, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree[1]));
     leafless_solid_free(solid);
-    OK(leafless_solid_new_volume(packed, NULL, NULL, &solid));
+    OK(leafless_solid_from_volume(packed, NULL, NULL, &solid));
     /* The solid keeps the samples. */
     leafless_volume_free(packed);
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree[2]));
@@ -289,10 +289,10 @@ static void bitmaps(void) {
                     CHECK(inner[y + ny * z] >> (max[0] - min[0]) == 0 && outer[y + ny * z] >> (max[0] - min[0]) == 0);
                     for (x = 0; x < max[0] - min[0]; x++) {
                         const uint32_t at[3] = {min[0] + x, min[1] + y, min[2] + z};
-                        leafless_cursor_state state;
+                        leafless_cursor_info state;
                         bool reached;
                         OK(leafless_cursor_seek(cursor, at, level, &reached));
-                        OK(leafless_cursor_read(cursor, &state));
+                        OK(leafless_cursor_describe(cursor, &state));
                         CHECK((inner[y + ny * z] >> x & 1) == (state.tag == LEAFLESS_TAG_FULL));
                         CHECK((outer[y + ny * z] >> x & 1) == (state.tag != LEAFLESS_TAG_EMPTY));
                     }
@@ -318,11 +318,11 @@ static void bitmaps(void) {
 
 static leafless_volume *bytes_volume(const double corner[3], const double spacing[3]) {
     static uint8_t samples[COUNT_ALL];
-    leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_U8);
+    leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_TYPE_U8);
     leafless_volume *volume = NULL;
     memcpy(layout.corner_model, corner, sizeof layout.corner_model);
     memcpy(layout.spacing_model, spacing, sizeof layout.spacing_model);
-    OK(volume_of_array(&layout, samples, fill(samples, LEAFLESS_SAMPLE_U8, false), &volume));
+    OK(volume_of_array(&layout, samples, fill(samples, LEAFLESS_SAMPLE_TYPE_U8, false), &volume));
     return volume;
 }
 
@@ -344,8 +344,8 @@ static void bands_and_places(void) {
     for (i = 0; i < COUNT(bands); i++) {
         leafless_octree_free(same_voxels(volume, &bands[i]));
     }
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_volume(volume, &nan, NULL, &unmade));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_volume(volume, &turned, NULL, &unmade));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_from_volume(volume, &nan, NULL, &unmade));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_from_volume(volume, &turned, NULL, &unmade));
     CHECK(unmade == NULL);
     OK(leafless_volume_describe(volume, &info));
     CHECK(info.default_threshold == 127.5 && memcmp(info.corner_model, corner, sizeof corner) == 0);
@@ -360,7 +360,7 @@ static void bands_and_places(void) {
     OK(leafless_volume_bounds(other, min, max));
     CHECK(min[0] == -3 && max[0] == -3 + 0.25 * NX && max[1] == 0.5 + 0.5 * NY && max[2] == 2 + NZ);
     OK(leafless_frame_around(min, max, 7, &frame));
-    OK(leafless_solid_new_volume(other, &bands[0], NULL, &solid));
+    OK(leafless_solid_from_volume(other, &bands[0], NULL, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
     OK(leafless_octree_statistics(octree, &statistics));
     for (z = 0; z < NZ; z++) {
@@ -404,7 +404,7 @@ static void files(void) {
     const leafless_interval band = {60, INFINITY};
     leafless_volume *volume = bytes_volume(corner, spacing), *back = NULL;
     leafless_octree *octree = same_voxels(volume, &band), *again;
-    leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_U8);
+    leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_TYPE_U8);
     leafless_volume_info info;
     uint64_t length, lengths[2];
     uint8_t *bytes;
@@ -415,7 +415,7 @@ static void files(void) {
         same_file(PATHS[i], bytes, lengths[i]);
         OK(volume_from_bytes(bytes, lengths[i], NULL, 0, &back));
         OK(leafless_volume_describe(back, &info));
-        CHECK(info.format == LEAFLESS_VOLUME_FORMAT_NRRD && info.file_type == LEAFLESS_SAMPLE_U8 && !info.is_placed);
+        CHECK(info.format == LEAFLESS_VOLUME_FORMAT_NRRD && info.file_type == LEAFLESS_SAMPLE_TYPE_U8 && !info.is_placed);
         CHECK(memcmp(info.corner_model, corner, sizeof corner) == 0 && info.spacing_model[1] == 0.25);
         leafless_volume_free(back);
         OK(volume_open(PATHS[i], strlen(PATHS[i]), &back));
@@ -491,8 +491,8 @@ static void headers(void) {
     CHECK(volume == NULL);
     OK(volume_from_bytes((const uint8_t *)DETACHED, sizeof DETACHED - 1, data, 32, &volume));
     OK(leafless_volume_describe(volume, &info));
-    CHECK(info.unit == LEAFLESS_UNIT_MILLIMETRE && info.file_type == LEAFLESS_SAMPLE_I32);
-    CHECK(info.sample_type == LEAFLESS_SAMPLE_F32 && info.default_threshold == -0.5 && info.is_placed);
+    CHECK(info.unit == LEAFLESS_UNIT_MILLIMETRE && info.file_type == LEAFLESS_SAMPLE_TYPE_I32);
+    CHECK(info.sample_type == LEAFLESS_SAMPLE_TYPE_F32 && info.default_threshold == -0.5 && info.is_placed);
     CHECK(info.placement[0] == 0 && info.placement[1] == -1 && info.placement[4] == 1 && info.placement[7] == 20);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_volume_frame(volume, &frame));
     FAILS(LEAFLESS_E_ARGUMENT, volume_to_bytes(volume, LEAFLESS_VOLUME_FORMAT_NRRD, NULL, 0, &length));
@@ -502,7 +502,7 @@ static void headers(void) {
     OK(leafless_volume_bounds(volume, min, max));
     CHECK(min[0] <= 7 && min[0] > 6.999 && max[0] >= 11 && max[0] < 11.001 && min[1] <= 19 && max[1] >= 23);
     OK(leafless_frame_around(min, max, 6, &frame));
-    OK(leafless_solid_new_volume(volume, &band, NULL, &solid));
+    OK(leafless_solid_from_volume(volume, &band, NULL, &solid));
     leafless_volume_free(volume);
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree));
     OK(leafless_octree_statistics(octree, &statistics));
@@ -528,7 +528,7 @@ static void headers(void) {
     volume = NULL;
     OK(volume_open("volume.mha", 10, &volume));
     OK(leafless_volume_describe(volume, &info));
-    CHECK(info.format == LEAFLESS_VOLUME_FORMAT_METAIMAGE && info.file_type == LEAFLESS_SAMPLE_U8 && !info.is_placed);
+    CHECK(info.format == LEAFLESS_VOLUME_FORMAT_METAIMAGE && info.file_type == LEAFLESS_SAMPLE_TYPE_U8 && !info.is_placed);
     CHECK(info.corner_model[0] == 0 && info.corner_model[2] == 0 && info.spacing_model[2] == 3);
     OK(leafless_volume_data_file(file, sizeof file, NULL, 0, &length));
     CHECK(length == 0);
@@ -544,7 +544,7 @@ static void headers(void) {
 
 static void not_numbers(void) {
     static float samples[COUNT_ALL];
-    leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_F32);
+    leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_TYPE_F32);
     const leafless_interval all = {-INFINITY, INFINITY};
     leafless_volume *volume = NULL;
     leafless_solid *solid = NULL;
@@ -558,7 +558,7 @@ static void not_numbers(void) {
     OK(leafless_volume_range(volume, NULL, &range));
     CHECK(range.lower == -INFINITY && range.upper == INFINITY);
     OK(leafless_volume_frame(volume, &frame));
-    OK(leafless_solid_new_volume(volume, &all, NULL, &solid));
+    OK(leafless_solid_from_volume(volume, &all, NULL, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree));
     OK(leafless_octree_statistics(octree, &statistics));
     CHECK(statistics.lower_cells == COUNT_ALL - 1 && statistics.upper_cells == COUNT_ALL - 1);
@@ -573,7 +573,7 @@ static void refused_layouts(void) {
     leafless_volume *volume = NULL;
     int axis;
 #define REFUSED(change)                                                                                          \
-    layout = layout_of(LEAFLESS_SAMPLE_U16);                                                                     \
+    layout = layout_of(LEAFLESS_SAMPLE_TYPE_U16);                                                                     \
     change;                                                                                                      \
     FAILS(LEAFLESS_E_ARGUMENT, volume_of_array(&layout, samples, 2 * COUNT_ALL, &volume));                   \
     FAILS(LEAFLESS_E_ARGUMENT, volume_in_place(&layout, samples, 2 * COUNT_ALL, &volume))
@@ -597,7 +597,7 @@ static void refused_layouts(void) {
     REFUSED(layout.skip = 1);
     REFUSED(layout.struct_size = 0);
     REFUSED(layout.struct_size = UINT32_MAX);
-    layout = layout_of(LEAFLESS_SAMPLE_U16);
+    layout = layout_of(LEAFLESS_SAMPLE_TYPE_U16);
     FAILS(LEAFLESS_E_ARGUMENT, volume_in_place(&layout, samples, 2 * COUNT_ALL - 1, &volume));
     FAILS(LEAFLESS_E_ARGUMENT, volume_in_place(&layout, (char *)samples + 1, 2 * COUNT_ALL, &volume));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_init(&layout, 3));

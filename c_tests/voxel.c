@@ -23,7 +23,7 @@ static int32_t values_at(void *ctx, const double *points, uint64_t number, doubl
 
 static int32_t range_in(void *ctx, const double *min, const double *max, leafless_value_range *range) {
     (void)ctx;
-    range->kind = LEAFLESS_RANGE_WITHIN;
+    range->kind = LEAFLESS_RANGE_KIND_WITHIN;
     range->values[0].lower = min[0] + 2 * min[1] - 1e-9;
     range->values[0].upper = max[0] + 2 * max[1] + 1e-9;
     range->values[1].lower = min[2];
@@ -72,7 +72,7 @@ static void against_cells(void) {
                 if (tag == LEAFLESS_TAG_EMPTY) {
                     CHECK(index == UINT64_MAX);
                 } else {
-                    const uint8_t kind = tag == LEAFLESS_TAG_FULL ? LEAFLESS_VOXEL_INSIDE : LEAFLESS_VOXEL_BOUNDARY;
+                    const uint8_t kind = tag == LEAFLESS_TAG_FULL ? LEAFLESS_VOXEL_KIND_INSIDE : LEAFLESS_VOXEL_KIND_BOUNDARY;
                     CHECK(index < count && kinds[index] == kind);
                 }
             }
@@ -226,7 +226,7 @@ static void triangles(void) {
     for (i = 0; i < 64; i++) {
         codes[i] = i;
         levels[i] = 2;
-        kinds[i] = LEAFLESS_VOXEL_BOUNDARY;
+        kinds[i] = LEAFLESS_VOXEL_KIND_BOUNDARY;
     }
     OK(leafless_voxels_triangles(&frame, codes, levels, kinds, 64, mesh, NULL, NULL, 0, &offset_count, NULL, 0,
                                  &triangle_count));

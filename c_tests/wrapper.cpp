@@ -259,7 +259,7 @@ void hosts() {
             }
         }
         void range(const leafless::point &min, const leafless::point &max, leafless_value_range &range) const {
-            range.kind = LEAFLESS_RANGE_WITHIN;
+            range.kind = LEAFLESS_RANGE_KIND_WITHIN;
             for (std::size_t axis = 0; axis < 3; axis++) range.values[axis] = {min[axis], max[axis]};
         }
     };

@@ -26,7 +26,10 @@ LEAFLESS_HAS_MEMBER(range)
 #undef LEAFLESS_HAS_MEMBER
 
 template <class T> const T &object_at(void *ctx) noexcept { return *static_cast<const T *>(ctx); }
-template <class T> void destroy(void *ctx) { delete static_cast<T *>(ctx); }
+template <class T> void destroy(void *ctx) {
+    forget(ctx);
+    delete static_cast<T *>(ctx);
+}
 inline point point_at(const double *numbers) noexcept { return {numbers[0], numbers[1], numbers[2]}; }
 inline span<const point> points_at(const double *numbers, std::uint64_t count) noexcept {
     return {reinterpret_cast<const point *>(numbers), static_cast<std::size_t>(count)};
@@ -50,21 +53,21 @@ template <class T> span<T> array_at(T *first, std::uint64_t count) noexcept {
 ///     void tangent(const point &min, const point &max, const point &middle, leafless_tangent &)
 ///
 /// `promises` has what is no function: the exterior, a box, a fingerprint.
-template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises) {
+template <class S> returns<solid> solid_of(S shape, leafless_solid_callbacks promises) {
     auto owned = std::make_unique<S>(std::move(shape));
-    leafless_callbacks callbacks = promises;
+    leafless_solid_callbacks callbacks = promises;
     callbacks.ctx = owned.get();
     callbacks.destroy = detail::destroy<S>;
     if constexpr (std::is_invocable_v<const S &, const point &, const point &>) {
         callbacks.classify = [](void *ctx, const double *min, const double *max) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 return detail::object_at<S>(ctx)(detail::point_at(min), detail::point_at(max));
             });
         };
     }
     if constexpr (detail::has_classify<S, const point &, const point &>) {
         callbacks.classify = [](void *ctx, const double *min, const double *max) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 return detail::object_at<S>(ctx).classify(detail::point_at(min), detail::point_at(max));
             });
         };
@@ -72,7 +75,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_classify_many<S, span<const box>, span<std::int32_t>>) {
         callbacks.classify_many = [](void *ctx, const double *boxes, std::uint64_t count,
                                      std::int32_t *tags) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 const span<const box> all(reinterpret_cast<const box *>(boxes), static_cast<std::size_t>(count));
                 detail::object_at<S>(ctx).classify_many(all, detail::array_at(tags, count));
                 return 0;
@@ -81,7 +84,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     }
     if constexpr (detail::has_contains<S, const point &>) {
         callbacks.contains = [](void *ctx, const double *at) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 return detail::object_at<S>(ctx).contains(detail::point_at(at)) ? 1 : 0;
             });
         };
@@ -89,7 +92,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_contains_many<S, span<const point>, span<std::int32_t>>) {
         callbacks.contains_many = [](void *ctx, const double *points, std::uint64_t count,
                                      std::int32_t *inside) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<S>(ctx).contains_many(detail::points_at(points, count),
                                                         detail::array_at(inside, count));
                 return 0;
@@ -99,7 +102,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_distance_many<S, span<const point>, span<double>>) {
         callbacks.distance_many = [](void *ctx, const double *points, std::uint64_t count,
                                      double *distances) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<S>(ctx).distance_many(detail::points_at(points, count),
                                                         detail::array_at(distances, count));
                 return 0;
@@ -109,7 +112,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_gradient<S, const point &, const point &, const point &, leafless_gradient &>) {
         callbacks.gradient = [](void *ctx, const double *min, const double *max, const double *middle,
                                 leafless_gradient *gradient) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<S>(ctx).gradient(detail::point_at(min), detail::point_at(max),
                                                    detail::point_at(middle), *gradient);
                 return 0;
@@ -119,7 +122,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_tangent<S, const point &, const point &, const point &, leafless_tangent &>) {
         callbacks.tangent = [](void *ctx, const double *min, const double *max, const double *middle,
                                leafless_tangent *tangent) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<S>(ctx).tangent(detail::point_at(min), detail::point_at(max),
                                                   detail::point_at(middle), *tangent);
                 return 0;
@@ -134,30 +137,30 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
 
 /// The same with nothing but a promise about the space outside of the universe.
 template <class S> returns<solid> solid_of(S shape, leafless_exterior exterior) {
-    leafless_callbacks promises = LEAFLESS_INIT(leafless_callbacks);
+    leafless_solid_callbacks promises = LEAFLESS_INIT(leafless_solid_callbacks);
     promises.exterior = exterior;
     return solid_of(std::move(shape), promises);
 }
 
-/// The points where the host's function is not negative, as leafless_function says, by an object with two members,
+/// The points where the host's function is not negative, as leafless_solid_function says, by an object with two members,
 /// which are const and called from several threads at once:
 ///
 ///     double value(const point &at)                                                         leafless_value_fn
 ///     leafless_interval range(const point &min, const point &max)                           leafless_range_fn
 template <class F> returns<solid> half_space_of(F function) {
     auto owned = std::make_unique<F>(std::move(function));
-    leafless_function functions = LEAFLESS_INIT(leafless_function);
+    leafless_solid_function functions = LEAFLESS_INIT(leafless_solid_function);
     functions.ctx = owned.get();
     functions.destroy = detail::destroy<F>;
     functions.value = [](void *ctx, const double *at, double *value) noexcept -> std::int32_t {
-        return detail::guarded([&]() -> std::int32_t {
+        return detail::guarded(ctx, [&]() -> std::int32_t {
             *value = detail::object_at<F>(ctx).value(detail::point_at(at));
             return 0;
         });
     };
     functions.range = [](void *ctx, const double *min, const double *max,
                          leafless_interval *range) noexcept -> std::int32_t {
-        return detail::guarded([&]() -> std::int32_t {
+        return detail::guarded(ctx, [&]() -> std::int32_t {
             *range = detail::object_at<F>(ctx).range(detail::point_at(min), detail::point_at(max));
             return 0;
         });
@@ -187,7 +190,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     callbacks.destroy = detail::destroy<host>;
     if constexpr (std::is_invocable_v<const A &, const point &, span<double>>) {
         callbacks.value = [](void *ctx, const double *at, double *value) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 const host &it = detail::object_at<host>(ctx);
                 it.object(detail::point_at(at), span<double>(value, it.components));
                 return 0;
@@ -196,7 +199,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     }
     if constexpr (detail::has_value<A, const point &, span<double>>) {
         callbacks.value = [](void *ctx, const double *at, double *value) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 const host &it = detail::object_at<host>(ctx);
                 it.object.value(detail::point_at(at), span<double>(value, it.components));
                 return 0;
@@ -206,7 +209,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     if constexpr (detail::has_values<A, span<const point>, span<double>>) {
         callbacks.values = [](void *ctx, const double *points, std::uint64_t count,
                               double *values) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 const host &it = detail::object_at<host>(ctx);
                 const std::size_t size = static_cast<std::size_t>(count) * it.components;
                 it.object.values(detail::points_at(points, count), span<double>(values, size));
@@ -217,7 +220,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     if constexpr (detail::has_range<A, const point &, const point &, leafless_value_range &>) {
         callbacks.range = [](void *ctx, const double *min, const double *max,
                              leafless_value_range *range) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<host>(ctx).object.range(detail::point_at(min), detail::point_at(max), *range);
                 return 0;
             });
@@ -233,7 +236,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
 template <class F> leafless_sink sink_to(F &take) {
     const leafless_write_fn write = [](void *ctx, const std::uint8_t *bytes,
                                        std::uint64_t count) noexcept -> std::int32_t {
-        return detail::guarded([&]() -> std::int32_t {
+        return detail::guarded(ctx, [&]() -> std::int32_t {
             (*static_cast<F *>(ctx))(detail::array_at(bytes, count));
             return 0;
         });

@@ -92,6 +92,15 @@
  * Different objects never interfere. The library has no global state. No thread of the library outlives the
  * call that started it.
  *
+ * Names. A function has the name of its object, which is the first parameter or the result, and a verb. _new
+ * makes an object of parameters, _from_x of another model, _read of a source; _build does so under options.
+ * _with_x and _without_x return a copy with one thing more or less; participles (_placed, _sewn) a copy that
+ * is changed. _describe fills a struct of facts, such as leafless_octree_info; _copy fills buffers of the
+ * caller; _write goes to a sink. _at takes a place or an index, _many takes an array of questions. Set
+ * operations are _combine for any number of operands, and _complement. A member of an enumeration begins with
+ * the name of the enumeration, a leafless_status alone with an E. UNDECIDED is 2 in every answer, as
+ * LEAFLESS_TAG_PARTIAL is. UNKNOWN, that nobody has said, is 0.
+ *
  * Structs. A struct with a field struct_size begins with its own sizeof. All other fields may be zero, and
  * zero is the default: LEAFLESS_INIT(type) makes it. Programs that were compiled with an older, shorter
  * struct go on working. Other structs are fixed for one LEAFLESS_ABI.
@@ -187,7 +196,7 @@ typedef struct leafless_solid leafless_solid;
 
 /// A three-dimensional bitmap or array of samples, and where it lies. Each sample stands for the closed box
 /// around it, its voxel: on each axis voxel i reaches from corner + i·spacing to corner + (i + 1)·spacing.
-/// leafless_solid_new_volume makes a solid of those whose samples lie in a band.
+/// leafless_solid_from_volume makes a solid of those whose samples lie in a band.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_volume_free
 /// needs the reference that it gives back for itself.
@@ -562,7 +571,7 @@ leafless_status leafless_frame_cell_size(const leafless_frame *frame, double *ce
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check, and if the point is outside of the universe or not
 ///   a number.
 /// - Untrusted input: any values.
-leafless_status leafless_frame_cell_of(const leafless_frame *frame, const double point_model[3],
+leafless_status leafless_frame_cell_at(const leafless_frame *frame, const double point_model[3],
     uint32_t cell[3]);
 
 /// Where a lattice plane lies: the tightest interval of doubles that contains it.
@@ -878,7 +887,7 @@ leafless_status leafless_mesh_area(const leafless_mesh *mesh, double *area_model
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
-leafless_status leafless_mesh_describe(const leafless_mesh *mesh, leafless_mesh_report *report);
+leafless_status leafless_mesh_inspect(const leafless_mesh *mesh, leafless_mesh_report *report);
 
 /// Where a mesh is not as it should be, the worst first: in the order of leafless_defect, and those of one
 /// kind by the longest side of their boxes, then by count, then by position.
@@ -908,7 +917,7 @@ leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh, leafless_f
 /// together by common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
 ///
 /// - Buffers: `sewn`, one pointer.
-/// - Result: `*sewn`; leafless_mesh_describe tells how many vertices moved and how far.
+/// - Result: `*sewn`; leafless_mesh_inspect tells how many vertices moved and how far.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*sewn` back with leafless_mesh_free.
 /// - Untrusted input: any mesh.
@@ -939,15 +948,15 @@ leafless_status leafless_mesh_translated(const leafless_mesh *mesh, const double
 
 /// What the coordinates of vertices are.
 LEAFLESS_ENUM(leafless_vertex_type, uint32_t) {
-    LEAFLESS_VERTEX_F64 = 0,  ///< double.
-    LEAFLESS_VERTEX_F32 = 1,  ///< float.
+    LEAFLESS_VERTEX_TYPE_F64 = 0,  ///< double.
+    LEAFLESS_VERTEX_TYPE_F32 = 1,  ///< float.
 };
 
 /// What the indices of vertices are.
 LEAFLESS_ENUM(leafless_index_type, uint32_t) {
-    LEAFLESS_INDEX_U32 = 0,  ///< uint32_t.
-    LEAFLESS_INDEX_U64 = 1,  ///< uint64_t.
-    LEAFLESS_INDEX_U16 = 2,  ///< uint16_t.
+    LEAFLESS_INDEX_TYPE_U32 = 0,  ///< uint32_t.
+    LEAFLESS_INDEX_TYPE_U64 = 1,  ///< uint64_t.
+    LEAFLESS_INDEX_TYPE_U16 = 2,  ///< uint16_t.
 };
 
 /// The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They
@@ -955,7 +964,7 @@ LEAFLESS_ENUM(leafless_index_type, uint32_t) {
 /// first may be zero, which is their default.
 typedef struct leafless_mesh_arrays {
     uint32_t struct_size;  ///< sizeof(leafless_mesh_arrays).
-    uint32_t vertex_type;  ///< A leafless_vertex_type.
+    leafless_vertex_type vertex_type;  ///< A leafless_vertex_type.
     const void *vertices;  ///< The first vertex. May be NULL if there is none.
     uint64_t vertex_count;  ///< Number of vertices.
     /// Bytes from one vertex to the next; 0 means that they follow each other without a gap.
@@ -967,7 +976,7 @@ typedef struct leafless_mesh_arrays {
     uint64_t triangle_count;
     /// Bytes from one triangle to the next; 0 means that they follow each other without a gap.
     uint64_t triangle_stride;
-    uint32_t index_type;  ///< A leafless_index_type.
+    leafless_index_type index_type;  ///< A leafless_index_type.
     /// What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
     double scale;
 } leafless_mesh_arrays;
@@ -998,7 +1007,7 @@ leafless_status leafless_mesh_new(const leafless_mesh_arrays *arrays, leafless_m
 /// aligned. All fields but the first may be zero, which is their default.
 typedef struct leafless_polyhedron_arrays {
     uint32_t struct_size;  ///< sizeof(leafless_polyhedron_arrays).
-    uint32_t vertex_type;  ///< A leafless_vertex_type.
+    leafless_vertex_type vertex_type;  ///< A leafless_vertex_type.
     const void *vertices;  ///< The first vertex: three coordinates. May be NULL if there is none.
     uint64_t vertex_count;  ///< Number of vertices.
     /// Bytes from one vertex to the next; 0 means that they follow each other without a gap.
@@ -1020,7 +1029,7 @@ typedef struct leafless_polyhedron_arrays {
     /// voids. NULL, with a count of 0, means that all shells are one solid.
     const void *solids;
     uint64_t solid_count;  ///< Number of solids.
-    uint32_t index_type;  ///< A leafless_index_type: that of corners and offsets.
+    leafless_index_type index_type;  ///< A leafless_index_type: that of corners and offsets.
     /// What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
     double scale;
     /// How far corners may lie beside the plane of their face, in model units: half the distance of two
@@ -1053,14 +1062,14 @@ leafless_status leafless_mesh_from_polyhedron(const leafless_polyhedron_arrays *
     double *deviation_model, leafless_mesh **mesh);
 
 /// Whether the moments of what a mesh encloses are known from its triangles.
-LEAFLESS_ENUM(leafless_moments_known, uint32_t) {
-    LEAFLESS_MOMENTS_KNOWN = 0,  ///< They are, up to rounding and to the mesh's displacement.
+LEAFLESS_ENUM(leafless_moments_verdict, uint32_t) {
+    LEAFLESS_MOMENTS_VERDICT_KNOWN = 0,  ///< They are, up to rounding and to the mesh's displacement.
     /// They are not: the mesh is empty, not closed, or not consistently oriented as the fill rule demands.
-    LEAFLESS_MOMENTS_OPEN = 1,
-    LEAFLESS_MOMENTS_INTERSECTING = 2,  ///< They are not: two triangles intersect.
+    LEAFLESS_MOMENTS_VERDICT_OPEN = 1,
     /// They are not: too many triangles lie close to each other to find out, or all triangles of a body are
     /// slivers.
-    LEAFLESS_MOMENTS_UNDECIDED = 3,
+    LEAFLESS_MOMENTS_VERDICT_UNDECIDED = 2,
+    LEAFLESS_MOMENTS_VERDICT_INTERSECTING = 3,  ///< They are not: two triangles intersect.
 };
 
 /// Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they
@@ -1071,7 +1080,7 @@ typedef struct leafless_mesh_moments {
     leafless_interval inertia_origin_model[9];  ///< Tensor of inertia about the model's origin, row by row.
     leafless_interval inertia_centroid_model[9];  ///< The same about the centroid.
     uint32_t triangles[2];  ///< Two triangles that intersect, if `known` says so; else 0.
-    leafless_moments_known known;  ///< Whether they are known, or why not.
+    leafless_moments_verdict known;  ///< Whether they are known, or why not.
     bool has_centroid;  ///< Whether the volume is proven not to be 0.
 } leafless_mesh_moments;
 
@@ -1149,13 +1158,13 @@ typedef struct leafless_mesh_options {
 } leafless_mesh_options;
 
 /// What a mesh file says besides the mesh.
-typedef struct leafless_mesh_found {
+typedef struct leafless_mesh_file_info {
     leafless_mesh_format format;  ///< The file's format.
     leafless_unit unit;  ///< The unit of the mesh, converted but not scaled, if it is known.
     /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
     /// not contain.
     uint64_t skipped;
-} leafless_mesh_found;
+} leafless_mesh_file_info;
 
 /// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
 /// triangles. Of bytes no name is known that could tell the format.
@@ -1174,7 +1183,7 @@ typedef struct leafless_mesh_found {
 ///   compressed, of 64 times its length and 16 MiB, and its instances may come to 2^25 vertices and 2^25
 ///   triangles, or to as many as the file has.
 leafless_status leafless_mesh_read(const leafless_source *source, const leafless_mesh_options *options,
-    leafless_mesh_found *found, leafless_mesh **mesh);
+    leafless_mesh_file_info *found, leafless_mesh **mesh);
 
 /// What a mesh file departs from its format in, though it could be read: a sentence in UTF-8 for each kind of
 /// departure, by its place among all. A mesh that was not read from a file, or was made from another mesh,
@@ -1224,8 +1233,8 @@ leafless_status leafless_mesh_write(const leafless_mesh *mesh, const leafless_me
 
 /// The mesh that a reader gets back from the file that leafless_mesh_write writes. An STL has 32-bit
 /// coordinates: vertices move, vertices that meet are one, and triangles of which two corners meet are
-/// dropped, so that the surface may be pinched, flat or gone. leafless_mesh_describe of both meshes tells.
-/// All other formats keep vertices and triangles as they are. O(n) time and memory.
+/// dropped, so that the surface may be pinched, flat or gone. leafless_mesh_inspect of both meshes tells. All
+/// other formats keep vertices and triangles as they are. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, with a format; `kept`, one pointer.
 /// - Result: `*kept`.
@@ -1249,7 +1258,7 @@ LEAFLESS_ENUM(leafless_operation, uint32_t) {
 ///
 /// Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a
 /// point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
-/// though no triangle cuts them. leafless_mesh_describe tells whether to expect them.
+/// though no triangle cuts them. leafless_mesh_inspect tells whether to expect them.
 ///
 /// - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
 /// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
@@ -1257,7 +1266,7 @@ LEAFLESS_ENUM(leafless_operation, uint32_t) {
 ///   meet on an edge; LEAFLESS_E_ARGUMENT if `fill` is no leafless_fill; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any mesh.
-leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh, leafless_fill fill,
+leafless_status leafless_solid_from_mesh(const leafless_mesh *mesh, leafless_fill fill,
     leafless_solid **solid);
 
 /// A stored octree as a solid on its own universe. Built to fewer levels it is cut there, built to more its
@@ -1269,7 +1278,7 @@ leafless_status leafless_solid_new_mesh(const leafless_mesh *mesh, leafless_fill
 ///   unverified and its links are damaged.
 /// - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any octree.
-leafless_status leafless_octree_as_solid(const leafless_octree *octree, leafless_solid **solid);
+leafless_status leafless_solid_from_octree(const leafless_octree *octree, leafless_solid **solid);
 
 /// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of
 /// half-spaces (see leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have
@@ -1476,14 +1485,14 @@ LEAFLESS_ENUM(leafless_motion, uint32_t) {
     /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
     /// allows for that.
     LEAFLESS_MOTION_VERTICES = 1,
-    /// A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_new_transform
+    /// A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_transformed
     /// does, on a frame that is chosen for the solid; a host's shape is asked about boxes around the inverse
     /// images of cells. Where cells are the images of cells, nothing blurs.
     LEAFLESS_MOTION_CONSERVATIVE = 2,
 };
 
 /// A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their
-/// vertices, others as leafless_solid_new_transform; of an expression each part in its own way.
+/// vertices, others as leafless_solid_transformed; of an expression each part in its own way.
 ///
 /// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one
 ///   leafless_motion or NULL; `solid`, one pointer.
@@ -1602,9 +1611,9 @@ typedef int32_t (*leafless_tangent_fn)(void *ctx, const double *min, const doubl
 typedef void (*leafless_destroy_fn)(void *ctx);
 
 /// The host's own shape. All fields but the first may be zero; `classify` or `distance_many` must be set.
-typedef struct leafless_callbacks {
-    uint32_t struct_size;  ///< sizeof(leafless_callbacks).
-    uint32_t exterior;  ///< A leafless_exterior.
+typedef struct leafless_solid_callbacks {
+    uint32_t struct_size;  ///< sizeof(leafless_solid_callbacks).
+    leafless_exterior exterior;  ///< What is known of the space outside of the universe.
     leafless_classify_fn classify;  ///< Classifies boxes.
     leafless_contains_fn contains;  ///< Decides points: LEAFLESS_RULE_SAMPLED needs it; optional.
     leafless_destroy_fn destroy;  ///< Called when `ctx` is not needed any more; optional.
@@ -1632,7 +1641,7 @@ typedef struct leafless_callbacks {
     /// In a universe that holds the box the shape ends inside, whatever `exterior` says. The box moves along
     /// with the shape; of a moved shape `exterior` says nothing.
     double bounds[6];
-} leafless_callbacks;
+} leafless_solid_callbacks;
 
 /// The host's own shape.
 ///
@@ -1645,7 +1654,8 @@ typedef struct leafless_callbacks {
 ///   leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
-leafless_status leafless_solid_new_callbacks(const leafless_callbacks *callbacks, leafless_solid **solid);
+leafless_status leafless_solid_new_callbacks(const leafless_solid_callbacks *callbacks,
+    leafless_solid **solid);
 
 /// The value of the host's function at a point (3 numbers, model units): sets `*value`. 0, or the number of
 /// the host's own error, which ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_classify_fn.
@@ -1657,8 +1667,8 @@ typedef int32_t (*leafless_range_fn)(void *ctx, const double *min, const double 
     leafless_interval *range);
 
 /// A half-space of the host: the points where its function is not negative. `value` and `range` must be set.
-typedef struct leafless_function {
-    uint32_t struct_size;  ///< sizeof(leafless_function).
+typedef struct leafless_solid_function {
+    uint32_t struct_size;  ///< sizeof(leafless_solid_function).
     uint32_t reserved;  ///< Zero.
     /// The function's value at a point; NaN where it has none. Only its sign counts.
     leafless_value_fn value;
@@ -1667,8 +1677,8 @@ typedef struct leafless_function {
     leafless_range_fn range;
     leafless_destroy_fn destroy;  ///< Called when `ctx` is not needed any more; optional.
     void *ctx;  ///< What the functions are called with.
-    uint64_t fingerprint[2];  ///< As in leafless_callbacks.
-} leafless_function;
+    uint64_t fingerprint[2];  ///< As in leafless_solid_callbacks.
+} leafless_solid_function;
 
 /// A half-space of the host. It joins others, and may be placed: then its functions are asked in its own
 /// space, about the box around a cell's inverse image and about the rounded inverse image of a point.
@@ -1681,30 +1691,30 @@ typedef struct leafless_function {
 ///   leafless_solid_free.
 /// - Threads: any; in which the functions are called, leafless_classify_fn says.
 /// - Untrusted input: any answers.
-leafless_status leafless_solid_new_function(const leafless_function *function, leafless_solid **solid);
+leafless_status leafless_solid_new_function(const leafless_solid_function *function, leafless_solid **solid);
 
 /* ---- 11. Volumes -------------------------------------------------------------------------------------- */
 
 /// The type of samples. The arrays of a volume are of the first five types. Samples of other types are
 /// converted to one of these when they are copied.
 LEAFLESS_ENUM(leafless_sample_type, uint32_t) {
-    LEAFLESS_SAMPLE_U8 = 0,  ///< uint8_t.
-    LEAFLESS_SAMPLE_U16 = 1,  ///< uint16_t.
-    LEAFLESS_SAMPLE_I16 = 2,  ///< int16_t, as the Hounsfield units of tomography.
-    LEAFLESS_SAMPLE_F32 = 3,  ///< float. One that is not a number is never inside.
+    LEAFLESS_SAMPLE_TYPE_U8 = 0,  ///< uint8_t.
+    LEAFLESS_SAMPLE_TYPE_U16 = 1,  ///< uint16_t.
+    LEAFLESS_SAMPLE_TYPE_I16 = 2,  ///< int16_t, as the Hounsfield units of tomography.
+    LEAFLESS_SAMPLE_TYPE_F32 = 3,  ///< float. One that is not a number is never inside.
     /// Bits with the values 0 and 1, in uint64_t: each row along x begins with a word of its own, and the bit
     /// of the sample (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx / 64⌉. Other bits
     /// of a row's last word do not count. leafless_octree_bitmap writes the same.
-    LEAFLESS_SAMPLE_BITS = 4,
+    LEAFLESS_SAMPLE_TYPE_BITS = 4,
     /// Bits in bytes, eight to a byte, the lowest first: each row along x begins with a byte of its own. They
-    /// become LEAFLESS_SAMPLE_BITS.
-    LEAFLESS_SAMPLE_BITS_IN_BYTES = 5,
-    LEAFLESS_SAMPLE_I8 = 6,  ///< int8_t. It becomes int16_t.
-    LEAFLESS_SAMPLE_I32 = 7,  ///< int32_t. It becomes float, and so do all that follow.
-    LEAFLESS_SAMPLE_U32 = 8,  ///< uint32_t.
-    LEAFLESS_SAMPLE_I64 = 9,  ///< int64_t.
-    LEAFLESS_SAMPLE_U64 = 10,  ///< uint64_t.
-    LEAFLESS_SAMPLE_F64 = 11,  ///< double.
+    /// become LEAFLESS_SAMPLE_TYPE_BITS.
+    LEAFLESS_SAMPLE_TYPE_BITS_IN_BYTES = 5,
+    LEAFLESS_SAMPLE_TYPE_I8 = 6,  ///< int8_t. It becomes int16_t.
+    LEAFLESS_SAMPLE_TYPE_I32 = 7,  ///< int32_t. It becomes float, and so do all that follow.
+    LEAFLESS_SAMPLE_TYPE_U32 = 8,  ///< uint32_t.
+    LEAFLESS_SAMPLE_TYPE_I64 = 9,  ///< int64_t.
+    LEAFLESS_SAMPLE_TYPE_U64 = 10,  ///< uint64_t.
+    LEAFLESS_SAMPLE_TYPE_F64 = 11,  ///< double.
 };
 
 /// The formats of volume files.
@@ -1819,7 +1829,7 @@ leafless_status leafless_volume_range(const leafless_volume *volume, const leafl
 ///   leafless_solid_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.
-leafless_status leafless_solid_new_volume(const leafless_volume *volume, const leafless_interval *band,
+leafless_status leafless_solid_from_volume(const leafless_volume *volume, const leafless_interval *band,
     const leafless_options *options, leafless_solid **solid);
 
 /// The order of a number's bytes.
@@ -1849,9 +1859,9 @@ typedef struct leafless_volume_layout {
 ///
 /// With LEAFLESS_ACCESS_COPY the samples are copied: O(n); bytes may lie on any address. With
 /// LEAFLESS_ACCESS_MAP, which is for bytes only, they are used where they lie: O(1). The layout's type is
-/// then LEAFLESS_SAMPLE_U8, _U16, _I16, _F32 or _BITS, its byte order is this machine's, it has nothing to
-/// skip, and the bytes are aligned for their type. LEAFLESS_ACCESS_MAP_VERIFIED is the same: any samples are
-/// a volume.
+/// then LEAFLESS_SAMPLE_TYPE_U8, _U16, _I16, _F32 or _BITS, its byte order is this machine's, it has nothing
+/// to skip, and the bytes are aligned for their type. LEAFLESS_ACCESS_MAP_VERIFIED is the same: any samples
+/// are a volume.
 ///
 /// - Buffers: `layout`, one struct; `source`, one struct; `volume`, one pointer.
 /// - Result: `*volume`.
@@ -1957,38 +1967,38 @@ leafless_status leafless_scene_read(const leafless_source *source, const leafles
     leafless_scene **scene);
 
 /// What was found while a scene was read.
-typedef struct leafless_scene_report {
+typedef struct leafless_scene_info {
     uint64_t polygons;  ///< Calls of circle, sphere, cylinder and rotate_extrude that were drawn as polygons.
     uint64_t exact;  ///< Calls of these that are exact. OpenSCAD draws them as polygons.
     /// Calls of linear_extrude of which `slices` has no effect though it has one in OpenSCAD.
     uint64_t ignored_slices;
-    /// Meshes and polyhedra that have triangles: leafless_scene_describe_mesh tells of each.
+    /// Meshes and polyhedra that have triangles: leafless_scene_describe_mesh_at tells of each.
     uint64_t meshes;
     /// Whether the scene is known to be empty: there is nothing in it, or what is intersected lies apart.
     bool is_empty;
-} leafless_scene_report;
+} leafless_scene_info;
 
 /// What is told of a mesh or polyhedron in a scene.
-typedef struct leafless_scene_mesh {
+typedef struct leafless_scene_mesh_info {
     uint64_t line;  ///< Line of the call in the text, counted from 1.
     uint64_t column;  ///< Column of the call in characters, counted from 1.
     uint64_t turned;  ///< Triangles that face the other way than most of those that they hang together with.
     leafless_mesh_report report;  ///< What was found while the mesh was taken in.
-} leafless_scene_mesh;
+} leafless_scene_mesh_info;
 
 /// What was found while a scene was read.
 ///
 /// - Buffers: `report`, one struct.
 /// - Result: `*report`.
-leafless_status leafless_scene_describe(const leafless_scene *scene, leafless_scene_report *report);
+leafless_status leafless_scene_describe(const leafless_scene *scene, leafless_scene_info *report);
 
 /// What was found while a mesh or polyhedron of a scene was taken in.
 ///
 /// - Buffers: `mesh`, one struct. `index`, in the order of the text, is less than the report's `meshes`.
 /// - Result: `*mesh`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no such mesh.
-leafless_status leafless_scene_describe_mesh(const leafless_scene *scene, uint64_t index,
-    leafless_scene_mesh *mesh);
+leafless_status leafless_scene_describe_mesh_at(const leafless_scene *scene, uint64_t index,
+    leafless_scene_mesh_info *mesh);
 
 /// The file of a mesh in a scene, as the text names it, in UTF-8 and not terminated by NUL; nothing for a
 /// polyhedron.
@@ -1997,7 +2007,7 @@ leafless_status leafless_scene_describe_mesh(const leafless_scene *scene, uint64
 ///   `index`, in the order of the text, is less than the report's `meshes`.
 /// - Result: `*length`, the length of the name in bytes; the name in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
-leafless_status leafless_scene_mesh_file(const leafless_scene *scene, uint64_t index, uint8_t *bytes,
+leafless_status leafless_scene_mesh_file_at(const leafless_scene *scene, uint64_t index, uint8_t *bytes,
     uint64_t capacity, uint64_t *length);
 
 /// One more reference to a scene.
@@ -2031,7 +2041,7 @@ leafless_status leafless_scene_bounds(const leafless_scene *scene, double min_mo
 ///   than 256 matrices; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any scene.
-leafless_status leafless_solid_new_scene(const leafless_scene *scene, const leafless_frame *frame,
+leafless_status leafless_solid_from_scene(const leafless_scene *scene, const leafless_frame *frame,
     leafless_solid **solid);
 
 /* ---- 13. Octrees -------------------------------------------------------------------------------------- */
@@ -2093,14 +2103,14 @@ typedef struct leafless_statistics {
 
 /// The octree whose whole universe has one tag.
 ///
-/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH:
+/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior`, which are not BRANCH, say
 ///   what is known of the universe, and of the space around it.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_ARGUMENT.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Untrusted input: any numbers.
-leafless_status leafless_octree_uniform(const leafless_frame *frame, uint32_t tag, uint32_t exterior,
-    leafless_octree **octree);
+leafless_status leafless_octree_new_uniform(const leafless_frame *frame, leafless_tag tag,
+    leafless_tag exterior, leafless_octree **octree);
 
 /// One more reference to an octree.
 ///
@@ -2304,12 +2314,12 @@ LEAFLESS_ENUM(leafless_membership, uint8_t) {
     LEAFLESS_MEMBERSHIP_UNDECIDED = 2,  ///< In a PARTIAL cell, outside of the universe, or not a number.
 };
 
-/// The answer to a box query. Each is proven, but for the last.
+/// The answer to a box query. Each is proven, except UNDECIDED.
 LEAFLESS_ENUM(leafless_region, uint8_t) {
     LEAFLESS_REGION_OUTSIDE = 0,  ///< The interiors of box and solid are disjoint.
     LEAFLESS_REGION_INSIDE = 1,  ///< The box lies in the solid.
-    LEAFLESS_REGION_CROSSING = 2,  ///< Part of the box lies inside, part outside.
-    LEAFLESS_REGION_UNDECIDED = 3,  ///< None of these could be proven at the octree's depth.
+    LEAFLESS_REGION_UNDECIDED = 2,  ///< Nothing could be proven at the octree's depth.
+    LEAFLESS_REGION_CROSSING = 3,  ///< Part of the box lies inside, part outside.
 };
 
 /// Whether the solid contains a point. A point on the boundary may be answered either way; one that is
@@ -2361,7 +2371,7 @@ leafless_status leafless_octree_classify_box(const leafless_octree *octree, cons
 ///   LEAFLESS_E_NO_MEMORY.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers.
-leafless_status leafless_solid_contains(const leafless_solid *solid, const leafless_frame *frame,
+leafless_status leafless_solid_contains_many(const leafless_solid *solid, const leafless_frame *frame,
     const double *points_model, uint64_t count, const leafless_options *options,
     leafless_membership *memberships);
 
@@ -2373,7 +2383,7 @@ leafless_status leafless_solid_contains(const leafless_solid *solid, const leafl
 ///   NULL; `region`, one.
 /// - Result: `*region`.
 /// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
-///   leafless_solid_contains.
+///   leafless_solid_contains_many.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
 leafless_status leafless_solid_classify_box(const leafless_solid *solid, const leafless_frame *frame,
@@ -2454,14 +2464,14 @@ leafless_status leafless_point_table_contains_many(const leafless_point_table *t
 /* ---- 15. Cells of octrees ----------------------------------------------------------------------------- */
 
 /// Where a cursor stands.
-typedef struct leafless_cursor_state {
+typedef struct leafless_cursor_info {
     uint32_t cell[3];  ///< The cell's place among those of its level, per axis.
     uint32_t level;  ///< The cell's level; 0 is the universe.
     leafless_tag tag;  ///< The cell's tag.
     /// Of a BRANCH the tags of its children, in octant order (bit 0 of the octant is x, bit 1 y, bit 2 z);
     /// else eight times the cell's own.
     leafless_tag children[8];
-} leafless_cursor_state;
+} leafless_cursor_info;
 
 /// Makes a cursor that stands on the universe.
 ///
@@ -2485,7 +2495,7 @@ void leafless_cursor_free(leafless_cursor *cursor);
 /// - Result: `*state`.
 /// - Threads: any, while nobody moves the cursor.
 /// - Untrusted input: any octree.
-leafless_status leafless_cursor_read(const leafless_cursor *cursor, leafless_cursor_state *state);
+leafless_status leafless_cursor_describe(const leafless_cursor *cursor, leafless_cursor_info *state);
 
 /// Moves a cursor to a child of its cell. On a cell that is no BRANCH it stays where it is.
 ///
@@ -2670,7 +2680,8 @@ leafless_status leafless_faces_next(leafless_faces *faces, leafless_boundary_fac
 ///
 /// The bit of the cell min_cell + (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx /
 /// 64⌉, and nx, ny and nz are max_cell - min_cell: x is fastest, each row begins with a word of its own, and
-/// bits beyond a row are 0. That is LEAFLESS_SAMPLE_BITS, of which leafless_volume_new makes a volume again.
+/// bits beyond a row are 0. That is LEAFLESS_SAMPLE_TYPE_BITS, of which leafless_volume_new makes a volume
+/// again.
 ///
 /// Time is linear in the words and the array elements in the box.
 ///
@@ -2750,7 +2761,7 @@ leafless_status leafless_octree_cast_rays(const leafless_octree *octree, const l
 ///   `count`. `rays` and `hits` may be NULL if `count` is 0. `on` is a leafless_obstacle.
 /// - Result: `hits[i]` for ray i; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says; else as
-///   leafless_solid_contains.
+///   leafless_solid_contains_many.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
@@ -2783,7 +2794,7 @@ leafless_status leafless_octree_ray_spans(const leafless_octree *octree, const l
 /// - Result: `inner`, where the ray is proven inside, rounded inward; `outer`, where it is not proven
 ///   outside, rounded outward; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is
-///   too small: nothing is written then; else as leafless_solid_contains.
+///   too small: nothing is written then; else as leafless_solid_contains_many.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
 leafless_status leafless_solid_ray_spans(const leafless_solid *solid, const leafless_frame *frame,
@@ -2799,7 +2810,7 @@ leafless_status leafless_solid_ray_spans(const leafless_solid *solid, const leaf
 ///   NULL, of which `max_splits` counts: cells that were not split count as PARTIAL; `sight`, one.
 /// - Result: `*sight`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
-///   between 2^-256 and 2^256; else as leafless_solid_contains.
+///   between 2^-256 and 2^256; else as leafless_solid_contains_many.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
 leafless_status leafless_solid_line_of_sight(const leafless_solid *solid, const leafless_frame *frame,
@@ -2826,7 +2837,7 @@ LEAFLESS_ENUM(leafless_side, uint32_t) {
 /// - Buffers: `first` and `end`, 2 numbers each, or NULL both for all columns: the coordinates of the first
 ///   column's cells on the other two axes in the order x, y, z, and the first beyond the last one's;
 ///   `columns`, one pointer. `axis` is 0 for x, 1 for y, 2 for z.
-/// - Result: `*columns`, to be read with leafless_columns_read.
+/// - Result: `*columns`, to be read with leafless_columns_copy.
 /// - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach
 ///   beyond the universe; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*columns` back with leafless_columns_free.
@@ -2839,9 +2850,9 @@ leafless_status leafless_octree_columns(const leafless_octree *octree, uint32_t 
 ///
 /// - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL, of which
 ///   `max_bytes` counts and `max_splits` does not.
-/// - Result: `*columns`, to be read with leafless_columns_read; the same for any number of threads.
+/// - Result: `*columns`, to be read with leafless_columns_copy; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns; LEAFLESS_E_LIMIT if the result takes more than
-///   `max_bytes`; else as leafless_solid_contains.
+///   `max_bytes`; else as leafless_solid_contains_many.
 /// - Ownership: give `*columns` back with leafless_columns_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
@@ -2859,7 +2870,7 @@ leafless_status leafless_solid_columns(const leafless_solid *solid, const leafle
 /// - Result: `offsets`, one more than columns; `runs`; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none; LEAFLESS_E_BUFFER if a capacity is too small: nothing is
 ///   written then.
-leafless_status leafless_columns_read(const leafless_columns *columns, leafless_obstacle on,
+leafless_status leafless_columns_copy(const leafless_columns *columns, leafless_obstacle on,
     uint64_t *offsets, uint64_t offset_capacity, uint64_t *offset_count, leafless_run *runs,
     uint64_t run_capacity, uint64_t *run_count);
 
@@ -2875,7 +2886,7 @@ void leafless_columns_free(leafless_columns *columns);
 ///
 /// - Buffers: `first` and `end` as leafless_octree_columns; `heights_model`, room for `capacity` structs, or
 ///   NULL to ask for the count only; `count`, one number. `side` is a leafless_side.
-/// - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_read, an
+/// - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_copy, an
 ///   interval in which the greatest coordinate of the solid's points in the column lies, or from below the
 ///   least one. The end that needs a proof is infinite if no cell of the column is FULL. Both are -INFINITY
 ///   (from below INFINITY) if the column is empty.
@@ -2893,7 +2904,7 @@ leafless_status leafless_octree_heights(const leafless_octree *octree, uint32_t 
 ///   `max_bytes` counts and `max_splits` does not.
 /// - Result: as leafless_octree_heights; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_heights; LEAFLESS_E_BUFFER if the capacity is too small;
-///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains.
+///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains_many.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
 leafless_status leafless_solid_heights(const leafless_solid *solid, const leafless_frame *frame,
@@ -3008,12 +3019,12 @@ leafless_status leafless_solid_volume_in(const leafless_solid *solid, const leaf
     const leafless_frame *frame, const leafless_options *options, leafless_interval *volume_model);
 
 /// Why a search or a measurement ended.
-LEAFLESS_ENUM(leafless_measured, uint32_t) {
-    LEAFLESS_MEASURED_TOLERANCE = 0,  ///< What was asked for is known well enough.
-    LEAFLESS_MEASURED_BUDGET = 1,  ///< `max_splits` of the options, or the function's own limit, is spent.
+LEAFLESS_ENUM(leafless_stop_reason, uint32_t) {
+    LEAFLESS_STOP_REASON_TOLERANCE = 0,  ///< What was asked for is known well enough.
+    LEAFLESS_STOP_REASON_BUDGET = 1,  ///< `max_splits` of the options, or the function's own limit, is spent.
     /// No cell is left whose split would help: what is undecided has the size of the frame's finest cells, or
     /// the solid itself knows no more about it, as an octree does of its PARTIAL cells.
-    LEAFLESS_MEASURED_EXHAUSTED = 2,
+    LEAFLESS_STOP_REASON_EXHAUSTED = 2,
 };
 
 /// Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part
@@ -3030,7 +3041,7 @@ typedef struct leafless_measures {
     leafless_proof proof;  ///< What of the solid is proven: what is not counts as undecided.
     uint64_t splits;  ///< How many times a cell was split.
     uint32_t level;  ///< The finest level of which cells were looked at.
-    leafless_measured measured;  ///< Why it ended.
+    leafless_stop_reason measured;  ///< Why it ended.
     /// Whether a cell is proven full: else the solid may be empty, and nothing is known of a centroid.
     bool has_centroid;
     bool is_clipped;  ///< Whether the solid may go on outside of the universe, or does.
@@ -3045,7 +3056,7 @@ typedef struct leafless_surface_area {
     leafless_interval area_model;
     uint64_t splits;  ///< How many times a cell was split.
     uint32_t level;  ///< The finest level of which cells were looked at.
-    leafless_measured measured;  ///< Why it ended.
+    leafless_stop_reason measured;  ///< Why it ended.
     /// Whether the solid may go on outside of the universe, or does: then it is the boundary inside of it.
     bool is_clipped;
 } leafless_surface_area;
@@ -3055,7 +3066,7 @@ typedef struct leafless_section_area {
     leafless_interval area_model;  ///< Area. It contains the truth.
     leafless_proof proof;  ///< What of the solid is proven: what is not counts as undecided.
     uint64_t splits;  ///< How many times a cell was split.
-    leafless_measured measured;  ///< Why it ended.
+    leafless_stop_reason measured;  ///< Why it ended.
     /// Whether the solid may go on outside of the universe, or does: then it is the section inside of it.
     bool is_clipped;
 } leafless_section_area;
@@ -3066,7 +3077,7 @@ typedef struct leafless_extent {
     leafless_interval max_model[3];  ///< Upper corner; all numbers if `is_empty`.
     leafless_proof proof;  ///< What of the solid is proven: what is not counts as undecided.
     uint64_t splits;  ///< How many times a cell was split.
-    leafless_measured measured;  ///< Why it ended.
+    leafless_stop_reason measured;  ///< Why it ended.
     bool is_empty;  ///< Whether the solid is proven to be empty.
     /// Whether it is proven not to be. If neither is proven, the corners are those of what the solid may be.
     bool is_occupied;
@@ -3107,11 +3118,11 @@ leafless_status leafless_solid_surface_area(const leafless_solid *solid, const l
 
 /// The area of a solid's section with a plane, in the universe of a frame. The plane goes through a point,
 /// perpendicular to a normal of any length and either direction. The search splits only cells that the plane
-/// runs through. It ends with LEAFLESS_MEASURED_TOLERANCE if the interval is no wider than `relative` times
-/// its middle, or than `absolute_model` (square model units); with LEAFLESS_MEASURED_EXHAUSTED if no cell is
-/// left whose split would help; with LEAFLESS_MEASURED_BUDGET after `max_splits` of the options, or 2^20
-/// splits if that is 0. With N splits the width goes down with 1/N² on curved surfaces of half-spaces and
-/// what is made of them, with 1/N for other solids; plane faces of the former are known to rounding.
+/// runs through. It ends with LEAFLESS_STOP_REASON_TOLERANCE if the interval is no wider than `relative`
+/// times its middle, or than `absolute_model` (square model units); with LEAFLESS_STOP_REASON_EXHAUSTED if no
+/// cell is left whose split would help; with LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the options,
+/// or 2^20 splits if that is 0. With N splits the width goes down with 1/N² on curved surfaces of half-spaces
+/// and what is made of them, with 1/N for other solids; plane faces of the former are known to rounding.
 ///
 /// If faces of the solid lie in the plane, the sections on both sides of it differ. A plane perpendicular to
 /// an axis is taken as the limit from above, in the universe's upper face as that from below. If it is a
@@ -3129,11 +3140,11 @@ leafless_status leafless_solid_section_area(const leafless_solid *solid, const l
     const leafless_options *options, leafless_section_area *section);
 
 /// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search
-/// splits only cells that may reach beyond what is proven solid. It ends with LEAFLESS_MEASURED_TOLERANCE if
-/// no interval is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with
-/// LEAFLESS_MEASURED_EXHAUSTED if the outermost undecided cells cannot be split, and either the interval is
-/// no wider than one of the frame's finest cells, or nothing else is left to split; with
-/// LEAFLESS_MEASURED_BUDGET after `max_splits` of the options, or 2^20 splits if that is 0.
+/// splits only cells that may reach beyond what is proven solid. It ends with LEAFLESS_STOP_REASON_TOLERANCE
+/// if no interval is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with
+/// LEAFLESS_STOP_REASON_EXHAUSTED if the outermost undecided cells cannot be split, and either the interval
+/// is no wider than one of the frame's finest cells, or nothing else is left to split; with
+/// LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the options, or 2^20 splits if that is 0.
 ///
 /// Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved
 /// side to some 10^-12 of the universe's edge at depth 20, after some hundred splits; a side that a cylinder
@@ -3163,7 +3174,7 @@ typedef struct leafless_point_distance {
     /// and the lower one if it is proven that nothing is.
     leafless_interval distance_model;
     uint64_t splits;  ///< How many times a cell was split.
-    leafless_measured measured;  ///< Why the search ended.
+    leafless_stop_reason measured;  ///< Why the search ended.
 } leafless_point_distance;
 
 /// A cell near a point.
@@ -3196,12 +3207,12 @@ leafless_status leafless_octree_distances(const leafless_octree *octree, const d
 /// The distances of points from a solid, its complement or its boundary, without an octree. Points may lie
 /// outside of the universe of the frame. The cells that may be nearest are split first.
 ///
-/// `measured` of a result says why the search for the point ended. With LEAFLESS_MEASURED_TOLERANCE the
+/// `measured` of a result says why the search for the point ended. With LEAFLESS_STOP_REASON_TOLERANCE the
 /// interval is no wider than `tolerance_model` (model units), or both ends are infinite. With
-/// LEAFLESS_MEASURED_EXHAUSTED no cell is left whose split would help, or of a solid without slabs, the
+/// LEAFLESS_STOP_REASON_EXHAUSTED no cell is left whose split would help, or of a solid without slabs, the
 /// nearest undecided cell cannot be split, and the interval is no wider than twice the diagonal of the
-/// frame's finest cells. With LEAFLESS_MEASURED_BUDGET `max_splits` cells were split for the point, or 65 536
-/// if that is 0.
+/// frame's finest cells. With LEAFLESS_STOP_REASON_BUDGET `max_splits` cells were split for the point, or 65
+/// 536 if that is 0.
 ///
 /// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or
 ///   NULL; `distances`, room for `count`. `points_model` and `distances` may be NULL if `count` is 0. `to` is
@@ -3301,7 +3312,7 @@ typedef struct leafless_clearance {
     uint32_t nearest_a_level;  ///< The level of that cell.
     uint32_t nearest_b[3];  ///< The position of the second.
     uint32_t nearest_b_level;  ///< The level of that cell.
-    leafless_measured measured;  ///< Why the search ended.
+    leafless_stop_reason measured;  ///< Why the search ended.
     bool has_nearest;  ///< Whether the upper bound is finite.
     /// Whether one of the solids may go on outside of the universe, of which nothing is said.
     bool is_clipped;
@@ -3324,7 +3335,7 @@ typedef struct leafless_clearance {
 ///   Asking the result returns LEAFLESS_E_FRAME if `operand` belongs to another frame than `own`.
 /// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any solid and numbers.
-leafless_status leafless_solid_new_transform(const leafless_solid *operand, const leafless_frame *own,
+leafless_status leafless_solid_transformed(const leafless_solid *operand, const leafless_frame *own,
     const double matrix[12], leafless_solid **solid);
 
 /// Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume
@@ -3344,15 +3355,14 @@ leafless_status leafless_solid_interfere(const leafless_solid *a, const leafless
     const leafless_frame *frame, double tolerance_model, const leafless_options *options,
     leafless_interference *interference);
 
-/// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as
-/// leafless_solid_new_transform makes them. `max_splits` concerns each of them. The results are the same for
-/// any number of threads.
+/// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as leafless_solid_transformed
+/// makes them. `max_splits` concerns each of them. The results are the same for any number of threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
 ///   that of `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and
 ///   `interferences` may be NULL if `count` is 0.
 /// - Result: `interferences[i]` for map i.
-/// - Errors: as leafless_solid_interfere and leafless_solid_new_transform; nothing is then written.
+/// - Errors: as leafless_solid_interfere and leafless_solid_transformed; nothing is then written.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: as leafless_solid_interfere, and any numbers.
 leafless_status leafless_solid_interfere_many(const leafless_solid *a, const leafless_solid *b,
@@ -3361,11 +3371,11 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a, const lea
 
 /// The distance between two solids, as they are in the universe of a frame.
 ///
-/// `measured` of the result says why the search ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
-/// wider than `tolerance_model` (model units). With LEAFLESS_MEASURED_EXHAUSTED the cells of the frame's
+/// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE the interval is no
+/// wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells of the frame's
 /// depth cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what
 /// cells can tell of most solids; or no pair of cells is left; or a solid may go on outside of the universe,
-/// which keeps the lower bound at 0. With LEAFLESS_MEASURED_BUDGET `max_splits` steps were taken, or 1 048
+/// which keeps the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were taken, or 1 048
 /// 576 if that is 0. A step looks at the children of one cell. A cell whose children are looked at again,
 /// next to another cell, counts once more.
 ///
@@ -3442,13 +3452,13 @@ leafless_status leafless_lazy_split(leafless_lazy *lazy, const uint32_t cell[3],
 
 /// Which cells are refined.
 LEAFLESS_ENUM(leafless_zone_kind, uint32_t) {
-    LEAFLESS_ZONE_EVERYTHING = 0,  ///< All of the universe.
+    LEAFLESS_ZONE_KIND_EVERYTHING = 0,  ///< All of the universe.
     /// The cells that have more than their surface in common with the box from `min_model` to `max_model`; of
     /// a box without thickness, those that it lies in.
-    LEAFLESS_ZONE_BOX = 1,
-    LEAFLESS_ZONE_POINT = 2,  ///< The cells that contain `point_model`: one of each level.
+    LEAFLESS_ZONE_KIND_BOX = 1,
+    LEAFLESS_ZONE_KIND_POINT = 2,  ///< The cells that contain `point_model`: one of each level.
     /// All cells that the points `point_model` + t · `direction_model` with `from` ≤ t ≤ `to` touch.
-    LEAFLESS_ZONE_RAY = 3,
+    LEAFLESS_ZONE_KIND_RAY = 3,
 };
 
 /// A part of model space, in which cells are refined. Fields that its kind does not name do not matter.
@@ -3491,7 +3501,7 @@ leafless_status leafless_lazy_refine(leafless_lazy *lazy, const leafless_zone *z
 ///   was split, it is above the frame's depth, and the solid did not say that splitting does not help.
 /// - Threads: any; LEAFLESS_E_BUSY while another call changes the octree.
 /// - Untrusted input: any numbers.
-leafless_status leafless_lazy_tag(const leafless_lazy *lazy, const uint32_t cell[3], uint32_t level,
+leafless_status leafless_lazy_tag_at(const leafless_lazy *lazy, const uint32_t cell[3], uint32_t level,
     leafless_tag *tag, bool *can_split);
 
 /// Whether the solid contains a point, as far as cells have been split. A point on the boundary may be
@@ -3545,14 +3555,15 @@ leafless_status leafless_lazy_freeze(const leafless_lazy *lazy, const leafless_o
 
 /// What is known of the values in the interior of a box.
 LEAFLESS_ENUM(leafless_range_kind, uint32_t) {
-    LEAFLESS_RANGE_UNKNOWN = 0,  ///< Nothing.
-    LEAFLESS_RANGE_NOWHERE = 1,  ///< No point has a value.
-    LEAFLESS_RANGE_WITHIN = 2,  ///< Every point has a value, and each of its numbers lies in its interval.
+    LEAFLESS_RANGE_KIND_UNKNOWN = 0,  ///< Nothing.
+    LEAFLESS_RANGE_KIND_NOWHERE = 1,  ///< No point has a value.
+    /// Every point has a value, and each of its numbers lies in its interval.
+    LEAFLESS_RANGE_KIND_WITHIN = 2,
 };
 
 /// What is known of the values of an attribute in the interior of a box.
 typedef struct leafless_value_range {
-    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_WITHIN. All
+    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_KIND_WITHIN. All
     /// numbers are NaN otherwise, and beyond the numbers that a value has.
     leafless_interval values[4];
     uint32_t kind;  ///< A leafless_range_kind.
@@ -3639,10 +3650,10 @@ typedef int32_t (*leafless_attribute_values_fn)(void *ctx, const double *points,
     double *values);
 
 /// Bounds the values of the host's attribute in the interior of the box [min, max] (3 numbers each, model
-/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_UNKNOWN and all
-/// numbers are NaN before. The answer must be proven: a wrong range hides details that nobody looks for any
-/// more. An interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none ends
-/// the operation with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
+/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_KIND_UNKNOWN and
+/// all numbers are NaN before. The answer must be proven: a wrong range hides details that nobody looks for
+/// any more. An interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none
+/// ends the operation with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.
 typedef int32_t (*leafless_attribute_range_fn)(void *ctx, const double *min, const double *max,
     leafless_value_range *range);
 
@@ -3733,10 +3744,10 @@ leafless_status leafless_mesh_bodies(const leafless_mesh *mesh, uint32_t *bodies
 /// - Errors: LEAFLESS_E_UTF8; LEAFLESS_E_ARGUMENT if the mesh has no such attribute; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
 /// - Untrusted input: any mesh, any text.
-leafless_status leafless_mesh_as_attribute(const leafless_mesh *mesh, const char *name, size_t name_length,
+leafless_status leafless_attribute_from_mesh(const leafless_mesh *mesh, const char *name, size_t name_length,
     leafless_attribute **attribute);
 
-/// As leafless_mesh_as_attribute, of the host's own values: of bodies, faces, materials, or colours of
+/// As leafless_attribute_from_mesh, of the host's own values: of bodies, faces, materials, or colours of
 /// corners.
 ///
 /// - Buffers: `values`, `count` numbers: `components` for each triangle, or for each of its three corners,
@@ -3747,7 +3758,7 @@ leafless_status leafless_mesh_as_attribute(const leafless_mesh *mesh, const char
 /// - Ownership: the values are copied, the mesh is shared and may be freed; give `*attribute` back with
 ///   leafless_attribute_free.
 /// - Untrusted input: any mesh, any numbers.
-leafless_status leafless_mesh_values_as_attribute(const leafless_mesh *mesh, const double *values,
+leafless_status leafless_attribute_from_mesh_values(const leafless_mesh *mesh, const double *values,
     uint64_t count, uint32_t components, bool per_corner, leafless_attribute **attribute);
 
 /* ---- 21. Channels ------------------------------------------------------------------------------------- */
@@ -3755,10 +3766,10 @@ leafless_status leafless_mesh_values_as_attribute(const leafless_mesh *mesh, con
 /// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even
 /// integer half-way.
 LEAFLESS_ENUM(leafless_scalar_type, uint32_t) {
-    LEAFLESS_SCALAR_F32 = 0,  ///< Finite numbers of single precision.
-    LEAFLESS_SCALAR_U8 = 1,  ///< Integers from 0 to 255.
-    LEAFLESS_SCALAR_U16 = 2,  ///< Integers from 0 to 65 535.
-    LEAFLESS_SCALAR_U32 = 3,  ///< Integers from 0 to 4 294 967 295.
+    LEAFLESS_SCALAR_TYPE_F32 = 0,  ///< Finite numbers of single precision.
+    LEAFLESS_SCALAR_TYPE_U8 = 1,  ///< Integers from 0 to 255.
+    LEAFLESS_SCALAR_TYPE_U16 = 2,  ///< Integers from 0 to 65 535.
+    LEAFLESS_SCALAR_TYPE_U32 = 3,  ///< Integers from 0 to 4 294 967 295.
 };
 
 /// What can be said of a channel at once.
@@ -3820,7 +3831,7 @@ leafless_status leafless_channel_equal(const leafless_channel *a, const leafless
 /// - Ownership: the attribute shares the channel, which may be freed; give `*attribute` back with
 ///   leafless_attribute_free.
 /// - Untrusted input: any channel.
-leafless_status leafless_channel_as_attribute(const leafless_channel *channel,
+leafless_status leafless_attribute_from_channel(const leafless_channel *channel,
     leafless_attribute **attribute);
 
 /// The channel with one more fact in its metadata, or with another value of one; the arrays are shared. Names
@@ -3957,7 +3968,7 @@ leafless_status leafless_channel_value(const leafless_channel *channel, const do
 /// - Result: `value`, as leafless_channel_value; four NaN if a coordinate is not below 2^depth.
 /// - Errors: LEAFLESS_E_DAMAGED.
 /// - Untrusted input: any channel, any numbers; damage reads as no value.
-leafless_status leafless_channel_value_of_cell(const leafless_channel *channel, const uint32_t cell[3],
+leafless_status leafless_channel_value_at(const leafless_channel *channel, const uint32_t cell[3],
     double value[4]);
 
 /// The channel with one value wherever an octree is not EMPTY, and as it is elsewhere. It is as deep as the
@@ -4062,7 +4073,7 @@ leafless_status leafless_solid_materials(const leafless_solid *solid, const leaf
 ///   leafless_attribute_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.
-leafless_status leafless_volume_as_attribute(const leafless_volume *volume,
+leafless_status leafless_attribute_from_volume(const leafless_volume *volume,
     leafless_interpolation interpolation, const leafless_options *options, leafless_attribute **attribute);
 
 /// Whose value a point has that lies in several operands.
@@ -4151,16 +4162,16 @@ leafless_status leafless_octree_carry_channels(const leafless_octree *octree,
 
 /// What a voxel is: a number in the array `kinds`.
 LEAFLESS_ENUM(leafless_voxel_kind, uint8_t) {
-    LEAFLESS_VOXEL_OUTSIDE = 0,  ///< It lies outside of the solid.
-    LEAFLESS_VOXEL_INSIDE = 1,  ///< It lies inside.
-    LEAFLESS_VOXEL_BOUNDARY = 2,  ///< The boundary of the solid goes through it, or along it.
-    LEAFLESS_VOXEL_REFINED = 3,  ///< It consists of the smaller voxels that follow it.
+    LEAFLESS_VOXEL_KIND_OUTSIDE = 0,  ///< It lies outside of the solid.
+    LEAFLESS_VOXEL_KIND_INSIDE = 1,  ///< It lies inside.
+    LEAFLESS_VOXEL_KIND_BOUNDARY = 2,  ///< The boundary of the solid goes through it, or along it.
+    LEAFLESS_VOXEL_KIND_REFINED = 3,  ///< It consists of the smaller voxels that follow it.
 };
 
 /// Which voxels are boundary voxels.
 LEAFLESS_ENUM(leafless_voxel_boundary, uint32_t) {
     /// Cells of the boundary depth that are cut further there, and cells that are not decided.
-    LEAFLESS_VOXEL_BOUNDARY_UNDECIDED = 0,
+    LEAFLESS_VOXEL_BOUNDARY_CUT = 0,
     /// These, and inside cells of the boundary depth that touch an outside cell with a face.
     LEAFLESS_VOXEL_BOUNDARY_TOUCHING = 1,
 };
@@ -4210,7 +4221,7 @@ typedef struct leafless_voxel_options {
 /// - Untrusted input: any octree: damage reads as boundary voxels.
 leafless_status leafless_octree_voxels(const leafless_octree *octree,
     const leafless_voxel_options *voxel_options, const leafless_options *options, leafless_frame *lattice,
-    uint64_t *codes, uint8_t *levels, uint8_t *kinds, double *corners_model, double *values,
+    uint64_t *codes, uint8_t *levels, leafless_voxel_kind *kinds, double *corners_model, double *values,
     uint64_t capacity, uint64_t *count);
 
 /// The record, not of a refined voxel, that contains a cell. O(log count).
@@ -4222,8 +4233,8 @@ leafless_status leafless_octree_voxels(const leafless_octree *octree,
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_frame_check.
 /// - Untrusted input: any numbers; the answer means something if the records are sorted.
 leafless_status leafless_voxels_find(const leafless_frame *lattice, const uint64_t *codes,
-    const uint8_t *levels, const uint8_t *kinds, uint64_t count, const uint32_t cell[3], uint32_t level,
-    uint64_t *index);
+    const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, const uint32_t cell[3],
+    uint32_t level, uint64_t *index);
 
 /// The indices of the records from front to back: a voxel comes before every other one of which it hides a
 /// part. Refined voxels are left out. No two records are compared; exact.
@@ -4238,8 +4249,8 @@ leafless_status leafless_voxels_find(const leafless_frame *lattice, const uint64
 ///   too small: nothing is written then; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers.
 leafless_status leafless_voxels_order(const leafless_frame *lattice, const uint64_t *codes,
-    const uint8_t *levels, const uint8_t *kinds, uint64_t count, const double from[3], bool is_eye,
-    const leafless_options *options, uint64_t *order, uint64_t capacity, uint64_t *order_count);
+    const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, const double from[3],
+    bool is_eye, const leafless_options *options, uint64_t *order, uint64_t capacity, uint64_t *order_count);
 
 /// The records under one of the 48 symmetries of the universe about its centre, and then an offset of whole
 /// finest cells of the lattice. Exact: the octree of the result is the octree of the records under the same
@@ -4261,9 +4272,10 @@ leafless_status leafless_voxels_order(const leafless_frame *lattice, const uint6
 ///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers.
 leafless_status leafless_voxels_moved(const leafless_frame *lattice, const uint64_t *codes,
-    const uint8_t *levels, const uint8_t *kinds, uint64_t count, const int32_t axes[3],
+    const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, const int32_t axes[3],
     const int32_t offset_cells[3], const leafless_options *options, uint64_t *moved_codes,
-    uint8_t *moved_levels, uint8_t *moved_kinds, uint64_t *sources, uint64_t capacity, uint64_t *moved_count);
+    uint8_t *moved_levels, leafless_voxel_kind *moved_kinds, uint64_t *sources, uint64_t capacity,
+    uint64_t *moved_count);
 
 /// For each boundary voxel the triangles of a mesh that meet it, in compressed rows: those of record i are
 /// `triangles[offsets[i]]` to before `triangles[offsets[i + 1]]`, and ascend. A triangle that only touches a
@@ -4278,7 +4290,7 @@ leafless_status leafless_voxels_moved(const leafless_frame *lattice, const uint6
 ///   nothing is written then; LEAFLESS_E_LIMIT; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers, any mesh.
 leafless_status leafless_voxels_triangles(const leafless_frame *lattice, const uint64_t *codes,
-    const uint8_t *levels, const uint8_t *kinds, uint64_t count, const leafless_mesh *mesh,
+    const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, const leafless_mesh *mesh,
     const leafless_options *options, uint64_t *offsets, uint64_t offset_capacity, uint64_t *offset_count,
     uint32_t *triangles, uint64_t triangle_capacity, uint64_t *triangle_count);
 
@@ -4295,7 +4307,7 @@ leafless_status leafless_voxels_triangles(const leafless_frame *lattice, const u
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any numbers.
 leafless_status leafless_octree_from_voxels(const leafless_frame *lattice, const uint64_t *codes,
-    const uint8_t *levels, const uint8_t *kinds, uint64_t count, uint32_t boundary,
+    const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, leafless_tag boundary,
     const leafless_options *options, leafless_octree **octree);
 
 /* ---- 23. Surfaces ------------------------------------------------------------------------------------- */
@@ -4304,21 +4316,21 @@ leafless_status leafless_octree_from_voxels(const leafless_frame *lattice, const
 LEAFLESS_ENUM(leafless_surface_method, uint32_t) {
     /// Marching cubes: vertices on the edges between inside and outside samples. Exactly two triangles meet
     /// on every edge.
-    LEAFLESS_SURFACE_MARCHING_CUBES = 0,
+    LEAFLESS_SURFACE_METHOD_MARCHING_CUBES = 0,
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions up to sign. The
     /// mesh is closed, but where its sheets touch, more than two triangles meet on an edge.
-    LEAFLESS_SURFACE_SMC = 1,
+    LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES = 1,
     /// Coplanar shrink: the surface of simple marching cubes with far fewer triangles where it has plane
     /// parts. All that lies in one plane becomes one region with straight edges. There are no cracks;
     /// triangles may be long and thin.
-    LEAFLESS_SURFACE_SHRINK = 2,
+    LEAFLESS_SURFACE_METHOD_SHRINK = 2,
     /// Coplanar shrink in its published form, to compare with. It has cracks, so that the mesh is open where
     /// merged cells of several sizes meet.
-    LEAFLESS_SURFACE_SHRINK_PUBLISHED = 3,
+    LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED = 3,
     /// Dual contouring, of solids alone: edges and corners stay sharp. Samples are the centres of cells. It
     /// is leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that
     /// function also reports what the mesh does not show.
-    LEAFLESS_SURFACE_DUAL_CONTOURING = 4,
+    LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING = 4,
 };
 
 /// To which end of an edge between an inside and an outside sample simple marching cubes and coplanar shrink
@@ -4343,12 +4355,12 @@ LEAFLESS_ENUM(leafless_resolve, uint32_t) {
 /// Where marching cubes puts a vertex on an edge between an inside and an outside sample.
 LEAFLESS_ENUM(leafless_vertex_placement, uint32_t) {
     /// Half-way. The mesh has steps, and is as far from the surface as half a cell.
-    LEAFLESS_PLACEMENT_MIDPOINT = 0,
+    LEAFLESS_VERTEX_PLACEMENT_MIDPOINT = 0,
     /// Where the edge crosses the solid's surface; if it does so several times, at one of the crossings.
     /// Half-spaces, meshes and solids made of them tell the crossing to rounding. For a solid that only tells
     /// about boxes, cells along the edge are split down to the depth of 20, and the crossing is known to a
     /// cell of that depth.
-    LEAFLESS_PLACEMENT_CROSSING = 1,
+    LEAFLESS_VERTEX_PLACEMENT_CROSSING = 1,
 };
 
 /// How a surface is extracted. NULL means the defaults. All fields but the first may be zero, which is their
@@ -4356,11 +4368,12 @@ LEAFLESS_ENUM(leafless_vertex_placement, uint32_t) {
 typedef struct leafless_surface_options {
     uint32_t struct_size;  ///< sizeof(leafless_surface_options).
     leafless_surface_method method;  ///< A leafless_surface_method.
-    /// Of LEAFLESS_SURFACE_SMC and of both kinds of LEAFLESS_SURFACE_SHRINK: a leafless_snap.
+    /// Of LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES and of both kinds of LEAFLESS_SURFACE_METHOD_SHRINK:
+    /// a leafless_snap.
     leafless_snap snap;
     leafless_resolve resolve;  ///< Of octrees: a leafless_resolve. Solids decide all samples themselves.
-    /// Of LEAFLESS_SURFACE_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
-    /// their solid's surface is.
+    /// Of LEAFLESS_SURFACE_METHOD_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know
+    /// where their solid's surface is.
     leafless_vertex_placement placement;
     uint32_t reserved;  ///< 0.
     const leafless_solid *source;  ///< Of LEAFLESS_RESOLVE_SOURCE: the solid that the octree was made from.
@@ -4370,11 +4383,12 @@ typedef struct leafless_surface_options {
 /// lie outside. Everything around the universe counts as outside, so that the mesh is closed there, too.
 ///
 /// Every edge is run along as often in one direction as in the other, but for
-/// LEAFLESS_SURFACE_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two vertices
-/// are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
-/// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_counts
-/// and leafless_mesh_copy hand the arrays out, leafless_mesh_describe and leafless_mesh_area tell about them,
-/// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_write writes them.
+/// LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two
+/// vertices are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the
+/// same: that of the cells in Morton order, or for coplanar shrink that of places and planes.
+/// leafless_mesh_counts and leafless_mesh_copy hand the arrays out, leafless_mesh_inspect and
+/// leafless_mesh_area tell about them, leafless_mesh_intersecting_pairs finds triangles that meet, and
+/// leafless_mesh_write writes them.
 ///
 /// Time is linear in the octree's array elements and the mesh: it grows with the surface, not with the
 /// volume. (Coplanar shrink takes O(n log n + n w) for n cells at the surface of which at most w lie along a
@@ -4401,9 +4415,9 @@ leafless_status leafless_octree_surface(const leafless_octree *octree,
 /// universe is cut off.
 ///
 /// Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
-/// and for LEAFLESS_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well. With
-/// crossings, vertices that lie at one place are one, and triangles without area are dropped. Where the solid
-/// has no thickness at a sample, more than two triangles may then meet on an edge.
+/// and for LEAFLESS_VERTEX_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well.
+/// With crossings, vertices that lie at one place are one, and triangles without area are dropped. Where the
+/// solid has no thickness at a sample, more than two triangles may then meet on an edge.
 ///
 /// - Buffers: `frame`, one struct; `surface`, one struct or NULL, whose `resolve` and `source` are 0;
 ///   `options`, one struct or NULL; `mesh`, one pointer.
@@ -4411,7 +4425,7 @@ leafless_status leafless_octree_surface(const leafless_octree *octree,
 /// - Errors: LEAFLESS_E_ARGUMENT if the depth is 20, which leaves no level for corners, if a field of
 ///   `surface` is none of its enum, or is set though it is not used, or if the frame lies so far from the
 ///   origin that doubles cannot tell its corners apart; LEAFLESS_E_NOT_SAMPLED if the solid cannot decide
-///   points; LEAFLESS_E_FRAME for the solid of leafless_octree_as_solid, which has samples of its own, and
+///   points; LEAFLESS_E_FRAME for the solid of leafless_solid_from_octree, which has samples of its own, and
 ///   for others that belong to another frame; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
 ///   or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
@@ -4429,10 +4443,10 @@ leafless_status leafless_solid_surface(const leafless_solid *solid, const leafle
 /// Else as leafless_octree_surface; vertices that lie at one place are one, and there more than two triangles
 /// may meet on an edge. Time is linear in the samples, and in the surface.
 ///
-/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_new_volume; `options`, one struct or NULL,
+/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_from_volume; `options`, one struct or NULL,
 ///   of which limits do not matter; `mesh`, one pointer.
 /// - Result: `*mesh`, the same for any number of threads, where the file says that the volume lies.
-/// - Errors: those of leafless_solid_new_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the
+/// - Errors: those of leafless_solid_from_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the
 ///   origin that doubles cannot tell its voxels apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1
 ///   vertices or triangles.
 /// - Ownership: `volume` stays as it is; give `*mesh` back with leafless_mesh_free.
@@ -4515,7 +4529,7 @@ typedef struct leafless_tridexel_info {
 /// - Ownership: nothing is kept of the solid; give `*tridexel` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
-leafless_status leafless_tridexel_make(const leafless_solid *solid, const leafless_frame *frame,
+leafless_status leafless_tridexel_build(const leafless_solid *solid, const leafless_frame *frame,
     leafless_rule rule, const leafless_tridexel_format *format, const leafless_options *options,
     leafless_tridexel **tridexel);
 
@@ -4605,7 +4619,7 @@ leafless_status leafless_tridexel_peek_metadata_at(const leafless_tridexel *trid
     uint64_t *count, const char **key, size_t *key_length, const char **value, size_t *value_length);
 
 /// Intervals of rays along one axis, as leafless_tridexel_copy hands them out.
-typedef struct leafless_ray_arrays {
+typedef struct leafless_tridexel_arrays {
     uint32_t axis;  ///< The axis that the rays run along: 0 for x, 1 for y, 2 for z.
     uint32_t reserved;  ///< Zero.
     uint32_t first[2];  ///< The indices of the first ray's cells on the other two axes in the order x, y, z.
@@ -4631,7 +4645,7 @@ typedef struct leafless_ray_arrays {
     /// for it, else by the coordinate. If `ends_model` is NULL it counts always. NULL if coordinates alone
     /// count.
     const double *ends_cells;
-} leafless_ray_arrays;
+} leafless_tridexel_arrays;
 
 /// Makes a tri-dexel model of intervals that another program or a machine has. O(rays of the universe +
 /// intervals).
@@ -4654,7 +4668,7 @@ typedef struct leafless_ray_arrays {
 /// - Ownership: the arrays are not kept; give `*tridexel` back with leafless_tridexel_free.
 /// - Untrusted input: any numbers.
 leafless_status leafless_tridexel_new(const leafless_frame *frame, const leafless_tridexel_format *format,
-    const leafless_ray_arrays *rays, uint64_t count, const leafless_options *options,
+    const leafless_tridexel_arrays *rays, uint64_t count, const leafless_options *options,
     leafless_tridexel **tridexel);
 
 /// One end of a leafless_dexel.
@@ -4812,7 +4826,7 @@ leafless_status leafless_tridexel_complement(const leafless_tridexel *tridexel,
 /// - Ownership: `tridexel` stays as it is; give `*result` back with leafless_tridexel_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model.
-leafless_status leafless_tridexel_to_format(const leafless_tridexel *tridexel,
+leafless_status leafless_tridexel_with_format(const leafless_tridexel *tridexel,
     const leafless_tridexel_format *format, const leafless_options *options, leafless_tridexel **result);
 
 /// The same tri-dexel model, all of it of one material.
@@ -4888,13 +4902,13 @@ leafless_status leafless_tridexel_editor_combine(leafless_tridexel_editor *edito
     leafless_dexel_change *change);
 
 /// As leafless_tridexel_editor_combine, with a solid: LEAFLESS_OPERATION_DIFFERENCE is one step of a tool.
-/// The solid's intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED, in the directions
+/// The solid's intervals are those of leafless_tridexel_build under LEAFLESS_RULE_SAMPLED, in the directions
 /// and with the contents of the editor. Only rays through the solid's bounding box are looked at.
 ///
 /// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a
 ///   leafless_operation.
 /// - Result: the editor is changed; `*change`, what was removed and added.
-/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_combine.
+/// - Errors: as leafless_tridexel_build, and nothing is changed; as leafless_tridexel_editor_combine.
 /// - Ownership: nothing is kept of the solid.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
 /// - Untrusted input: any solid.
@@ -4916,10 +4930,10 @@ leafless_status leafless_tridexel_editor_freeze(const leafless_tridexel_editor *
 LEAFLESS_ENUM(leafless_dexel_surface_method, uint32_t) {
     /// Marching cubes: a vertex where a ray crosses the surface between two neighbouring centres of cells.
     /// Edges and corners of the solid are cut off by up to a cell.
-    LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES = 0,
+    LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES = 0,
     /// Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, where the
     /// planes at its crossings fit best. Edges and corners of the solid stay, if the model stores normals.
-    LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING = 1,
+    LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING = 1,
 };
 
 /// How exactly a surface of a tri-dexel model follows its rays.
@@ -4957,7 +4971,7 @@ typedef struct leafless_long_voxel {
     uint32_t length;  ///< How many voxels it consists of.
     uint32_t material;  ///< What it is made of; 0 where nothing was said.
     uint8_t colour[4];  ///< The material's colour: red, green, blue and opacity, 0 to 255.
-    leafless_voxel_kind kind;  ///< LEAFLESS_VOXEL_INSIDE or LEAFLESS_VOXEL_BOUNDARY.
+    leafless_voxel_kind kind;  ///< LEAFLESS_VOXEL_KIND_INSIDE or LEAFLESS_VOXEL_KIND_BOUNDARY.
 } leafless_long_voxel;
 
 /// The surface of a tri-dexel model: a closed mesh. Samples are the centres of cells; everything outside of
@@ -4968,7 +4982,7 @@ typedef struct leafless_long_voxel {
 /// does not tell a crossing, because the model has no rays along an axis or its directions disagree, the
 /// crossing lies half-way between the two centres; the report counts such places.
 ///
-/// O(rays + intervals + octree + mesh), with the octree of leafless_tridexel_to_octree.
+/// O(rays + intervals + octree + mesh), with the octree of leafless_octree_from_tridexel.
 ///
 /// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one
 ///   pointer. `method` is a leafless_dexel_surface_method.
@@ -4995,7 +5009,7 @@ leafless_status leafless_tridexel_surface(const leafless_tridexel *tridexel,
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
 ///   where its depth is not your own choice.
-leafless_status leafless_tridexel_to_octree(const leafless_tridexel *tridexel,
+leafless_status leafless_octree_from_tridexel(const leafless_tridexel *tridexel,
     const leafless_options *options, leafless_octree **octree);
 
 /// A tri-dexel model as a solid on any frame: the inside of its surface by marching cubes.
@@ -5010,7 +5024,7 @@ leafless_status leafless_tridexel_to_octree(const leafless_tridexel *tridexel,
 /// - Ownership: nothing is kept of `tridexel`; give `*solid` back with leafless_solid_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
-leafless_status leafless_tridexel_as_solid(const leafless_tridexel *tridexel, bool is_truth,
+leafless_status leafless_solid_from_tridexel(const leafless_tridexel *tridexel, bool is_truth,
     const leafless_options *options, leafless_solid **solid);
 
 /// The voxels of a tri-dexel model, whose corners are the centres of cells: a voxel lies inside if all of its
@@ -5041,7 +5055,7 @@ leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel, cons
 #define LEAFLESS_FORMAT_MINOR 3
 
 /// What header and section table of a tri-dexel model's file say of it.
-typedef struct leafless_tridexel_probe {
+typedef struct leafless_file_tridexel_info {
     /// The axes that rays run along, a sum of leafless_axes; 0 if the file holds an octree.
     uint32_t directions;
     leafless_dexel_ends ends;  ///< How the ends of intervals are stored.
@@ -5051,10 +5065,10 @@ typedef struct leafless_tridexel_probe {
     uint32_t reserved;  ///< Zero.
     uint64_t rays[3];  ///< Rays in the window along each axis, empty ones among them.
     uint64_t intervals[3];  ///< Intervals along each axis.
-} leafless_tridexel_probe;
+} leafless_file_tridexel_info;
 
 /// What header and section table of a file say.
-typedef struct leafless_probe {
+typedef struct leafless_file_info {
     uint32_t major;  ///< Major version of the format.
     uint32_t minor;  ///< Minor version of the format.
     leafless_frame frame;  ///< Where the octree or the tri-dexel model lies, and its depth.
@@ -5067,11 +5081,11 @@ typedef struct leafless_probe {
     /// What is known of the space outside of the universe; never BRANCH; EMPTY for a tri-dexel model.
     leafless_tag exterior;
     bool is_binary;  ///< Whether nothing is undecided.
-    leafless_tridexel_probe tridexel;  ///< What is stored of a tri-dexel model; all zeros for an octree.
-} leafless_probe;
+    leafless_file_tridexel_info tridexel;  ///< What is stored of a tri-dexel model; all zeros for an octree.
+} leafless_file_info;
 
 /// A section of a file.
-typedef struct leafless_section {
+typedef struct leafless_file_section {
     uint32_t kind;  ///< Number of its kind.
     uint32_t owner;  ///< The object that it belongs to: 0 is the solid.
     bool is_required;  ///< Whether a reader must know the kind to read the file.
@@ -5079,7 +5093,7 @@ typedef struct leafless_section {
     uint64_t offset;  ///< Where it begins in the file, in bytes.
     uint64_t length;  ///< Its length in bytes.
     uint64_t count;  ///< Its length in elements.
-} leafless_section;
+} leafless_file_section;
 
 /// What a file says of itself, without looking at more than header and section table. Whether the rest is
 /// good is not known then. Bytes may be the first ones of a file only: 128 and 40 for each section. 488
@@ -5092,8 +5106,8 @@ typedef struct leafless_section {
 /// - Errors: LEAFLESS_E_FORMAT, also if bytes end before the section table does; LEAFLESS_E_VERSION;
 ///   LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any file, any bytes.
-leafless_status leafless_file_probe(const leafless_source *source, leafless_probe *probe,
-    leafless_section *sections, uint64_t capacity);
+leafless_status leafless_file_describe(const leafless_source *source, leafless_file_info *probe,
+    leafless_file_section *sections, uint64_t capacity);
 
 /// Checks everything that the format promises of a whole file, of an octree or of a tri-dexel model: O(n).
 /// With LEAFLESS_ACCESS_COPY a file is read into memory, else it is mapped. Bytes are looked at where they
@@ -5297,7 +5311,7 @@ typedef struct leafless_look {
 /// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree.
-leafless_status leafless_layer_new_octree(const leafless_octree *octree, const leafless_look *look,
+leafless_status leafless_layer_from_octree(const leafless_octree *octree, const leafless_look *look,
     leafless_layer **layer);
 
 /// The surface of a solid within a universe. For each picture the solid is split to cells as large as a
@@ -5312,7 +5326,7 @@ leafless_status leafless_layer_new_octree(const leafless_octree *octree, const l
 /// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any solid.
-leafless_status leafless_layer_new_solid(const leafless_solid *solid, const leafless_frame *frame,
+leafless_status leafless_layer_from_solid(const leafless_solid *solid, const leafless_frame *frame,
     const leafless_look *look, leafless_layer **layer);
 
 /// The triangles of a mesh.
@@ -5325,7 +5339,7 @@ leafless_status leafless_layer_new_solid(const leafless_solid *solid, const leaf
 /// - Ownership: the layer shares the mesh, which may be freed, and copies the colours; give `*layer` back
 ///   with leafless_layer_free.
 /// - Untrusted input: any mesh.
-leafless_status leafless_layer_new_mesh(const leafless_mesh *mesh, const leafless_look *look,
+leafless_status leafless_layer_from_mesh(const leafless_mesh *mesh, const leafless_look *look,
     leafless_layer **layer);
 
 /// Lines in space, some pixels wide, with round ends. A surface hides what lies behind it; a line on a
@@ -5381,20 +5395,20 @@ typedef struct leafless_slice_look {
 /// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree, any numbers.
-leafless_status leafless_layer_new_slice(const leafless_octree *octree, const double plane[4],
+leafless_status leafless_layer_from_octree_slice(const leafless_octree *octree, const double plane[4],
     const leafless_slice_look *look, leafless_layer **layer);
 
 /// A plane section of a solid on a frame, of which the cells at the plane are split down to the frame's
 /// depth.
 ///
-/// - Buffers: `frame`, one struct; the others as leafless_layer_new_slice.
+/// - Buffers: `frame`, one struct; the others as leafless_layer_from_octree_slice.
 /// - Result: `*layer`.
-/// - Errors: as leafless_layer_new_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a picture also
-///   returns what leafless_octree_build does.
+/// - Errors: as leafless_layer_from_octree_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a
+///   picture also returns what leafless_octree_build does.
 /// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any solid, any numbers.
-leafless_status leafless_layer_new_slice_of_solid(const leafless_solid *solid, const leafless_frame *frame,
+leafless_status leafless_layer_from_solid_slice(const leafless_solid *solid, const leafless_frame *frame,
     const double plane[4], const leafless_slice_look *look, leafless_layer **layer);
 
 /// Which part of each voxel is solid, 0 to 1: weights of voxels in a picture. Inside voxels have 1, outside
@@ -5408,7 +5422,7 @@ leafless_status leafless_layer_new_slice_of_solid(const leafless_solid *solid, c
 ///   LEAFLESS_E_CANCELLED.
 /// - Untrusted input: any numbers, any solid.
 leafless_status leafless_voxels_solid_parts(const leafless_frame *lattice, const uint64_t *codes,
-    const uint8_t *levels, const uint8_t *kinds, uint64_t count, const leafless_solid *solid,
+    const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, const leafless_solid *solid,
     const leafless_options *options, double *parts);
 
 /// Voxels in arrays, as leafless_octree_voxels writes them: those of record i at `codes[i]`, `levels[i]`,
@@ -5420,7 +5434,8 @@ typedef struct leafless_voxel_arrays {
     uint64_t count;  ///< How many voxels there are.
     const uint64_t *codes;  ///< Linear octree codes, ascending.
     const uint8_t *levels;  ///< Levels.
-    const uint8_t *kinds;  ///< Of each a leafless_voxel_kind. Inside and boundary voxels are seen.
+    /// Of each a leafless_voxel_kind. Inside and boundary voxels are seen.
+    const leafless_voxel_kind *kinds;
     /// `components` · `count` numbers, NaN where there is no value; NULL without values.
     const double *values;
     /// Of each voxel the part that is filled, 0 to 1; NULL: 1 inside and 1/2 at the boundary. As
@@ -5505,8 +5520,8 @@ leafless_status leafless_picture_write(const uint8_t *colours, uint32_t width, u
 
 /// At which side of a picture a legend lies.
 LEAFLESS_ENUM(leafless_legend_side, uint32_t) {
-    LEAFLESS_LEGEND_RIGHT = 0,  ///< In the middle of the right side, at most a third of the width.
-    LEAFLESS_LEGEND_BOTTOM = 1,  ///< In the middle of the lower side, at most a third of the height.
+    LEAFLESS_LEGEND_SIDE_RIGHT = 0,  ///< In the middle of the right side, at most a third of the width.
+    LEAFLESS_LEGEND_SIDE_BOTTOM = 1,  ///< In the middle of the lower side, at most a third of the height.
 };
 
 /// The part of a picture that a legend covers; all zero if there is none.

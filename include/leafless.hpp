@@ -104,17 +104,22 @@ namespace detail {
 #ifndef LEAFLESS_NO_EXCEPTIONS
 
 /// Exceptions of the host's functions on their way around the library, by the numbers that the functions returned.
+///
+/// Several threads of one operation may throw. The library reports the number of one; the others stay here until
+/// the object that threw them goes, or until newer ones need the room.
 class exceptions {
 public:
-    /// A number that no function of the host returns for anything else.
-    static std::int32_t keep(std::exception_ptr exception) noexcept {
+    /// A number that no function of the host returns for anything else. `owner` is the object that threw.
+    static std::int32_t keep(const void *owner, std::exception_ptr exception) noexcept {
         try {
             exceptions &all = instance();
             const std::lock_guard<std::mutex> lock(all.mutex_);
             do {
                 all.last_ = all.last_ == INT32_MIN ? -2 : all.last_ - 1;
             } while (all.kept_.count(all.last_) != 0);
-            all.kept_.emplace(all.last_, std::move(exception));
+            all.kept_.emplace(all.last_, thrown{std::move(exception), owner});
+            // (An operation has 1024 threads at most. Numbers descend, so the first is the newest.)
+            if (all.kept_.size() > 4096) all.kept_.erase(std::prev(all.kept_.end()));
             return all.last_;
         } catch (...) {
             return -1; // No memory: the exception is lost, the failure is not.
@@ -126,12 +131,26 @@ public:
         const std::lock_guard<std::mutex> lock(all.mutex_);
         const auto found = all.kept_.find(code);
         if (found == all.kept_.end()) return nullptr;
-        const std::exception_ptr exception = found->second;
+        const std::exception_ptr exception = found->second.exception;
         all.kept_.erase(found);
         return exception;
     }
 
+    /// Gives up what `owner` threw.
+    static void forget(const void *owner) noexcept {
+        exceptions &all = instance();
+        const std::lock_guard<std::mutex> lock(all.mutex_);
+        for (auto it = all.kept_.begin(); it != all.kept_.end();) {
+            it = it->second.owner == owner ? all.kept_.erase(it) : std::next(it);
+        }
+    }
+
 private:
+    struct thrown {
+        std::exception_ptr exception;
+        const void *owner;
+    };
+
     static exceptions &instance() {
         // It is never destroyed: threads of the host may be at work until the program has ended.
         static exceptions &all = *new exceptions;
@@ -139,18 +158,21 @@ private:
     }
 
     std::mutex mutex_;
-    std::map<std::int32_t, std::exception_ptr> kept_;
+    std::map<std::int32_t, thrown> kept_;
     std::int32_t last_ = -1;
 };
 
-/// What a function of the host returns, or the number of what it throws.
-template <class F> std::int32_t guarded(F &&function) noexcept {
+/// What a function of the host returns, or the number of what it throws. `owner` is the object that has it.
+template <class F> std::int32_t guarded(const void *owner, F &&function) noexcept {
     try {
         return function();
     } catch (...) {
-        return exceptions::keep(std::current_exception());
+        return exceptions::keep(owner, std::current_exception());
     }
 }
+
+/// Gives up what an object threw, before it goes.
+inline void forget(const void *owner) noexcept { exceptions::forget(owner); }
 
 /// Throws what a failure in the calling thread was about.
 [[noreturn]] inline void raise(leafless_status status) {
@@ -172,7 +194,8 @@ inline void at_least(std::size_t least, std::size_t size) {
 
 #else
 
-template <class F> std::int32_t guarded(F &&function) noexcept { return function(); }
+template <class F> std::int32_t guarded(const void *, F &&function) noexcept { return function(); }
+inline void forget(const void *) noexcept {}
 inline void same_size(std::size_t a, std::size_t b) {
     if (a != b) std::abort();
 }
@@ -342,7 +365,7 @@ public:
     [[nodiscard]] returns<std::tuple<point, point>> bounds() const;
     [[nodiscard]] returns<double> volume() const;
     [[nodiscard]] returns<double> area() const;
-    [[nodiscard]] returns<leafless_mesh_report> describe() const;
+    [[nodiscard]] returns<leafless_mesh_report> inspect() const;
     [[nodiscard]] returns<std::vector<leafless_mesh_defect>> defects(uint64_t limit) const;
     returns<void> check_closed(leafless_fill fill) const;
     [[nodiscard]] returns<leafless::mesh> sewn() const;
@@ -355,7 +378,7 @@ public:
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<std::tuple<std::vector<leafless_intersecting_pair>,
         bool>> intersecting_pairs(const leafless_options *options = nullptr) const;
-    [[nodiscard]] static returns<std::tuple<leafless_mesh_found,
+    [[nodiscard]] static returns<std::tuple<leafless_mesh_file_info,
         leafless::mesh>> read(const leafless_source &source, const leafless_mesh_options &options);
     [[nodiscard]] returns<std::tuple<uint64_t, std::string_view>> peek_warning_at(uint64_t index) const;
     returns<void> write(const leafless_mesh_write_options &options, const leafless_sink &sink) const;
@@ -366,16 +389,14 @@ public:
         uint64_t value) const;
     [[nodiscard]] returns<std::vector<double>> attribute_values(uint64_t index) const;
     [[nodiscard]] returns<std::vector<uint32_t>> bodies() const;
-    [[nodiscard]] returns<leafless::attribute> as_attribute(std::string_view name) const;
-    [[nodiscard]] returns<leafless::attribute> values_as_attribute(span<const double> values,
-        uint32_t components, bool per_corner) const;
 };
 
 /// A leafless_solid.
 class solid : public detail::owner<leafless_solid, leafless_solid_free> {
 public:
     using owner::owner;
-    [[nodiscard]] static returns<leafless::solid> new_mesh(const leafless::mesh &mesh, leafless_fill fill);
+    [[nodiscard]] static returns<leafless::solid> from_mesh(const leafless::mesh &mesh, leafless_fill fill);
+    [[nodiscard]] static returns<leafless::solid> from_octree(const leafless::octree &octree);
     [[nodiscard]] returns<uint64_t> evaluations() const;
     [[nodiscard]] returns<leafless::solid> share() const;
     [[nodiscard]] static returns<leafless::solid> new_ball(const point &centre_model, double radius_model);
@@ -401,13 +422,13 @@ public:
     [[nodiscard]] returns<std::tuple<leafless_motion, leafless::solid>> placed(const affine &matrix) const;
     [[nodiscard]] returns<leafless::solid> adaptive(double tolerance_model) const;
     [[nodiscard]] returns<leafless::solid> with_touch(leafless_touch touch) const;
-    [[nodiscard]] static returns<leafless::solid> new_callbacks(const leafless_callbacks &callbacks);
-    [[nodiscard]] static returns<leafless::solid> new_function(const leafless_function &function);
-    [[nodiscard]] static returns<leafless::solid> new_volume(const leafless::volume &volume,
+    [[nodiscard]] static returns<leafless::solid> new_callbacks(const leafless_solid_callbacks &callbacks);
+    [[nodiscard]] static returns<leafless::solid> new_function(const leafless_solid_function &function);
+    [[nodiscard]] static returns<leafless::solid> from_volume(const leafless::volume &volume,
         const leafless_interval *band = nullptr, const leafless_options *options = nullptr);
-    [[nodiscard]] static returns<leafless::solid> new_scene(const leafless::scene &scene,
+    [[nodiscard]] static returns<leafless::solid> from_scene(const leafless::scene &scene,
         const leafless_frame &frame);
-    returns<void> contains(const leafless_frame &frame, span<const point> points_model,
+    returns<void> contains_many(const leafless_frame &frame, span<const point> points_model,
         const leafless_options *options, span<leafless_membership> memberships) const;
     [[nodiscard]] returns<leafless_region> classify_box(const leafless_frame &frame, const point &min_model,
         const point &max_model, const leafless_options *options = nullptr) const;
@@ -442,8 +463,7 @@ public:
     returns<void> distances(const leafless_frame &frame, span<const point> points_model,
         leafless_distance_to to, double tolerance_model, const leafless_options *options,
         span<leafless_point_distance> distances) const;
-    [[nodiscard]] returns<leafless::solid> new_transform(const leafless_frame &own,
-        const affine &matrix) const;
+    [[nodiscard]] returns<leafless::solid> transformed(const leafless_frame &own, const affine &matrix) const;
     [[nodiscard]] returns<leafless_interference> interfere(const leafless::solid &b,
         const leafless_frame &frame, double tolerance_model, const leafless_options *options = nullptr) const;
     returns<void> interfere_many(const leafless::solid &b, const leafless_frame &own,
@@ -456,6 +476,8 @@ public:
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_frame &frame,
         const leafless_surface_options *surface = nullptr, const leafless_options *options = nullptr) const;
+    [[nodiscard]] static returns<leafless::solid> from_tridexel(const leafless::tridexel &tridexel,
+        bool is_truth, const leafless_options *options = nullptr);
 };
 
 /// A leafless_volume.
@@ -474,8 +496,6 @@ public:
         const leafless_source &data);
     [[nodiscard]] static returns<std::vector<char>> data_file(span<const uint8_t> bytes);
     returns<void> write(leafless_volume_format format, const leafless_sink &sink) const;
-    [[nodiscard]] returns<leafless::attribute> as_attribute(leafless_interpolation interpolation,
-        const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_interval *band = nullptr,
         const leafless_options *options = nullptr) const;
 };
@@ -486,9 +506,9 @@ public:
     using owner::owner;
     [[nodiscard]] static returns<leafless::scene> read(const leafless_source &source,
         const leafless_scene_options &options);
-    [[nodiscard]] returns<leafless_scene_report> describe() const;
-    [[nodiscard]] returns<leafless_scene_mesh> describe_mesh(uint64_t index) const;
-    [[nodiscard]] returns<std::vector<uint8_t>> mesh_file(uint64_t index) const;
+    [[nodiscard]] returns<leafless_scene_info> describe() const;
+    [[nodiscard]] returns<leafless_scene_mesh_info> describe_mesh_at(uint64_t index) const;
+    [[nodiscard]] returns<std::vector<uint8_t>> mesh_file_at(uint64_t index) const;
     [[nodiscard]] returns<leafless::scene> share() const;
     [[nodiscard]] returns<std::tuple<point, point>> bounds() const;
 };
@@ -497,9 +517,8 @@ public:
 class octree : public detail::owner<leafless_octree, leafless_octree_free> {
 public:
     using owner::owner;
-    [[nodiscard]] returns<leafless::solid> as_solid() const;
-    [[nodiscard]] static returns<leafless::octree> uniform(const leafless_frame &frame, uint32_t tag,
-        uint32_t exterior);
+    [[nodiscard]] static returns<leafless::octree> new_uniform(const leafless_frame &frame, leafless_tag tag,
+        leafless_tag exterior);
     [[nodiscard]] returns<leafless::octree> share() const;
     [[nodiscard]] returns<leafless_octree_info> describe() const;
     [[nodiscard]] returns<leafless::octree> with_proof(leafless_proven proven,
@@ -558,13 +577,15 @@ public:
         leafless_carry carry, span<const leafless_carry_rule> rules,
         const leafless_options *options = nullptr) const;
     returns<void> voxels(const leafless_voxel_options *voxel_options, const leafless_options *options,
-        leafless_frame *lattice, uint64_t *codes, uint8_t *levels, uint8_t *kinds, double *corners_model,
-        double *values, uint64_t capacity, uint64_t *count) const;
+        leafless_frame *lattice, uint64_t *codes, uint8_t *levels, leafless_voxel_kind *kinds,
+        double *corners_model, double *values, uint64_t capacity, uint64_t *count) const;
     [[nodiscard]] static returns<leafless::octree> from_voxels(const leafless_frame &lattice,
-        span<const uint64_t> codes, span<const uint8_t> levels, span<const uint8_t> kinds, uint32_t boundary,
-        const leafless_options *options = nullptr);
+        const uint64_t *codes, const uint8_t *levels, span<const leafless_voxel_kind> kinds,
+        leafless_tag boundary, const leafless_options *options = nullptr);
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_surface_options *surface = nullptr,
         const leafless_options *options = nullptr) const;
+    [[nodiscard]] static returns<leafless::octree> from_tridexel(const leafless::tridexel &tridexel,
+        const leafless_options *options = nullptr);
     [[nodiscard]] static returns<leafless::octree> read(const leafless_source &source);
     returns<void> write(const leafless_sink &sink) const;
 };
@@ -593,7 +614,7 @@ class cursor : public detail::owner<leafless_cursor, leafless_cursor_free> {
 public:
     using owner::owner;
     [[nodiscard]] static returns<leafless::cursor> make(const leafless::octree &octree);
-    [[nodiscard]] returns<leafless_cursor_state> read() const;
+    [[nodiscard]] returns<leafless_cursor_info> describe() const;
     returns<bool> descend(uint32_t octant);
     returns<bool> ascend();
     returns<bool> seek(const cell_index &cell, uint32_t level);
@@ -629,7 +650,7 @@ class columns : public detail::owner<leafless_columns, leafless_columns_free> {
 public:
     using owner::owner;
     [[nodiscard]] returns<std::tuple<std::vector<uint64_t>,
-        std::vector<leafless_run>>> read(leafless_obstacle on) const;
+        std::vector<leafless_run>>> copy(leafless_obstacle on) const;
 };
 
 /// A leafless_lazy.
@@ -643,7 +664,8 @@ public:
     returns<std::array<leafless_tag,8>> split(const cell_index &cell, uint32_t level);
     returns<bool> refine(const leafless_zone *zone, uint32_t level,
         const leafless_options *options = nullptr);
-    [[nodiscard]] returns<std::tuple<leafless_tag, bool>> tag(const cell_index &cell, uint32_t level) const;
+    [[nodiscard]] returns<std::tuple<leafless_tag, bool>> tag_at(const cell_index &cell,
+        uint32_t level) const;
     [[nodiscard]] returns<leafless_membership> contains(const point &point_model) const;
     [[nodiscard]] returns<leafless_lazy_info> describe() const;
     [[nodiscard]] returns<std::vector<leafless_statistics>> levels() const;
@@ -662,6 +684,13 @@ public:
     [[nodiscard]] returns<leafless_value_range> range(const point &min_model, const point &max_model) const;
     [[nodiscard]] returns<leafless::attribute> share() const;
     [[nodiscard]] static returns<leafless::attribute> new_callbacks(const leafless_attribute_callbacks &callbacks);
+    [[nodiscard]] static returns<leafless::attribute> from_mesh(const leafless::mesh &mesh,
+        std::string_view name);
+    [[nodiscard]] static returns<leafless::attribute> from_mesh_values(const leafless::mesh &mesh,
+        span<const double> values, uint32_t components, bool per_corner);
+    [[nodiscard]] static returns<leafless::attribute> from_channel(const leafless::channel &channel);
+    [[nodiscard]] static returns<leafless::attribute> from_volume(const leafless::volume &volume,
+        leafless_interpolation interpolation, const leafless_options *options = nullptr);
 };
 
 /// A leafless_channel.
@@ -672,7 +701,6 @@ public:
     [[nodiscard]] returns<leafless_channel_info> describe() const;
     returns<void> check() const;
     [[nodiscard]] returns<bool> equal(const leafless::channel &b) const;
-    [[nodiscard]] returns<leafless::attribute> as_attribute() const;
     [[nodiscard]] returns<leafless::channel> with_metadata(std::string_view key,
         std::string_view value) const;
     [[nodiscard]] returns<leafless::channel> without_metadata(std::string_view key) const;
@@ -684,7 +712,7 @@ public:
         const leafless_options *options = nullptr);
     returns<void> values(span<const point> points_model, span<double> values) const;
     [[nodiscard]] returns<std::array<double,4>> value(const point &point_model) const;
-    [[nodiscard]] returns<std::array<double,4>> value_of_cell(const cell_index &cell) const;
+    [[nodiscard]] returns<std::array<double,4>> value_at(const cell_index &cell) const;
     [[nodiscard]] returns<leafless::channel> with_value_in(const leafless::octree &region,
         const double *value, const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless_channel_summary> summarise(const leafless::octree *solid,
@@ -697,7 +725,7 @@ public:
 class tridexel : public detail::owner<leafless_tridexel, leafless_tridexel_free> {
 public:
     using owner::owner;
-    [[nodiscard]] static returns<leafless::tridexel> make(const leafless::solid &solid,
+    [[nodiscard]] static returns<leafless::tridexel> build(const leafless::solid &solid,
         const leafless_frame &frame, leafless_rule rule, const leafless_tridexel_format *format = nullptr,
         const leafless_options *options = nullptr);
     [[nodiscard]] returns<leafless::tridexel> share() const;
@@ -711,7 +739,7 @@ public:
     [[nodiscard]] returns<std::tuple<uint64_t, std::string_view,
         std::string_view>> peek_metadata_at(uint64_t index) const;
     [[nodiscard]] static returns<leafless::tridexel> make(const leafless_frame &frame,
-        const leafless_tridexel_format *format, span<const leafless_ray_arrays> rays,
+        const leafless_tridexel_format *format, span<const leafless_tridexel_arrays> rays,
         const leafless_options *options = nullptr);
     [[nodiscard]] returns<leafless_dexel_statistics> statistics(uint32_t axis) const;
     [[nodiscard]] returns<bool> contains_cell(const cell_index &cell) const;
@@ -726,15 +754,12 @@ public:
     [[nodiscard]] static returns<leafless::tridexel> combine(leafless_operation operation,
         span<const leafless_tridexel *const> tridexels, const leafless_options *options = nullptr);
     [[nodiscard]] returns<leafless::tridexel> complement(const leafless_options *options = nullptr) const;
-    [[nodiscard]] returns<leafless::tridexel> to_format(const leafless_tridexel_format *format = nullptr,
+    [[nodiscard]] returns<leafless::tridexel> with_format(const leafless_tridexel_format *format = nullptr,
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::tridexel> with_material(uint32_t material,
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<std::tuple<leafless_dexel_surface_report,
         leafless::mesh>> surface(leafless_dexel_surface_method method,
-        const leafless_options *options = nullptr) const;
-    [[nodiscard]] returns<leafless::octree> to_octree(const leafless_options *options = nullptr) const;
-    [[nodiscard]] returns<leafless::solid> as_solid(bool is_truth,
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<std::vector<leafless_long_voxel>> voxels(const leafless_options *options,
         span<const std::array<uint8_t,4>> colours) const;
@@ -762,19 +787,19 @@ public:
     [[nodiscard]] returns<leafless::layer> clipped(span<const std::array<double,4>> planes,
         const double *box_model) const;
     [[nodiscard]] returns<leafless::layer> share() const;
-    [[nodiscard]] static returns<leafless::layer> new_octree(const leafless::octree &octree,
+    [[nodiscard]] static returns<leafless::layer> from_octree(const leafless::octree &octree,
         const leafless_look *look = nullptr);
-    [[nodiscard]] static returns<leafless::layer> new_solid(const leafless::solid &solid,
+    [[nodiscard]] static returns<leafless::layer> from_solid(const leafless::solid &solid,
         const leafless_frame &frame, const leafless_look *look = nullptr);
-    [[nodiscard]] static returns<leafless::layer> new_mesh(const leafless::mesh &mesh,
+    [[nodiscard]] static returns<leafless::layer> from_mesh(const leafless::mesh &mesh,
         const leafless_look *look = nullptr);
     [[nodiscard]] static returns<leafless::layer> new_lines(span<const std::array<double,6>> points_model,
         double width, const uint8_t *colour);
     [[nodiscard]] static returns<leafless::layer> new_cells(const leafless_frame &frame,
         span<const leafless_cell> cells, double width, const uint8_t *colour);
-    [[nodiscard]] static returns<leafless::layer> new_slice(const leafless::octree &octree,
+    [[nodiscard]] static returns<leafless::layer> from_octree_slice(const leafless::octree &octree,
         const std::array<double,4> &plane, const leafless_slice_look *look = nullptr);
-    [[nodiscard]] static returns<leafless::layer> new_slice_of_solid(const leafless::solid &solid,
+    [[nodiscard]] static returns<leafless::layer> from_solid_slice(const leafless::solid &solid,
         const leafless_frame &frame, const std::array<double,4> &plane,
         const leafless_slice_look *look = nullptr);
     [[nodiscard]] static returns<leafless::layer> new_voxels(const leafless_voxel_arrays &voxels,
@@ -795,34 +820,34 @@ returns<void> frame_check(const leafless_frame &frame);
 [[nodiscard]] returns<leafless_frame> frame_fitted(const point &min_model, const point &max_model,
     uint32_t depth);
 [[nodiscard]] returns<double> frame_cell_size(const leafless_frame &frame);
-[[nodiscard]] returns<cell_index> frame_cell_of(const leafless_frame &frame, const point &point_model);
+[[nodiscard]] returns<cell_index> frame_cell_at(const leafless_frame &frame, const point &point_model);
 [[nodiscard]] returns<leafless_interval> frame_plane(const leafless_frame &frame, uint32_t axis,
     uint32_t index);
 [[nodiscard]] returns<std::tuple<point, point>> frame_cell_bounds(const leafless_frame &frame,
     const cell_index &cell, uint32_t level);
-[[nodiscard]] returns<uint64_t> voxels_find(const leafless_frame &lattice, span<const uint64_t> codes,
-    span<const uint8_t> levels, span<const uint8_t> kinds, const cell_index &cell, uint32_t level);
+[[nodiscard]] returns<uint64_t> voxels_find(const leafless_frame &lattice, const uint64_t *codes,
+    const uint8_t *levels, span<const leafless_voxel_kind> kinds, const cell_index &cell, uint32_t level);
 [[nodiscard]] returns<std::vector<uint64_t>> voxels_order(const leafless_frame &lattice,
-    span<const uint64_t> codes, span<const uint8_t> levels, span<const uint8_t> kinds, const point &from,
+    const uint64_t *codes, const uint8_t *levels, span<const leafless_voxel_kind> kinds, const point &from,
     bool is_eye, const leafless_options *options = nullptr);
 returns<void> voxels_moved(const leafless_frame *lattice, const uint64_t *codes, const uint8_t *levels,
-    const uint8_t *kinds, uint64_t count, const int32_t *axes, const int32_t *offset_cells,
-    const leafless_options *options, uint64_t *moved_codes, uint8_t *moved_levels, uint8_t *moved_kinds,
-    uint64_t *sources, uint64_t capacity, uint64_t *moved_count);
+    const leafless_voxel_kind *kinds, uint64_t count, const int32_t *axes, const int32_t *offset_cells,
+    const leafless_options *options, uint64_t *moved_codes, uint8_t *moved_levels,
+    leafless_voxel_kind *moved_kinds, uint64_t *sources, uint64_t capacity, uint64_t *moved_count);
 [[nodiscard]] returns<std::tuple<std::vector<uint64_t>,
-    std::vector<uint32_t>>> voxels_triangles(const leafless_frame &lattice, span<const uint64_t> codes,
-    span<const uint8_t> levels, span<const uint8_t> kinds, const leafless::mesh &mesh,
+    std::vector<uint32_t>>> voxels_triangles(const leafless_frame &lattice, const uint64_t *codes,
+    const uint8_t *levels, span<const leafless_voxel_kind> kinds, const leafless::mesh &mesh,
     const leafless_options *options = nullptr);
-[[nodiscard]] returns<leafless_probe> file_probe(const leafless_source &source,
-    span<leafless_section> sections);
+[[nodiscard]] returns<leafless_file_info> file_describe(const leafless_source &source,
+    span<leafless_file_section> sections);
 returns<void> file_verify(const leafless_source &source);
 [[nodiscard]] returns<leafless_camera> camera_fitted(span<const point> points_model, double azimuth_degrees,
     double elevation_degrees, double field_of_view_degrees, double aspect);
 [[nodiscard]] returns<std::array<uint8_t,4>> transfer_colour(const leafless_transfer &transfer,
     const double *value, uint32_t components);
-returns<void> voxels_solid_parts(const leafless_frame &lattice, span<const uint64_t> codes,
-    span<const uint8_t> levels, span<const uint8_t> kinds, const leafless::solid &solid,
-    const leafless_options *options, span<double> parts);
+returns<void> voxels_solid_parts(const leafless_frame &lattice, const uint64_t *codes, const uint8_t *levels,
+    span<const leafless_voxel_kind> kinds, const leafless::solid &solid, const leafless_options *options,
+    span<double> parts);
 [[nodiscard]] returns<std::tuple<point, point>> shot_line_of_sight(const leafless_shot &shot, double x,
     double y);
 returns<void> picture_render(const leafless_shot &shot, span<const leafless_layer *const> layers,
@@ -907,9 +932,9 @@ inline returns<double> mesh::area() const {
     return detail::finish(status, area_model);
 }
 
-inline returns<leafless_mesh_report> mesh::describe() const {
+inline returns<leafless_mesh_report> mesh::inspect() const {
     leafless_mesh_report report{};
-    const leafless_status status = leafless_mesh_describe(get(), &report);
+    const leafless_status status = leafless_mesh_inspect(get(), &report);
     return detail::finish(status, report);
 }
 
@@ -985,12 +1010,12 @@ inline returns<std::tuple<std::vector<leafless_intersecting_pair>,
         is_complete));
 }
 
-inline returns<std::tuple<leafless_mesh_found, leafless::mesh>> mesh::read(const leafless_source &source,
+inline returns<std::tuple<leafless_mesh_file_info, leafless::mesh>> mesh::read(const leafless_source &source,
     const leafless_mesh_options &options) {
-    leafless_mesh_found found{};
+    leafless_mesh_file_info found{};
     leafless_mesh *mesh_handle = nullptr;
     const leafless_status status = leafless_mesh_read(&source, &options, &found, &mesh_handle);
-    return detail::finish(status, std::tuple<leafless_mesh_found, leafless::mesh>(found,
+    return detail::finish(status, std::tuple<leafless_mesh_file_info, leafless::mesh>(found,
         leafless::mesh(mesh_handle)));
 }
 
@@ -1062,24 +1087,15 @@ inline returns<std::vector<uint32_t>> mesh::bodies() const {
     return detail::finish(status, std::move(bodies));
 }
 
-inline returns<leafless::attribute> mesh::as_attribute(std::string_view name) const {
-    leafless_attribute *attribute_handle = nullptr;
-    const leafless_status status = leafless_mesh_as_attribute(get(), name.data(), name.size(),
-        &attribute_handle);
-    return detail::finish(status, leafless::attribute(attribute_handle));
-}
-
-inline returns<leafless::attribute> mesh::values_as_attribute(span<const double> values, uint32_t components,
-    bool per_corner) const {
-    leafless_attribute *attribute_handle = nullptr;
-    const leafless_status status = leafless_mesh_values_as_attribute(get(), values.data(), values.size(),
-        components, per_corner, &attribute_handle);
-    return detail::finish(status, leafless::attribute(attribute_handle));
-}
-
-inline returns<leafless::solid> solid::new_mesh(const leafless::mesh &mesh, leafless_fill fill) {
+inline returns<leafless::solid> solid::from_mesh(const leafless::mesh &mesh, leafless_fill fill) {
     leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_solid_new_mesh(mesh.get(), fill, &solid_handle);
+    const leafless_status status = leafless_solid_from_mesh(mesh.get(), fill, &solid_handle);
+    return detail::finish(status, leafless::solid(solid_handle));
+}
+
+inline returns<leafless::solid> solid::from_octree(const leafless::octree &octree) {
+    leafless_solid *solid_handle = nullptr;
+    const leafless_status status = leafless_solid_from_octree(octree.get(), &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
@@ -1211,35 +1227,35 @@ inline returns<leafless::solid> solid::with_touch(leafless_touch touch) const {
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_callbacks(const leafless_callbacks &callbacks) {
+inline returns<leafless::solid> solid::new_callbacks(const leafless_solid_callbacks &callbacks) {
     leafless_solid *solid_handle = nullptr;
     const leafless_status status = leafless_solid_new_callbacks(&callbacks, &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_function(const leafless_function &function) {
+inline returns<leafless::solid> solid::new_function(const leafless_solid_function &function) {
     leafless_solid *solid_handle = nullptr;
     const leafless_status status = leafless_solid_new_function(&function, &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_volume(const leafless::volume &volume,
+inline returns<leafless::solid> solid::from_volume(const leafless::volume &volume,
     const leafless_interval *band, const leafless_options *options) {
     leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_solid_new_volume(volume.get(), band, options, &solid_handle);
+    const leafless_status status = leafless_solid_from_volume(volume.get(), band, options, &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_scene(const leafless::scene &scene, const leafless_frame &frame) {
+inline returns<leafless::solid> solid::from_scene(const leafless::scene &scene, const leafless_frame &frame) {
     leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_solid_new_scene(scene.get(), &frame, &solid_handle);
+    const leafless_status status = leafless_solid_from_scene(scene.get(), &frame, &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<void> solid::contains(const leafless_frame &frame, span<const point> points_model,
+inline returns<void> solid::contains_many(const leafless_frame &frame, span<const point> points_model,
     const leafless_options *options, span<leafless_membership> memberships) const {
     detail::same_size(points_model.size(), memberships.size());
-    const leafless_status status = leafless_solid_contains(get(), &frame, detail::numbers(points_model),
+    const leafless_status status = leafless_solid_contains_many(get(), &frame, detail::numbers(points_model),
         points_model.size(), options, memberships.data());
     return detail::finish(status);
 }
@@ -1377,9 +1393,9 @@ inline returns<void> solid::distances(const leafless_frame &frame, span<const po
     return detail::finish(status);
 }
 
-inline returns<leafless::solid> solid::new_transform(const leafless_frame &own, const affine &matrix) const {
+inline returns<leafless::solid> solid::transformed(const leafless_frame &own, const affine &matrix) const {
     leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_solid_new_transform(get(), &own, matrix.data(), &solid_handle);
+    const leafless_status status = leafless_solid_transformed(get(), &own, matrix.data(), &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
@@ -1428,6 +1444,14 @@ inline returns<leafless::mesh> solid::surface(const leafless_frame &frame,
     leafless_mesh *mesh_handle = nullptr;
     const leafless_status status = leafless_solid_surface(get(), &frame, surface, options, &mesh_handle);
     return detail::finish(status, leafless::mesh(mesh_handle));
+}
+
+inline returns<leafless::solid> solid::from_tridexel(const leafless::tridexel &tridexel, bool is_truth,
+    const leafless_options *options) {
+    leafless_solid *solid_handle = nullptr;
+    const leafless_status status = leafless_solid_from_tridexel(tridexel.get(), is_truth, options,
+        &solid_handle);
+    return detail::finish(status, leafless::solid(solid_handle));
 }
 
 inline returns<leafless::volume> volume::share() const {
@@ -1497,14 +1521,6 @@ inline returns<void> volume::write(leafless_volume_format format, const leafless
     return detail::finish(status);
 }
 
-inline returns<leafless::attribute> volume::as_attribute(leafless_interpolation interpolation,
-    const leafless_options *options) const {
-    leafless_attribute *attribute_handle = nullptr;
-    const leafless_status status = leafless_volume_as_attribute(get(), interpolation, options,
-        &attribute_handle);
-    return detail::finish(status, leafless::attribute(attribute_handle));
-}
-
 inline returns<leafless::mesh> volume::surface(const leafless_interval *band,
     const leafless_options *options) const {
     leafless_mesh *mesh_handle = nullptr;
@@ -1519,25 +1535,25 @@ inline returns<leafless::scene> scene::read(const leafless_source &source,
     return detail::finish(status, leafless::scene(scene_handle));
 }
 
-inline returns<leafless_scene_report> scene::describe() const {
-    leafless_scene_report report{};
+inline returns<leafless_scene_info> scene::describe() const {
+    leafless_scene_info report{};
     const leafless_status status = leafless_scene_describe(get(), &report);
     return detail::finish(status, report);
 }
 
-inline returns<leafless_scene_mesh> scene::describe_mesh(uint64_t index) const {
-    leafless_scene_mesh mesh{};
-    const leafless_status status = leafless_scene_describe_mesh(get(), index, &mesh);
+inline returns<leafless_scene_mesh_info> scene::describe_mesh_at(uint64_t index) const {
+    leafless_scene_mesh_info mesh{};
+    const leafless_status status = leafless_scene_describe_mesh_at(get(), index, &mesh);
     return detail::finish(status, mesh);
 }
 
-inline returns<std::vector<uint8_t>> scene::mesh_file(uint64_t index) const {
+inline returns<std::vector<uint8_t>> scene::mesh_file_at(uint64_t index) const {
     std::uint64_t length = 0;
     std::vector<uint8_t> bytes;
-    leafless_status status = leafless_scene_mesh_file(get(), index, nullptr, 0, &length);
+    leafless_status status = leafless_scene_mesh_file_at(get(), index, nullptr, 0, &length);
     if (status == LEAFLESS_OK) {
         bytes.resize(static_cast<std::size_t>(length));
-        status = leafless_scene_mesh_file(get(), index, bytes.data(), bytes.size(), &length);
+        status = leafless_scene_mesh_file_at(get(), index, bytes.data(), bytes.size(), &length);
     }
     return detail::finish(status, std::move(bytes));
 }
@@ -1555,16 +1571,10 @@ inline returns<std::tuple<point, point>> scene::bounds() const {
     return detail::finish(status, std::tuple<point, point>(min_model, max_model));
 }
 
-inline returns<leafless::solid> octree::as_solid() const {
-    leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_octree_as_solid(get(), &solid_handle);
-    return detail::finish(status, leafless::solid(solid_handle));
-}
-
-inline returns<leafless::octree> octree::uniform(const leafless_frame &frame, uint32_t tag,
-    uint32_t exterior) {
+inline returns<leafless::octree> octree::new_uniform(const leafless_frame &frame, leafless_tag tag,
+    leafless_tag exterior) {
     leafless_octree *octree_handle = nullptr;
-    const leafless_status status = leafless_octree_uniform(&frame, tag, exterior, &octree_handle);
+    const leafless_status status = leafless_octree_new_uniform(&frame, tag, exterior, &octree_handle);
     return detail::finish(status, leafless::octree(octree_handle));
 }
 
@@ -1870,20 +1880,19 @@ inline returns<leafless::octree> octree::carry_channels(span<const leafless_octr
 
 inline returns<void> octree::voxels(const leafless_voxel_options *voxel_options,
     const leafless_options *options, leafless_frame *lattice, uint64_t *codes, uint8_t *levels,
-    uint8_t *kinds, double *corners_model, double *values, uint64_t capacity, uint64_t *count) const {
+    leafless_voxel_kind *kinds, double *corners_model, double *values, uint64_t capacity,
+    uint64_t *count) const {
     const leafless_status status = leafless_octree_voxels(get(), voxel_options, options, lattice, codes,
         levels, kinds, corners_model, values, capacity, count);
     return detail::finish(status);
 }
 
-inline returns<leafless::octree> octree::from_voxels(const leafless_frame &lattice,
-    span<const uint64_t> codes, span<const uint8_t> levels, span<const uint8_t> kinds, uint32_t boundary,
+inline returns<leafless::octree> octree::from_voxels(const leafless_frame &lattice, const uint64_t *codes,
+    const uint8_t *levels, span<const leafless_voxel_kind> kinds, leafless_tag boundary,
     const leafless_options *options) {
-    detail::same_size(codes.size(), levels.size());
-    detail::same_size(codes.size(), kinds.size());
     leafless_octree *octree_handle = nullptr;
-    const leafless_status status = leafless_octree_from_voxels(&lattice, codes.data(), levels.data(),
-        kinds.data(), codes.size(), boundary, options, &octree_handle);
+    const leafless_status status = leafless_octree_from_voxels(&lattice, codes, levels, kinds.data(),
+        kinds.size(), boundary, options, &octree_handle);
     return detail::finish(status, leafless::octree(octree_handle));
 }
 
@@ -1892,6 +1901,13 @@ inline returns<leafless::mesh> octree::surface(const leafless_surface_options *s
     leafless_mesh *mesh_handle = nullptr;
     const leafless_status status = leafless_octree_surface(get(), surface, options, &mesh_handle);
     return detail::finish(status, leafless::mesh(mesh_handle));
+}
+
+inline returns<leafless::octree> octree::from_tridexel(const leafless::tridexel &tridexel,
+    const leafless_options *options) {
+    leafless_octree *octree_handle = nullptr;
+    const leafless_status status = leafless_octree_from_tridexel(tridexel.get(), options, &octree_handle);
+    return detail::finish(status, leafless::octree(octree_handle));
 }
 
 inline returns<leafless::octree> octree::read(const leafless_source &source) {
@@ -1952,9 +1968,9 @@ inline returns<leafless::cursor> cursor::make(const leafless::octree &octree) {
     return detail::finish(status, leafless::cursor(cursor_handle));
 }
 
-inline returns<leafless_cursor_state> cursor::read() const {
-    leafless_cursor_state state{};
-    const leafless_status status = leafless_cursor_read(get(), &state);
+inline returns<leafless_cursor_info> cursor::describe() const {
+    leafless_cursor_info state{};
+    const leafless_status status = leafless_cursor_describe(get(), &state);
     return detail::finish(status, state);
 }
 
@@ -2036,17 +2052,17 @@ inline returns<uint64_t> faces::next(span<leafless_boundary_face> buffer) {
 }
 
 inline returns<std::tuple<std::vector<uint64_t>,
-    std::vector<leafless_run>>> columns::read(leafless_obstacle on) const {
+    std::vector<leafless_run>>> columns::copy(leafless_obstacle on) const {
     std::uint64_t offset_count = 0;
     std::vector<uint64_t> offsets;
     std::uint64_t run_count = 0;
     std::vector<leafless_run> runs;
-    leafless_status status = leafless_columns_read(get(), on, nullptr, 0, &offset_count, nullptr, 0,
+    leafless_status status = leafless_columns_copy(get(), on, nullptr, 0, &offset_count, nullptr, 0,
         &run_count);
     if (status == LEAFLESS_OK) {
         offsets.resize(static_cast<std::size_t>(offset_count));
         runs.resize(static_cast<std::size_t>(run_count));
-        status = leafless_columns_read(get(), on, offsets.data(), offsets.size(), &offset_count, runs.data(),
+        status = leafless_columns_copy(get(), on, offsets.data(), offsets.size(), &offset_count, runs.data(),
             runs.size(), &run_count);
     }
     return detail::finish(status, std::tuple<std::vector<uint64_t>,
@@ -2080,10 +2096,10 @@ inline returns<bool> lazy::refine(const leafless_zone *zone, uint32_t level,
     return detail::finish(status, done);
 }
 
-inline returns<std::tuple<leafless_tag, bool>> lazy::tag(const cell_index &cell, uint32_t level) const {
+inline returns<std::tuple<leafless_tag, bool>> lazy::tag_at(const cell_index &cell, uint32_t level) const {
     leafless_tag tag{};
     bool can_split{};
-    const leafless_status status = leafless_lazy_tag(get(), cell.data(), level, &tag, &can_split);
+    const leafless_status status = leafless_lazy_tag_at(get(), cell.data(), level, &tag, &can_split);
     return detail::finish(status, std::tuple<leafless_tag, bool>(tag, can_split));
 }
 
@@ -2172,6 +2188,35 @@ inline returns<leafless::attribute> attribute::new_callbacks(const leafless_attr
     return detail::finish(status, leafless::attribute(attribute_handle));
 }
 
+inline returns<leafless::attribute> attribute::from_mesh(const leafless::mesh &mesh, std::string_view name) {
+    leafless_attribute *attribute_handle = nullptr;
+    const leafless_status status = leafless_attribute_from_mesh(mesh.get(), name.data(), name.size(),
+        &attribute_handle);
+    return detail::finish(status, leafless::attribute(attribute_handle));
+}
+
+inline returns<leafless::attribute> attribute::from_mesh_values(const leafless::mesh &mesh,
+    span<const double> values, uint32_t components, bool per_corner) {
+    leafless_attribute *attribute_handle = nullptr;
+    const leafless_status status = leafless_attribute_from_mesh_values(mesh.get(), values.data(),
+        values.size(), components, per_corner, &attribute_handle);
+    return detail::finish(status, leafless::attribute(attribute_handle));
+}
+
+inline returns<leafless::attribute> attribute::from_channel(const leafless::channel &channel) {
+    leafless_attribute *attribute_handle = nullptr;
+    const leafless_status status = leafless_attribute_from_channel(channel.get(), &attribute_handle);
+    return detail::finish(status, leafless::attribute(attribute_handle));
+}
+
+inline returns<leafless::attribute> attribute::from_volume(const leafless::volume &volume,
+    leafless_interpolation interpolation, const leafless_options *options) {
+    leafless_attribute *attribute_handle = nullptr;
+    const leafless_status status = leafless_attribute_from_volume(volume.get(), interpolation, options,
+        &attribute_handle);
+    return detail::finish(status, leafless::attribute(attribute_handle));
+}
+
 inline returns<leafless::channel> channel::share() const {
     leafless_channel *reference_handle = nullptr;
     const leafless_status status = leafless_channel_ref(get(), &reference_handle);
@@ -2193,12 +2238,6 @@ inline returns<bool> channel::equal(const leafless::channel &b) const {
     bool equal{};
     const leafless_status status = leafless_channel_equal(get(), b.get(), &equal);
     return detail::finish(status, equal);
-}
-
-inline returns<leafless::attribute> channel::as_attribute() const {
-    leafless_attribute *attribute_handle = nullptr;
-    const leafless_status status = leafless_channel_as_attribute(get(), &attribute_handle);
-    return detail::finish(status, leafless::attribute(attribute_handle));
 }
 
 inline returns<leafless::channel> channel::with_metadata(std::string_view key, std::string_view value) const {
@@ -2258,9 +2297,9 @@ inline returns<std::array<double,4>> channel::value(const point &point_model) co
     return detail::finish(status, value);
 }
 
-inline returns<std::array<double,4>> channel::value_of_cell(const cell_index &cell) const {
+inline returns<std::array<double,4>> channel::value_at(const cell_index &cell) const {
     std::array<double,4> value{};
-    const leafless_status status = leafless_channel_value_of_cell(get(), cell.data(), value.data());
+    const leafless_status status = leafless_channel_value_at(get(), cell.data(), value.data());
     return detail::finish(status, value);
 }
 
@@ -2287,10 +2326,10 @@ inline returns<leafless::octree> channel::region(const double *low, const double
     return detail::finish(status, leafless::octree(octree_handle));
 }
 
-inline returns<leafless::tridexel> tridexel::make(const leafless::solid &solid, const leafless_frame &frame,
+inline returns<leafless::tridexel> tridexel::build(const leafless::solid &solid, const leafless_frame &frame,
     leafless_rule rule, const leafless_tridexel_format *format, const leafless_options *options) {
     leafless_tridexel *tridexel_handle = nullptr;
-    const leafless_status status = leafless_tridexel_make(solid.get(), &frame, rule, format, options,
+    const leafless_status status = leafless_tridexel_build(solid.get(), &frame, rule, format, options,
         &tridexel_handle);
     return detail::finish(status, leafless::tridexel(tridexel_handle));
 }
@@ -2355,7 +2394,7 @@ inline returns<std::tuple<uint64_t, std::string_view,
 }
 
 inline returns<leafless::tridexel> tridexel::make(const leafless_frame &frame,
-    const leafless_tridexel_format *format, span<const leafless_ray_arrays> rays,
+    const leafless_tridexel_format *format, span<const leafless_tridexel_arrays> rays,
     const leafless_options *options) {
     leafless_tridexel *tridexel_handle = nullptr;
     const leafless_status status = leafless_tridexel_new(&frame, format, rays.data(), rays.size(), options,
@@ -2433,10 +2472,10 @@ inline returns<leafless::tridexel> tridexel::complement(const leafless_options *
     return detail::finish(status, leafless::tridexel(result_handle));
 }
 
-inline returns<leafless::tridexel> tridexel::to_format(const leafless_tridexel_format *format,
+inline returns<leafless::tridexel> tridexel::with_format(const leafless_tridexel_format *format,
     const leafless_options *options) const {
     leafless_tridexel *result_handle = nullptr;
-    const leafless_status status = leafless_tridexel_to_format(get(), format, options, &result_handle);
+    const leafless_status status = leafless_tridexel_with_format(get(), format, options, &result_handle);
     return detail::finish(status, leafless::tridexel(result_handle));
 }
 
@@ -2455,18 +2494,6 @@ inline returns<std::tuple<leafless_dexel_surface_report,
     const leafless_status status = leafless_tridexel_surface(get(), method, options, &report, &mesh_handle);
     return detail::finish(status, std::tuple<leafless_dexel_surface_report, leafless::mesh>(report,
         leafless::mesh(mesh_handle)));
-}
-
-inline returns<leafless::octree> tridexel::to_octree(const leafless_options *options) const {
-    leafless_octree *octree_handle = nullptr;
-    const leafless_status status = leafless_tridexel_to_octree(get(), options, &octree_handle);
-    return detail::finish(status, leafless::octree(octree_handle));
-}
-
-inline returns<leafless::solid> tridexel::as_solid(bool is_truth, const leafless_options *options) const {
-    leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_tridexel_as_solid(get(), is_truth, options, &solid_handle);
-    return detail::finish(status, leafless::solid(solid_handle));
 }
 
 inline returns<std::vector<leafless_long_voxel>> tridexel::voxels(const leafless_options *options,
@@ -2542,22 +2569,23 @@ inline returns<leafless::layer> layer::share() const {
     return detail::finish(status, leafless::layer(reference_handle));
 }
 
-inline returns<leafless::layer> layer::new_octree(const leafless::octree &octree, const leafless_look *look) {
-    leafless_layer *layer_handle = nullptr;
-    const leafless_status status = leafless_layer_new_octree(octree.get(), look, &layer_handle);
-    return detail::finish(status, leafless::layer(layer_handle));
-}
-
-inline returns<leafless::layer> layer::new_solid(const leafless::solid &solid, const leafless_frame &frame,
+inline returns<leafless::layer> layer::from_octree(const leafless::octree &octree,
     const leafless_look *look) {
     leafless_layer *layer_handle = nullptr;
-    const leafless_status status = leafless_layer_new_solid(solid.get(), &frame, look, &layer_handle);
+    const leafless_status status = leafless_layer_from_octree(octree.get(), look, &layer_handle);
     return detail::finish(status, leafless::layer(layer_handle));
 }
 
-inline returns<leafless::layer> layer::new_mesh(const leafless::mesh &mesh, const leafless_look *look) {
+inline returns<leafless::layer> layer::from_solid(const leafless::solid &solid, const leafless_frame &frame,
+    const leafless_look *look) {
     leafless_layer *layer_handle = nullptr;
-    const leafless_status status = leafless_layer_new_mesh(mesh.get(), look, &layer_handle);
+    const leafless_status status = leafless_layer_from_solid(solid.get(), &frame, look, &layer_handle);
+    return detail::finish(status, leafless::layer(layer_handle));
+}
+
+inline returns<leafless::layer> layer::from_mesh(const leafless::mesh &mesh, const leafless_look *look) {
+    leafless_layer *layer_handle = nullptr;
+    const leafless_status status = leafless_layer_from_mesh(mesh.get(), look, &layer_handle);
     return detail::finish(status, leafless::layer(layer_handle));
 }
 
@@ -2577,17 +2605,18 @@ inline returns<leafless::layer> layer::new_cells(const leafless_frame &frame, sp
     return detail::finish(status, leafless::layer(layer_handle));
 }
 
-inline returns<leafless::layer> layer::new_slice(const leafless::octree &octree,
+inline returns<leafless::layer> layer::from_octree_slice(const leafless::octree &octree,
     const std::array<double,4> &plane, const leafless_slice_look *look) {
     leafless_layer *layer_handle = nullptr;
-    const leafless_status status = leafless_layer_new_slice(octree.get(), plane.data(), look, &layer_handle);
+    const leafless_status status = leafless_layer_from_octree_slice(octree.get(), plane.data(), look,
+        &layer_handle);
     return detail::finish(status, leafless::layer(layer_handle));
 }
 
-inline returns<leafless::layer> layer::new_slice_of_solid(const leafless::solid &solid,
+inline returns<leafless::layer> layer::from_solid_slice(const leafless::solid &solid,
     const leafless_frame &frame, const std::array<double,4> &plane, const leafless_slice_look *look) {
     leafless_layer *layer_handle = nullptr;
-    const leafless_status status = leafless_layer_new_slice_of_solid(solid.get(), &frame, plane.data(), look,
+    const leafless_status status = leafless_layer_from_solid_slice(solid.get(), &frame, plane.data(), look,
         &layer_handle);
     return detail::finish(status, leafless::layer(layer_handle));
 }
@@ -2652,9 +2681,9 @@ inline returns<double> frame_cell_size(const leafless_frame &frame) {
     return detail::finish(status, cell_size_model);
 }
 
-inline returns<cell_index> frame_cell_of(const leafless_frame &frame, const point &point_model) {
+inline returns<cell_index> frame_cell_at(const leafless_frame &frame, const point &point_model) {
     cell_index cell{};
-    const leafless_status status = leafless_frame_cell_of(&frame, point_model.data(), cell.data());
+    const leafless_status status = leafless_frame_cell_at(&frame, point_model.data(), cell.data());
     return detail::finish(status, cell);
 }
 
@@ -2673,68 +2702,63 @@ inline returns<std::tuple<point, point>> frame_cell_bounds(const leafless_frame 
     return detail::finish(status, std::tuple<point, point>(min_model, max_model));
 }
 
-inline returns<uint64_t> voxels_find(const leafless_frame &lattice, span<const uint64_t> codes,
-    span<const uint8_t> levels, span<const uint8_t> kinds, const cell_index &cell, uint32_t level) {
-    detail::same_size(codes.size(), levels.size());
-    detail::same_size(codes.size(), kinds.size());
+inline returns<uint64_t> voxels_find(const leafless_frame &lattice, const uint64_t *codes,
+    const uint8_t *levels, span<const leafless_voxel_kind> kinds, const cell_index &cell, uint32_t level) {
     uint64_t index{};
-    const leafless_status status = leafless_voxels_find(&lattice, codes.data(), levels.data(), kinds.data(),
-        codes.size(), cell.data(), level, &index);
+    const leafless_status status = leafless_voxels_find(&lattice, codes, levels, kinds.data(), kinds.size(),
+        cell.data(), level, &index);
     return detail::finish(status, index);
 }
 
-inline returns<std::vector<uint64_t>> voxels_order(const leafless_frame &lattice, span<const uint64_t> codes,
-    span<const uint8_t> levels, span<const uint8_t> kinds, const point &from, bool is_eye,
+inline returns<std::vector<uint64_t>> voxels_order(const leafless_frame &lattice, const uint64_t *codes,
+    const uint8_t *levels, span<const leafless_voxel_kind> kinds, const point &from, bool is_eye,
     const leafless_options *options) {
-    detail::same_size(codes.size(), levels.size());
-    detail::same_size(codes.size(), kinds.size());
     std::uint64_t order_count = 0;
     std::vector<uint64_t> order;
-    leafless_status status = leafless_voxels_order(&lattice, codes.data(), levels.data(), kinds.data(),
-        codes.size(), from.data(), is_eye, options, nullptr, 0, &order_count);
+    leafless_status status = leafless_voxels_order(&lattice, codes, levels, kinds.data(), kinds.size(),
+        from.data(), is_eye, options, nullptr, 0, &order_count);
     if (status == LEAFLESS_OK) {
         order.resize(static_cast<std::size_t>(order_count));
-        status = leafless_voxels_order(&lattice, codes.data(), levels.data(), kinds.data(), codes.size(),
-            from.data(), is_eye, options, order.data(), order.size(), &order_count);
+        status = leafless_voxels_order(&lattice, codes, levels, kinds.data(), kinds.size(), from.data(),
+            is_eye, options, order.data(), order.size(), &order_count);
     }
     return detail::finish(status, std::move(order));
 }
 
 inline returns<void> voxels_moved(const leafless_frame *lattice, const uint64_t *codes, const uint8_t *levels,
-    const uint8_t *kinds, uint64_t count, const int32_t *axes, const int32_t *offset_cells,
-    const leafless_options *options, uint64_t *moved_codes, uint8_t *moved_levels, uint8_t *moved_kinds,
-    uint64_t *sources, uint64_t capacity, uint64_t *moved_count) {
+    const leafless_voxel_kind *kinds, uint64_t count, const int32_t *axes, const int32_t *offset_cells,
+    const leafless_options *options, uint64_t *moved_codes, uint8_t *moved_levels,
+    leafless_voxel_kind *moved_kinds, uint64_t *sources, uint64_t capacity, uint64_t *moved_count) {
     const leafless_status status = leafless_voxels_moved(lattice, codes, levels, kinds, count, axes,
         offset_cells, options, moved_codes, moved_levels, moved_kinds, sources, capacity, moved_count);
     return detail::finish(status);
 }
 
 inline returns<std::tuple<std::vector<uint64_t>,
-    std::vector<uint32_t>>> voxels_triangles(const leafless_frame &lattice, span<const uint64_t> codes,
-    span<const uint8_t> levels, span<const uint8_t> kinds, const leafless::mesh &mesh,
+    std::vector<uint32_t>>> voxels_triangles(const leafless_frame &lattice, const uint64_t *codes,
+    const uint8_t *levels, span<const leafless_voxel_kind> kinds, const leafless::mesh &mesh,
     const leafless_options *options) {
-    detail::same_size(codes.size(), levels.size());
-    detail::same_size(codes.size(), kinds.size());
     std::uint64_t offset_count = 0;
     std::vector<uint64_t> offsets;
     std::uint64_t triangle_count = 0;
     std::vector<uint32_t> triangles;
-    leafless_status status = leafless_voxels_triangles(&lattice, codes.data(), levels.data(), kinds.data(),
-        codes.size(), mesh.get(), options, nullptr, 0, &offset_count, nullptr, 0, &triangle_count);
+    leafless_status status = leafless_voxels_triangles(&lattice, codes, levels, kinds.data(), kinds.size(),
+        mesh.get(), options, nullptr, 0, &offset_count, nullptr, 0, &triangle_count);
     if (status == LEAFLESS_OK) {
         offsets.resize(static_cast<std::size_t>(offset_count));
         triangles.resize(static_cast<std::size_t>(triangle_count));
-        status = leafless_voxels_triangles(&lattice, codes.data(), levels.data(), kinds.data(), codes.size(),
-            mesh.get(), options, offsets.data(), offsets.size(), &offset_count, triangles.data(),
-            triangles.size(), &triangle_count);
+        status = leafless_voxels_triangles(&lattice, codes, levels, kinds.data(), kinds.size(), mesh.get(),
+            options, offsets.data(), offsets.size(), &offset_count, triangles.data(), triangles.size(),
+            &triangle_count);
     }
     return detail::finish(status, std::tuple<std::vector<uint64_t>, std::vector<uint32_t>>(std::move(offsets),
         std::move(triangles)));
 }
 
-inline returns<leafless_probe> file_probe(const leafless_source &source, span<leafless_section> sections) {
-    leafless_probe probe{};
-    const leafless_status status = leafless_file_probe(&source, &probe, sections.data(), sections.size());
+inline returns<leafless_file_info> file_describe(const leafless_source &source,
+    span<leafless_file_section> sections) {
+    leafless_file_info probe{};
+    const leafless_status status = leafless_file_describe(&source, &probe, sections.data(), sections.size());
     return detail::finish(status, probe);
 }
 
@@ -2758,14 +2782,12 @@ inline returns<std::array<uint8_t,4>> transfer_colour(const leafless_transfer &t
     return detail::finish(status, colour);
 }
 
-inline returns<void> voxels_solid_parts(const leafless_frame &lattice, span<const uint64_t> codes,
-    span<const uint8_t> levels, span<const uint8_t> kinds, const leafless::solid &solid,
+inline returns<void> voxels_solid_parts(const leafless_frame &lattice, const uint64_t *codes,
+    const uint8_t *levels, span<const leafless_voxel_kind> kinds, const leafless::solid &solid,
     const leafless_options *options, span<double> parts) {
-    detail::same_size(codes.size(), levels.size());
-    detail::same_size(codes.size(), kinds.size());
-    detail::same_size(codes.size(), parts.size());
-    const leafless_status status = leafless_voxels_solid_parts(&lattice, codes.data(), levels.data(),
-        kinds.data(), codes.size(), solid.get(), options, parts.data());
+    detail::same_size(kinds.size(), parts.size());
+    const leafless_status status = leafless_voxels_solid_parts(&lattice, codes, levels, kinds.data(),
+        kinds.size(), solid.get(), options, parts.data());
     return detail::finish(status);
 }
 
@@ -2836,7 +2858,10 @@ LEAFLESS_HAS_MEMBER(range)
 #undef LEAFLESS_HAS_MEMBER
 
 template <class T> const T &object_at(void *ctx) noexcept { return *static_cast<const T *>(ctx); }
-template <class T> void destroy(void *ctx) { delete static_cast<T *>(ctx); }
+template <class T> void destroy(void *ctx) {
+    forget(ctx);
+    delete static_cast<T *>(ctx);
+}
 inline point point_at(const double *numbers) noexcept { return {numbers[0], numbers[1], numbers[2]}; }
 inline span<const point> points_at(const double *numbers, std::uint64_t count) noexcept {
     return {reinterpret_cast<const point *>(numbers), static_cast<std::size_t>(count)};
@@ -2860,21 +2885,21 @@ template <class T> span<T> array_at(T *first, std::uint64_t count) noexcept {
 ///     void tangent(const point &min, const point &max, const point &middle, leafless_tangent &)
 ///
 /// `promises` has what is no function: the exterior, a box, a fingerprint.
-template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises) {
+template <class S> returns<solid> solid_of(S shape, leafless_solid_callbacks promises) {
     auto owned = std::make_unique<S>(std::move(shape));
-    leafless_callbacks callbacks = promises;
+    leafless_solid_callbacks callbacks = promises;
     callbacks.ctx = owned.get();
     callbacks.destroy = detail::destroy<S>;
     if constexpr (std::is_invocable_v<const S &, const point &, const point &>) {
         callbacks.classify = [](void *ctx, const double *min, const double *max) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 return detail::object_at<S>(ctx)(detail::point_at(min), detail::point_at(max));
             });
         };
     }
     if constexpr (detail::has_classify<S, const point &, const point &>) {
         callbacks.classify = [](void *ctx, const double *min, const double *max) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 return detail::object_at<S>(ctx).classify(detail::point_at(min), detail::point_at(max));
             });
         };
@@ -2882,7 +2907,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_classify_many<S, span<const box>, span<std::int32_t>>) {
         callbacks.classify_many = [](void *ctx, const double *boxes, std::uint64_t count,
                                      std::int32_t *tags) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 const span<const box> all(reinterpret_cast<const box *>(boxes), static_cast<std::size_t>(count));
                 detail::object_at<S>(ctx).classify_many(all, detail::array_at(tags, count));
                 return 0;
@@ -2891,7 +2916,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     }
     if constexpr (detail::has_contains<S, const point &>) {
         callbacks.contains = [](void *ctx, const double *at) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 return detail::object_at<S>(ctx).contains(detail::point_at(at)) ? 1 : 0;
             });
         };
@@ -2899,7 +2924,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_contains_many<S, span<const point>, span<std::int32_t>>) {
         callbacks.contains_many = [](void *ctx, const double *points, std::uint64_t count,
                                      std::int32_t *inside) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<S>(ctx).contains_many(detail::points_at(points, count),
                                                         detail::array_at(inside, count));
                 return 0;
@@ -2909,7 +2934,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_distance_many<S, span<const point>, span<double>>) {
         callbacks.distance_many = [](void *ctx, const double *points, std::uint64_t count,
                                      double *distances) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<S>(ctx).distance_many(detail::points_at(points, count),
                                                         detail::array_at(distances, count));
                 return 0;
@@ -2919,7 +2944,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_gradient<S, const point &, const point &, const point &, leafless_gradient &>) {
         callbacks.gradient = [](void *ctx, const double *min, const double *max, const double *middle,
                                 leafless_gradient *gradient) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<S>(ctx).gradient(detail::point_at(min), detail::point_at(max),
                                                    detail::point_at(middle), *gradient);
                 return 0;
@@ -2929,7 +2954,7 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
     if constexpr (detail::has_tangent<S, const point &, const point &, const point &, leafless_tangent &>) {
         callbacks.tangent = [](void *ctx, const double *min, const double *max, const double *middle,
                                leafless_tangent *tangent) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<S>(ctx).tangent(detail::point_at(min), detail::point_at(max),
                                                   detail::point_at(middle), *tangent);
                 return 0;
@@ -2944,30 +2969,30 @@ template <class S> returns<solid> solid_of(S shape, leafless_callbacks promises)
 
 /// The same with nothing but a promise about the space outside of the universe.
 template <class S> returns<solid> solid_of(S shape, leafless_exterior exterior) {
-    leafless_callbacks promises = LEAFLESS_INIT(leafless_callbacks);
+    leafless_solid_callbacks promises = LEAFLESS_INIT(leafless_solid_callbacks);
     promises.exterior = exterior;
     return solid_of(std::move(shape), promises);
 }
 
-/// The points where the host's function is not negative, as leafless_function says, by an object with two members,
+/// The points where the host's function is not negative, as leafless_solid_function says, by an object with two members,
 /// which are const and called from several threads at once:
 ///
 ///     double value(const point &at)                                                         leafless_value_fn
 ///     leafless_interval range(const point &min, const point &max)                           leafless_range_fn
 template <class F> returns<solid> half_space_of(F function) {
     auto owned = std::make_unique<F>(std::move(function));
-    leafless_function functions = LEAFLESS_INIT(leafless_function);
+    leafless_solid_function functions = LEAFLESS_INIT(leafless_solid_function);
     functions.ctx = owned.get();
     functions.destroy = detail::destroy<F>;
     functions.value = [](void *ctx, const double *at, double *value) noexcept -> std::int32_t {
-        return detail::guarded([&]() -> std::int32_t {
+        return detail::guarded(ctx, [&]() -> std::int32_t {
             *value = detail::object_at<F>(ctx).value(detail::point_at(at));
             return 0;
         });
     };
     functions.range = [](void *ctx, const double *min, const double *max,
                          leafless_interval *range) noexcept -> std::int32_t {
-        return detail::guarded([&]() -> std::int32_t {
+        return detail::guarded(ctx, [&]() -> std::int32_t {
             *range = detail::object_at<F>(ctx).range(detail::point_at(min), detail::point_at(max));
             return 0;
         });
@@ -2997,7 +3022,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     callbacks.destroy = detail::destroy<host>;
     if constexpr (std::is_invocable_v<const A &, const point &, span<double>>) {
         callbacks.value = [](void *ctx, const double *at, double *value) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 const host &it = detail::object_at<host>(ctx);
                 it.object(detail::point_at(at), span<double>(value, it.components));
                 return 0;
@@ -3006,7 +3031,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     }
     if constexpr (detail::has_value<A, const point &, span<double>>) {
         callbacks.value = [](void *ctx, const double *at, double *value) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 const host &it = detail::object_at<host>(ctx);
                 it.object.value(detail::point_at(at), span<double>(value, it.components));
                 return 0;
@@ -3016,7 +3041,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     if constexpr (detail::has_values<A, span<const point>, span<double>>) {
         callbacks.values = [](void *ctx, const double *points, std::uint64_t count,
                               double *values) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 const host &it = detail::object_at<host>(ctx);
                 const std::size_t size = static_cast<std::size_t>(count) * it.components;
                 it.object.values(detail::points_at(points, count), span<double>(values, size));
@@ -3027,7 +3052,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
     if constexpr (detail::has_range<A, const point &, const point &, leafless_value_range &>) {
         callbacks.range = [](void *ctx, const double *min, const double *max,
                              leafless_value_range *range) noexcept -> std::int32_t {
-            return detail::guarded([&]() -> std::int32_t {
+            return detail::guarded(ctx, [&]() -> std::int32_t {
                 detail::object_at<host>(ctx).object.range(detail::point_at(min), detail::point_at(max), *range);
                 return 0;
             });
@@ -3043,7 +3068,7 @@ template <class A> returns<attribute> attribute_of(A object, std::uint32_t compo
 template <class F> leafless_sink sink_to(F &take) {
     const leafless_write_fn write = [](void *ctx, const std::uint8_t *bytes,
                                        std::uint64_t count) noexcept -> std::int32_t {
-        return detail::guarded([&]() -> std::int32_t {
+        return detail::guarded(ctx, [&]() -> std::int32_t {
             (*static_cast<F *>(ctx))(detail::array_at(bytes, count));
             return 0;
         });

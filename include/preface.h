@@ -67,6 +67,15 @@
  * Different objects never interfere. The library has no global state. No thread of the library outlives the
  * call that started it.
  *
+ * Names. A function has the name of its object, which is the first parameter or the result, and a verb. _new
+ * makes an object of parameters, _from_x of another model, _read of a source; _build does so under options.
+ * _with_x and _without_x return a copy with one thing more or less; participles (_placed, _sewn) a copy that
+ * is changed. _describe fills a struct of facts, such as leafless_octree_info; _copy fills buffers of the
+ * caller; _write goes to a sink. _at takes a place or an index, _many takes an array of questions. Set
+ * operations are _combine for any number of operands, and _complement. A member of an enumeration begins with
+ * the name of the enumeration, a leafless_status alone with an E. UNDECIDED is 2 in every answer, as
+ * LEAFLESS_TAG_PARTIAL is. UNKNOWN, that nobody has said, is 0.
+ *
  * Structs. A struct with a field struct_size begins with its own sizeof. All other fields may be zero, and
  * zero is the default: LEAFLESS_INIT(type) makes it. Programs that were compiled with an older, shorter
  * struct go on working. Other structs are fixed for one LEAFLESS_ABI.

@@ -104,17 +104,22 @@ namespace detail {
 #ifndef LEAFLESS_NO_EXCEPTIONS
 
 /// Exceptions of the host's functions on their way around the library, by the numbers that the functions returned.
+///
+/// Several threads of one operation may throw. The library reports the number of one; the others stay here until
+/// the object that threw them goes, or until newer ones need the room.
 class exceptions {
 public:
-    /// A number that no function of the host returns for anything else.
-    static std::int32_t keep(std::exception_ptr exception) noexcept {
+    /// A number that no function of the host returns for anything else. `owner` is the object that threw.
+    static std::int32_t keep(const void *owner, std::exception_ptr exception) noexcept {
         try {
             exceptions &all = instance();
             const std::lock_guard<std::mutex> lock(all.mutex_);
             do {
                 all.last_ = all.last_ == INT32_MIN ? -2 : all.last_ - 1;
             } while (all.kept_.count(all.last_) != 0);
-            all.kept_.emplace(all.last_, std::move(exception));
+            all.kept_.emplace(all.last_, thrown{std::move(exception), owner});
+            // (An operation has 1024 threads at most. Numbers descend, so the first is the newest.)
+            if (all.kept_.size() > 4096) all.kept_.erase(std::prev(all.kept_.end()));
             return all.last_;
         } catch (...) {
             return -1; // No memory: the exception is lost, the failure is not.
@@ -126,12 +131,26 @@ public:
         const std::lock_guard<std::mutex> lock(all.mutex_);
         const auto found = all.kept_.find(code);
         if (found == all.kept_.end()) return nullptr;
-        const std::exception_ptr exception = found->second;
+        const std::exception_ptr exception = found->second.exception;
         all.kept_.erase(found);
         return exception;
     }
 
+    /// Gives up what `owner` threw.
+    static void forget(const void *owner) noexcept {
+        exceptions &all = instance();
+        const std::lock_guard<std::mutex> lock(all.mutex_);
+        for (auto it = all.kept_.begin(); it != all.kept_.end();) {
+            it = it->second.owner == owner ? all.kept_.erase(it) : std::next(it);
+        }
+    }
+
 private:
+    struct thrown {
+        std::exception_ptr exception;
+        const void *owner;
+    };
+
     static exceptions &instance() {
         // It is never destroyed: threads of the host may be at work until the program has ended.
         static exceptions &all = *new exceptions;
@@ -139,18 +158,21 @@ private:
     }
 
     std::mutex mutex_;
-    std::map<std::int32_t, std::exception_ptr> kept_;
+    std::map<std::int32_t, thrown> kept_;
     std::int32_t last_ = -1;
 };
 
-/// What a function of the host returns, or the number of what it throws.
-template <class F> std::int32_t guarded(F &&function) noexcept {
+/// What a function of the host returns, or the number of what it throws. `owner` is the object that has it.
+template <class F> std::int32_t guarded(const void *owner, F &&function) noexcept {
     try {
         return function();
     } catch (...) {
-        return exceptions::keep(std::current_exception());
+        return exceptions::keep(owner, std::current_exception());
     }
 }
+
+/// Gives up what an object threw, before it goes.
+inline void forget(const void *owner) noexcept { exceptions::forget(owner); }
 
 /// Throws what a failure in the calling thread was about.
 [[noreturn]] inline void raise(leafless_status status) {
@@ -172,7 +194,8 @@ inline void at_least(std::size_t least, std::size_t size) {
 
 #else
 
-template <class F> std::int32_t guarded(F &&function) noexcept { return function(); }
+template <class F> std::int32_t guarded(const void *, F &&function) noexcept { return function(); }
+inline void forget(const void *) noexcept {}
 inline void same_size(std::size_t a, std::size_t b) {
     if (a != b) std::abort();
 }

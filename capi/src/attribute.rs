@@ -48,18 +48,18 @@ pub(super) fn give(attribute: impl Attribute + Send + 'static) -> *mut leafless_
 #[repr(u32)]
 pub enum leafless_range_kind {
     /// Nothing.
-    LEAFLESS_RANGE_UNKNOWN = 0,
+    LEAFLESS_RANGE_KIND_UNKNOWN = 0,
     /// No point has a value.
-    LEAFLESS_RANGE_NOWHERE = 1,
+    LEAFLESS_RANGE_KIND_NOWHERE = 1,
     /// Every point has a value, and each of its numbers lies in its interval.
-    LEAFLESS_RANGE_WITHIN = 2,
+    LEAFLESS_RANGE_KIND_WITHIN = 2,
 }
 
 /// What is known of the values of an attribute in the interior of a box.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_value_range {
-    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_WITHIN. All numbers
+    /// For each number of a value an interval that contains it, if `kind` is LEAFLESS_RANGE_KIND_WITHIN. All numbers
     /// are NaN otherwise, and beyond the numbers that a value has.
     pub values: [leafless_interval; 4],
     /// A leafless_range_kind.
@@ -70,19 +70,19 @@ impl leafless_value_range {
     /// Nothing is known.
     pub(super) const UNKNOWN: leafless_value_range = leafless_value_range {
         values: [leafless_interval { lower: f64::NAN, upper: f64::NAN }; 4],
-        kind: LEAFLESS_RANGE_UNKNOWN as u32,
+        kind: LEAFLESS_RANGE_KIND_UNKNOWN as u32,
     };
 
     fn new(range: ValueRange, components: usize) -> leafless_value_range {
         let mut given = leafless_value_range::UNKNOWN;
         given.kind = match range {
-            ValueRange::Unknown => LEAFLESS_RANGE_UNKNOWN as u32,
-            ValueRange::Nowhere => LEAFLESS_RANGE_NOWHERE as u32,
+            ValueRange::Unknown => LEAFLESS_RANGE_KIND_UNKNOWN as u32,
+            ValueRange::Nowhere => LEAFLESS_RANGE_KIND_NOWHERE as u32,
             ValueRange::Within(ranges) => {
                 for (given, range) in given.values.iter_mut().zip(ranges).take(components) {
                     *given = range.into();
                 }
-                LEAFLESS_RANGE_WITHIN as u32
+                LEAFLESS_RANGE_KIND_WITHIN as u32
             }
         };
         given
@@ -91,9 +91,9 @@ impl leafless_value_range {
     /// What a host says. Intervals that are none say nothing.
     pub(super) fn range(&self, components: usize) -> Result<ValueRange, Error> {
         match self.kind {
-            kind if kind == LEAFLESS_RANGE_UNKNOWN as u32 => Ok(ValueRange::Unknown),
-            kind if kind == LEAFLESS_RANGE_NOWHERE as u32 => Ok(ValueRange::Nowhere),
-            kind if kind == LEAFLESS_RANGE_WITHIN as u32 => {
+            kind if kind == LEAFLESS_RANGE_KIND_UNKNOWN as u32 => Ok(ValueRange::Unknown),
+            kind if kind == LEAFLESS_RANGE_KIND_NOWHERE as u32 => Ok(ValueRange::Nowhere),
+            kind if kind == LEAFLESS_RANGE_KIND_WITHIN as u32 => {
                 let mut ranges = [Interval::exactly(0.0); 4];
                 for (range, given) in ranges.iter_mut().zip(&self.values).take(components) {
                     let Some(given) = Interval::new(given.lower, given.upper) else {

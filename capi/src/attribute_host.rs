@@ -27,7 +27,7 @@ pub type leafless_attribute_values_fn =
     Option<unsafe extern "C" fn(ctx: *mut c_void, points: *const f64, count: u64, values: *mut f64) -> i32>;
 
 /// Bounds the values of the host's attribute in the interior of the box [min, max] (3 numbers each, model
-/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_UNKNOWN and all numbers
+/// units): sets `kind` and the intervals of `*range`, of which the kind is LEAFLESS_RANGE_KIND_UNKNOWN and all numbers
 /// are NaN before. The answer must be proven: a wrong range hides details that nobody looks for any more. An
 /// interval that contains a NaN, or of which lower > upper, says nothing; a `kind` that is none ends the operation
 /// with LEAFLESS_E_CALLBACK. Else as leafless_attribute_value_fn.

@@ -10,7 +10,7 @@ use super::status::leafless_status;
 ///
 /// The bit of the cell min_cell + (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx /
 /// 64⌉, and nx, ny and nz are max_cell - min_cell: x is fastest, each row begins with a word of its own, and
-/// bits beyond a row are 0. That is LEAFLESS_SAMPLE_BITS, of which leafless_volume_new makes
+/// bits beyond a row are 0. That is LEAFLESS_SAMPLE_TYPE_BITS, of which leafless_volume_new makes
 /// a volume again.
 ///
 /// Time is linear in the words and the array elements in the box.

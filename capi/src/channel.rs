@@ -27,31 +27,31 @@ pub struct leafless_channel {
 #[repr(u32)]
 pub enum leafless_scalar_type {
     /// Finite numbers of single precision.
-    LEAFLESS_SCALAR_F32 = 0,
+    LEAFLESS_SCALAR_TYPE_F32 = 0,
     /// Integers from 0 to 255.
-    LEAFLESS_SCALAR_U8 = 1,
+    LEAFLESS_SCALAR_TYPE_U8 = 1,
     /// Integers from 0 to 65 535.
-    LEAFLESS_SCALAR_U16 = 2,
+    LEAFLESS_SCALAR_TYPE_U16 = 2,
     /// Integers from 0 to 4 294 967 295.
-    LEAFLESS_SCALAR_U32 = 3,
+    LEAFLESS_SCALAR_TYPE_U32 = 3,
 }
 
 enumeration! {
     leafless_scalar_type => ScalarType {
-        LEAFLESS_SCALAR_F32 => ScalarType::F32,
-        LEAFLESS_SCALAR_U8 => ScalarType::U8,
-        LEAFLESS_SCALAR_U16 => ScalarType::U16,
-        LEAFLESS_SCALAR_U32 => ScalarType::U32,
+        LEAFLESS_SCALAR_TYPE_F32 => ScalarType::F32,
+        LEAFLESS_SCALAR_TYPE_U8 => ScalarType::U8,
+        LEAFLESS_SCALAR_TYPE_U16 => ScalarType::U16,
+        LEAFLESS_SCALAR_TYPE_U32 => ScalarType::U32,
     }
 }
 
 impl From<ScalarType> for leafless_scalar_type {
     fn from(scalar: ScalarType) -> leafless_scalar_type {
         match scalar {
-            ScalarType::F32 => LEAFLESS_SCALAR_F32,
-            ScalarType::U8 => LEAFLESS_SCALAR_U8,
-            ScalarType::U16 => LEAFLESS_SCALAR_U16,
-            ScalarType::U32 => LEAFLESS_SCALAR_U32,
+            ScalarType::F32 => LEAFLESS_SCALAR_TYPE_F32,
+            ScalarType::U8 => LEAFLESS_SCALAR_TYPE_U8,
+            ScalarType::U16 => LEAFLESS_SCALAR_TYPE_U16,
+            ScalarType::U32 => LEAFLESS_SCALAR_TYPE_U32,
         }
     }
 }
@@ -170,7 +170,7 @@ pub unsafe extern "C" fn leafless_channel_equal(
 ///   leafless_attribute_free.
 /// - Untrusted input: any channel.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_channel_as_attribute(
+pub unsafe extern "C" fn leafless_attribute_from_channel(
     channel: *const leafless_channel,
     attribute: *mut *mut leafless_attribute,
 ) -> leafless_status {

@@ -214,7 +214,7 @@ pub unsafe extern "C" fn leafless_channel_value(
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3], [value; 4]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_channel_value_of_cell(
+pub unsafe extern "C" fn leafless_channel_value_at(
     channel: *const leafless_channel,
     cell: *const u32,
     value: *mut f64,

@@ -222,7 +222,7 @@ pub unsafe extern "C" fn leafless_solid_materials(
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_volume_as_attribute(
+pub unsafe extern "C" fn leafless_attribute_from_volume(
     volume: *const leafless_volume,
     interpolation: Number<leafless_interpolation>,
     options: *const leafless_options,

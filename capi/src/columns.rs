@@ -75,7 +75,7 @@ enumeration! {
 /// - Buffers: `first` and `end`, 2 numbers each, or NULL both for all columns: the coordinates of the first column's
 ///   cells on the other two axes in the order x, y, z, and the first beyond the last one's; `columns`, one pointer.
 ///   `axis` is 0 for x, 1 for y, 2 for z.
-/// - Result: `*columns`, to be read with leafless_columns_read.
+/// - Result: `*columns`, to be read with leafless_columns_copy.
 /// - Errors: LEAFLESS_E_ARGUMENT if `axis` is greater than 2, `first` lies beyond `end`, or the columns reach beyond
 ///   the universe; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*columns` back with leafless_columns_free.
@@ -103,9 +103,9 @@ pub unsafe extern "C" fn leafless_octree_columns(
 ///
 /// - Buffers: as leafless_octree_columns; `frame`, one struct; `options`, one struct or NULL, of which `max_bytes`
 ///   counts and `max_splits` does not.
-/// - Result: `*columns`, to be read with leafless_columns_read; the same for any number of threads.
+/// - Result: `*columns`, to be read with leafless_columns_copy; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_columns; LEAFLESS_E_LIMIT if the result takes more than
-///   `max_bytes`; else as leafless_solid_contains.
+///   `max_bytes`; else as leafless_solid_contains_many.
 /// - Ownership: give `*columns` back with leafless_columns_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
@@ -142,7 +142,7 @@ pub unsafe extern "C" fn leafless_solid_columns(
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none; LEAFLESS_E_BUFFER if a capacity is too small: nothing is written
 ///   then.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_columns_read(
+pub unsafe extern "C" fn leafless_columns_copy(
     columns: *const leafless_columns,
     on: Number<leafless_obstacle>,
     offsets: *mut u64,
@@ -214,7 +214,7 @@ unsafe fn write_heights(
 ///
 /// - Buffers: `first` and `end` as leafless_octree_columns; `heights_model`, room for `capacity` structs, or NULL to
 ///   ask for the count only; `count`, one number. `side` is a leafless_side.
-/// - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_read, an interval in
+/// - Result: `*count`, that of the columns; for each column, in the order of leafless_columns_copy, an interval in
 ///   which the greatest coordinate of the solid's points in the column lies, or from below the least one. The end
 ///   that needs a proof is infinite if no cell of the column is FULL. Both are -INFINITY (from below INFINITY) if
 ///   the column is empty.
@@ -250,7 +250,7 @@ pub unsafe extern "C" fn leafless_octree_heights(
 ///   counts and `max_splits` does not.
 /// - Result: as leafless_octree_heights; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT as leafless_octree_heights; LEAFLESS_E_BUFFER if the capacity is too small;
-///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains.
+///   LEAFLESS_E_LIMIT if the result takes more than `max_bytes`; else as leafless_solid_contains_many.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; choose the depth and the rectangle yourself.
 ///

@@ -59,7 +59,7 @@ pub(super) unsafe fn answers<'m>(
     }
 }
 
-/// The answer to a box query. Each is proven, but for the last.
+/// The answer to a box query. Each is proven, except UNDECIDED.
 #[derive(Clone, Copy)]
 #[repr(u8)]
 pub enum leafless_region {
@@ -67,10 +67,10 @@ pub enum leafless_region {
     LEAFLESS_REGION_OUTSIDE = 0,
     /// The box lies in the solid.
     LEAFLESS_REGION_INSIDE = 1,
+    /// Nothing could be proven at the octree's depth.
+    LEAFLESS_REGION_UNDECIDED = 2,
     /// Part of the box lies inside, part outside.
-    LEAFLESS_REGION_CROSSING = 2,
-    /// None of these could be proven at the octree's depth.
-    LEAFLESS_REGION_UNDECIDED = 3,
+    LEAFLESS_REGION_CROSSING = 3,
 }
 
 impl From<Region> for leafless_region {
@@ -188,7 +188,7 @@ pub unsafe extern "C" fn leafless_octree_classify_box(
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_contains(
+pub unsafe extern "C" fn leafless_solid_contains_many(
     solid: *const leafless_solid,
     frame: *const leafless_frame,
     points_model: *const f64,
@@ -216,7 +216,7 @@ pub unsafe extern "C" fn leafless_solid_contains(
 ///   NULL; `region`, one.
 /// - Result: `*region`.
 /// - Errors: LEAFLESS_E_ARGUMENT if min > max on an axis, or a coordinate is not a number; else as
-///   leafless_solid_contains.
+///   leafless_solid_contains_many.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
 ///

@@ -400,7 +400,7 @@ pub enum leafless_motion {
     /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
     /// allows for that.
     LEAFLESS_MOTION_VERTICES = 1,
-    /// A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_new_transform does, on a frame
+    /// A surface that is not parallel to the lattice blurs by about a cell: as leafless_solid_transformed does, on a frame
     /// that is chosen for the solid; a host's shape is asked about boxes around the inverse images of cells. Where cells
     /// are the images of cells, nothing blurs.
     LEAFLESS_MOTION_CONSERVATIVE = 2,
@@ -418,7 +418,7 @@ impl From<Motion> for leafless_motion {
 }
 
 /// A solid moved by an affine map, in the best way that its kind knows: half-spaces exactly, meshes by their
-/// vertices, others as leafless_solid_new_transform; of an expression each part in its own way.
+/// vertices, others as leafless_solid_transformed; of an expression each part in its own way.
 ///
 /// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t; `motion`, one
 ///   leafless_motion or NULL; `solid`, one pointer.

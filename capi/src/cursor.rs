@@ -16,7 +16,7 @@ pub struct leafless_cursor(pub(super) Yoke<Cursor<'static>, Arc<leafless_octree>
 /// Where a cursor stands.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_cursor_state {
+pub struct leafless_cursor_info {
     /// The cell's place among those of its level, per axis.
     pub cell: [u32; 3],
     /// The cell's level; 0 is the universe.
@@ -66,15 +66,15 @@ pub unsafe extern "C" fn leafless_cursor_free(cursor: *mut leafless_cursor) {
 /// - Threads: any, while nobody moves the cursor.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_cursor_read(
+pub unsafe extern "C" fn leafless_cursor_describe(
     cursor: *const leafless_cursor,
-    state: *mut leafless_cursor_state,
+    state: *mut leafless_cursor_info,
 ) -> leafless_status {
     guard(|| unsafe {
         let cursor = shared(cursor, "cursor")?.0.get();
         let (cell, tag) = (cursor.cell(), cursor.tag());
         let children = cursor.node().map_or([tag; 8], |node| node.tags());
-        out(state, "state")?.write(leafless_cursor_state {
+        out(state, "state")?.write(leafless_cursor_info {
             cell: cell.at,
             level: cell.level.into(),
             tag: tag.into(),

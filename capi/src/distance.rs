@@ -4,7 +4,7 @@ use super::boundary::{Failure, array, buffer, guard, out, shared, slice};
 use super::cells::{leafless_cell, tags};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
-use super::measure::leafless_measured;
+use super::measure::leafless_stop_reason;
 use super::number::{Number, enumeration};
 use super::octree::leafless_octree;
 use super::solid::leafless_solid;
@@ -42,7 +42,7 @@ pub struct leafless_point_distance {
     /// How many times a cell was split.
     pub splits: u64,
     /// Why the search ended.
-    pub measured: leafless_measured,
+    pub measured: leafless_stop_reason,
 }
 
 impl From<&PointDistance> for leafless_point_distance {
@@ -117,10 +117,10 @@ pub unsafe extern "C" fn leafless_octree_distances(
 /// The distances of points from a solid, its complement or its boundary, without an octree. Points may lie outside of
 /// the universe of the frame. The cells that may be nearest are split first.
 ///
-/// `measured` of a result says why the search for the point ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
-/// wider than `tolerance_model` (model units), or both ends are infinite. With LEAFLESS_MEASURED_EXHAUSTED no cell is
+/// `measured` of a result says why the search for the point ended. With LEAFLESS_STOP_REASON_TOLERANCE the interval is no
+/// wider than `tolerance_model` (model units), or both ends are infinite. With LEAFLESS_STOP_REASON_EXHAUSTED no cell is
 /// left whose split would help, or of a solid without slabs, the nearest undecided cell cannot be split, and the interval
-/// is no wider than twice the diagonal of the frame's finest cells. With LEAFLESS_MEASURED_BUDGET `max_splits` cells were
+/// is no wider than twice the diagonal of the frame's finest cells. With LEAFLESS_STOP_REASON_BUDGET `max_splits` cells were
 /// split for the point, or 65 536 if that is 0.
 ///
 /// - Buffers: `frame`, one struct; `points_model`, `count` points of 3 numbers; `options`, one struct or NULL;

@@ -25,7 +25,7 @@ const _: () = {
 /// What header and section table of a tri-dexel model's file say of it.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_tridexel_probe {
+pub struct leafless_file_tridexel_info {
     /// The axes that rays run along, a sum of leafless_axes; 0 if the file holds an octree.
     pub directions: u32,
     /// How the ends of intervals are stored.
@@ -47,7 +47,7 @@ pub struct leafless_tridexel_probe {
 /// What header and section table of a file say.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_probe {
+pub struct leafless_file_info {
     /// Major version of the format.
     pub major: u32,
     /// Minor version of the format.
@@ -71,13 +71,13 @@ pub struct leafless_probe {
     /// Whether nothing is undecided.
     pub is_binary: bool,
     /// What is stored of a tri-dexel model; all zeros for an octree.
-    pub tridexel: leafless_tridexel_probe,
+    pub tridexel: leafless_file_tridexel_info,
 }
 
-impl From<Option<&DexelProbe>> for leafless_tridexel_probe {
-    fn from(probe: Option<&DexelProbe>) -> leafless_tridexel_probe {
+impl From<Option<&DexelProbe>> for leafless_file_tridexel_info {
+    fn from(probe: Option<&DexelProbe>) -> leafless_file_tridexel_info {
         let format = probe.map(|probe| probe.format).unwrap_or_default();
-        leafless_tridexel_probe {
+        leafless_file_tridexel_info {
             directions: probe.map_or(0, |probe| axes(probe.directions)),
             ends: format.ends.into(),
             normals: format.normals.into(),
@@ -93,7 +93,7 @@ impl From<Option<&DexelProbe>> for leafless_tridexel_probe {
 /// A section of a file.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_section {
+pub struct leafless_file_section {
     /// Number of its kind.
     pub kind: u32,
     /// The object that it belongs to: 0 is the solid.
@@ -110,9 +110,9 @@ pub struct leafless_section {
     pub count: u64,
 }
 
-impl From<&Probe> for leafless_probe {
-    fn from(probe: &Probe) -> leafless_probe {
-        leafless_probe {
+impl From<&Probe> for leafless_file_info {
+    fn from(probe: &Probe) -> leafless_file_info {
+        leafless_file_info {
             major: probe.version.0.into(),
             minor: probe.version.1.into(),
             frame: (&probe.frame).into(),
@@ -129,14 +129,14 @@ impl From<&Probe> for leafless_probe {
     }
 }
 
-impl From<&Section> for leafless_section {
-    fn from(section: &Section) -> leafless_section {
+impl From<&Section> for leafless_file_section {
+    fn from(section: &Section) -> leafless_file_section {
         let mut name = [0; 24];
         // The last character stays NUL.
         for (to, from) in name[..23].iter_mut().zip(section.name.unwrap_or_default().bytes()) {
             *to = from as c_char;
         }
-        leafless_section {
+        leafless_file_section {
             kind: section.kind,
             owner: section.owner,
             is_required: section.required,
@@ -159,10 +159,10 @@ impl From<&Section> for leafless_section {
 ///   LEAFLESS_E_IO; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any file, any bytes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_file_probe(
+pub unsafe extern "C" fn leafless_file_describe(
     source: *const leafless_source,
-    probe: *mut leafless_probe,
-    sections: *mut leafless_section,
+    probe: *mut leafless_file_info,
+    sections: *mut leafless_file_section,
     capacity: u64,
 ) -> leafless_status {
     guard(|| unsafe {
@@ -174,7 +174,7 @@ pub unsafe extern "C" fn leafless_file_probe(
             Source::Bytes(bytes) => file::probe_bytes(bytes)?,
         };
         sections.check(found.sections.len())?;
-        let list = memory::collected(found.sections.iter().map(leafless_section::from))?;
+        let list = memory::collected(found.sections.iter().map(leafless_file_section::from))?;
         sections.fill(&list)?;
         probe.write((&found).into())
     })

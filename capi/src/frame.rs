@@ -225,7 +225,7 @@ pub unsafe extern "C" fn leafless_frame_cell_size(
 ///
 /// cbindgen:ptrs-as-arrays=[[point_model; 3], [cell; 3]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_frame_cell_of(
+pub unsafe extern "C" fn leafless_frame_cell_at(
     frame: *const leafless_frame,
     point_model: *const f64,
     cell: *mut u32,

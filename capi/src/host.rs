@@ -2,6 +2,7 @@
 
 use super::boundary::{Failure, Sized32, guard, out, sized};
 use super::frame::leafless_interval;
+use super::number::{Number, enumeration};
 use super::octree::settled_tag;
 use super::solid::{give, leafless_solid};
 use super::status::leafless_status;
@@ -25,7 +26,13 @@ pub enum leafless_exterior {
     /// Everything outside of the universe belongs to the shape.
     LEAFLESS_EXTERIOR_FULL = 2,
 }
-use leafless_exterior::*;
+enumeration! {
+    leafless_exterior => Tag {
+        LEAFLESS_EXTERIOR_UNKNOWN => Tag::Partial,
+        LEAFLESS_EXTERIOR_EMPTY => Tag::Empty,
+        LEAFLESS_EXTERIOR_FULL => Tag::Full,
+    }
+}
 
 /// Classifies the box [min, max] (3 numbers each, model units) for the host's own shape: LEAFLESS_TAG_EMPTY
 /// or LEAFLESS_TAG_FULL if that is proven for all of the box, LEAFLESS_TAG_PARTIAL to be asked about its
@@ -128,11 +135,11 @@ pub type leafless_destroy_fn = Option<unsafe extern "C" fn(ctx: *mut c_void)>;
 /// The host's own shape. All fields but the first may be zero; `classify` or `distance_many` must be set.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_callbacks {
-    /// sizeof(leafless_callbacks).
+pub struct leafless_solid_callbacks {
+    /// sizeof(leafless_solid_callbacks).
     pub struct_size: u32,
-    /// A leafless_exterior.
-    pub exterior: u32,
+    /// What is known of the space outside of the universe.
+    pub exterior: Number<leafless_exterior>,
     /// Classifies boxes.
     pub classify: leafless_classify_fn,
     /// Decides points: LEAFLESS_RULE_SAMPLED needs it; optional.
@@ -167,10 +174,10 @@ pub struct leafless_callbacks {
 }
 
 // SAFETY: numbers, a pointer, and optional functions.
-unsafe impl Sized32 for leafless_callbacks {}
+unsafe impl Sized32 for leafless_solid_callbacks {}
 
 /// The host's functions with their context.
-struct Host(leafless_callbacks);
+struct Host(leafless_solid_callbacks);
 
 // SAFETY: the library does nothing with `ctx` but hand it back; that the functions may be called from any
 // thread is their documented contract.
@@ -308,7 +315,7 @@ fn fingerprint(given: [u64; 2]) -> Option<Fingerprint> {
 /// - Untrusted input: any answers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_callbacks(
-    callbacks: *const leafless_callbacks,
+    callbacks: *const leafless_solid_callbacks,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
@@ -321,15 +328,7 @@ pub unsafe extern "C" fn leafless_solid_new_callbacks(
         {
             return Err(Failure::Null { name: "callbacks.classify" });
         }
-        let exterior = match callbacks.exterior {
-            known if known == LEAFLESS_EXTERIOR_UNKNOWN as u32 => Tag::Partial,
-            known if known == LEAFLESS_EXTERIOR_EMPTY as u32 => Tag::Empty,
-            known if known == LEAFLESS_EXTERIOR_FULL as u32 => Tag::Full,
-            _ => {
-                let problem = "is no leafless_exterior";
-                return Err(Failure::Argument { name: "callbacks.exterior", problem });
-            }
-        };
+        let exterior = callbacks.exterior.known("callbacks.exterior")?;
         let [a, b, c, d, e, f] = callbacks.bounds;
         let bounds = match callbacks.bounds == [0.0; 6] {
             true => None,
@@ -407,8 +406,8 @@ pub type leafless_range_fn = Option<
 /// A half-space of the host: the points where its function is not negative. `value` and `range` must be set.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_function {
-    /// sizeof(leafless_function).
+pub struct leafless_solid_function {
+    /// sizeof(leafless_solid_function).
     pub struct_size: u32,
     /// Zero.
     pub reserved: u32,
@@ -421,15 +420,15 @@ pub struct leafless_function {
     pub destroy: leafless_destroy_fn,
     /// What the functions are called with.
     pub ctx: *mut c_void,
-    /// As in leafless_callbacks.
+    /// As in leafless_solid_callbacks.
     pub fingerprint: [u64; 2],
 }
 
 // SAFETY: numbers, a pointer, and optional functions.
-unsafe impl Sized32 for leafless_function {}
+unsafe impl Sized32 for leafless_solid_function {}
 
 /// The host's function with its context.
-struct HostFunction(leafless_function);
+struct HostFunction(leafless_solid_function);
 
 // SAFETY: as for `Host`.
 unsafe impl Send for HostFunction {}
@@ -477,7 +476,7 @@ impl HostFunction {
 /// - Untrusted input: any answers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_function(
-    function: *const leafless_function,
+    function: *const leafless_solid_function,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {

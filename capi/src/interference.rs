@@ -4,7 +4,7 @@ use super::boundary::{buffer, guard, out, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::csg::placement;
 use super::frame::{frame, frame_of, leafless_frame, leafless_interval};
-use super::measure::leafless_measured;
+use super::measure::leafless_stop_reason;
 use super::octree::leafless_proof;
 use super::solid::{give, leafless_solid};
 use super::status::leafless_status;
@@ -110,7 +110,7 @@ pub struct leafless_clearance {
     /// The level of that cell.
     pub nearest_b_level: u32,
     /// Why the search ended.
-    pub measured: leafless_measured,
+    pub measured: leafless_stop_reason,
     /// Whether the upper bound is finite.
     pub has_nearest: bool,
     /// Whether one of the solids may go on outside of the universe, of which nothing is said.
@@ -157,7 +157,7 @@ impl From<&Clearance> for leafless_clearance {
 ///
 /// cbindgen:ptrs-as-arrays=[[matrix; 12]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_new_transform(
+pub unsafe extern "C" fn leafless_solid_transformed(
     operand: *const leafless_solid,
     own: *const leafless_frame,
     matrix: *const f64,
@@ -212,14 +212,14 @@ pub unsafe extern "C" fn leafless_solid_interfere(
 }
 
 /// As leafless_solid_interfere of `a` with `b` under each of many affine maps, as
-/// leafless_solid_new_transform makes them. `max_splits` concerns each of them. The results are the same for
+/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are the same for
 /// any number of threads.
 ///
 /// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
 ///   that of `a`; `options`, one struct or NULL; `interferences`, room for `count`. `matrices` and
 ///   `interferences` may be NULL if `count` is 0.
 /// - Result: `interferences[i]` for map i.
-/// - Errors: as leafless_solid_interfere and leafless_solid_new_transform; nothing is then written.
+/// - Errors: as leafless_solid_interfere and leafless_solid_transformed; nothing is then written.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: as leafless_solid_interfere, and any numbers.
 #[unsafe(no_mangle)]
@@ -256,11 +256,11 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
 
 /// The distance between two solids, as they are in the universe of a frame.
 ///
-/// `measured` of the result says why the search ended. With LEAFLESS_MEASURED_TOLERANCE the interval is no
-/// wider than `tolerance_model` (model units). With LEAFLESS_MEASURED_EXHAUSTED the cells of the frame's depth
+/// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE the interval is no
+/// wider than `tolerance_model` (model units). With LEAFLESS_STOP_REASON_EXHAUSTED the cells of the frame's depth
 /// cannot raise the lower bound, and the interval is no wider than twice their diagonal, which is what cells
 /// can tell of most solids; or no pair of cells is left; or a solid may go on outside of the universe, which keeps
-/// the lower bound at 0. With LEAFLESS_MEASURED_BUDGET `max_splits` steps were
+/// the lower bound at 0. With LEAFLESS_STOP_REASON_BUDGET `max_splits` steps were
 /// taken, or 1 048 576 if that is 0. A step looks at the children of one cell. A cell whose children are
 /// looked at again, next to another cell, counts once more.
 ///

@@ -5,10 +5,11 @@ use super::boundary::{Failure, Sized32, array, buffer, guard, out, share, shared
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::layer::{Shown, Values, chosen, give, leafless_layer, leafless_transfer, values};
+use super::number::Byte;
 use super::octree::leafless_octree;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
-use super::voxel::records;
+use super::voxel::{leafless_voxel_kind, records};
 use leafless::Frame;
 use leafless::memory;
 use leafless::render::{Compositing, Layer, SliceLayer, SlicePlane, TAG_COLOURS, Transfer, VolumeLayer};
@@ -108,7 +109,7 @@ unsafe fn section(
 ///
 /// cbindgen:ptrs-as-arrays=[[plane; 4]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_layer_new_slice(
+pub unsafe extern "C" fn leafless_layer_from_octree_slice(
     octree: *const leafless_octree,
     plane: *const f64,
     look: *const leafless_slice_look,
@@ -119,9 +120,9 @@ pub unsafe extern "C" fn leafless_layer_new_slice(
 
 /// A plane section of a solid on a frame, of which the cells at the plane are split down to the frame's depth.
 ///
-/// - Buffers: `frame`, one struct; the others as leafless_layer_new_slice.
+/// - Buffers: `frame`, one struct; the others as leafless_layer_from_octree_slice.
 /// - Result: `*layer`.
-/// - Errors: as leafless_layer_new_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a picture also returns
+/// - Errors: as leafless_layer_from_octree_slice; LEAFLESS_E_ARGUMENT as leafless_frame_check. Taking a picture also returns
 ///   what leafless_octree_build does.
 /// - Ownership: the layer shares the solid and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
@@ -129,7 +130,7 @@ pub unsafe extern "C" fn leafless_layer_new_slice(
 ///
 /// cbindgen:ptrs-as-arrays=[[plane; 4]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_layer_new_slice_of_solid(
+pub unsafe extern "C" fn leafless_layer_from_solid_slice(
     solid: *const leafless_solid,
     frame: *const leafless_frame,
     plane: *const f64,
@@ -157,7 +158,7 @@ pub unsafe extern "C" fn leafless_voxels_solid_parts(
     lattice: *const leafless_frame,
     codes: *const u64,
     levels: *const u8,
-    kinds: *const u8,
+    kinds: *const Byte<leafless_voxel_kind>,
     count: u64,
     solid: *const leafless_solid,
     options: *const leafless_options,
@@ -190,7 +191,7 @@ pub struct leafless_voxel_arrays {
     /// Levels.
     pub levels: *const u8,
     /// Of each a leafless_voxel_kind. Inside and boundary voxels are seen.
-    pub kinds: *const u8,
+    pub kinds: *const Byte<leafless_voxel_kind>,
     /// `components` · `count` numbers, NaN where there is no value; NULL without values.
     pub values: *const f64,
     /// Of each voxel the part that is filled, 0 to 1; NULL: 1 inside and 1/2 at the boundary. As
@@ -250,7 +251,7 @@ pub unsafe extern "C" fn leafless_layer_new_voxels(
             &frame,
             memory::copied(slice(voxels.codes, voxels.count, "voxels.codes")?)?,
             memory::copied(slice(voxels.levels, voxels.count, "voxels.levels")?)?,
-            memory::copied(slice(voxels.kinds, voxels.count, "voxels.kinds")?)?,
+            memory::copied(slice(voxels.kinds.cast(), voxels.count, "voxels.kinds")?)?,
             voxels.components as usize,
             memory::copied(slice(voxels.values, numbers, "voxels.values")?)?,
         )?;

@@ -150,7 +150,7 @@ impl Shown for OfOctree {
 ///   leafless_layer_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_layer_new_octree(
+pub unsafe extern "C" fn leafless_layer_from_octree(
     octree: *const leafless_octree,
     look: *const leafless_look,
     layer: *mut *mut leafless_layer,
@@ -193,7 +193,7 @@ impl Shown for OfSolid {
 ///   leafless_layer_free.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_layer_new_solid(
+pub unsafe extern "C" fn leafless_layer_from_solid(
     solid: *const leafless_solid,
     frame: *const leafless_frame,
     look: *const leafless_look,
@@ -257,7 +257,7 @@ impl Shown for OfMesh {
 ///   leafless_layer_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_layer_new_mesh(
+pub unsafe extern "C" fn leafless_layer_from_mesh(
     mesh: *const leafless_mesh,
     look: *const leafless_look,
     layer: *mut *mut leafless_layer,

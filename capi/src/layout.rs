@@ -62,7 +62,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_intersecting_pair { min_model, max_model, triangles }
         leafless_mesh_options { struct_size, format, unit, target, scale }
-        leafless_mesh_found { format, unit, skipped }
+        leafless_mesh_file_info { format, unit, skipped }
         leafless_mesh_write_options { struct_size, format, is_text, unit, has_normals }
         leafless_volume_layout {
             struct_size, sample_type, extents, byte_order, skip, corner_model, spacing_model
@@ -91,13 +91,13 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_legend_box { left, top, width, height }
         leafless_legend_name { name, name_length, colour, reserved }
-        leafless_callbacks {
+        leafless_solid_callbacks {
             struct_size, exterior, classify, contains, destroy, ctx, fingerprint, classify_many, contains_many, distance_many,
             gradient, tangent, bounds
         }
         leafless_gradient { value, gradient }
         leafless_tangent { point, normal, inner_curvature, outer_curvature, error }
-        leafless_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
+        leafless_solid_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
         leafless_value_range { values, kind }
         leafless_attribute_callbacks { struct_size, components, value, values, range, destroy, ctx }
         leafless_channel_info { frame, scalar, components, value_count, elements, bytes }
@@ -135,13 +135,13 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_point_distance { distance_model, splits, measured }
         leafless_near_cell { point_model, distance_model, found }
-        leafless_cursor_state { cell, level, tag, children }
+        leafless_cursor_info { cell, level, tag, children }
         leafless_ray { origin_model, direction_model, t_last }
         leafless_ray_hit { t, normal, cell, level, is_hit }
         leafless_run { start, length }
         leafless_cell { cell, level, tag }
         leafless_boundary_face { inner, outer, axis, is_upper, has_outer }
-        leafless_probe {
+        leafless_file_info {
             major, minor, frame, elements, bricks, file_length, sections, proof, root, exterior, is_binary, tridexel
         }
         leafless_tridexel_format { struct_size, directions, ends, normals, has_surfaces, has_materials }
@@ -151,19 +151,19 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_dexel_end { at_model, at_cells, normal, surface }
         leafless_dexel { start, end, material }
         leafless_dexel_change { rays, removed_model, added_model, min_cell, max_cell }
-        leafless_ray_arrays {
+        leafless_tridexel_arrays {
             axis, reserved, first, end, offsets, interval_count, ends_model, normals, surfaces, materials, ends_cells
         }
         leafless_dexel_surface_report {
             crossings, several, without_rays, disagreeing, without_normals, means, clamped, vanished, without_centres
         }
         leafless_long_voxel { first, length, material, colour, kind }
-        leafless_tridexel_probe { directions, ends, normals, has_surfaces, has_materials, reserved, rays, intervals }
+        leafless_file_tridexel_info { directions, ends, normals, has_surfaces, has_materials, reserved, rays, intervals }
         leafless_dexel_statistics { rays, intervals, bytes, volume_model, min_model, max_model }
         leafless_scene_options { struct_size, facets, folder, folder_length }
-        leafless_scene_report { polygons, exact, ignored_slices, meshes, is_empty }
-        leafless_scene_mesh { line, column, turned, report }
-        leafless_section { kind, owner, is_required, name, offset, length, count }
+        leafless_scene_info { polygons, exact, ignored_slices, meshes, is_empty }
+        leafless_scene_mesh_info { line, column, turned, report }
+        leafless_file_section { kind, owner, is_required, name, offset, length, count }
     }
     values! { to;
         leafless_access { LEAFLESS_ACCESS_COPY, LEAFLESS_ACCESS_MAP, LEAFLESS_ACCESS_MAP_VERIFIED }
@@ -193,21 +193,21 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_touch { LEAFLESS_TOUCH_EXACT, LEAFLESS_TOUCH_PAPER }
         leafless_motion { LEAFLESS_MOTION_EXACT, LEAFLESS_MOTION_VERTICES, LEAFLESS_MOTION_CONSERVATIVE }
         leafless_zone_kind {
-            LEAFLESS_ZONE_EVERYTHING, LEAFLESS_ZONE_BOX, LEAFLESS_ZONE_POINT, LEAFLESS_ZONE_RAY
+            LEAFLESS_ZONE_KIND_EVERYTHING, LEAFLESS_ZONE_KIND_BOX, LEAFLESS_ZONE_KIND_POINT, LEAFLESS_ZONE_KIND_RAY
         }
         leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
-        leafless_measured {
-            LEAFLESS_MEASURED_TOLERANCE, LEAFLESS_MEASURED_BUDGET, LEAFLESS_MEASURED_EXHAUSTED
+        leafless_stop_reason {
+            LEAFLESS_STOP_REASON_TOLERANCE, LEAFLESS_STOP_REASON_BUDGET, LEAFLESS_STOP_REASON_EXHAUSTED
         }
         leafless_distance_to {
             LEAFLESS_DISTANCE_TO_SOLID, LEAFLESS_DISTANCE_TO_COMPLEMENT, LEAFLESS_DISTANCE_TO_BOUNDARY
         }
-        leafless_moments_known {
-            LEAFLESS_MOMENTS_KNOWN, LEAFLESS_MOMENTS_OPEN, LEAFLESS_MOMENTS_INTERSECTING, LEAFLESS_MOMENTS_UNDECIDED
+        leafless_moments_verdict {
+            LEAFLESS_MOMENTS_VERDICT_KNOWN, LEAFLESS_MOMENTS_VERDICT_OPEN, LEAFLESS_MOMENTS_VERDICT_INTERSECTING, LEAFLESS_MOMENTS_VERDICT_UNDECIDED
         }
         leafless_fill { LEAFLESS_FILL_NON_ZERO, LEAFLESS_FILL_EVEN_ODD, LEAFLESS_FILL_POSITIVE }
-        leafless_vertex_type { LEAFLESS_VERTEX_F64, LEAFLESS_VERTEX_F32 }
-        leafless_index_type { LEAFLESS_INDEX_U32, LEAFLESS_INDEX_U64, LEAFLESS_INDEX_U16 }
+        leafless_vertex_type { LEAFLESS_VERTEX_TYPE_F64, LEAFLESS_VERTEX_TYPE_F32 }
+        leafless_index_type { LEAFLESS_INDEX_TYPE_U32, LEAFLESS_INDEX_TYPE_U64, LEAFLESS_INDEX_TYPE_U16 }
         leafless_mesh_format {
             LEAFLESS_MESH_FORMAT_ANY, LEAFLESS_MESH_FORMAT_STL, LEAFLESS_MESH_FORMAT_OBJ,
             LEAFLESS_MESH_FORMAT_PLY, LEAFLESS_MESH_FORMAT_OFF, LEAFLESS_MESH_FORMAT_3MF
@@ -217,9 +217,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_UNIT_CENTIMETRE, LEAFLESS_UNIT_METRE, LEAFLESS_UNIT_INCH, LEAFLESS_UNIT_FOOT
         }
         leafless_sample_type {
-            LEAFLESS_SAMPLE_U8, LEAFLESS_SAMPLE_U16, LEAFLESS_SAMPLE_I16, LEAFLESS_SAMPLE_F32, LEAFLESS_SAMPLE_BITS,
-            LEAFLESS_SAMPLE_BITS_IN_BYTES, LEAFLESS_SAMPLE_I8, LEAFLESS_SAMPLE_I32, LEAFLESS_SAMPLE_U32,
-            LEAFLESS_SAMPLE_I64, LEAFLESS_SAMPLE_U64, LEAFLESS_SAMPLE_F64
+            LEAFLESS_SAMPLE_TYPE_U8, LEAFLESS_SAMPLE_TYPE_U16, LEAFLESS_SAMPLE_TYPE_I16, LEAFLESS_SAMPLE_TYPE_F32, LEAFLESS_SAMPLE_TYPE_BITS,
+            LEAFLESS_SAMPLE_TYPE_BITS_IN_BYTES, LEAFLESS_SAMPLE_TYPE_I8, LEAFLESS_SAMPLE_TYPE_I32, LEAFLESS_SAMPLE_TYPE_U32,
+            LEAFLESS_SAMPLE_TYPE_I64, LEAFLESS_SAMPLE_TYPE_U64, LEAFLESS_SAMPLE_TYPE_F64
         }
         leafless_byte_order { LEAFLESS_BYTE_ORDER_NATIVE, LEAFLESS_BYTE_ORDER_LITTLE, LEAFLESS_BYTE_ORDER_BIG }
         leafless_volume_format {
@@ -227,8 +227,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_VOLUME_FORMAT_NRRD_GZIP
         }
         leafless_surface_method {
-            LEAFLESS_SURFACE_MARCHING_CUBES, LEAFLESS_SURFACE_SMC, LEAFLESS_SURFACE_SHRINK,
-            LEAFLESS_SURFACE_SHRINK_PUBLISHED, LEAFLESS_SURFACE_DUAL_CONTOURING
+            LEAFLESS_SURFACE_METHOD_MARCHING_CUBES, LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES, LEAFLESS_SURFACE_METHOD_SHRINK,
+            LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED, LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING
         }
         leafless_snap { LEAFLESS_SNAP_FAT, LEAFLESS_SNAP_THIN }
         leafless_resolve {
@@ -239,12 +239,12 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_COLOUR_MAP_PLASMA, LEAFLESS_COLOUR_MAP_GREY
         }
         leafless_edges { LEAFLESS_EDGES_NONE, LEAFLESS_EDGES_FEATURES, LEAFLESS_EDGES_ALL }
-        leafless_legend_side { LEAFLESS_LEGEND_RIGHT, LEAFLESS_LEGEND_BOTTOM }
-        leafless_vertex_placement { LEAFLESS_PLACEMENT_MIDPOINT, LEAFLESS_PLACEMENT_CROSSING }
+        leafless_legend_side { LEAFLESS_LEGEND_SIDE_RIGHT, LEAFLESS_LEGEND_SIDE_BOTTOM }
+        leafless_vertex_placement { LEAFLESS_VERTEX_PLACEMENT_MIDPOINT, LEAFLESS_VERTEX_PLACEMENT_CROSSING }
         leafless_voxel_kind {
-            LEAFLESS_VOXEL_OUTSIDE, LEAFLESS_VOXEL_INSIDE, LEAFLESS_VOXEL_BOUNDARY, LEAFLESS_VOXEL_REFINED
+            LEAFLESS_VOXEL_KIND_OUTSIDE, LEAFLESS_VOXEL_KIND_INSIDE, LEAFLESS_VOXEL_KIND_BOUNDARY, LEAFLESS_VOXEL_KIND_REFINED
         }
-        leafless_voxel_boundary { LEAFLESS_VOXEL_BOUNDARY_UNDECIDED, LEAFLESS_VOXEL_BOUNDARY_TOUCHING }
+        leafless_voxel_boundary { LEAFLESS_VOXEL_BOUNDARY_CUT, LEAFLESS_VOXEL_BOUNDARY_TOUCHING }
         leafless_voxel_lists { LEAFLESS_VOXEL_LISTS_OUTSIDE, LEAFLESS_VOXEL_LISTS_REFINED }
         leafless_defect {
             LEAFLESS_DEFECT_HOLE, LEAFLESS_DEFECT_MISORIENTED, LEAFLESS_DEFECT_DUPLICATE,
@@ -257,9 +257,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_OPERATION_UNION, LEAFLESS_OPERATION_INTERSECTION, LEAFLESS_OPERATION_DIFFERENCE, LEAFLESS_OPERATION_XOR
         }
         leafless_facets { LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON }
-        leafless_range_kind { LEAFLESS_RANGE_UNKNOWN, LEAFLESS_RANGE_NOWHERE, LEAFLESS_RANGE_WITHIN }
+        leafless_range_kind { LEAFLESS_RANGE_KIND_UNKNOWN, LEAFLESS_RANGE_KIND_NOWHERE, LEAFLESS_RANGE_KIND_WITHIN }
         leafless_scalar_type {
-            LEAFLESS_SCALAR_F32, LEAFLESS_SCALAR_U8, LEAFLESS_SCALAR_U16, LEAFLESS_SCALAR_U32
+            LEAFLESS_SCALAR_TYPE_F32, LEAFLESS_SCALAR_TYPE_U8, LEAFLESS_SCALAR_TYPE_U16, LEAFLESS_SCALAR_TYPE_U32
         }
         leafless_criterion {
             LEAFLESS_CRITERION_NONE, LEAFLESS_CRITERION_VARIANCE, LEAFLESS_CRITERION_RANGE
@@ -270,7 +270,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_dexel_ends { LEAFLESS_DEXEL_ENDS_FIXED, LEAFLESS_DEXEL_ENDS_DOUBLE }
         leafless_dexel_normals { LEAFLESS_DEXEL_NORMALS_NONE, LEAFLESS_DEXEL_NORMALS_16, LEAFLESS_DEXEL_NORMALS_32 }
         leafless_dexel_surface_method {
-            LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES, LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING
+            LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES, LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING
         }
         leafless_exterior { LEAFLESS_EXTERIOR_UNKNOWN, LEAFLESS_EXTERIOR_EMPTY, LEAFLESS_EXTERIOR_FULL }
     }

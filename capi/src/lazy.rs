@@ -183,23 +183,23 @@ pub unsafe extern "C" fn leafless_lazy_split(
 #[repr(u32)]
 pub enum leafless_zone_kind {
     /// All of the universe.
-    LEAFLESS_ZONE_EVERYTHING = 0,
+    LEAFLESS_ZONE_KIND_EVERYTHING = 0,
     /// The cells that have more than their surface in common with the box from `min_model` to `max_model`; of a box without
     /// thickness, those that it lies in.
-    LEAFLESS_ZONE_BOX = 1,
+    LEAFLESS_ZONE_KIND_BOX = 1,
     /// The cells that contain `point_model`: one of each level.
-    LEAFLESS_ZONE_POINT = 2,
+    LEAFLESS_ZONE_KIND_POINT = 2,
     /// All cells that the points `point_model` + t · `direction_model` with `from` ≤ t ≤ `to` touch.
-    LEAFLESS_ZONE_RAY = 3,
+    LEAFLESS_ZONE_KIND_RAY = 3,
 }
 use leafless_zone_kind::*;
 
 enumeration! {
     leafless_zone_kind => leafless_zone_kind {
-        LEAFLESS_ZONE_EVERYTHING => LEAFLESS_ZONE_EVERYTHING,
-        LEAFLESS_ZONE_BOX => LEAFLESS_ZONE_BOX,
-        LEAFLESS_ZONE_POINT => LEAFLESS_ZONE_POINT,
-        LEAFLESS_ZONE_RAY => LEAFLESS_ZONE_RAY,
+        LEAFLESS_ZONE_KIND_EVERYTHING => LEAFLESS_ZONE_KIND_EVERYTHING,
+        LEAFLESS_ZONE_KIND_BOX => LEAFLESS_ZONE_KIND_BOX,
+        LEAFLESS_ZONE_KIND_POINT => LEAFLESS_ZONE_KIND_POINT,
+        LEAFLESS_ZONE_KIND_RAY => LEAFLESS_ZONE_KIND_RAY,
     }
 }
 
@@ -251,10 +251,10 @@ pub unsafe extern "C" fn leafless_lazy_refine(
         let mut lazy = change(lazy)?;
         let zone = sized(zone, "zone")?;
         let zone = match zone.kind.known("zone.kind")? {
-            LEAFLESS_ZONE_EVERYTHING => Zone::Whole,
-            LEAFLESS_ZONE_BOX => Zone::Box { min: zone.min_model, max: zone.max_model },
-            LEAFLESS_ZONE_POINT => Zone::Point(zone.point_model),
-            LEAFLESS_ZONE_RAY => {
+            LEAFLESS_ZONE_KIND_EVERYTHING => Zone::Whole,
+            LEAFLESS_ZONE_KIND_BOX => Zone::Box { min: zone.min_model, max: zone.max_model },
+            LEAFLESS_ZONE_KIND_POINT => Zone::Point(zone.point_model),
+            LEAFLESS_ZONE_KIND_RAY => {
                 let (origin, direction) = (zone.point_model, zone.direction_model);
                 Zone::Ray { origin, direction, from: zone.from, to: zone.to }
             }
@@ -278,7 +278,7 @@ pub unsafe extern "C" fn leafless_lazy_refine(
 ///
 /// cbindgen:ptrs-as-arrays=[[cell; 3]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_lazy_tag(
+pub unsafe extern "C" fn leafless_lazy_tag_at(
     lazy: *const leafless_lazy,
     cell: *const u32,
     level: u32,

@@ -15,23 +15,23 @@ use leafless::{MassProperties, Tolerance, bounding_box, measure};
 /// Why a search or a measurement ended.
 #[derive(Clone, Copy)]
 #[repr(u32)]
-pub enum leafless_measured {
+pub enum leafless_stop_reason {
     /// What was asked for is known well enough.
-    LEAFLESS_MEASURED_TOLERANCE = 0,
+    LEAFLESS_STOP_REASON_TOLERANCE = 0,
     /// `max_splits` of the options, or the function's own limit, is spent.
-    LEAFLESS_MEASURED_BUDGET = 1,
+    LEAFLESS_STOP_REASON_BUDGET = 1,
     /// No cell is left whose split would help: what is undecided has the size of the frame's finest cells, or
     /// the solid itself knows no more about it, as an octree does of its PARTIAL cells.
-    LEAFLESS_MEASURED_EXHAUSTED = 2,
+    LEAFLESS_STOP_REASON_EXHAUSTED = 2,
 }
-use leafless_measured::*;
+use leafless_stop_reason::*;
 
-impl From<StopReason> for leafless_measured {
-    fn from(reason: StopReason) -> leafless_measured {
+impl From<StopReason> for leafless_stop_reason {
+    fn from(reason: StopReason) -> leafless_stop_reason {
         match reason {
-            StopReason::Tolerance => LEAFLESS_MEASURED_TOLERANCE,
-            StopReason::Budget => LEAFLESS_MEASURED_BUDGET,
-            StopReason::Exhausted => LEAFLESS_MEASURED_EXHAUSTED,
+            StopReason::Tolerance => LEAFLESS_STOP_REASON_TOLERANCE,
+            StopReason::Budget => LEAFLESS_STOP_REASON_BUDGET,
+            StopReason::Exhausted => LEAFLESS_STOP_REASON_EXHAUSTED,
         }
     }
 }
@@ -58,7 +58,7 @@ pub struct leafless_measures {
     /// The finest level of which cells were looked at.
     pub level: u32,
     /// Why it ended.
-    pub measured: leafless_measured,
+    pub measured: leafless_stop_reason,
     /// Whether a cell is proven full: else the solid may be empty, and nothing is known of a centroid.
     pub has_centroid: bool,
     /// Whether the solid may go on outside of the universe, or does.
@@ -79,7 +79,7 @@ pub struct leafless_surface_area {
     /// The finest level of which cells were looked at.
     pub level: u32,
     /// Why it ended.
-    pub measured: leafless_measured,
+    pub measured: leafless_stop_reason,
     /// Whether the solid may go on outside of the universe, or does: then it is the boundary inside of it.
     pub is_clipped: bool,
 }
@@ -107,7 +107,7 @@ pub struct leafless_section_area {
     /// How many times a cell was split.
     pub splits: u64,
     /// Why it ended.
-    pub measured: leafless_measured,
+    pub measured: leafless_stop_reason,
     /// Whether the solid may go on outside of the universe, or does: then it is the section inside of it.
     pub is_clipped: bool,
 }
@@ -137,7 +137,7 @@ pub struct leafless_extent {
     /// How many times a cell was split.
     pub splits: u64,
     /// Why it ended.
-    pub measured: leafless_measured,
+    pub measured: leafless_stop_reason,
     /// Whether the solid is proven to be empty.
     pub is_empty: bool,
     /// Whether it is proven not to be. If neither is proven, the corners are those of what the solid may be.
@@ -247,8 +247,8 @@ pub unsafe extern "C" fn leafless_solid_surface_area(
 
 /// The area of a solid's section with a plane, in the universe of a frame. The plane goes through a point, perpendicular to
 /// a normal of any length and either direction. The search splits only cells that the plane runs through. It ends with
-/// LEAFLESS_MEASURED_TOLERANCE if the interval is no wider than `relative` times its middle, or than `absolute_model` (square
-/// model units); with LEAFLESS_MEASURED_EXHAUSTED if no cell is left whose split would help; with LEAFLESS_MEASURED_BUDGET
+/// LEAFLESS_STOP_REASON_TOLERANCE if the interval is no wider than `relative` times its middle, or than `absolute_model` (square
+/// model units); with LEAFLESS_STOP_REASON_EXHAUSTED if no cell is left whose split would help; with LEAFLESS_STOP_REASON_BUDGET
 /// after `max_splits` of the options, or 2^20 splits if that is 0. With N splits the width goes down with 1/N² on curved
 /// surfaces of half-spaces and what is made of them, with 1/N for other solids; plane faces of the former are known to
 /// rounding.
@@ -289,10 +289,10 @@ pub unsafe extern "C" fn leafless_solid_section_area(
 }
 
 /// The bounding box of a solid in the universe of a frame: six intervals, one for each side. The search splits
-/// only cells that may reach beyond what is proven solid. It ends with LEAFLESS_MEASURED_TOLERANCE if no interval
-/// is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_MEASURED_EXHAUSTED if
+/// only cells that may reach beyond what is proven solid. It ends with LEAFLESS_STOP_REASON_TOLERANCE if no interval
+/// is wider than `tolerance_model`, or than 2^-44 of the universe's edge; with LEAFLESS_STOP_REASON_EXHAUSTED if
 /// the outermost undecided cells cannot be split, and either the interval is no wider than one of the frame's
-/// finest cells, or nothing else is left to split; with LEAFLESS_MEASURED_BUDGET after `max_splits` of the
+/// finest cells, or nothing else is left to split; with LEAFLESS_STOP_REASON_BUDGET after `max_splits` of the
 /// options, or 2^20 splits if that is 0.
 ///
 /// Of half-spaces and what is made of them, a corner of three plane faces is known to rounding, and a curved side

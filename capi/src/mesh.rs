@@ -369,7 +369,7 @@ pub unsafe extern "C" fn leafless_mesh_area(
 /// - Result: `*report`.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_describe(
+pub unsafe extern "C" fn leafless_mesh_inspect(
     mesh: *const leafless_mesh,
     report: *mut leafless_mesh_report,
 ) -> leafless_status {
@@ -432,7 +432,7 @@ pub unsafe extern "C" fn leafless_mesh_check_closed(
 /// common vertices.) Verdicts about solids made of it stay proven: the distance is added outward.
 ///
 /// - Buffers: `sewn`, one pointer.
-/// - Result: `*sewn`; leafless_mesh_describe tells how many vertices moved and how far.
+/// - Result: `*sewn`; leafless_mesh_inspect tells how many vertices moved and how far.
 /// - Errors: LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `mesh` stays as it is; give `*sewn` back with leafless_mesh_free.
 /// - Untrusted input: any mesh.

@@ -2,6 +2,7 @@
 
 use super::boundary::{Failure, Sized32, Strided, guard, out, sized, strided};
 use super::mesh::{give, leafless_mesh};
+use super::number::{Number, enumeration};
 use super::status::leafless_status;
 use core::ffi::c_void;
 use leafless::Error;
@@ -12,14 +13,29 @@ use leafless_index_type::*;
 use leafless_vertex_type::*;
 use std::borrow::Cow;
 
+enumeration! {
+    leafless_vertex_type => leafless_vertex_type {
+        LEAFLESS_VERTEX_TYPE_F64 => LEAFLESS_VERTEX_TYPE_F64,
+        LEAFLESS_VERTEX_TYPE_F32 => LEAFLESS_VERTEX_TYPE_F32,
+    }
+}
+
+enumeration! {
+    leafless_index_type => leafless_index_type {
+        LEAFLESS_INDEX_TYPE_U32 => LEAFLESS_INDEX_TYPE_U32,
+        LEAFLESS_INDEX_TYPE_U64 => LEAFLESS_INDEX_TYPE_U64,
+        LEAFLESS_INDEX_TYPE_U16 => LEAFLESS_INDEX_TYPE_U16,
+    }
+}
+
 /// What the coordinates of vertices are.
 #[derive(Clone, Copy)]
 #[repr(u32)]
 pub enum leafless_vertex_type {
     /// double.
-    LEAFLESS_VERTEX_F64 = 0,
+    LEAFLESS_VERTEX_TYPE_F64 = 0,
     /// float.
-    LEAFLESS_VERTEX_F32 = 1,
+    LEAFLESS_VERTEX_TYPE_F32 = 1,
 }
 
 /// What the indices of vertices are.
@@ -27,11 +43,11 @@ pub enum leafless_vertex_type {
 #[repr(u32)]
 pub enum leafless_index_type {
     /// uint32_t.
-    LEAFLESS_INDEX_U32 = 0,
+    LEAFLESS_INDEX_TYPE_U32 = 0,
     /// uint64_t.
-    LEAFLESS_INDEX_U64 = 1,
+    LEAFLESS_INDEX_TYPE_U64 = 1,
     /// uint16_t.
-    LEAFLESS_INDEX_U16 = 2,
+    LEAFLESS_INDEX_TYPE_U16 = 2,
 }
 
 /// The arrays that a mesh is made of: vertices of three coordinates, and triangles of three indices. They
@@ -43,7 +59,7 @@ pub struct leafless_mesh_arrays {
     /// sizeof(leafless_mesh_arrays).
     pub struct_size: u32,
     /// A leafless_vertex_type.
-    pub vertex_type: u32,
+    pub vertex_type: Number<leafless_vertex_type>,
     /// The first vertex. May be NULL if there is none.
     pub vertices: *const c_void,
     /// Number of vertices.
@@ -58,7 +74,7 @@ pub struct leafless_mesh_arrays {
     /// Bytes from one triangle to the next; 0 means that they follow each other without a gap.
     pub triangle_stride: u64,
     /// A leafless_index_type.
-    pub index_type: u32,
+    pub index_type: Number<leafless_index_type>,
     /// What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
     pub scale: f64,
 }
@@ -84,7 +100,7 @@ pub(super) struct GivenVertices {
     pub start: *const c_void,
     pub count: u64,
     pub stride: u64,
-    pub kind: u32,
+    pub kind: Number<leafless_vertex_type>,
     pub scale: f64,
 }
 
@@ -104,17 +120,9 @@ impl<'a> Vertices<'a> {
         let GivenVertices { start, count, stride, .. } = given;
         // SAFETY: the caller's promise; any bytes are numbers.
         let numbers = unsafe {
-            match given.kind {
-                known if known == LEAFLESS_VERTEX_F64 as u32 => {
-                    Numbers::F64(strided(start, count, stride, names)?)
-                }
-                known if known == LEAFLESS_VERTEX_F32 as u32 => {
-                    Numbers::F32(strided(start, count, stride, names)?)
-                }
-                _ => {
-                    let problem = "is no leafless_vertex_type";
-                    return Err(Failure::Argument { name: "arrays.vertex_type", problem });
-                }
+            match given.kind.known("arrays.vertex_type")? {
+                LEAFLESS_VERTEX_TYPE_F64 => Numbers::F64(strided(start, count, stride, names)?),
+                LEAFLESS_VERTEX_TYPE_F32 => Numbers::F32(strided(start, count, stride, names)?),
             }
         };
         if u32::try_from(count).is_err() {
@@ -174,25 +182,15 @@ impl<const N: usize> Indices<'_, N> {
         start: *const c_void,
         count: u64,
         stride: u64,
-        kind: u32,
+        kind: Number<leafless_index_type>,
         names: [&'static str; 2],
     ) -> Result<Self, Failure> {
         // SAFETY: the caller's promise; any bytes are numbers.
         unsafe {
-            match kind {
-                known if known == LEAFLESS_INDEX_U16 as u32 => {
-                    Ok(Indices::U16(strided(start, count, stride, names)?))
-                }
-                known if known == LEAFLESS_INDEX_U32 as u32 => {
-                    Ok(Indices::U32(strided(start, count, stride, names)?))
-                }
-                known if known == LEAFLESS_INDEX_U64 as u32 => {
-                    Ok(Indices::U64(strided(start, count, stride, names)?))
-                }
-                _ => {
-                    let problem = "is no leafless_index_type";
-                    Err(Failure::Argument { name: "arrays.index_type", problem })
-                }
+            match kind.known("arrays.index_type")? {
+                LEAFLESS_INDEX_TYPE_U16 => Ok(Indices::U16(strided(start, count, stride, names)?)),
+                LEAFLESS_INDEX_TYPE_U32 => Ok(Indices::U32(strided(start, count, stride, names)?)),
+                LEAFLESS_INDEX_TYPE_U64 => Ok(Indices::U64(strided(start, count, stride, names)?)),
             }
         }
     }

@@ -157,7 +157,7 @@ pub unsafe extern "C" fn leafless_mesh_bodies(
 /// - Ownership: the mesh is shared and may be freed; give `*attribute` back with leafless_attribute_free.
 /// - Untrusted input: any mesh, any text.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_as_attribute(
+pub unsafe extern "C" fn leafless_attribute_from_mesh(
     mesh: *const leafless_mesh,
     name: *const c_char,
     name_length: usize,
@@ -171,7 +171,7 @@ pub unsafe extern "C" fn leafless_mesh_as_attribute(
     })
 }
 
-/// As leafless_mesh_as_attribute, of the host's own values: of bodies, faces, materials, or colours of corners.
+/// As leafless_attribute_from_mesh, of the host's own values: of bodies, faces, materials, or colours of corners.
 ///
 /// - Buffers: `values`, `count` numbers: `components` for each triangle, or for each of its three corners, one behind
 ///   the other; `attribute`, one pointer.
@@ -182,7 +182,7 @@ pub unsafe extern "C" fn leafless_mesh_as_attribute(
 ///   leafless_attribute_free.
 /// - Untrusted input: any mesh, any numbers.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_values_as_attribute(
+pub unsafe extern "C" fn leafless_attribute_from_mesh_values(
     mesh: *const leafless_mesh,
     values: *const f64,
     count: u64,

@@ -112,7 +112,7 @@ unsafe impl Sized32 for leafless_mesh_options {}
 /// What a mesh file says besides the mesh.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_mesh_found {
+pub struct leafless_mesh_file_info {
     /// The file's format.
     pub format: leafless_mesh_format,
     /// The unit of the mesh, converted but not scaled, if it is known.
@@ -135,9 +135,9 @@ unsafe fn options(options: *const leafless_mesh_options) -> Result<MeshOptions, 
     })
 }
 
-impl From<&MeshFile> for leafless_mesh_found {
-    fn from(file: &MeshFile) -> leafless_mesh_found {
-        leafless_mesh_found {
+impl From<&MeshFile> for leafless_mesh_file_info {
+    fn from(file: &MeshFile) -> leafless_mesh_file_info {
+        leafless_mesh_file_info {
             format: match file.format {
                 MeshFormat::Stl => LEAFLESS_MESH_FORMAT_STL,
                 MeshFormat::Obj => LEAFLESS_MESH_FORMAT_OBJ,
@@ -185,7 +185,7 @@ fn give(file: MeshFile) -> Result<*mut leafless_mesh, Failure> {
 pub unsafe extern "C" fn leafless_mesh_read(
     source: *const leafless_source,
     options: *const leafless_mesh_options,
-    found: *mut leafless_mesh_found,
+    found: *mut leafless_mesh_file_info,
     mesh: *mut *mut leafless_mesh,
 ) -> leafless_status {
     guard(|| unsafe {
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn leafless_mesh_read(
             Source::Path(path) => open_mesh(path, &options)?,
             Source::Bytes(bytes) => read_mesh(bytes, &options)?,
         };
-        let said = leafless_mesh_found::from(&file);
+        let said = leafless_mesh_file_info::from(&file);
         mesh.write(give(file)?)?;
         found.map_or(Ok(()), |found| found.write(said))
     })

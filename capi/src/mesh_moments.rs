@@ -13,17 +13,17 @@ use leafless::mesh::{IntersectingPair, IntersectingPairs, MeshMoments};
 /// Whether the moments of what a mesh encloses are known from its triangles.
 #[derive(Clone, Copy)]
 #[repr(u32)]
-pub enum leafless_moments_known {
+pub enum leafless_moments_verdict {
     /// They are, up to rounding and to the mesh's displacement.
-    LEAFLESS_MOMENTS_KNOWN = 0,
+    LEAFLESS_MOMENTS_VERDICT_KNOWN = 0,
     /// They are not: the mesh is empty, not closed, or not consistently oriented as the fill rule demands.
-    LEAFLESS_MOMENTS_OPEN = 1,
-    /// They are not: two triangles intersect.
-    LEAFLESS_MOMENTS_INTERSECTING = 2,
+    LEAFLESS_MOMENTS_VERDICT_OPEN = 1,
     /// They are not: too many triangles lie close to each other to find out, or all triangles of a body are slivers.
-    LEAFLESS_MOMENTS_UNDECIDED = 3,
+    LEAFLESS_MOMENTS_VERDICT_UNDECIDED = 2,
+    /// They are not: two triangles intersect.
+    LEAFLESS_MOMENTS_VERDICT_INTERSECTING = 3,
 }
-use leafless_moments_known::*;
+use leafless_moments_verdict::*;
 
 /// Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they are known.
 #[derive(Clone, Copy)]
@@ -40,7 +40,7 @@ pub struct leafless_mesh_moments {
     /// Two triangles that intersect, if `known` says so; else 0.
     pub triangles: [u32; 2],
     /// Whether they are known, or why not.
-    pub known: leafless_moments_known,
+    pub known: leafless_moments_verdict,
     /// Whether the volume is proven not to be 0.
     pub has_centroid: bool,
 }
@@ -54,7 +54,7 @@ impl From<MeshMoments> for leafless_mesh_moments {
             inertia_origin_model: [any; 9],
             inertia_centroid_model: [any; 9],
             triangles: [0; 2],
-            known: LEAFLESS_MOMENTS_OPEN,
+            known: LEAFLESS_MOMENTS_VERDICT_OPEN,
             has_centroid: false,
         };
         match moments {
@@ -63,15 +63,17 @@ impl From<MeshMoments> for leafless_mesh_moments {
                 centroid_model: moments.centroid().unwrap_or([Interval::ALL; 3]).map(Into::into),
                 inertia_origin_model: row_by_row(moments.inertia_about_origin()),
                 inertia_centroid_model: row_by_row(moments.inertia_about_centroid()),
-                known: LEAFLESS_MOMENTS_KNOWN,
+                known: LEAFLESS_MOMENTS_VERDICT_KNOWN,
                 has_centroid: moments.centroid().is_some(),
                 ..unknown
             },
             MeshMoments::Open => unknown,
             MeshMoments::Intersecting(triangles) => {
-                leafless_mesh_moments { triangles, known: LEAFLESS_MOMENTS_INTERSECTING, ..unknown }
+                leafless_mesh_moments { triangles, known: LEAFLESS_MOMENTS_VERDICT_INTERSECTING, ..unknown }
             }
-            MeshMoments::Undecided => leafless_mesh_moments { known: LEAFLESS_MOMENTS_UNDECIDED, ..unknown },
+            MeshMoments::Undecided => {
+                leafless_mesh_moments { known: LEAFLESS_MOMENTS_VERDICT_UNDECIDED, ..unknown }
+            }
         }
     }
 }

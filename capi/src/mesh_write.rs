@@ -99,7 +99,7 @@ pub unsafe extern "C" fn leafless_mesh_write(
 
 /// The mesh that a reader gets back from the file that leafless_mesh_write writes. An STL has 32-bit coordinates:
 /// vertices move, vertices that meet are one, and triangles of which two corners meet are dropped, so that the
-/// surface may be pinched, flat or gone. leafless_mesh_describe of both meshes tells. All other formats keep
+/// surface may be pinched, flat or gone. leafless_mesh_inspect of both meshes tells. All other formats keep
 /// vertices and triangles as they are. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, with a format; `kept`, one pointer.

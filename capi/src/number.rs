@@ -8,6 +8,10 @@ use core::marker::PhantomData;
 #[repr(transparent)]
 pub struct Number<E>(u32, PhantomData<E>);
 
+/// As [`Number`], for an enumeration whose members have 8 bits.
+#[repr(transparent)]
+pub struct Byte<E>(pub(super) u8, PhantomData<E>);
+
 impl<E> Clone for Number<E> {
     fn clone(&self) -> Self {
         *self

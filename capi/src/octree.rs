@@ -3,7 +3,7 @@
 use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::metadata::{self, Fact};
-use super::number::{Number, enumeration};
+use super::number::{Byte, Number, enumeration};
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::octree::MetadataLimit;
@@ -179,23 +179,23 @@ pub(super) fn give(octree: Octree) -> *mut leafless_octree {
 
 /// The octree whose whole universe has one tag.
 ///
-/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior` are leafless_tags, not BRANCH:
+/// - Buffers: `frame`, one struct; `octree`, one pointer. `tag` and `exterior`, which are not BRANCH, say
 ///   what is known of the universe, and of the space around it.
 /// - Result: `*octree`.
 /// - Errors: LEAFLESS_E_ARGUMENT.
 /// - Ownership: give `*octree` back with leafless_octree_free.
 /// - Untrusted input: any numbers.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_uniform(
+pub unsafe extern "C" fn leafless_octree_new_uniform(
     frame: *const leafless_frame,
-    tag: u32,
-    exterior: u32,
+    tag: Byte<leafless_tag>,
+    exterior: Byte<leafless_tag>,
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
         let frame = self::frame(frame)?;
-        let tag = settled_tag(tag.into(), "tag")?;
-        let exterior = settled_tag(exterior.into(), "exterior")?;
+        let tag = settled_tag(tag.0.into(), "tag")?;
+        let exterior = settled_tag(exterior.0.into(), "exterior")?;
         let octree = out(octree, "octree")?;
         octree.write(give(Octree::uniform(frame, tag, exterior)?))
     })

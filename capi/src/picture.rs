@@ -188,15 +188,15 @@ pub unsafe extern "C" fn leafless_picture_write(
 #[repr(u32)]
 pub enum leafless_legend_side {
     /// In the middle of the right side, at most a third of the width.
-    LEAFLESS_LEGEND_RIGHT = 0,
+    LEAFLESS_LEGEND_SIDE_RIGHT = 0,
     /// In the middle of the lower side, at most a third of the height.
-    LEAFLESS_LEGEND_BOTTOM = 1,
+    LEAFLESS_LEGEND_SIDE_BOTTOM = 1,
 }
 
 enumeration! {
     leafless_legend_side => LegendSide {
-        LEAFLESS_LEGEND_RIGHT => LegendSide::Right,
-        LEAFLESS_LEGEND_BOTTOM => LegendSide::Bottom,
+        LEAFLESS_LEGEND_SIDE_RIGHT => LegendSide::Right,
+        LEAFLESS_LEGEND_SIDE_BOTTOM => LegendSide::Bottom,
     }
 }
 

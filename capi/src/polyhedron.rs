@@ -2,7 +2,8 @@
 
 use super::boundary::{Failure, Out, Sized32, guard, out, sized};
 use super::mesh::{give, leafless_mesh};
-use super::mesh_arrays::{GivenVertices, Indices, Vertices};
+use super::mesh_arrays::{GivenVertices, Indices, Vertices, leafless_index_type, leafless_vertex_type};
+use super::number::Number;
 use super::status::leafless_status;
 use core::ffi::c_void;
 use leafless::error::{MeshError, PolyhedronError};
@@ -24,7 +25,7 @@ pub struct leafless_polyhedron_arrays {
     /// sizeof(leafless_polyhedron_arrays).
     pub struct_size: u32,
     /// A leafless_vertex_type.
-    pub vertex_type: u32,
+    pub vertex_type: Number<leafless_vertex_type>,
     /// The first vertex: three coordinates. May be NULL if there is none.
     pub vertices: *const c_void,
     /// Number of vertices.
@@ -54,7 +55,7 @@ pub struct leafless_polyhedron_arrays {
     /// Number of solids.
     pub solid_count: u64,
     /// A leafless_index_type: that of corners and offsets.
-    pub index_type: u32,
+    pub index_type: Number<leafless_index_type>,
     /// What the coordinates are multiplied by to become model units: 2^-256 to 2^256, or 0, which means 1.
     pub scale: f64,
     /// How far corners may lie beside the plane of their face, in model units: half the distance of two
@@ -101,7 +102,7 @@ impl Level {
 
     /// # Safety
     /// The array is NULL, or has `count` + 1 offsets of this kind, which do not change during the call.
-    unsafe fn offsets<'a>(&self, kind: u32) -> Result<Cow<'a, [u32]>, Failure> {
+    unsafe fn offsets<'a>(&self, kind: Number<leafless_index_type>) -> Result<Cow<'a, [u32]>, Failure> {
         if u32::try_from(self.count).is_err() {
             return Err(MeshError::TooMany.into());
         }

@@ -175,7 +175,7 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
 ///   `count`. `rays` and `hits` may be NULL if `count` is 0. `on` is a leafless_obstacle.
 /// - Result: `hits[i]` for ray i; the same for any number of threads.
 /// - Errors: LEAFLESS_E_ARGUMENT if `on` is none, or a ray is not as leafless_ray says; else as
-///   leafless_solid_contains.
+///   leafless_solid_contains_many.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
@@ -274,7 +274,7 @@ pub unsafe extern "C" fn leafless_octree_ray_spans(
 /// - Result: `inner`, where the ray is proven inside, rounded inward; `outer`, where it is not proven outside,
 ///   rounded outward; their counts.
 /// - Errors: LEAFLESS_E_ARGUMENT if the ray is not as leafless_ray says; LEAFLESS_E_BUFFER if a capacity is too
-///   small: nothing is written then; else as leafless_solid_contains.
+///   small: nothing is written then; else as leafless_solid_contains_many.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
 #[unsafe(no_mangle)]
@@ -307,7 +307,7 @@ pub unsafe extern "C" fn leafless_solid_ray_spans(
 ///   of which `max_splits` counts: cells that were not split count as PARTIAL; `sight`, one.
 /// - Result: `*sight`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the points are equal, or a coordinate is not zero and not of a magnitude
-///   between 2^-256 and 2^256; else as leafless_solid_contains.
+///   between 2^-256 and 2^256; else as leafless_solid_contains_many.
 /// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
 ///   choice.
 ///

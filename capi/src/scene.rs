@@ -119,14 +119,14 @@ pub unsafe extern "C" fn leafless_scene_read(
 /// What was found while a scene was read.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_scene_report {
+pub struct leafless_scene_info {
     /// Calls of circle, sphere, cylinder and rotate_extrude that were drawn as polygons.
     pub polygons: u64,
     /// Calls of these that are exact. OpenSCAD draws them as polygons.
     pub exact: u64,
     /// Calls of linear_extrude of which `slices` has no effect though it has one in OpenSCAD.
     pub ignored_slices: u64,
-    /// Meshes and polyhedra that have triangles: leafless_scene_describe_mesh tells of each.
+    /// Meshes and polyhedra that have triangles: leafless_scene_describe_mesh_at tells of each.
     pub meshes: u64,
     /// Whether the scene is known to be empty: there is nothing in it, or what is intersected lies apart.
     pub is_empty: bool,
@@ -135,7 +135,7 @@ pub struct leafless_scene_report {
 /// What is told of a mesh or polyhedron in a scene.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_scene_mesh {
+pub struct leafless_scene_mesh_info {
     /// Line of the call in the text, counted from 1.
     pub line: u64,
     /// Column of the call in characters, counted from 1.
@@ -153,13 +153,13 @@ pub struct leafless_scene_mesh {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_describe(
     scene: *const leafless_scene,
-    report: *mut leafless_scene_report,
+    report: *mut leafless_scene_info,
 ) -> leafless_status {
     guard(|| unsafe {
         let scene = &shared(scene, "scene")?.scene;
         let result = out(report, "report")?;
         let found = scene.report();
-        result.write(leafless_scene_report {
+        result.write(leafless_scene_info {
             polygons: found.polygons,
             exact: found.exact,
             ignored_slices: found.ignored_slices,
@@ -184,16 +184,16 @@ unsafe fn mesh<'a>(scene: *const leafless_scene, index: u64) -> Result<&'a Scene
 /// - Result: `*mesh`.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no such mesh.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_scene_describe_mesh(
+pub unsafe extern "C" fn leafless_scene_describe_mesh_at(
     scene: *const leafless_scene,
     index: u64,
-    mesh: *mut leafless_scene_mesh,
+    mesh: *mut leafless_scene_mesh_info,
 ) -> leafless_status {
     guard(|| unsafe {
         let found = self::mesh(scene, index)?;
         let result = out(mesh, "mesh")?;
         let SceneMesh { line, column, turned, report, .. } = found;
-        result.write(leafless_scene_mesh {
+        result.write(leafless_scene_mesh_info {
             line: *line,
             column: *column,
             turned: *turned,
@@ -210,7 +210,7 @@ pub unsafe extern "C" fn leafless_scene_describe_mesh(
 /// - Result: `*length`, the length of the name in bytes; the name in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_scene_mesh_file(
+pub unsafe extern "C" fn leafless_scene_mesh_file_at(
     scene: *const leafless_scene,
     index: u64,
     bytes: *mut u8,
@@ -287,7 +287,7 @@ pub unsafe extern "C" fn leafless_scene_bounds(
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any scene.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_new_scene(
+pub unsafe extern "C" fn leafless_solid_from_scene(
     scene: *const leafless_scene,
     frame: *const leafless_frame,
     solid: *mut *mut leafless_solid,

@@ -37,7 +37,7 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 ///
 /// Where the mesh is closed, what it encloses is exact. Around holes leafless_fill says by which convention a
 /// point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
-/// though no triangle cuts them. leafless_mesh_describe tells whether to expect them.
+/// though no triangle cuts them. leafless_mesh_inspect tells whether to expect them.
 ///
 /// - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
 /// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
@@ -46,7 +46,7 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 /// - Ownership: the solid shares the mesh, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any mesh.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_new_mesh(
+pub unsafe extern "C" fn leafless_solid_from_mesh(
     mesh: *const leafless_mesh,
     fill: Number<leafless_fill>,
     solid: *mut *mut leafless_solid,
@@ -69,7 +69,7 @@ pub unsafe extern "C" fn leafless_solid_new_mesh(
 /// - Ownership: the solid shares the octree, which may be freed; give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any octree.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_octree_as_solid(
+pub unsafe extern "C" fn leafless_solid_from_octree(
     octree: *const leafless_octree,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {

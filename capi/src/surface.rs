@@ -24,30 +24,30 @@ use leafless_surface_method::*;
 pub enum leafless_surface_method {
     /// Marching cubes: vertices on the edges between inside and outside samples. Exactly two triangles meet
     /// on every edge.
-    LEAFLESS_SURFACE_MARCHING_CUBES = 0,
+    LEAFLESS_SURFACE_METHOD_MARCHING_CUBES = 0,
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions up to sign. The
     /// mesh is closed, but where its sheets touch, more than two triangles meet on an edge.
-    LEAFLESS_SURFACE_SMC = 1,
+    LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES = 1,
     /// Coplanar shrink: the surface of simple marching cubes with far fewer triangles where it has plane parts.
     /// All that lies in one plane becomes one region with straight edges. There are no cracks; triangles may be
     /// long and thin.
-    LEAFLESS_SURFACE_SHRINK = 2,
+    LEAFLESS_SURFACE_METHOD_SHRINK = 2,
     /// Coplanar shrink in its published form, to compare with. It has cracks, so that the mesh is open where
     /// merged cells of several sizes meet.
-    LEAFLESS_SURFACE_SHRINK_PUBLISHED = 3,
+    LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED = 3,
     /// Dual contouring, of solids alone: edges and corners stay sharp. Samples are the centres of cells. It is
     /// leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that function also reports
     /// what the mesh does not show.
-    LEAFLESS_SURFACE_DUAL_CONTOURING = 4,
+    LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING = 4,
 }
 
 enumeration! {
     leafless_surface_method => leafless_surface_method {
-        LEAFLESS_SURFACE_MARCHING_CUBES => LEAFLESS_SURFACE_MARCHING_CUBES,
-        LEAFLESS_SURFACE_SMC => LEAFLESS_SURFACE_SMC,
-        LEAFLESS_SURFACE_SHRINK => LEAFLESS_SURFACE_SHRINK,
-        LEAFLESS_SURFACE_SHRINK_PUBLISHED => LEAFLESS_SURFACE_SHRINK_PUBLISHED,
-        LEAFLESS_SURFACE_DUAL_CONTOURING => LEAFLESS_SURFACE_DUAL_CONTOURING,
+        LEAFLESS_SURFACE_METHOD_MARCHING_CUBES => LEAFLESS_SURFACE_METHOD_MARCHING_CUBES,
+        LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES => LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES,
+        LEAFLESS_SURFACE_METHOD_SHRINK => LEAFLESS_SURFACE_METHOD_SHRINK,
+        LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED => LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED,
+        LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING => LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING,
     }
 }
 
@@ -98,18 +98,18 @@ enumeration! {
 #[repr(u32)]
 pub enum leafless_vertex_placement {
     /// Half-way. The mesh has steps, and is as far from the surface as half a cell.
-    LEAFLESS_PLACEMENT_MIDPOINT = 0,
+    LEAFLESS_VERTEX_PLACEMENT_MIDPOINT = 0,
     /// Where the edge crosses the solid's surface; if it does so several times, at one of the crossings.
     /// Half-spaces, meshes and solids made of them tell the crossing to rounding. For a solid that only tells
     /// about boxes, cells along the edge are split down to the depth of 20, and the crossing is known to a
     /// cell of that depth.
-    LEAFLESS_PLACEMENT_CROSSING = 1,
+    LEAFLESS_VERTEX_PLACEMENT_CROSSING = 1,
 }
 
 enumeration! {
     leafless_vertex_placement => VertexPlacement {
-        LEAFLESS_PLACEMENT_MIDPOINT => VertexPlacement::Midpoint,
-        LEAFLESS_PLACEMENT_CROSSING => VertexPlacement::Crossing,
+        LEAFLESS_VERTEX_PLACEMENT_MIDPOINT => VertexPlacement::Midpoint,
+        LEAFLESS_VERTEX_PLACEMENT_CROSSING => VertexPlacement::Crossing,
     }
 }
 
@@ -122,11 +122,11 @@ pub struct leafless_surface_options {
     pub struct_size: u32,
     /// A leafless_surface_method.
     pub method: Number<leafless_surface_method>,
-    /// Of LEAFLESS_SURFACE_SMC and of both kinds of LEAFLESS_SURFACE_SHRINK: a leafless_snap.
+    /// Of LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES and of both kinds of LEAFLESS_SURFACE_METHOD_SHRINK: a leafless_snap.
     pub snap: Number<leafless_snap>,
     /// Of octrees: a leafless_resolve. Solids decide all samples themselves.
     pub resolve: Number<leafless_resolve>,
-    /// Of LEAFLESS_SURFACE_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
+    /// Of LEAFLESS_SURFACE_METHOD_MARCHING_CUBES of solids: a leafless_vertex_placement. Octrees do not know where
     /// their solid's surface is.
     pub placement: Number<leafless_vertex_placement>,
     /// 0.
@@ -157,15 +157,15 @@ impl leafless_surface_options {
         zero(self.reserved == 0, "surface.reserved", "must be 0")?;
         let snap = self.snap.known("surface.snap")?;
         match self.method.known("surface.method")? {
-            LEAFLESS_SURFACE_MARCHING_CUBES => {
+            LEAFLESS_SURFACE_METHOD_MARCHING_CUBES => {
                 let problem = "is not for marching cubes, whose vertices lie between samples";
                 zero(snap == Snap::Fat, "surface.snap", problem)?;
                 Ok(Method::MarchingCubes)
             }
-            LEAFLESS_SURFACE_SMC => Ok(Method::Smc(snap)),
-            LEAFLESS_SURFACE_SHRINK => Ok(Method::Shrink(snap)),
-            LEAFLESS_SURFACE_SHRINK_PUBLISHED => Ok(Method::PublishedShrink(snap)),
-            LEAFLESS_SURFACE_DUAL_CONTOURING => {
+            LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES => Ok(Method::Smc(snap)),
+            LEAFLESS_SURFACE_METHOD_SHRINK => Ok(Method::Shrink(snap)),
+            LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED => Ok(Method::PublishedShrink(snap)),
+            LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING => {
                 let problem = "is not for dual contouring, whose vertices lie between samples";
                 zero(snap == Snap::Fat, "surface.snap", problem)?;
                 Ok(Method::DualContouring)
@@ -195,10 +195,10 @@ impl leafless_surface_options {
 /// lie outside. Everything around the universe counts as outside, so that the mesh is closed there, too.
 ///
 /// Every edge is run along as often in one direction as in the other, but for
-/// LEAFLESS_SURFACE_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two vertices
+/// LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two vertices
 /// are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
 /// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_counts
-/// and leafless_mesh_copy hand the arrays out, leafless_mesh_describe and leafless_mesh_area tell about them,
+/// and leafless_mesh_copy hand the arrays out, leafless_mesh_inspect and leafless_mesh_area tell about them,
 /// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_write writes them.
 ///
 /// Time is linear in the octree's array elements and the mesh: it grows with the surface, not with the
@@ -252,7 +252,7 @@ pub unsafe extern "C" fn leafless_octree_surface(
 /// Else as leafless_octree_surface. What the solid has outside of the universe is cut off.
 ///
 /// Time is that of leafless_octree_build with LEAFLESS_RULE_SAMPLED on as many cells as there are corners,
-/// and for LEAFLESS_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well. With
+/// and for LEAFLESS_VERTEX_PLACEMENT_CROSSING a few questions to the solid for each vertex; memory as well. With
 /// crossings, vertices that lie at one place are one, and triangles without area are dropped. Where the solid
 /// has no thickness at a sample, more than two triangles may then meet on an edge.
 ///
@@ -262,7 +262,7 @@ pub unsafe extern "C" fn leafless_octree_surface(
 /// - Errors: LEAFLESS_E_ARGUMENT if the depth is 20, which leaves no level for corners, if a field of
 ///   `surface` is none of its enum, or is set though it is not used, or if the frame lies so far from the
 ///   origin that doubles cannot tell its corners apart; LEAFLESS_E_NOT_SAMPLED if the solid cannot decide
-///   points; LEAFLESS_E_FRAME for the solid of leafless_octree_as_solid, which has samples of its own, and
+///   points; LEAFLESS_E_FRAME for the solid of leafless_solid_from_octree, which has samples of its own, and
 ///   for others that belong to another frame; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
 ///   or triangles; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
 ///   LEAFLESS_E_NO_MEMORY.
@@ -311,10 +311,10 @@ pub unsafe extern "C" fn leafless_solid_surface(
 /// Else as leafless_octree_surface; vertices that lie at one place are one, and there more than two triangles
 /// may meet on an edge. Time is linear in the samples, and in the surface.
 ///
-/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_new_volume; `options`, one struct or NULL, of
+/// - Buffers: `band`, one struct, or NULL, as for leafless_solid_from_volume; `options`, one struct or NULL, of
 ///   which limits do not matter; `mesh`, one pointer.
 /// - Result: `*mesh`, the same for any number of threads, where the file says that the volume lies.
-/// - Errors: those of leafless_solid_new_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the origin
+/// - Errors: those of leafless_solid_from_volume; LEAFLESS_E_ARGUMENT if the volume lies so far from the origin
 ///   that doubles cannot tell its voxels apart; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices
 ///   or triangles.
 /// - Ownership: `volume` stays as it is; give `*mesh` back with leafless_mesh_free.

@@ -195,7 +195,7 @@ pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_make(
+pub unsafe extern "C" fn leafless_tridexel_build(
     solid: *const leafless_solid,
     frame: *const leafless_frame,
     rule: Number<leafless_rule>,

@@ -14,7 +14,7 @@ use leafless::memory;
 /// Intervals of rays along one axis, as leafless_tridexel_copy hands them out.
 #[derive(Clone, Copy)]
 #[repr(C)]
-pub struct leafless_ray_arrays {
+pub struct leafless_tridexel_arrays {
     /// The axis that the rays run along: 0 for x, 1 for y, 2 for z.
     pub axis: u32,
     /// Zero.
@@ -62,7 +62,7 @@ struct Arrays<'a> {
     materials: &'a [u32],
 }
 
-impl leafless_ray_arrays {
+impl leafless_tridexel_arrays {
     /// # Safety
     /// As [`slice`] for all arrays.
     unsafe fn checked<'a>(&self, frame: &'a Frame) -> Result<Arrays<'a>, Failure> {
@@ -163,7 +163,7 @@ impl Arrays<'_> {
 pub unsafe extern "C" fn leafless_tridexel_new(
     frame: *const leafless_frame,
     format: *const leafless_tridexel_format,
-    rays: *const leafless_ray_arrays,
+    rays: *const leafless_tridexel_arrays,
     count: u64,
     options: *const leafless_options,
     tridexel: *mut *mut leafless_tridexel,

@@ -185,12 +185,12 @@ pub unsafe extern "C" fn leafless_tridexel_editor_combine(
 }
 
 /// As leafless_tridexel_editor_combine, with a solid: LEAFLESS_OPERATION_DIFFERENCE is one step of a tool. The
-/// solid's intervals are those of leafless_tridexel_make under LEAFLESS_RULE_SAMPLED, in the directions and with the
+/// solid's intervals are those of leafless_tridexel_build under LEAFLESS_RULE_SAMPLED, in the directions and with the
 /// contents of the editor. Only rays through the solid's bounding box are looked at.
 ///
 /// - Buffers: `options`, one struct or NULL; `change`, one struct or NULL. `operation` is a leafless_operation.
 /// - Result: the editor is changed; `*change`, what was removed and added.
-/// - Errors: as leafless_tridexel_make, and nothing is changed; as leafless_tridexel_editor_combine.
+/// - Errors: as leafless_tridexel_build, and nothing is changed; as leafless_tridexel_editor_combine.
 /// - Ownership: nothing is kept of the solid.
 /// - Threads: any; LEAFLESS_E_BUSY while another call uses the editor; uses as many as `options` says.
 /// - Untrusted input: any solid.

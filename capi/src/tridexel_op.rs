@@ -83,7 +83,7 @@ pub unsafe extern "C" fn leafless_tridexel_complement(
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_to_format(
+pub unsafe extern "C" fn leafless_tridexel_with_format(
     tridexel: *const leafless_tridexel,
     format: *const leafless_tridexel_format,
     options: *const leafless_options,

@@ -21,16 +21,16 @@ use leafless_dexel_surface_method::*;
 pub enum leafless_dexel_surface_method {
     /// Marching cubes: a vertex where a ray crosses the surface between two neighbouring centres of cells. Edges and
     /// corners of the solid are cut off by up to a cell.
-    LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES = 0,
+    LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES = 0,
     /// Dual contouring: a vertex for each sheet of the surface in a cube between eight centres, where the planes at its
     /// crossings fit best. Edges and corners of the solid stay, if the model stores normals.
-    LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING = 1,
+    LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING = 1,
 }
 
 enumeration! {
     leafless_dexel_surface_method => leafless_dexel_surface_method {
-        LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES => LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES,
-        LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING => LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING,
+        LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES => LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES,
+        LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING => LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING,
     }
 }
 
@@ -89,7 +89,7 @@ pub struct leafless_long_voxel {
     pub material: u32,
     /// The material's colour: red, green, blue and opacity, 0 to 255.
     pub colour: [u8; 4],
-    /// LEAFLESS_VOXEL_INSIDE or LEAFLESS_VOXEL_BOUNDARY.
+    /// LEAFLESS_VOXEL_KIND_INSIDE or LEAFLESS_VOXEL_KIND_BOUNDARY.
     pub kind: leafless_voxel_kind,
 }
 
@@ -101,8 +101,8 @@ impl From<&LongVoxel> for leafless_long_voxel {
             material: voxel.material,
             colour: voxel.colour,
             kind: match voxel.kind {
-                VoxelKind::Inside => LEAFLESS_VOXEL_INSIDE,
-                _ => LEAFLESS_VOXEL_BOUNDARY,
+                VoxelKind::Inside => LEAFLESS_VOXEL_KIND_INSIDE,
+                _ => LEAFLESS_VOXEL_KIND_BOUNDARY,
             },
         }
     }
@@ -116,7 +116,7 @@ impl From<&LongVoxel> for leafless_long_voxel {
 /// because the model has no rays along an axis or its directions disagree, the crossing lies half-way between the two
 /// centres; the report counts such places.
 ///
-/// O(rays + intervals + octree + mesh), with the octree of leafless_tridexel_to_octree.
+/// O(rays + intervals + octree + mesh), with the octree of leafless_octree_from_tridexel.
 ///
 /// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `mesh`, one pointer.
 ///   `method` is a leafless_dexel_surface_method.
@@ -138,8 +138,8 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
     guard(|| unsafe {
         let model = shared(tridexel, "tridexel")?.model.view();
         let extract = match method.known("method")? {
-            LEAFLESS_DEXEL_SURFACE_MARCHING_CUBES => marching_cubes_dexels,
-            LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING => dual_contouring_dexels,
+            LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES => marching_cubes_dexels,
+            LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING => dual_contouring_dexels,
         };
         let report = if report.is_null() { None } else { Some(out(report, "report")?) };
         let mesh = out(mesh, "mesh")?;
@@ -161,7 +161,7 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
 /// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
 ///   where its depth is not your own choice.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_to_octree(
+pub unsafe extern "C" fn leafless_octree_from_tridexel(
     tridexel: *const leafless_tridexel,
     options: *const leafless_options,
     octree: *mut *mut leafless_octree,
@@ -186,7 +186,7 @@ pub unsafe extern "C" fn leafless_tridexel_to_octree(
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model; a damaged one is refused (LEAFLESS_E_DAMAGED).
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_tridexel_as_solid(
+pub unsafe extern "C" fn leafless_solid_from_tridexel(
     tridexel: *const leafless_tridexel,
     is_truth: bool,
     options: *const leafless_options,

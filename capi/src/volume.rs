@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 
 /// A three-dimensional bitmap or array of samples, and where it lies. Each sample stands for the closed box
 /// around it, its voxel: on each axis voxel i reaches from corner + i·spacing to corner + (i + 1)·spacing.
-/// leafless_solid_new_volume makes a solid of those whose samples lie in a band.
+/// leafless_solid_from_volume makes a solid of those whose samples lie in a band.
 ///
 /// Immutable: all its functions may be called at once from any number of threads, but leafless_volume_free
 /// needs the reference that it gives back for itself.
@@ -42,32 +42,32 @@ pub struct leafless_volume {
 #[repr(u32)]
 pub enum leafless_sample_type {
     /// uint8_t.
-    LEAFLESS_SAMPLE_U8 = 0,
+    LEAFLESS_SAMPLE_TYPE_U8 = 0,
     /// uint16_t.
-    LEAFLESS_SAMPLE_U16 = 1,
+    LEAFLESS_SAMPLE_TYPE_U16 = 1,
     /// int16_t, as the Hounsfield units of tomography.
-    LEAFLESS_SAMPLE_I16 = 2,
+    LEAFLESS_SAMPLE_TYPE_I16 = 2,
     /// float. One that is not a number is never inside.
-    LEAFLESS_SAMPLE_F32 = 3,
+    LEAFLESS_SAMPLE_TYPE_F32 = 3,
     /// Bits with the values 0 and 1, in uint64_t: each row along x begins with a word of its own, and the bit
     /// of the sample (x, y, z) is bit x mod 64 of word x / 64 + w (y + ny z), where w = ⌈nx / 64⌉. Other bits
     /// of a row's last word do not count. leafless_octree_bitmap writes the same.
-    LEAFLESS_SAMPLE_BITS = 4,
+    LEAFLESS_SAMPLE_TYPE_BITS = 4,
     /// Bits in bytes, eight to a byte, the lowest first: each row along x begins with a byte of its own. They
-    /// become LEAFLESS_SAMPLE_BITS.
-    LEAFLESS_SAMPLE_BITS_IN_BYTES = 5,
+    /// become LEAFLESS_SAMPLE_TYPE_BITS.
+    LEAFLESS_SAMPLE_TYPE_BITS_IN_BYTES = 5,
     /// int8_t. It becomes int16_t.
-    LEAFLESS_SAMPLE_I8 = 6,
+    LEAFLESS_SAMPLE_TYPE_I8 = 6,
     /// int32_t. It becomes float, and so do all that follow.
-    LEAFLESS_SAMPLE_I32 = 7,
+    LEAFLESS_SAMPLE_TYPE_I32 = 7,
     /// uint32_t.
-    LEAFLESS_SAMPLE_U32 = 8,
+    LEAFLESS_SAMPLE_TYPE_U32 = 8,
     /// int64_t.
-    LEAFLESS_SAMPLE_I64 = 9,
+    LEAFLESS_SAMPLE_TYPE_I64 = 9,
     /// uint64_t.
-    LEAFLESS_SAMPLE_U64 = 10,
+    LEAFLESS_SAMPLE_TYPE_U64 = 10,
     /// double.
-    LEAFLESS_SAMPLE_F64 = 11,
+    LEAFLESS_SAMPLE_TYPE_F64 = 11,
 }
 
 /// The formats of volume files.
@@ -127,23 +127,23 @@ pub struct leafless_volume_info {
 }
 
 pub(super) const TYPES: [(leafless_sample_type, SampleKind); 12] = [
-    (LEAFLESS_SAMPLE_U8, SampleKind::U8),
-    (LEAFLESS_SAMPLE_U16, SampleKind::U16),
-    (LEAFLESS_SAMPLE_I16, SampleKind::I16),
-    (LEAFLESS_SAMPLE_F32, SampleKind::F32),
-    (LEAFLESS_SAMPLE_BITS_IN_BYTES, SampleKind::Bit),
-    (LEAFLESS_SAMPLE_BITS, SampleKind::Bit),
-    (LEAFLESS_SAMPLE_I8, SampleKind::I8),
-    (LEAFLESS_SAMPLE_I32, SampleKind::I32),
-    (LEAFLESS_SAMPLE_U32, SampleKind::U32),
-    (LEAFLESS_SAMPLE_I64, SampleKind::I64),
-    (LEAFLESS_SAMPLE_U64, SampleKind::U64),
-    (LEAFLESS_SAMPLE_F64, SampleKind::F64),
+    (LEAFLESS_SAMPLE_TYPE_U8, SampleKind::U8),
+    (LEAFLESS_SAMPLE_TYPE_U16, SampleKind::U16),
+    (LEAFLESS_SAMPLE_TYPE_I16, SampleKind::I16),
+    (LEAFLESS_SAMPLE_TYPE_F32, SampleKind::F32),
+    (LEAFLESS_SAMPLE_TYPE_BITS_IN_BYTES, SampleKind::Bit),
+    (LEAFLESS_SAMPLE_TYPE_BITS, SampleKind::Bit),
+    (LEAFLESS_SAMPLE_TYPE_I8, SampleKind::I8),
+    (LEAFLESS_SAMPLE_TYPE_I32, SampleKind::I32),
+    (LEAFLESS_SAMPLE_TYPE_U32, SampleKind::U32),
+    (LEAFLESS_SAMPLE_TYPE_I64, SampleKind::I64),
+    (LEAFLESS_SAMPLE_TYPE_U64, SampleKind::U64),
+    (LEAFLESS_SAMPLE_TYPE_F64, SampleKind::F64),
 ];
 
 /// The type of a file's samples.
 pub(super) fn type_of(kind: SampleKind) -> leafless_sample_type {
-    TYPES.iter().find(|(_, known)| *known == kind).map_or(LEAFLESS_SAMPLE_U8, |(named, _)| *named)
+    TYPES.iter().find(|(_, known)| *known == kind).map_or(LEAFLESS_SAMPLE_TYPE_U8, |(named, _)| *named)
 }
 
 impl leafless_volume {
@@ -162,11 +162,11 @@ impl leafless_volume {
 
     fn sample_type(&self) -> leafless_sample_type {
         match self.samples {
-            Samples::Bits(_) => LEAFLESS_SAMPLE_BITS,
-            Samples::U8(_) => LEAFLESS_SAMPLE_U8,
-            Samples::U16(_) => LEAFLESS_SAMPLE_U16,
-            Samples::I16(_) => LEAFLESS_SAMPLE_I16,
-            Samples::F32(_) => LEAFLESS_SAMPLE_F32,
+            Samples::Bits(_) => LEAFLESS_SAMPLE_TYPE_BITS,
+            Samples::U8(_) => LEAFLESS_SAMPLE_TYPE_U8,
+            Samples::U16(_) => LEAFLESS_SAMPLE_TYPE_U16,
+            Samples::I16(_) => LEAFLESS_SAMPLE_TYPE_I16,
+            Samples::F32(_) => LEAFLESS_SAMPLE_TYPE_F32,
         }
     }
 
@@ -350,7 +350,7 @@ pub unsafe extern "C" fn leafless_volume_range(
         })?;
         let [lower, upper] = match found {
             Some(found) => found,
-            None if volume.sample_type() == LEAFLESS_SAMPLE_BITS => [0.0, 1.0],
+            None if volume.sample_type() == LEAFLESS_SAMPLE_TYPE_BITS => [0.0, 1.0],
             None => [f64::NEG_INFINITY, f64::INFINITY],
         };
         range.write(Interval::new(lower, upper).unwrap_or(Interval::ALL).into())
@@ -379,7 +379,7 @@ pub unsafe extern "C" fn leafless_volume_range(
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any volume.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_new_volume(
+pub unsafe extern "C" fn leafless_solid_from_volume(
     volume: *const leafless_volume,
     band: *const leafless_interval,
     options: *const leafless_options,

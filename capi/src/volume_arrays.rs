@@ -94,7 +94,7 @@ impl Layout {
         if self.raw.skip > found {
             return Err(VolumeFileError::Length { expected: self.raw.skip, found }.into());
         }
-        if self.sample_type != LEAFLESS_SAMPLE_BITS {
+        if self.sample_type != LEAFLESS_SAMPLE_TYPE_BITS {
             return read_raw_volume(bytes, &self.raw);
         }
         let [_, y, z] = self.raw.grid.extents().map(u64::from);
@@ -136,11 +136,11 @@ impl Layout {
         // SAFETY: the caller's promise.
         let samples: Samples<'static> = unsafe {
             match self.sample_type {
-                LEAFLESS_SAMPLE_BITS => Samples::Bits(elements::<u64>(bytes)?.into()),
-                LEAFLESS_SAMPLE_U8 => elements::<u8>(bytes)?.into(),
-                LEAFLESS_SAMPLE_U16 => elements::<u16>(bytes)?.into(),
-                LEAFLESS_SAMPLE_I16 => elements::<i16>(bytes)?.into(),
-                LEAFLESS_SAMPLE_F32 => elements::<f32>(bytes)?.into(),
+                LEAFLESS_SAMPLE_TYPE_BITS => Samples::Bits(elements::<u64>(bytes)?.into()),
+                LEAFLESS_SAMPLE_TYPE_U8 => elements::<u8>(bytes)?.into(),
+                LEAFLESS_SAMPLE_TYPE_U16 => elements::<u16>(bytes)?.into(),
+                LEAFLESS_SAMPLE_TYPE_I16 => elements::<i16>(bytes)?.into(),
+                LEAFLESS_SAMPLE_TYPE_F32 => elements::<f32>(bytes)?.into(),
                 _ => {
                     let problem =
                         "must be U8, U16, I16, F32 or BITS for samples that are used where they lie";
@@ -170,7 +170,7 @@ impl Layout {
 /// Makes a volume of an array of samples without a header, in memory or in a file.
 ///
 /// With LEAFLESS_ACCESS_COPY the samples are copied: O(n); bytes may lie on any address. With LEAFLESS_ACCESS_MAP, which
-/// is for bytes only, they are used where they lie: O(1). The layout's type is then LEAFLESS_SAMPLE_U8, _U16, _I16, _F32
+/// is for bytes only, they are used where they lie: O(1). The layout's type is then LEAFLESS_SAMPLE_TYPE_U8, _U16, _I16, _F32
 /// or _BITS, its byte order is this machine's, it has nothing to skip, and the bytes are aligned for their type.
 /// LEAFLESS_ACCESS_MAP_VERIFIED is the same: any samples are a volume.
 ///

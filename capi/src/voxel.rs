@@ -6,8 +6,8 @@ use super::channel_fill::leafless_criterion;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame_of, leafless_frame};
 use super::mesh::leafless_mesh;
-use super::number::{Number, enumeration};
-use super::octree::{leafless_octree, settled_tag};
+use super::number::{Byte, Number, enumeration};
+use super::octree::{leafless_octree, leafless_tag, settled_tag};
 use super::status::leafless_status;
 use leafless::Octree;
 use leafless::attribute::{Attribute, Detail};
@@ -19,27 +19,27 @@ use leafless::{Cell, Frame, memory};
 #[repr(u8)]
 pub enum leafless_voxel_kind {
     /// It lies outside of the solid.
-    LEAFLESS_VOXEL_OUTSIDE = 0,
+    LEAFLESS_VOXEL_KIND_OUTSIDE = 0,
     /// It lies inside.
-    LEAFLESS_VOXEL_INSIDE = 1,
+    LEAFLESS_VOXEL_KIND_INSIDE = 1,
     /// The boundary of the solid goes through it, or along it.
-    LEAFLESS_VOXEL_BOUNDARY = 2,
+    LEAFLESS_VOXEL_KIND_BOUNDARY = 2,
     /// It consists of the smaller voxels that follow it.
-    LEAFLESS_VOXEL_REFINED = 3,
+    LEAFLESS_VOXEL_KIND_REFINED = 3,
 }
 
 /// Which voxels are boundary voxels.
 #[repr(u32)]
 pub enum leafless_voxel_boundary {
     /// Cells of the boundary depth that are cut further there, and cells that are not decided.
-    LEAFLESS_VOXEL_BOUNDARY_UNDECIDED = 0,
+    LEAFLESS_VOXEL_BOUNDARY_CUT = 0,
     /// These, and inside cells of the boundary depth that touch an outside cell with a face.
     LEAFLESS_VOXEL_BOUNDARY_TOUCHING = 1,
 }
 
 enumeration! {
     leafless_voxel_boundary => VoxelBoundary {
-        LEAFLESS_VOXEL_BOUNDARY_UNDECIDED => VoxelBoundary::Undecided,
+        LEAFLESS_VOXEL_BOUNDARY_CUT => VoxelBoundary::Undecided,
         LEAFLESS_VOXEL_BOUNDARY_TOUCHING => VoxelBoundary::Touching,
     }
 }
@@ -140,7 +140,7 @@ pub unsafe extern "C" fn leafless_octree_voxels(
     lattice: *mut leafless_frame,
     codes: *mut u64,
     levels: *mut u8,
-    kinds: *mut u8,
+    kinds: *mut Byte<leafless_voxel_kind>,
     corners_model: *mut f64,
     values: *mut f64,
     capacity: u64,
@@ -160,7 +160,7 @@ pub unsafe extern "C" fn leafless_octree_voxels(
         let (codes, levels, kinds, corners, values) = (
             present(codes, room(1), "codes")?,
             present(levels, room(1), "levels")?,
-            present(kinds, room(1), "kinds")?,
+            present(kinds.cast::<u8>(), room(1), "kinds")?,
             present(corners_model, room(3), "corners_model")?,
             present(values, room(components as u64), "values")?,
         );
@@ -210,12 +210,12 @@ pub(super) unsafe fn records<'a>(
     lattice: &Frame,
     codes: *const u64,
     levels: *const u8,
-    kinds: *const u8,
+    kinds: *const Byte<leafless_voxel_kind>,
     count: u64,
 ) -> Result<VoxelRecordsRef<'a>, Failure> {
     // SAFETY: the caller's promise.
     let (codes, levels, kinds) = unsafe {
-        (slice(codes, count, "codes")?, slice(levels, count, "levels")?, slice(kinds, count, "kinds")?)
+        (slice(codes, count, "codes")?, slice(levels, count, "levels")?, slice(kinds.cast(), count, "kinds")?)
     };
     Ok(VoxelRecordsRef::new(lattice, codes, levels, kinds, 0, &[])?)
 }
@@ -234,7 +234,7 @@ pub unsafe extern "C" fn leafless_voxels_find(
     lattice: *const leafless_frame,
     codes: *const u64,
     levels: *const u8,
-    kinds: *const u8,
+    kinds: *const Byte<leafless_voxel_kind>,
     count: u64,
     cell: *const u32,
     level: u32,
@@ -242,8 +242,11 @@ pub unsafe extern "C" fn leafless_voxels_find(
 ) -> leafless_status {
     guard(|| unsafe {
         let lattice = frame_of(lattice, "lattice")?;
-        let (codes, levels, kinds) =
-            (slice(codes, count, "codes")?, slice(levels, count, "levels")?, slice(kinds, count, "kinds")?);
+        let (codes, levels, kinds) = (
+            slice(codes, count, "codes")?,
+            slice(levels, count, "levels")?,
+            slice(kinds.cast(), count, "kinds")?,
+        );
         let cell = Cell { level: level.try_into().unwrap_or(u8::MAX), at: array(cell, "cell")? };
         let index = out(index, "index")?;
         let found = VoxelRecordsRef::unchecked(&lattice, codes, levels, kinds).containing(cell);
@@ -269,7 +272,7 @@ pub unsafe extern "C" fn leafless_voxels_order(
     lattice: *const leafless_frame,
     codes: *const u64,
     levels: *const u8,
-    kinds: *const u8,
+    kinds: *const Byte<leafless_voxel_kind>,
     count: u64,
     from: *const f64,
     is_eye: bool,
@@ -313,14 +316,14 @@ pub unsafe extern "C" fn leafless_voxels_moved(
     lattice: *const leafless_frame,
     codes: *const u64,
     levels: *const u8,
-    kinds: *const u8,
+    kinds: *const Byte<leafless_voxel_kind>,
     count: u64,
     axes: *const i32,
     offset_cells: *const i32,
     options: *const leafless_options,
     moved_codes: *mut u64,
     moved_levels: *mut u8,
-    moved_kinds: *mut u8,
+    moved_kinds: *mut Byte<leafless_voxel_kind>,
     sources: *mut u64,
     capacity: u64,
     moved_count: *mut u64,
@@ -340,7 +343,7 @@ pub unsafe extern "C" fn leafless_voxels_moved(
         let (codes, levels, kinds, sources) = (
             present(moved_codes, capacity, "moved_codes")?,
             present(moved_levels, capacity, "moved_levels")?,
-            present(moved_kinds, capacity, "moved_kinds")?,
+            present(moved_kinds.cast::<u8>(), capacity, "moved_kinds")?,
             present(sources, capacity, "sources")?,
         );
         let moved_count = out(moved_count, "moved_count")?;
@@ -386,7 +389,7 @@ pub unsafe extern "C" fn leafless_voxels_triangles(
     lattice: *const leafless_frame,
     codes: *const u64,
     levels: *const u8,
-    kinds: *const u8,
+    kinds: *const Byte<leafless_voxel_kind>,
     count: u64,
     mesh: *const leafless_mesh,
     options: *const leafless_options,
@@ -433,15 +436,15 @@ pub unsafe extern "C" fn leafless_octree_from_voxels(
     lattice: *const leafless_frame,
     codes: *const u64,
     levels: *const u8,
-    kinds: *const u8,
+    kinds: *const Byte<leafless_voxel_kind>,
     count: u64,
-    boundary: u32,
+    boundary: Byte<leafless_tag>,
     options: *const leafless_options,
     octree: *mut *mut leafless_octree,
 ) -> leafless_status {
     guard(|| unsafe {
         let records = records(&frame_of(lattice, "lattice")?, codes, levels, kinds, count)?;
-        let boundary = settled_tag(boundary.into(), "boundary")?;
+        let boundary = settled_tag(boundary.0.into(), "boundary")?;
         let to = out(octree, "octree")?;
         let octree: Octree = controlled(options, |control| records.to_octree(boundary, control))?;
         to.write(handle(leafless_octree { octree }))

@@ -39,7 +39,7 @@ static int32_t temperatures(void *ctx, const double *points, uint64_t count, dou
 
 /* It rises along x. So its ends are at the faces of a box; what is rounded is less than a millionth. */
 static int32_t temperature_range(void *ctx, const double *min, const double *max, leafless_value_range *range) {
-    range->kind = LEAFLESS_RANGE_WITHIN;
+    range->kind = LEAFLESS_RANGE_KIND_WITHIN;
     range->values[0].lower = temperature((const gradient *)ctx, min[0]) - 1e-6;
     range->values[0].upper = temperature((const gradient *)ctx, max[0]) + 1e-6;
     return 0;
@@ -68,10 +68,10 @@ static leafless_status attach(leafless_octree **octree, const leafless_attribute
 static leafless_status part(const leafless_solid *solid, int number, const leafless_attribute *heat,
                             leafless_octree **octree) {
     const double value = number;
-    leafless_channel_fill_options material = {.struct_size = sizeof material, .scalar = LEAFLESS_SCALAR_U8};
+    leafless_channel_fill_options material = {.struct_size = sizeof material, .scalar = LEAFLESS_SCALAR_TYPE_U8};
     /* A cell of the channel is fine enough if the temperature varies by no more than three degrees in it. */
     leafless_channel_fill_options degrees = {.struct_size = sizeof degrees,
-                                             .scalar = LEAFLESS_SCALAR_F32,
+                                             .scalar = LEAFLESS_SCALAR_TYPE_F32,
                                              .criterion = LEAFLESS_CRITERION_RANGE,
                                              .tolerance = 3.0};
     leafless_attribute *one = NULL;

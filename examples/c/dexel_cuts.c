@@ -87,7 +87,7 @@ int main(int argc, char **argv) {
     double removed = 0;
     int step;
     leafless_status s = leafless_solid_new_box(low, high, &box);
-    if (!s) s = leafless_tridexel_make(box, &frame, LEAFLESS_RULE_SAMPLED, &format, NULL, &block);
+    if (!s) s = leafless_tridexel_build(box, &frame, LEAFLESS_RULE_SAMPLED, &format, NULL, &block);
     if (!s) s = leafless_tridexel_editor_new(block, &editor);
     for (step = 0; !s && step <= STEPS; step++) {
         s = cut(editor, step, &removed);
@@ -105,7 +105,7 @@ int main(int argc, char **argv) {
     if (!s && argc > 1) {
         const leafless_sink file = leafless_to_file(argv[1]);
         leafless_mesh *mesh = NULL;
-        s = leafless_tridexel_surface(part, LEAFLESS_DEXEL_SURFACE_DUAL_CONTOURING, NULL, NULL, &mesh);
+        s = leafless_tridexel_surface(part, LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING, NULL, NULL, &mesh);
         if (!s) s = leafless_mesh_write(mesh, NULL, &file);
         leafless_mesh_free(mesh);
     }

@@ -22,7 +22,7 @@ static double clamped(double x) {
 
 static leafless_status scan(leafless_volume **volume) {
     const leafless_volume_layout layout = {.struct_size = sizeof layout,
-                                           .sample_type = LEAFLESS_SAMPLE_U8,
+                                           .sample_type = LEAFLESS_SAMPLE_TYPE_U8,
                                            .extents = {NX, NY, NZ},
                                            .spacing_model = {0.5, 0.5, 0.5}};
     /* The library uses the samples where they lie; they stay until the program ends. */
@@ -70,7 +70,7 @@ static leafless_status frame_of(const leafless_volume *volume, leafless_frame *f
 static leafless_status print_surface(const char *method, const leafless_mesh *mesh) {
     leafless_mesh_report report;
     double area, volume;
-    leafless_status s = leafless_mesh_describe(mesh, &report);
+    leafless_status s = leafless_mesh_inspect(mesh, &report);
     if (!s) s = leafless_mesh_area(mesh, &area);
     if (!s) s = leafless_mesh_volume(mesh, &volume);
     if (!s) {
@@ -86,7 +86,7 @@ int main(int argc, char **argv) {
     const leafless_source given = leafless_from_file(argc > 1 ? argv[1] : "", LEAFLESS_ACCESS_COPY);
     const leafless_sink file = leafless_to_file(PATH);
     const leafless_interval band = {argc > 2 ? atof(argv[2]) : 0, INFINITY};
-    leafless_surface_options shrink = {.struct_size = sizeof shrink, .method = LEAFLESS_SURFACE_SHRINK};
+    leafless_surface_options shrink = {.struct_size = sizeof shrink, .method = LEAFLESS_SURFACE_METHOD_SHRINK};
     leafless_volume *volume = NULL;
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
@@ -97,7 +97,7 @@ int main(int argc, char **argv) {
     if (!s) s = print_volume(volume);
     if (!s) s = frame_of(volume, &frame);
     /* Without a band the threshold is the middle of the samples' type. */
-    if (!s) s = leafless_solid_new_volume(volume, argc > 2 ? &band : NULL, NULL, &solid);
+    if (!s) s = leafless_solid_from_volume(volume, argc > 2 ? &band : NULL, NULL, &solid);
     /* From here on it is a solid as any other: it could be joined with others, or moved. */
     if (!s) s = leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &octree);
     if (!s) s = leafless_octree_statistics(octree, &statistics);

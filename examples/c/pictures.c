@@ -75,7 +75,7 @@ static leafless_status surface(const leafless_solid *solid, const leafless_frame
     leafless_status s = look_from(30, 35, &shot);
     shot.clip_planes = cut;
     shot.clip_plane_count = 1;
-    if (!s) s = leafless_layer_new_solid(solid, frame, NULL, &layers[0]);
+    if (!s) s = leafless_layer_from_solid(solid, frame, NULL, &layers[0]);
     if (!s) s = leafless_layer_new_lines(axis, 1, 2, red, &layers[1]);
     if (!s) s = take(&shot, layers, 2);
     if (!s) s = save("surface.png");
@@ -93,9 +93,9 @@ static leafless_status section(const leafless_octree *octree) {
     leafless_legend_box covered;
     leafless_shot shot;
     leafless_status s = look_from(0, 0, &shot);
-    if (!s) s = leafless_layer_new_slice(octree, plane, NULL, &layer);
+    if (!s) s = leafless_layer_from_octree_slice(octree, plane, NULL, &layer);
     if (!s) s = take(&shot, &layer, 1);
-    if (!s) s = leafless_picture_draw_names(colours, WIDTH, HEIGHT, NULL, 0, tags, 3, LEAFLESS_LEGEND_BOTTOM, &covered);
+    if (!s) s = leafless_picture_draw_names(colours, WIDTH, HEIGHT, NULL, 0, tags, 3, LEAFLESS_LEGEND_SIDE_BOTTOM, &covered);
     if (!s) s = save("section.png");
     leafless_layer_free(layer);
     return s;
@@ -152,7 +152,7 @@ static leafless_status volume(const leafless_octree *octree, const leafless_soli
     if (!s) s = look_from(30, 25, &shot);
     if (!s) s = take(&shot, &layer, 1);
     if (!s) {
-        s = leafless_picture_draw_bar(colours, WIDTH, HEIGHT, "heat", 4, &transfer, LEAFLESS_LEGEND_RIGHT, &covered);
+        s = leafless_picture_draw_bar(colours, WIDTH, HEIGHT, "heat", 4, &transfer, LEAFLESS_LEGEND_SIDE_RIGHT, &covered);
     }
     if (!s) s = save("volume.png");
     leafless_layer_free(layer);

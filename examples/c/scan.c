@@ -55,11 +55,11 @@ static leafless_status dome(leafless_mesh **mesh) {
     }
     /* The library reads the host's own arrays during this call, and what lies between is left alone. */
     arrays.vertices = points[0].place;
-    arrays.vertex_type = LEAFLESS_VERTEX_F32;
+    arrays.vertex_type = LEAFLESS_VERTEX_TYPE_F32;
     arrays.vertex_count = sizeof points / sizeof *points;
     arrays.vertex_stride = sizeof *points;
     arrays.indices = facets[0].corners;
-    arrays.index_type = LEAFLESS_INDEX_U16;
+    arrays.index_type = LEAFLESS_INDEX_TYPE_U16;
     arrays.triangle_count = count;
     arrays.triangle_stride = sizeof *facets;
     return leafless_mesh_new(&arrays, mesh);
@@ -70,7 +70,7 @@ static leafless_status print_report(const leafless_mesh *mesh) {
     leafless_mesh_report report;
     leafless_mesh_defect worst[WORST];
     uint64_t count = 0, i;
-    leafless_status s = leafless_mesh_describe(mesh, &report);
+    leafless_status s = leafless_mesh_inspect(mesh, &report);
     if (!s) s = leafless_mesh_defects(mesh, WORST, worst, WORST, &count);
     if (s) {
         return s;
@@ -113,7 +113,7 @@ int main(int argc, char **argv) {
        holds for each point of a cell; near the holes more cells stay undecided than the surface cuts. */
     if (!s) s = leafless_mesh_bounds(mesh, min, max);
     if (!s) s = leafless_frame_around(min, max, DEPTH, &frame);
-    if (!s) s = leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid);
+    if (!s) s = leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &solid);
     if (!s) s = leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &certified);
     if (!s) s = leafless_octree_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, &sampled);
     if (!s) s = leafless_octree_statistics(certified, &bounds);

@@ -46,7 +46,7 @@ int main(void) {
     if (leafless_mesh_new(&arrays, &mesh) != LEAFLESS_OK ||
         leafless_mesh_bounds(mesh, min, max) != LEAFLESS_OK ||
         leafless_frame_around(min, max, 8, &frame) != LEAFLESS_OK ||
-        leafless_solid_new_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &wedge_solid) != LEAFLESS_OK ||
+        leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &wedge_solid) != LEAFLESS_OK ||
         leafless_solid_new_ball(centre, 5.0, &hole_solid) != LEAFLESS_OK) {
         goto failed;
     }

@@ -82,7 +82,7 @@ void picture(const octree &part) {
     leafless_shot shot = LEAFLESS_INIT(leafless_shot);
     shot.width = 320, shot.height = 240;
     shot.camera = leafless::camera_fitted(seen, 30, 35, 30, 320.0 / 240.0);
-    const leafless::layer surface = leafless::layer::new_octree(part);
+    const leafless::layer surface = leafless::layer::from_octree(part);
     std::vector<std::uint8_t> colours(std::size_t{4} * shot.width * shot.height);
     leafless::picture_render(shot, leafless::refs(surface), nullptr, colours, leafless::span<float>());
     leafless::picture_write(colours, shot.width, shot.height, leafless_to_file("part.png"));
@@ -101,7 +101,7 @@ void ask(const char *path) {
 int make(const std::string &self) {
     const solid expression = solid::new_box(LOW, HIGH);
     const solid host = leafless::solid_of(classify, LEAFLESS_EXTERIOR_EMPTY);
-    const solid triangles = solid::new_mesh(triangulation(), LEAFLESS_FILL_NON_ZERO);
+    const solid triangles = solid::from_mesh(triangulation(), LEAFLESS_FILL_NON_ZERO);
     print("as an expression", expression.measure(FRAME, 1e-3, 0).volume_model);
     print("as a function", host.measure(FRAME, 1e-3, 0).volume_model);
     print("as a triangulation", triangles.measure(FRAME, 1e-3, 0).volume_model);
@@ -111,11 +111,11 @@ int make(const std::string &self) {
     part.write(leafless_to_file("part.lfl"));
     std::fflush(stdout);
     if (std::system(("\"" + self + "\" part.lfl").c_str()) != 0) return 1;
-    poses(part.as_solid());
+    poses(solid::from_octree(part));
 
     leafless::lazy lazy = leafless::lazy::make(expression, FRAME);
     leafless_zone seen = LEAFLESS_INIT(leafless_zone);
-    seen.kind = LEAFLESS_ZONE_BOX;
+    seen.kind = LEAFLESS_ZONE_KIND_BOX;
     seen.min_model[0] = 19, seen.min_model[1] = -1, seen.min_model[2] = -1;
     seen.max_model[0] = 21, seen.max_model[1] = 1, seen.max_model[2] = 1;
     lazy.refine(&seen, 8);
