@@ -168,7 +168,7 @@ static void no_indices(void) {
     float single[12][3][3];
     leafless_mesh_arrays arrays;
     leafless_mesh *mesh = NULL;
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     double volume;
     int t, corner, k;
     for (t = 0; t < 12; t++) {

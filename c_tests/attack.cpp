@@ -158,7 +158,7 @@ void ask(const leafless_attribute *attribute, uint32_t threads) {
         const leafless_status status = leafless_channel_fill(attribute, &frame, &fill, &options, &channel);
         CHECK(is_expected(status) && (channel != nullptr) == (status == LEAFLESS_OK));
         if (channel != nullptr) {
-            leafless_channel_summary summary;
+            leafless_channel_summary summary = LEAFLESS_INIT(leafless_channel_summary);
             OK(leafless_channel_check(channel));
             OK(leafless_channel_summarise(channel, octree, nullptr, nullptr, &options, &summary));
             leafless_channel_free(channel);
@@ -320,7 +320,7 @@ void editor_in_threads() {
                 leafless_solid *ball = nullptr;
                 OK(leafless_solid_new_ball(centre, 0.15, &ball));
                 leafless_tridexel *frozen = nullptr;
-                leafless_tridexel_info asked;
+                leafless_tridexel_info asked = LEAFLESS_INIT(leafless_tridexel_info);
                 const leafless_status statuses[] = {
                     leafless_tridexel_editor_combine_solid(editor, LEAFLESS_OPERATION_DIFFERENCE, ball, &options, nullptr),
                     i % 8 == 0 ? leafless_tridexel_editor_freeze(editor, &options, &frozen) : LEAFLESS_OK,
@@ -346,7 +346,7 @@ void editor_in_threads() {
     OK(leafless_tridexel_check(left));
     OK(check_tridexels(LEAFLESS_OPERATION_DIFFERENCE, left, model, nullptr, &beyond));
     for (uint32_t axis = 0; axis < 3; axis++) {
-        leafless_dexel_statistics statistics;
+        leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
         OK(leafless_tridexel_statistics(beyond, axis, &statistics));
         CHECK(statistics.intervals == 0);
         OK(leafless_tridexel_statistics(left, axis, &statistics));

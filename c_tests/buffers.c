@@ -43,7 +43,7 @@ static leafless_status levels(void *buffer, uint64_t capacity, uint64_t *count) 
 }
 
 static leafless_status sections(void *buffer, uint64_t capacity, uint64_t *count) {
-    leafless_file_info probe;
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     const leafless_status status =
         probe_bytes(bytes, length, &probe, (leafless_file_section *)buffer, capacity);
     if (status == LEAFLESS_OK) {
@@ -53,7 +53,7 @@ static leafless_status sections(void *buffer, uint64_t capacity, uint64_t *count
 }
 
 static leafless_status file_sections(void *buffer, uint64_t capacity, uint64_t *count) {
-    leafless_file_info probe;
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     const leafless_status status =
         probe_path("buffers.lfl", 11, &probe, (leafless_file_section *)buffer, capacity);
     if (status == LEAFLESS_OK) {

@@ -261,7 +261,8 @@ static void equals_the_library(void) {
         leafless_solid_callbacks callbacks = callbacks_of(&h);
         leafless_solid *solid = NULL;
         leafless_octree *own = NULL, *known = check_ball(6, rules[i]);
-        leafless_octree_info a, b;
+        leafless_octree_info a = LEAFLESS_INIT(leafless_octree_info);
+        leafless_octree_info b = LEAFLESS_INIT(leafless_octree_info);
         OK(leafless_solid_new_callbacks(&callbacks, &solid));
         /* The struct was copied. */
         memset(&callbacks, 0xff, sizeof callbacks);
@@ -382,7 +383,7 @@ static void garbage_is_refused(void) {
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, &options, &octree));
     leafless_solid_free(solid);
     {
-        leafless_octree_info info;
+        leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
         OK(leafless_octree_describe(octree, &info));
         CHECK(info.is_clipped && info.exterior == LEAFLESS_TAG_PARTIAL);
     }
@@ -467,8 +468,8 @@ static void by_distance_alone(void) {
     leafless_solid *solid = NULL;
     leafless_octree *own = NULL, *known = check_ball(6, LEAFLESS_RULE_CERTIFIED), *sampled = NULL;
     leafless_statistics found, best = statistics_of(known);
-    leafless_measures measures;
-    leafless_octree_info info;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     uint32_t cell[3];
     callbacks.classify = NULL;
     callbacks.contains = NULL;
@@ -611,8 +612,8 @@ static void distance_gives_up(void) {
         leafless_lazy *lazy = NULL;
         leafless_membership answer = 77;
         leafless_region region = 77;
-        leafless_measures measures;
-        leafless_extent extent;
+        leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+        leafless_extent extent = LEAFLESS_INIT(leafless_extent);
         callbacks.classify = last == 2 ? ball : NULL;
         callbacks.contains = NULL;
         callbacks.distance_many = distances;
@@ -662,8 +663,8 @@ static void by_slabs(void) {
         leafless_solid_callbacks callbacks = callbacks_of(&h);
         leafless_solid *solid = NULL;
         leafless_octree *own = NULL, *known = check_ball(6, LEAFLESS_RULE_CERTIFIED);
-        leafless_measures measures;
-        leafless_extent extent;
+        leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+        leafless_extent extent = LEAFLESS_INIT(leafless_extent);
         callbacks.gradient = which & 1 ? gradient : NULL;
         callbacks.tangent = which & 2 ? tangent : NULL;
         OK(leafless_solid_new_callbacks(&callbacks, &solid));
@@ -726,7 +727,7 @@ static void is_moved(void) {
     leafless_solid *solid = NULL, *moved = NULL, *known = NULL;
     leafless_octree *own = NULL, *box = NULL;
     leafless_motion motion = 77;
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     leafless_statistics found;
     uint64_t state = 3;
     size_t i;

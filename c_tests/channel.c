@@ -245,7 +245,7 @@ static void filled(void) {
             leafless_attribute *attribute = host_attribute(&own, many);
             leafless_channel_fill_options fill = fill_options();
             leafless_options options;
-            leafless_channel_info info;
+            leafless_channel_info info = LEAFLESS_INIT(leafless_channel_info);
             OK(leafless_init(&options, sizeof options));
             options.threads = 1;
             fill.scalar = scalar;
@@ -287,7 +287,7 @@ static void filled(void) {
         const uint32_t cell[3] = {0, SIDE, 0};
         leafless_attribute *attribute = constant(4);
         leafless_channel *channel = NULL;
-        leafless_channel_info info;
+        leafless_channel_info info = LEAFLESS_INIT(leafless_channel_info);
         double value[4];
         OK(leafless_channel_fill(attribute, &frame, NULL, NULL, &channel));
         OK(leafless_channel_values(channel, &beyond[0][0], 2, value));
@@ -308,7 +308,7 @@ static void details(void) {
     leafless_attribute *attribute = along_z(&z);
     leafless_channel_fill_options fill = fill_options();
     leafless_channel *fine = NULL, *coarse = NULL, *ranged = NULL, *varied = NULL, *mirror = NULL, *again = NULL;
-    leafless_channel_info info;
+    leafless_channel_info info = LEAFLESS_INIT(leafless_channel_info);
     double value[4];
     const double point[3] = {0.1, 0.2, 0.3};
     z.kind = LEAFLESS_RANGE_KIND_WITHIN;
@@ -408,7 +408,7 @@ static void metadata(void) {
 static void regions(void) {
     leafless_octree *ball = check_ball(4, LEAFLESS_RULE_CERTIFIED), *box = check_box(5, -0.5, 0.0), *other = NULL;
     leafless_channel *channel = uniform(ball, 2, LEAFLESS_SCALAR_TYPE_U8, "material"), *changed = NULL, *taken = NULL;
-    leafless_channel_info info;
+    leafless_channel_info info = LEAFLESS_INIT(leafless_channel_info);
     leafless_frame elsewhere = {{0, 0, 0}, 1, 4};
     const double inside[3] = {-0.25, -0.25, -0.25}, outside[3] = {0.25, 0.25, 0.25};
     double value[4], number = 5, beyond = 256;

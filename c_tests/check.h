@@ -196,7 +196,7 @@ static inline leafless_status check_refine(leafless_lazy *lazy, leafless_zone zo
 }
 
 static inline uint64_t check_channels(const leafless_octree *octree) {
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     OK(leafless_octree_describe(octree, &info));
     return info.channels;
 }

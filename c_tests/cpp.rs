@@ -167,6 +167,8 @@ pub type Nullable<'n> = dyn Fn(&str, &str) -> bool + 'n;
 
 struct Translator<'a> {
     handles: Vec<String>,
+    /// The structs that begin with their size.
+    sized: Vec<&'a str>,
     nullable: &'a Nullable<'a>,
 }
 
@@ -337,7 +339,10 @@ impl Translator<'_> {
                 && base != "void"
                 && next(1).is_none_or(|next| !next.name.ends_with("capacity"))
             {
-                made.before.push(format!("{base} {name}{{}};"));
+                made.before.push(match self.sized.contains(&base) {
+                    true => format!("{base} {name} = LEAFLESS_INIT({base});"),
+                    false => format!("{base} {name}{{}};"),
+                });
                 made.arguments.push(format!("&{name}"));
                 made.results.push((base.to_string(), name.to_string()));
                 i += 1;
@@ -415,6 +420,12 @@ fn spelled(name: &str) -> &str {
     }
 }
 
+/// The structs of the header that begin with their size.
+fn sized(header: &str) -> Vec<&str> {
+    let structs = header.split("typedef struct ").filter_map(|text| text.split_once(" {\n"));
+    structs.filter(|(_, body)| body.starts_with("    uint32_t struct_size;")).map(|(name, _)| name).collect()
+}
+
 /// The declarations of classes, and their bodies.
 pub fn made_of(header: &str, nullable: &Nullable<'_>) -> String {
     let functions = functions(header);
@@ -422,7 +433,7 @@ pub fn made_of(header: &str, nullable: &Nullable<'_>) -> String {
         let fitting = functions.iter().filter_map(|f| f.name.strip_prefix("leafless_")?.strip_suffix(suffix));
         fitting.map(str::to_string).collect()
     };
-    let translator = Translator { handles: names("_free"), nullable };
+    let translator = Translator { handles: names("_free"), sized: sized(header), nullable };
     let (mut classes, mut bodies, mut free) = (String::new(), String::new(), String::new());
     for class in &translator.handles {
         writeln!(classes, "class {class};").expect("memory");

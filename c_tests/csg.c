@@ -288,7 +288,7 @@ static void evaluations(void) {
     leafless_membership answer;
     leafless_region region;
     leafless_interference overlap;
-    leafless_measures measures;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
     uint64_t built, asked;
     OK(leafless_solid_new_box(low, high, &box));
     both = joined(LEAFLESS_OPERATION_INTERSECTION, box, round);

@@ -74,7 +74,7 @@ static leafless_attribute *host_attribute(leafless_attribute_values_fn values) {
 
 static int32_t uses_the_octree(void *ctx, const double *min, const double *max) {
     leafless_lazy *const lazy = *(leafless_lazy **)ctx;
-    leafless_lazy_info counts;
+    leafless_lazy_info counts = LEAFLESS_INIT(leafless_lazy_info);
     (void)min;
     (void)max;
     if (lazy == NULL) {
@@ -194,7 +194,7 @@ static leafless_status open_sheet(void) {
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
     leafless_options options;
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     uint64_t count = 0;
     leafless_status status;
     int i, j;
@@ -248,7 +248,7 @@ static leafless_status scanned_ball(void) {
     leafless_volume_layout layout;
     leafless_surface_options surface;
     leafless_mesh_write_options write;
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     leafless_options options;
     leafless_frame frame;
     leafless_status status;
@@ -500,7 +500,7 @@ int main(int argc, char **argv) {
 
     {
         uint8_t *altered = (uint8_t *)malloc((size_t)length);
-        leafless_file_info probe;
+        leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
         leafless_file_section sections[8];
         CHECK(altered != NULL);
         memcpy(altered, bytes, (size_t)length);
@@ -655,8 +655,8 @@ int main(int argc, char **argv) {
         leafless_channel *channel = (leafless_channel *)UNTOUCHED, *filled = NULL;
         leafless_octree *with = NULL;
         leafless_channel_fill_options fill;
-        leafless_channel_info info;
-        leafless_file_info probe;
+        leafless_channel_info info = LEAFLESS_INIT(leafless_channel_info);
+        leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
         leafless_file_section sections[32];
         uint64_t file_length = 0;
         uint8_t *file;
@@ -745,7 +745,7 @@ int main(int argc, char **argv) {
         {
             /* Intervals of a file that nobody has verified. */
             leafless_tridexel *viewed = NULL;
-            leafless_file_info probe;
+            leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
             leafless_file_section sections[32];
             uint64_t file_length = 0;
             uint8_t *file;

@@ -32,7 +32,7 @@ static uint64_t whole(const char *text, char **end) {
 static void check_fact(const char *line, const leafless_octree *octree, const leafless_file_info *probe,
                        const leafless_file_section *sections, uint64_t *metadata) {
     static const char *const ANSWERS[] = {"outside", "inside", "undecided"};
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     leafless_statistics all, levels[32];
     const char *value;
     char *end;
@@ -111,7 +111,7 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
 
 static void read_valid(const char *path, char *text) {
     leafless_octree *octrees[6];
-    leafless_file_info probe;
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     leafless_file_section sections[64];
     size_t length, i;
     uint8_t *bytes = check_read(path, &length);
@@ -166,7 +166,7 @@ static bool is_tridexel(const char *path) {
 static void read_valid_tridexel(const char *path, const char *text) {
     leafless_tridexel *models[6];
     leafless_octree *octree = NULL;
-    leafless_file_info probe;
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     size_t length, i;
     uint64_t again_length = 0;
     uint8_t *again, *bytes = check_read(path, &length);
@@ -188,7 +188,7 @@ static void read_valid_tridexel(const char *path, const char *text) {
         OK(leafless_tridexel_equal(models[0], models[i], &equal));
         CHECK(equal);
         for (axis = 0; axis < 3; axis++) {
-            leafless_dexel_statistics statistics;
+            leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
             if ((probe.tridexel.directions >> axis & 1) != 0) {
                 OK(leafless_tridexel_statistics(models[i], axis, &statistics));
                 CHECK(statistics.intervals == probe.tridexel.intervals[axis]);
@@ -215,7 +215,7 @@ static void read_valid_tridexel(const char *path, const char *text) {
 static void read_invalid(const char *path, char *text) {
     leafless_octree *octree = NULL;
     leafless_tridexel *model = NULL;
-    leafless_file_info probe;
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     size_t length;
     uint8_t *bytes = check_read(path, &length);
     const char *by = NULL;

@@ -14,7 +14,7 @@ int main(void) {
     leafless_options options = LEAFLESS_INIT(leafless_options);
     leafless_frame frame = {{0.0, 0.0, 0.0}, 1.0, 4};
     leafless_octree *octree = NULL;
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     uint64_t length = 0;
     const leafless_sink sink = leafless_to_buffer(NULL, 0, &length);
     const leafless_source file = leafless_from_file("no/such/file", LEAFLESS_ACCESS_MAP);

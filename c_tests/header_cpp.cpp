@@ -38,7 +38,7 @@ int main() {
     if (leafless_octree_new_uniform(&frame, LEAFLESS_TAG_FULL, LEAFLESS_TAG_EMPTY, &octree) != LEAFLESS_OK) {
         return 1;
     }
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     if (leafless_octree_describe(octree, &info) != LEAFLESS_OK) {
         return 2;
     }

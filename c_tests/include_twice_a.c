@@ -6,7 +6,7 @@ leafless_status elsewhere_describe(const leafless_octree *octree, leafless_octre
 
 int main(void) {
     leafless_octree *octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     CHECK(elsewhere_version() == LEAFLESS_VERSION);
     OK(elsewhere_describe(octree, &info));
     CHECK(info.frame.depth == 4);

@@ -23,7 +23,7 @@ static leafless_solid *moved(const leafless_solid *operand, double offset) {
 static void two_balls(const leafless_solid *a, const leafless_solid *apart, const leafless_solid *over,
                       uint64_t most) {
     leafless_interference found;
-    leafless_clearance near;
+    leafless_clearance near = LEAFLESS_INIT(leafless_clearance);
     double low[3], high[3];
     OK(leafless_solid_interfere(a, apart, &frame, INFINITY, NULL, &found));
     CHECK(found.verdict == LEAFLESS_OVERLAP_DISJOINT && !found.is_clipped && found.witness_level == 0);
@@ -87,7 +87,7 @@ static void refusals(const leafless_solid *a) {
     const double singular[12] = {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0};
     leafless_solid *never = NULL;
     leafless_interference found;
-    leafless_clearance near;
+    leafless_clearance near = LEAFLESS_INIT(leafless_clearance);
     leafless_frame other = frame;
     leafless_octree *octree = NULL;
     leafless_solid *stored = NULL, *placed = NULL;

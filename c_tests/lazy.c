@@ -21,7 +21,7 @@ static bool is_built(const leafless_lazy *lazy) {
 }
 
 static leafless_lazy_info counts_of(const leafless_lazy *lazy) {
-    leafless_lazy_info counts;
+    leafless_lazy_info counts = LEAFLESS_INIT(leafless_lazy_info);
     OK(leafless_lazy_describe(lazy, &counts));
     return counts;
 }
@@ -38,7 +38,7 @@ static void cell_by_cell(const leafless_solid *solid) {
     leafless_lazy *lazy = NULL;
     uint32_t (*queue)[4] = (uint32_t (*)[4])malloc(sizeof *queue << 18);
     uint64_t first = 0, end = 1, splits[DEPTH], count = 0, sum = 0, i;
-    leafless_lazy_info info;
+    leafless_lazy_info info = LEAFLESS_INIT(leafless_lazy_info);
     leafless_statistics levels[DEPTH + 1], all, of_octree[DEPTH + 1];
     CHECK(queue != NULL);
     memset(queue[0], 0, sizeof queue[0]);
@@ -101,7 +101,8 @@ static void zones(const leafless_solid *solid) {
     leafless_lazy *lazy = NULL;
     leafless_tag tags[8], tag = LEAFLESS_TAG_FULL;
     bool done = false, can_split = true;
-    leafless_lazy_info before, after;
+    leafless_lazy_info before = LEAFLESS_INIT(leafless_lazy_info);
+    leafless_lazy_info after = LEAFLESS_INIT(leafless_lazy_info);
 
     OK(leafless_lazy_new(solid, &frame, &lazy));
     CHECK(at(lazy, 0, 0, 0) == LEAFLESS_MEMBERSHIP_UNDECIDED);

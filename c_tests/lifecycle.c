@@ -44,7 +44,7 @@ static void frames(void) {
 static void meshes(void) {
     leafless_mesh *cube = check_cube(), *twice = NULL, *moved = NULL, *again = NULL, *sewn = NULL, *reference = NULL;
     const double matrix[12] = {2, 0, 0, 10, 0, 2, 0, 20, 0, 0, 2, 30}, offset[3] = {1, 2, 3};
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     double min[3], max[3], volume, vertices[8][3];
     uint64_t vertex_count, triangle_count, length;
     uint32_t triangles[12][3];
@@ -132,7 +132,7 @@ static void solids(void) {
     leafless_solid *solid = NULL, *reference = NULL;
     leafless_octree *box = NULL, *cube = NULL, *half = NULL, *slab = NULL, *cut = NULL;
     leafless_statistics statistics;
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
 
     OK(leafless_solid_new_box(min, max, &solid));
     OK(leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &box));
@@ -260,7 +260,7 @@ static void queries(void) {
     leafless_point_table *table = NULL;
     uint8_t level = 99;
     leafless_cursor *cursor = NULL;
-    leafless_cursor_info state;
+    leafless_cursor_info state = LEAFLESS_INIT(leafless_cursor_info);
     bool moved;
     int i;
 
@@ -331,7 +331,7 @@ static void octrees(void) {
     leafless_octree *ball = check_ball(6, LEAFLESS_RULE_CERTIFIED), *inner = NULL, *outer = NULL, *compact = NULL;
     leafless_octree *fewer = NULL, *named = NULL, *full = NULL, *reference = NULL, *more = NULL;
     leafless_statistics s, t, levels[7];
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     leafless_frame frame = check_frame(6);
     const char *key, *value;
     size_t key_length, value_length;

@@ -310,6 +310,28 @@ fn options() {
     run("options", C99, Link::Static, &[]);
 }
 
+/// Structs that the library fills, by older and newer programs; the program tries every function that fills one.
+#[test]
+fn outputs() {
+    let (header, program) = (text("include/leafless.h"), text("c_tests/outputs.c"));
+    let sized: Vec<&str> = (header.split("typedef struct ").filter_map(|text| text.split_once(" {\n")))
+        .filter(|(_, body)| body.starts_with("    uint32_t struct_size;"))
+        .map(|(name, _)| name)
+        .collect();
+    let mut tried = 0;
+    for declaration in header.split("\nleafless_status ").skip(1) {
+        let (name, rest) = declaration.split_once('(').unwrap();
+        let (parameters, _) = rest.split_once(");").unwrap();
+        let filled = parameters.split(',').map(str::trim).filter_map(|p| p.split_once(" *"));
+        for (kind, _) in filled.filter(|(kind, _)| sized.contains(kind)) {
+            assert!(program.contains(&format!("FILLS({kind}, {name}(")), "{name} fills a {kind}");
+            tried += 1;
+        }
+    }
+    assert!(tried >= 20, "{tried}");
+    run("outputs", C99, Link::Static, &[]);
+}
+
 #[test]
 fn callback() {
     run("callback", C99, Link::Static, &[]);

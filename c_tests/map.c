@@ -36,7 +36,7 @@ static void ask_everything(const leafless_octree *octree) {
     leafless_membership answers[5];
     leafless_region region;
     leafless_statistics statistics;
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     leafless_octree *result = NULL;
     leafless_options options;
     OK(leafless_octree_contains_many(octree, &POINTS[0][0], 5, answers));
@@ -84,7 +84,8 @@ static void refused(uint8_t *bytes, uint64_t length, const leafless_octree *orig
 
 static void ways_in_and_out(void) {
     leafless_octree *ball = check_ball(6, LEAFLESS_RULE_CERTIFIED), *named = NULL, *octree = NULL;
-    leafless_file_info probe, of_bytes;
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
+    leafless_file_info of_bytes = LEAFLESS_INIT(leafless_file_info);
     leafless_file_section sections[16], same[16];
     uint64_t length, i;
     size_t on_disk;
@@ -139,6 +140,7 @@ static void ways_in_and_out(void) {
     CHECK(strcmp(sections[1].name, "metadata") == 0 && !sections[1].is_required && sections[1].owner == 0);
     CHECK(probe.proof.full && probe.proof.empty && probe.proof.displacement_model == 0.0);
     memset(&of_bytes, 0xaa, sizeof of_bytes);
+    of_bytes.struct_size = sizeof of_bytes;
     OK(probe_bytes(bytes, length, &of_bytes, same, COUNT(same)));
     CHECK(of_bytes.sections == probe.sections && of_bytes.elements == probe.elements);
     CHECK(same[1].offset == sections[1].offset && same[1].kind == sections[1].kind);
@@ -176,7 +178,7 @@ static void ways_in_and_out(void) {
     OK(probe_path(PATH("ball.lfl"), &probe, NULL, 0));
     CHECK(!probe.proof.full && probe.proof.empty && probe.proof.displacement_model == 0.5);
     for (i = 0; i < COUNT(WAYS); i++) {
-        leafless_octree_info info;
+        leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
         OK(WAYS[i](PATH("ball.lfl"), &octree));
         OK(leafless_octree_describe(octree, &info));
         CHECK(!info.proof.full && info.proof.empty && info.proof.displacement_model == 0.5);
@@ -190,7 +192,7 @@ static void truncated(void) {
     uint64_t length, cut;
     size_t way;
     uint8_t *bytes = check_bytes(ball, &length);
-    leafless_file_info probe;
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     OK(octree_save(ball, PATH("cut.lfl")));
     for (cut = length; cut-- > 0;) {
         /* Exactly as long, so that memory checkers see every byte beyond the end. */
@@ -252,7 +254,7 @@ static void removed_and_replaced(void) {
     leafless_octree *first = NULL, *second = NULL;
     leafless_solid *solid = NULL;
     leafless_cursor *cursor = NULL;
-    leafless_cursor_info state;
+    leafless_cursor_info state = LEAFLESS_INIT(leafless_cursor_info);
     leafless_frame frame = check_frame(6);
 
     OK(octree_save(ball, PATH("one.lfl")));

@@ -40,8 +40,9 @@ static void ball(void) {
     const double volume = 4.0 / 3.0 * PI * 0.75 * 0.75 * 0.75, inertia = 0.4 * volume * 0.75 * 0.75;
     leafless_solid *solid = check_ball_solid();
     leafless_options options;
-    leafless_measures measures, again;
-    leafless_extent extent;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+    leafless_measures again = LEAFLESS_INIT(leafless_measures);
+    leafless_extent extent = LEAFLESS_INIT(leafless_extent);
     double last = 0.0;
     int i;
     OK(leafless_solid_measure(solid, &frame, 0.05, 0.0, NULL, &measures));
@@ -95,7 +96,8 @@ static void ball(void) {
     {
         const double area = 4.0 * PI * 0.75 * 0.75, low[3] = {-9.0, -9.0, -9.0}, high[3] = {0.5, 9.0, 9.0};
         leafless_solid *block = NULL;
-        leafless_surface_area surface, same;
+        leafless_surface_area surface = LEAFLESS_INIT(leafless_surface_area);
+        leafless_surface_area same = LEAFLESS_INIT(leafless_surface_area);
         OK(leafless_solid_surface_area(solid, &frame, 0.001, 0.0, NULL, &surface));
         CHECK(holds(surface.area_model, area) && surface.measured == LEAFLESS_STOP_REASON_TOLERANCE);
         CHECK(surface.area_model.upper - surface.area_model.lower <= 0.001 * area && !surface.is_clipped);
@@ -120,7 +122,8 @@ static void ball(void) {
     {
         const double point[3] = {0.45, 0.6, -0.1}, normal[3] = {-3.0, 0.0, 0.0}, tilted[3] = {2.0, -1.0, 3.0};
         const double none[3] = {0.0, 0.0, 0.0}, far[3] = {9.0, 9.0, 9.0}, wild[3] = {0.0, NAN, 0.0};
-        leafless_section_area section, same;
+        leafless_section_area section = LEAFLESS_INIT(leafless_section_area);
+        leafless_section_area same = LEAFLESS_INIT(leafless_section_area);
         OK(leafless_solid_section_area(solid, &frame, point, normal, 1e-6, 0.0, NULL, &section));
         CHECK(holds(section.area_model, PI * 0.36) && section.measured == LEAFLESS_STOP_REASON_TOLERANCE);
         CHECK(section.area_model.upper - section.area_model.lower <= 1e-6 * section.area_model.upper);
@@ -139,6 +142,7 @@ static void ball(void) {
         OK(leafless_solid_section_area(solid, &frame, far, normal, 0.0, 0.0, NULL, &same));
         CHECK(same.area_model.lower == 0.0 && same.area_model.upper == 0.0 && same.splits == 0);
         memset(&same, 0x5a, sizeof same);
+        same.struct_size = sizeof same;
         FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_section_area(solid, &frame, point, none, 0.0, 0.0, NULL, &same));
         FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_section_area(solid, &frame, wild, normal, 0.0, 0.0, NULL, &same));
         FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_section_area(solid, &frame, point, normal, -1.0, 0.0, NULL, &same));
@@ -146,7 +150,7 @@ static void ball(void) {
         options.progress = refuse;
         FAILS(LEAFLESS_E_CANCELLED, leafless_solid_section_area(solid, &frame, point, normal, 0.0, 0.0, &options, &same));
         options.progress = stop;
-        for (i = 0; i < (int)sizeof same; i++) {
+        for (i = sizeof same.struct_size; i < (int)sizeof same; i++) {
             CHECK(((const unsigned char *)&same)[i] == 0x5a);
         }
     }
@@ -173,12 +177,13 @@ static void ball(void) {
     /* Nothing is written when it fails. */
     options.progress = refuse;
     memset(&again, 0x5a, sizeof again);
+    again.struct_size = sizeof again;
     FAILS(LEAFLESS_E_CANCELLED, leafless_solid_measure(solid, &frame, 0.0, 0.0, &options, &again));
     FAILS(LEAFLESS_E_CANCELLED, leafless_solid_bounding_box(solid, &frame, 0.0, &options, &extent));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, -1.0, 0.0, NULL, &again));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_measure(solid, &frame, NAN, 0.0, NULL, &again));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_bounding_box(solid, &frame, NAN, NULL, &extent));
-    for (i = 0; i < (int)sizeof again; i++) {
+    for (i = sizeof again.struct_size; i < (int)sizeof again; i++) {
         CHECK(((const unsigned char *)&again)[i] == 0x5a);
     }
     CHECK(extent.splits < 20000);
@@ -190,8 +195,8 @@ static void block(void) {
     const leafless_frame frame = check_frame(5);
     leafless_octree *octree = check_box(5, -0.5, 0.25);
     leafless_solid *solid = NULL;
-    leafless_measures measures;
-    leafless_extent extent;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+    leafless_extent extent = LEAFLESS_INIT(leafless_extent);
     int i;
     OK(leafless_solid_from_octree(octree, &solid));
     OK(leafless_solid_measure(solid, &frame, 0.0, 0.0, NULL, &measures));
@@ -205,7 +210,7 @@ static void block(void) {
     /* Cut in its lower face, between planes of the lattice, and in its upper face. */
     {
         const double normal[3] = {0.0, 0.0, 1.0}, heights[3] = {-0.5, 0.01, 0.25};
-        leafless_section_area section;
+        leafless_section_area section = LEAFLESS_INIT(leafless_section_area);
         for (i = 0; i < 3; i++) {
             const double point[3] = {0.0, 0.0, heights[i]}, area = i < 2 ? 0.5625 : 0.0;
             OK(leafless_solid_section_area(solid, &frame, point, normal, 0.0, 0.0, NULL, &section));
@@ -227,8 +232,8 @@ static void host(void) {
     const leafless_frame frame = check_frame(3);
     leafless_solid_callbacks callbacks;
     leafless_solid *solid = NULL;
-    leafless_measures measures;
-    leafless_extent extent;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+    leafless_extent extent = LEAFLESS_INIT(leafless_extent);
     OK(leafless_init(&callbacks, sizeof callbacks));
     callbacks.classify = fails;
     OK(leafless_solid_new_callbacks(&callbacks, &solid));

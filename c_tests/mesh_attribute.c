@@ -8,7 +8,7 @@ static const char PLY[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty flo
                           "0 0 0 0 7 7\n8 0 0 0 7 7\n8 8 0 240 7 7\n0 8 0 240 7 7\n3 0 1 2\n3 0 2 3\n";
 
 static void colours(void) {
-    leafless_mesh_file_info found;
+    leafless_mesh_file_info found = LEAFLESS_INIT(leafless_mesh_file_info);
     leafless_mesh *mesh;
     leafless_attribute *colour;
     leafless_channel *channel;

@@ -173,8 +173,9 @@ static leafless_mesh_options defaults(void) {
 }
 
 static leafless_mesh_file_info nothing(void) {
-    leafless_mesh_file_info found;
+    leafless_mesh_file_info found = LEAFLESS_INIT(leafless_mesh_file_info);
     memset(&found, 0x5a, sizeof found);
+    found.struct_size = sizeof found;
     return found;
 }
 

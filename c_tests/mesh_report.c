@@ -40,7 +40,7 @@ static leafless_mesh *made(const surface *all) {
 static leafless_mesh_report told(const surface *all, uint64_t count, leafless_mesh_defect *first) {
     leafless_mesh *mesh = made(all);
     leafless_mesh_defect defects[8];
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     uint64_t found = 77, limit;
     OK(leafless_mesh_inspect(mesh, &report));
     CHECK(report.facets_read == all->triangle_count && report.triangles + report.degenerate == all->triangle_count);
@@ -77,7 +77,7 @@ static bool holds(leafless_interval interval, double value, double width) {
 static void encloses(void) {
     surface all = cube();
     leafless_mesh *mesh = made(&all);
-    leafless_mesh_moments moments;
+    leafless_mesh_moments moments = LEAFLESS_INIT(leafless_mesh_moments);
     int i, j;
     OK(leafless_mesh_measure(mesh, LEAFLESS_FILL_NON_ZERO, NULL, &moments));
     CHECK(moments.known == LEAFLESS_MOMENTS_VERDICT_KNOWN && moments.has_centroid && moments.triangles[1] == 0);
@@ -105,7 +105,7 @@ static void intersects(void) {
     surface all = cube();
     leafless_mesh *mesh = made(&all);
     leafless_intersecting_pair pairs[64], some[3];
-    leafless_mesh_moments moments;
+    leafless_mesh_moments moments = LEAFLESS_INIT(leafless_mesh_moments);
     uint64_t found = 77, again = 77, i;
     bool is_complete = false;
     uint32_t a, b, c, d;
@@ -137,7 +137,7 @@ static void intersects(void) {
 
 int main(void) {
     leafless_mesh_defect defect;
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     surface all = cube();
 
     /* Nothing is wrong. */

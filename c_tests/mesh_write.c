@@ -75,7 +75,7 @@ static void formats(void) {
         for (text = 0; text < 2; text++) {
             const char *const start = FORMATS[i].start[text];
             leafless_mesh_write_options options = defaults();
-            leafless_mesh_file_info found;
+            leafless_mesh_file_info found = LEAFLESS_INIT(leafless_mesh_file_info);
             leafless_mesh *back = NULL;
             uint64_t length;
             uint8_t *bytes, *file;
@@ -106,7 +106,7 @@ static void formats(void) {
 static void units(void) {
     leafless_mesh_write_options options = defaults();
     leafless_mesh *mesh = tetrahedron(7), *back;
-    leafless_mesh_file_info found;
+    leafless_mesh_file_info found = LEAFLESS_INIT(leafless_mesh_file_info);
     uint32_t unit;
     options.format = LEAFLESS_MESH_FORMAT_3MF;
     for (unit = LEAFLESS_UNIT_MICROMETRE; unit <= LEAFLESS_UNIT_FOOT; unit++) {

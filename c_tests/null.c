@@ -55,6 +55,7 @@ static void null_pointers(void) {
     uint32_t operation;
     const uint32_t exponents[3] = {2, 4, 3};
     const double triangle[6] = {0, 0, 1, 0, 0, 1};
+    leafless_scene_mesh_info about_mesh = LEAFLESS_INIT(leafless_scene_mesh_info);
     leafless_solid_function function;
     leafless_solid_callbacks callbacks;
     const uint32_t cell[3] = {0, 0, 0};
@@ -66,13 +67,13 @@ static void null_pointers(void) {
     const double matrix[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     uint64_t length = 0;
     uint8_t *bytes = check_bytes(octree, &length);
-    leafless_measures measures;
-    leafless_mesh_moments moments;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+    leafless_mesh_moments moments = LEAFLESS_INIT(leafless_mesh_moments);
     leafless_intersecting_pair pair;
     bool is_complete;
-    leafless_extent extent;
-    leafless_surface_area surface;
-    leafless_section_area section;
+    leafless_extent extent = LEAFLESS_INIT(leafless_extent);
+    leafless_surface_area surface = LEAFLESS_INIT(leafless_surface_area);
+    leafless_section_area section = LEAFLESS_INIT(leafless_section_area);
     double wanted[8][3];
     uint32_t indices[12][3];
     uint64_t number, other;
@@ -349,8 +350,11 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_scene_describe, scene, leafless_scene_describe(NULL, (leafless_scene_info *)out));
     NULL_POINTER(leafless_scene_describe, report, leafless_scene_describe(scene, NULL));
     NULL_POINTER(leafless_scene_describe_mesh_at, scene,
-                 leafless_scene_describe_mesh_at(NULL, 0, (leafless_scene_mesh_info *)out));
-    NULL_POINTER(leafless_scene_describe_mesh_at, mesh, leafless_scene_describe_mesh_at(scene, 0, NULL));
+                 leafless_scene_describe_mesh_at(NULL, 0, (leafless_scene_mesh_info *)out, NULL));
+    MISALIGNED(leafless_scene_describe_mesh_at, report,
+               leafless_scene_describe_mesh_at(scene, 0, &about_mesh, (leafless_mesh_report *)WRONG(out)));
+    NULL_POINTER(leafless_scene_describe_mesh_at, mesh, leafless_scene_describe_mesh_at(scene, 0, NULL, NULL));
+    MAY_BE_NULL(leafless_scene_describe_mesh_at, report, leafless_scene_describe_mesh_at(scene, 0, &about_mesh, NULL));
     MAY_BE_NULL(leafless_scene_mesh_file_at, bytes, leafless_scene_mesh_file_at(scene, 0, NULL, 0, &number));
     NULL_POINTER(leafless_scene_mesh_file_at, length, leafless_scene_mesh_file_at(scene, 0, NULL, 0, NULL));
     NULL_POINTER(leafless_scene_mesh_file_at, scene, leafless_scene_mesh_file_at(NULL, 0, NULL, 0, (uint64_t *)out));
@@ -547,7 +551,7 @@ static void null_pointers(void) {
                 leafless_octree_peek_metadata(octree, NULL, 0, &text, &text_length));
     {
         leafless_interference found;
-        leafless_clearance near;
+        leafless_clearance near = LEAFLESS_INIT(leafless_clearance);
         MAY_BE_NULL(leafless_solid_interfere, options,
                     leafless_solid_interfere(solid, solid, &frame, 0, NULL, &found));
         MAY_BE_NULL(leafless_solid_interfere_many, options,
@@ -1894,7 +1898,8 @@ static void summaries(const leafless_channel *channel) {
     void *out = fresh(), *never = UNTOUCHED;
     leafless_attribute **made = (leafless_attribute **)&never, *attribute = NULL;
     leafless_octree **result = (leafless_octree **)&never, *region = NULL;
-    leafless_channel_summary *summary = (leafless_channel_summary *)out, found;
+    leafless_channel_summary *summary = (leafless_channel_summary *)out;
+    leafless_channel_summary found = LEAFLESS_INIT(leafless_channel_summary);
     leafless_material *materials = (leafless_material *)out, all[4];
     leafless_volume_layout layout;
     leafless_volume *volume = NULL;

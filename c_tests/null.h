@@ -32,18 +32,22 @@ static inline void refused(leafless_status expected, const char *function, const
     }
 }
 
-/* Room for anything, all 0x5a, of which no function may change a byte here. */
+/* Room for anything, of which no function may change a byte here: all 0x5a behind a struct_size that makes sense. */
 static double room[64];
 
 static inline void *fresh(void) {
+    const uint32_t struct_size = sizeof room;
     memset(room, 0x5a, sizeof room);
+    memcpy(room, &struct_size, sizeof struct_size);
     return room;
 }
 
 static inline void untouched(void) {
     const unsigned char *bytes = (const unsigned char *)room;
+    const uint32_t struct_size = sizeof room;
     size_t i;
-    for (i = 0; i < sizeof room; i++) {
+    CHECK(memcmp(room, &struct_size, sizeof struct_size) == 0);
+    for (i = sizeof struct_size; i < sizeof room; i++) {
         CHECK(bytes[i] == 0x5a);
     }
 }

@@ -426,7 +426,7 @@ static void parameters(void) {
     leafless_mesh_options read = LEAFLESS_INIT(leafless_mesh_options);
     leafless_mesh_write_options write = LEAFLESS_INIT(leafless_mesh_write_options);
     leafless_scene_options options = LEAFLESS_INIT(leafless_scene_options);
-    leafless_mesh_file_info found;
+    leafless_mesh_file_info found = LEAFLESS_INIT(leafless_mesh_file_info);
     write.format = LEAFLESS_MESH_FORMAT_OFF;
 
     NULL_POINTER(leafless_octree_read, source, leafless_octree_read(NULL, octree_result));
@@ -612,6 +612,7 @@ int main(void) {
         leafless_volume_free(viewed);
     }
     memset(&probe, 0x5a, sizeof probe);
+    probe.struct_size = sizeof probe;
 
     for (i = 0; i + 1 < COUNT(WRITERS); i++) {
         READERS[i].bytes = written(WRITERS[i].write, READERS[i].path, &READERS[i].length);

@@ -142,7 +142,7 @@ static void block_with_a_hole(void) {
     const double in_hole[3] = {2, 2, 1}, in_wall[3] = {0.5, 2, 1};
     leafless_polyhedron_arrays arrays = block();
     leafless_mesh *mesh = made(&arrays);
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
     leafless_statistics statistics;
@@ -216,7 +216,7 @@ static void shells_and_solids(void) {
     uint32_t corners[96], loops[25];
     leafless_polyhedron_arrays arrays = nothing();
     leafless_mesh *mesh;
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     cubes(EDGES, PLACES, 4, vertices, corners, loops);
     arrays.vertices = vertices;
     arrays.vertex_count = 32;

@@ -44,8 +44,9 @@ static void reports(void) {
     const uint32_t facets[] = {LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON};
     const leafless_source nothing = leafless_from_bytes(NULL, 0, LEAFLESS_ACCESS_COPY);
     leafless_scene_options options;
-    leafless_scene_info report;
-    leafless_scene_mesh_info mesh;
+    leafless_scene_info report = LEAFLESS_INIT(leafless_scene_info);
+    leafless_scene_mesh_info mesh = LEAFLESS_INIT(leafless_scene_mesh_info);
+    leafless_mesh_report of_mesh = LEAFLESS_INIT(leafless_mesh_report);
     leafless_scene *scene = NULL;
     uint64_t length = 7;
     size_t i;
@@ -57,10 +58,10 @@ static void reports(void) {
         OK(leafless_scene_describe(scene, &report));
         CHECK(report.polygons == polygons[i] && report.exact == 1 - polygons[i] && report.ignored_slices == 0);
         CHECK(report.meshes == 1 && !report.is_empty);
-        OK(leafless_scene_describe_mesh_at(scene, 0, &mesh));
+        OK(leafless_scene_describe_mesh_at(scene, 0, &mesh, &of_mesh));
         CHECK(mesh.line == 2 && mesh.column == 2 && mesh.turned == 1);
-        CHECK(mesh.report.triangles == 4 && mesh.report.misoriented_edges == 3 && mesh.report.boundary_edges == 0);
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_describe_mesh_at(scene, 1, &mesh));
+        CHECK(of_mesh.triangles == 4 && of_mesh.misoriented_edges == 3 && of_mesh.boundary_edges == 0);
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_describe_mesh_at(scene, 1, &mesh, NULL));
         OK(leafless_scene_mesh_file_at(scene, 0, NULL, 0, &length));
         CHECK(length == 0);
         FAILS(LEAFLESS_E_ARGUMENT, leafless_scene_mesh_file_at(scene, 1, NULL, 0, &length));
@@ -75,8 +76,8 @@ static void reports(void) {
     check_write("t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 36);
     check_write("mesh.csg", "mesh(\"t.off\");", 14);
     OK(scene_open("mesh.csg", 8, NULL, &scene));
-    OK(leafless_scene_describe_mesh_at(scene, 0, &mesh));
-    CHECK(mesh.line == 1 && mesh.column == 1 && mesh.report.boundary_edges == 3);
+    OK(leafless_scene_describe_mesh_at(scene, 0, &mesh, &of_mesh));
+    CHECK(mesh.line == 1 && mesh.column == 1 && of_mesh.boundary_edges == 3);
     FAILS(LEAFLESS_E_BUFFER, leafless_scene_mesh_file_at(scene, 0, name, 4, &length));
     OK(leafless_scene_mesh_file_at(scene, 0, name, sizeof name, &length));
     CHECK(length == 5 && memcmp(name, "t.off", 5) == 0);

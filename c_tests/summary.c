@@ -42,7 +42,7 @@ static void summaries(void) {
     const double volume = 4.0 / 3.0 * PI * 0.75 * 0.75 * 0.75;
     const double low[3] = {0, 0, 0}, high[3] = {INFINITY, 2, 1}, far[3] = {3, 3, 3}, beyond[3] = {4, 4, 4};
     leafless_channel *density = uniform(ball, NULL, 0.5);
-    leafless_channel_summary summary;
+    leafless_channel_summary summary = LEAFLESS_INIT(leafless_channel_summary);
     const leafless_frame frame = check_frame(3);
     leafless_channel *two = halves(&frame);
     OK(leafless_channel_summarise(density, ball, NULL, NULL, NULL, &summary));
@@ -54,6 +54,7 @@ static void summaries(void) {
     CHECK(contains(summary.volume_model, volume / 8));
     /* Nothing there: all is 0. */
     memset(&summary, 0x5a, sizeof summary);
+    summary.struct_size = sizeof summary;
     OK(leafless_channel_summarise(density, ball, far, beyond, NULL, &summary));
     CHECK(!summary.has_values && summary.volume_model.upper == 0 && summary.greatest[3] == 0);
     OK(leafless_channel_summarise(two, NULL, NULL, NULL, NULL, &summary));
@@ -71,7 +72,7 @@ static void regions(void) {
     const double low = 1.5, high = INFINITY, none = 3;
     leafless_octree *region = NULL, *empty = NULL;
     leafless_statistics statistics;
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     OK(leafless_channel_region(two, &low, &high, NULL, &region));
     OK(leafless_octree_statistics(region, &statistics));
     CHECK(statistics.lower_cells == 2048 && statistics.upper_cells == 2048);

@@ -63,7 +63,7 @@ static uint64_t edges_of(const surface_of *s, bool *is_balanced) {
 /* What the library tells is what the arrays say. */
 static leafless_mesh_report told(const leafless_mesh *mesh) {
     surface_of s = take(mesh);
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     double volume = 0, area = 0, found;
     bool is_balanced;
     uint64_t i, edges = edges_of(&s, &is_balanced);
@@ -159,7 +159,7 @@ static void octrees(void) {
     leafless_solid *solid = check_ball_solid();
     leafless_surface_options surface = defaults();
     leafless_mesh *mesh = NULL, *other = NULL, *inner = NULL, *outer = NULL;
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     leafless_options options;
     char message[512];
     double area;
@@ -226,7 +226,7 @@ static void solids(void) {
     leafless_surface_options surface = defaults();
     leafless_frame frame = check_frame(5);
     leafless_mesh *mesh = NULL, *other = NULL, *cut = NULL;
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     leafless_options options;
     double error[2];
     uint64_t i;
@@ -306,7 +306,8 @@ static void shrink(void) {
     options.threads = 1;
     for (i = 0; i < 2; i++) {
         for (snap = LEAFLESS_SNAP_FAT; snap <= LEAFLESS_SNAP_THIN; snap++) {
-            leafless_mesh_report reports[3];
+            leafless_mesh_report reports[3] = {LEAFLESS_INIT(leafless_mesh_report), LEAFLESS_INIT(leafless_mesh_report),
+                                               LEAFLESS_INIT(leafless_mesh_report)};
             double areas[2];
             surface.snap = snap;
             surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
@@ -409,7 +410,7 @@ static void volumes(void) {
     leafless_octree *octree = NULL;
     leafless_surface_options surface = defaults();
     leafless_mesh *mesh = NULL;
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     leafless_frame frame;
     leafless_interval band = {100, INFINITY};
     double d, e;

@@ -77,7 +77,7 @@ void reads(const leafless_octree *octree) {
         unsigned path[4] = {0, 0, 0, 0};
         int level = 0;
         for (;;) {
-            leafless_cursor_info state;
+            leafless_cursor_info state = LEAFLESS_INIT(leafless_cursor_info);
             bool moved = false;
             if (level < 4 && path[level] < 8) {
                 OK(leafless_cursor_descend(cursor, path[level]++, &moved));
@@ -177,7 +177,7 @@ void solids() {
         OK(leafless_init(&options, sizeof options));
         options.threads = 1 + number % 3;
         OK(leafless_octree_build(own[number], &frame, LEAFLESS_RULE_CERTIFIED, &options, &built[number]));
-        leafless_mesh_report report;
+        leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
         // Its edges are analysed once, by whoever asks first.
         OK(leafless_mesh_inspect(mesh, &report));
         CHECK(report.bodies == 1 && report.boundary_edges == 0);
@@ -293,7 +293,7 @@ void open_mesh() {
     leafless_mesh *mesh = check_some_of_cube(9);
     leafless_octree *octrees[THREADS] = {};
     in_all_threads([&](int number) {
-        leafless_mesh_report report;
+        leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
         leafless_mesh_defect defect;
         uint64_t count = 0;
         const bool asks_first = number % 2 == 0;
@@ -352,11 +352,11 @@ Answers ask(const leafless_solid *solid, const leafless_frame &frame, uint32_t t
         OK(leafless_solid_classify_box(solid, &frame, p, high, &options, &region));
         answers.regions.push_back(region);
     }
-    leafless_measures measures;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
     OK(leafless_solid_measure(solid, &frame, 0.05, 0.0, &options, &measures));
     answers.volume = measures.volume_model;
     answers.splits = measures.splits;
-    leafless_extent extent;
+    leafless_extent extent = LEAFLESS_INIT(leafless_extent);
     OK(leafless_solid_bounding_box(solid, &frame, 0.1, &options, &extent));
     std::copy(extent.min_model, extent.min_model + 3, answers.box);
     std::copy(extent.max_model, extent.max_model + 3, answers.box + 3);
@@ -457,7 +457,7 @@ struct Asking {
 // A ball of radius 0.75 that meanwhile uses the octree which is being split.
 int32_t asks_back(void *ctx, const double *min, const double *max) {
     Asking *const asking = static_cast<Asking *>(ctx);
-    leafless_lazy_info counts;
+    leafless_lazy_info counts = LEAFLESS_INIT(leafless_lazy_info);
     if (asking->lazy != nullptr) {
         FAILS(LEAFLESS_E_BUSY, leafless_lazy_describe(asking->lazy, &counts));
         FAILS(LEAFLESS_E_BUSY, leafless_lazy_refine(asking->lazy, nullptr, 2, nullptr, nullptr));
@@ -485,7 +485,7 @@ void lazy_at_once() {
         for (int i = 0; i < 400; i++) {
             leafless_tag tags[8];
             leafless_membership membership;
-            leafless_lazy_info statistics;
+            leafless_lazy_info statistics = LEAFLESS_INIT(leafless_lazy_info);
             leafless_octree *octree = nullptr;
             done += is_done_or_busy(check_refine(lazy, check_zone_point(at), uint32_t(1 + i % 6), nullptr));
             done += is_done_or_busy(check_refine(lazy, check_zone_ray(from, along, 0, 3), uint32_t(1 + i % 6), nullptr));
@@ -525,7 +525,7 @@ void lazy_at_once() {
     asking.lazy = lazy;
     OK(leafless_lazy_refine(lazy, nullptr, 3, nullptr, nullptr));
     CHECK(asking.busy > 8);
-    leafless_lazy_info counts;
+    leafless_lazy_info counts = LEAFLESS_INIT(leafless_lazy_info);
     OK(leafless_lazy_describe(lazy, &counts));
     CHECK(counts.splits > 0);
     leafless_lazy_free(lazy);

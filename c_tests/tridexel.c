@@ -57,7 +57,7 @@ static bool same_and_free(leafless_tridexel *a, leafless_tridexel *b) {
 }
 
 static double volume(const leafless_tridexel *model, uint32_t axis) {
-    leafless_dexel_statistics statistics;
+    leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
     OK(leafless_tridexel_statistics(model, axis, &statistics));
     return statistics.volume_model;
 }
@@ -80,7 +80,7 @@ static leafless_tridexel *complement(const leafless_tridexel *model) {
 static void boxes(void) {
     const leafless_tridexel_format all = format_of(LEAFLESS_DEXEL_ENDS_FIXED, LEAFLESS_DEXEL_NORMALS_32, 1, 1);
     leafless_tridexel *model = made_of(box_between(-0.5, 0.5), 5, &all);
-    leafless_tridexel_info info;
+    leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
     uint32_t axis, k;
     OK(leafless_tridexel_describe(model, &info));
     CHECK(info.frame.depth == 5 && info.frame.edge == 2 && info.frame.origin[1] == -1);
@@ -91,7 +91,7 @@ static void boxes(void) {
     for (axis = 0; axis < 3; axis++) {
         const uint32_t in[2] = {8, 23}, out[2] = {8, 24}, beyond[2] = {40, UINT32_MAX};
         uint32_t first[2], end[2];
-        leafless_dexel_statistics statistics;
+        leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
         leafless_dexel dexels[2];
         uint64_t count = 77;
         OK(leafless_tridexel_window(model, axis, first, end));
@@ -124,7 +124,7 @@ static void boxes(void) {
         /* One direction; the others are asked in vain. */
         leafless_tridexel_format along_y = format_of(0, 0, 0, 0);
         leafless_dexel dexel;
-        leafless_dexel_statistics statistics;
+        leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
         const uint32_t ray[2] = {16, 16};
         uint64_t count = 77;
         along_y.directions = LEAFLESS_AXES_Y;
@@ -141,7 +141,7 @@ static void boxes(void) {
     {
         /* Nothing. */
         uint32_t first[2], end[2];
-        leafless_dexel_statistics statistics;
+        leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
         uint64_t offsets[1] = {77}, offset_count = 0, intervals = 77;
         model = made_of(ball_at(50, 50, 50, 1), 5, NULL);
         OK(leafless_tridexel_window(model, 2, first, end));
@@ -500,7 +500,7 @@ static void contents(void) {
     const uint32_t ray[2] = {16, 16};
     leafless_tridexel *ball = made_of(check_ball_solid(), DEPTH, &most), *box = made_of(box_between(0, 0.9), DEPTH, NULL);
     leafless_tridexel *plain = NULL, *back = NULL, *steel = NULL, *copper = NULL, *joined, *cut, *reference = NULL;
-    leafless_tridexel_info info;
+    leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
     leafless_dexel dexels[3];
     uint64_t count;
     OK(leafless_tridexel_with_format(ball, &least, NULL, &plain));
@@ -586,8 +586,10 @@ static void cuts(void) {
     const leafless_tridexel_format format = format_of(LEAFLESS_DEXEL_ENDS_FIXED, LEAFLESS_DEXEL_NORMALS_16, 1, 0);
     leafless_tridexel *block = made_of(box_between(-0.6875, 0.6875), DEPTH, &format), *steps[STEPS], *path = NULL, *part, *early;
     leafless_tridexel_editor *by_solids = NULL, *by_models = NULL;
-    leafless_tridexel_info info, of_block;
-    leafless_dexel_change change, other;
+    leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
+    leafless_tridexel_info of_block = LEAFLESS_INIT(leafless_tridexel_info);
+    leafless_dexel_change change = LEAFLESS_INIT(leafless_dexel_change);
+    leafless_dexel_change other = LEAFLESS_INIT(leafless_dexel_change);
     double removed[3] = {0, 0, 0};
     uint32_t axis;
     int i;
@@ -710,7 +712,7 @@ static void cuts(void) {
 /* A shape whose function uses the editor that it is subtracted from. */
 static int32_t meddles(void *ctx, const double *min, const double *max) {
     leafless_tridexel_editor *const editor = *(leafless_tridexel_editor **)ctx;
-    leafless_tridexel_info info;
+    leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
     (void)min, (void)max;
     info.bytes = 77;
     FAILS(LEAFLESS_E_BUSY, leafless_tridexel_editor_describe(editor, &info));

@@ -59,8 +59,8 @@ static void surfaces(void) {
     leafless_tridexel *model = ball(0), *box;
     leafless_solid *solid = NULL;
     leafless_mesh *cubes = NULL, *dual = NULL, *sharp = NULL;
-    leafless_mesh_report report;
-    leafless_dexel_surface_report found;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
+    leafless_dexel_surface_report found = LEAFLESS_INIT(leafless_dexel_surface_report);
     double(*vertices)[3];
     uint32_t(*triangles)[3];
     uint64_t vertex_count, triangle_count, i;
@@ -103,10 +103,10 @@ static void octrees_and_solids(void) {
     leafless_tridexel *model = ball(0), *named = NULL, *again = NULL, *empty = NULL;
     leafless_octree *tree = NULL, *expected = check_ball(DEPTH, LEAFLESS_RULE_SAMPLED), *anew = NULL;
     leafless_solid *solid = NULL, *source = NULL;
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     const char *value = NULL;
     size_t length = 0;
-    leafless_measures measures;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
     OK(leafless_tridexel_with_metadata(model, "name", 4, "ball", 4, &named));
     OK(leafless_octree_from_tridexel(named, NULL, &tree));
     CHECK(check_same(tree, expected));
@@ -242,8 +242,9 @@ static void arrays(void) {
     {
         /* One axis, ends alone. */
         leafless_tridexel_arrays one = rays[1];
-        leafless_dexel_statistics a, b;
-        leafless_tridexel_info info;
+        leafless_dexel_statistics a = LEAFLESS_INIT(leafless_dexel_statistics);
+        leafless_dexel_statistics b = LEAFLESS_INIT(leafless_dexel_statistics);
+        leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
         one.normals = NULL;
         one.surfaces = one.materials = NULL;
         OK(leafless_tridexel_new(&frame, NULL, &one, 1, NULL, &back));
@@ -310,7 +311,7 @@ static void files(void) {
     uint64_t length = 0, again = 0, k;
     uint8_t *bytes, *copy;
     sink to = {NULL, 0, 0};
-    leafless_file_info probe;
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     leafless_file_section sections[64];
     int way;
     const char *value;
@@ -335,7 +336,7 @@ static void files(void) {
     CHECK(probe.tridexel.directions == LEAFLESS_AXES_ALL && probe.tridexel.normals == LEAFLESS_DEXEL_NORMALS_16);
     CHECK(probe.tridexel.ends == LEAFLESS_DEXEL_ENDS_FIXED && probe.tridexel.has_materials == 1);
     for (way = 0; way < 5; way++) {
-        leafless_dexel_statistics statistics;
+        leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
         switch (way) {
         case 0:
             OK(tridexel_open("ball.lfl", 8, &back));

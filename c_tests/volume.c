@@ -37,7 +37,7 @@ static leafless_volume_layout layout_of(uint32_t type) {
 static leafless_octree *same_voxels(const leafless_volume *volume, const leafless_interval *band) {
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     leafless_frame frame;
     uint32_t cell[3];
     OK(leafless_volume_frame(volume, &frame));
@@ -135,7 +135,7 @@ static void arrays(void) {
                 const bool in_place = way == 2 && !reverse && TYPES[i][0] == TYPES[i][1];
                 leafless_volume *volume = NULL;
                 leafless_octree *octree;
-                leafless_volume_info info;
+                leafless_volume_info info = LEAFLESS_INIT(leafless_volume_info);
                 leafless_interval range;
                 const void *peeked;
                 uint64_t peeked_length;
@@ -189,7 +189,7 @@ static void bits(void) {
     leafless_volume *in_place = NULL, *copied = NULL, *packed = NULL;
     leafless_octree *octree[3], *outside;
     leafless_solid *solid = NULL;
-    leafless_volume_info info;
+    leafless_volume_info info = LEAFLESS_INIT(leafless_volume_info);
     leafless_interval range;
     leafless_frame frame;
     uint64_t count;
@@ -289,7 +289,7 @@ static void bitmaps(void) {
                     CHECK(inner[y + ny * z] >> (max[0] - min[0]) == 0 && outer[y + ny * z] >> (max[0] - min[0]) == 0);
                     for (x = 0; x < max[0] - min[0]; x++) {
                         const uint32_t at[3] = {min[0] + x, min[1] + y, min[2] + z};
-                        leafless_cursor_info state;
+                        leafless_cursor_info state = LEAFLESS_INIT(leafless_cursor_info);
                         bool reached;
                         OK(leafless_cursor_seek(cursor, at, level, &reached));
                         OK(leafless_cursor_describe(cursor, &state));
@@ -333,7 +333,7 @@ static void bands_and_places(void) {
     leafless_volume *volume = bytes_volume(corner, cubes), *other;
     leafless_solid *solid = NULL, *unmade = NULL;
     leafless_octree *octree = NULL;
-    leafless_volume_info info;
+    leafless_volume_info info = LEAFLESS_INIT(leafless_volume_info);
     leafless_statistics statistics;
     leafless_frame frame;
     double min[3], max[3];
@@ -405,7 +405,7 @@ static void files(void) {
     leafless_volume *volume = bytes_volume(corner, spacing), *back = NULL;
     leafless_octree *octree = same_voxels(volume, &band), *again;
     leafless_volume_layout layout = layout_of(LEAFLESS_SAMPLE_TYPE_U8);
-    leafless_volume_info info;
+    leafless_volume_info info = LEAFLESS_INIT(leafless_volume_info);
     uint64_t length, lengths[2];
     uint8_t *bytes;
     size_t i;
@@ -468,7 +468,7 @@ static void headers(void) {
     uint8_t data[32] = {0}, file[sizeof META - 1 + 8];
     const leafless_interval band = {1, INFINITY};
     leafless_volume *volume = NULL;
-    leafless_volume_info info;
+    leafless_volume_info info = LEAFLESS_INIT(leafless_volume_info);
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
     leafless_statistics statistics;

@@ -67,7 +67,7 @@
  * Results. A function that can fail returns a leafless_status; LEAFLESS_OK is 0. leafless_last_error gives
  * the message of the last failure in the calling thread. Results are written to the last parameters, and only
  * on success. After a failure the results are as they were before the call; the contents of buffers may have
- * changed. No parameter is both read and written.
+ * changed. No parameter is both read and written, except struct_size.
  *
  * General errors. Every function may return these, and its comment does not repeat them:
  * - LEAFLESS_E_NULL: a pointer is NULL, and the function does not say that it may be.
@@ -101,9 +101,12 @@
  * the name of the enumeration, a leafless_status alone with an E. UNDECIDED is 2 in every answer, as
  * LEAFLESS_TAG_PARTIAL is. UNKNOWN, that nobody has said, is 0.
  *
- * Structs. A struct with a field struct_size begins with its own sizeof. All other fields may be zero, and
- * zero is the default: LEAFLESS_INIT(type) makes it. Programs that were compiled with an older, shorter
- * struct go on working. Other structs are fixed for one LEAFLESS_ABI.
+ * Structs. A struct with a field struct_size begins with its own sizeof, which the caller sets, also before
+ * the library fills it: LEAFLESS_INIT(type) does so, and zeroes all other fields. Zero is the default of what
+ * the library reads. Such structs may grow at their end, and programs that were compiled with an older,
+ * shorter one go on working: fields that they do not have count as zero, and are not written. Of a newer,
+ * longer one the library writes the fields that it knows. Structs without the field, elements of arrays among
+ * them, are fixed for one LEAFLESS_ABI.
  *
  * Numbers. A number that stands for a member of an enumeration has its type, and is checked: C++ refuses
  * another type, and the library refuses a number that is no member. In C, write leafless_tag for a variable,
@@ -735,6 +738,7 @@ LEAFLESS_ENUM(leafless_fill, uint32_t) {
 
 /// What was found while a mesh was taken in, and how its triangles hang together.
 typedef struct leafless_mesh_report {
+    uint32_t struct_size;  ///< sizeof(leafless_mesh_report).
     uint64_t facets_read;  ///< Triangles that were handed in: triangles + degenerate.
     uint64_t triangles;  ///< Triangles of the mesh.
     uint64_t vertices;  ///< Vertices of the mesh, all at different places.
@@ -1075,6 +1079,7 @@ LEAFLESS_ENUM(leafless_moments_verdict, uint32_t) {
 /// Mass properties of what a mesh encloses, of density 1, as in leafless_measures: all numbers unless they
 /// are known.
 typedef struct leafless_mesh_moments {
+    uint32_t struct_size;  ///< sizeof(leafless_mesh_moments).
     leafless_interval volume_model;  ///< Volume.
     leafless_interval centroid_model[3];  ///< Centroid; all numbers unless `has_centroid`.
     leafless_interval inertia_origin_model[9];  ///< Tensor of inertia about the model's origin, row by row.
@@ -1159,6 +1164,7 @@ typedef struct leafless_mesh_options {
 
 /// What a mesh file says besides the mesh.
 typedef struct leafless_mesh_file_info {
+    uint32_t struct_size;  ///< sizeof(leafless_mesh_file_info).
     leafless_mesh_format format;  ///< The file's format.
     leafless_unit unit;  ///< The unit of the mesh, converted but not scaled, if it is known.
     /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
@@ -1730,6 +1736,7 @@ LEAFLESS_ENUM(leafless_volume_format, uint32_t) {
 
 /// What can be said of a volume at once.
 typedef struct leafless_volume_info {
+    uint32_t struct_size;  ///< sizeof(leafless_volume_info).
     uint32_t extents[3];  ///< How many samples there are along x, y and z.
     leafless_sample_type sample_type;  ///< Their type in memory: one of the first five.
     leafless_sample_type file_type;  ///< Their type in the file or array that the volume was made from.
@@ -1968,6 +1975,7 @@ leafless_status leafless_scene_read(const leafless_source *source, const leafles
 
 /// What was found while a scene was read.
 typedef struct leafless_scene_info {
+    uint32_t struct_size;  ///< sizeof(leafless_scene_info).
     uint64_t polygons;  ///< Calls of circle, sphere, cylinder and rotate_extrude that were drawn as polygons.
     uint64_t exact;  ///< Calls of these that are exact. OpenSCAD draws them as polygons.
     /// Calls of linear_extrude of which `slices` has no effect though it has one in OpenSCAD.
@@ -1980,10 +1988,10 @@ typedef struct leafless_scene_info {
 
 /// What is told of a mesh or polyhedron in a scene.
 typedef struct leafless_scene_mesh_info {
+    uint32_t struct_size;  ///< sizeof(leafless_scene_mesh_info).
     uint64_t line;  ///< Line of the call in the text, counted from 1.
     uint64_t column;  ///< Column of the call in characters, counted from 1.
     uint64_t turned;  ///< Triangles that face the other way than most of those that they hang together with.
-    leafless_mesh_report report;  ///< What was found while the mesh was taken in.
 } leafless_scene_mesh_info;
 
 /// What was found while a scene was read.
@@ -1994,17 +2002,18 @@ leafless_status leafless_scene_describe(const leafless_scene *scene, leafless_sc
 
 /// What was found while a mesh or polyhedron of a scene was taken in.
 ///
-/// - Buffers: `mesh`, one struct. `index`, in the order of the text, is less than the report's `meshes`.
-/// - Result: `*mesh`.
+/// - Buffers: `mesh`, one struct; `report`, one struct, or NULL if it is not wanted. `index`, in the order of
+///   the text, is less than `meshes` of leafless_scene_info.
+/// - Result: `*mesh`; `*report`, the report of the mesh as it was taken in.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no such mesh.
 leafless_status leafless_scene_describe_mesh_at(const leafless_scene *scene, uint64_t index,
-    leafless_scene_mesh_info *mesh);
+    leafless_scene_mesh_info *mesh, leafless_mesh_report *report);
 
 /// The file of a mesh in a scene, as the text names it, in UTF-8 and not terminated by NUL; nothing for a
 /// polyhedron.
 ///
 /// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
-///   `index`, in the order of the text, is less than the report's `meshes`.
+///   `index`, in the order of the text, is less than `meshes` of leafless_scene_info.
 /// - Result: `*length`, the length of the name in bytes; the name in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
 leafless_status leafless_scene_mesh_file_at(const leafless_scene *scene, uint64_t index, uint8_t *bytes,
@@ -2075,6 +2084,7 @@ LEAFLESS_ENUM(leafless_proven, uint32_t) {
 
 /// What can be said of an octree at once.
 typedef struct leafless_octree_info {
+    uint32_t struct_size;  ///< sizeof(leafless_octree_info).
     leafless_frame frame;  ///< Where it lies, and its depth.
     uint64_t elements;  ///< Array elements without bricks; each holds two levels.
     uint64_t bricks;  ///< Array elements of the deepest level.
@@ -2465,6 +2475,7 @@ leafless_status leafless_point_table_contains_many(const leafless_point_table *t
 
 /// Where a cursor stands.
 typedef struct leafless_cursor_info {
+    uint32_t struct_size;  ///< sizeof(leafless_cursor_info).
     uint32_t cell[3];  ///< The cell's place among those of its level, per axis.
     uint32_t level;  ///< The cell's level; 0 is the universe.
     leafless_tag tag;  ///< The cell's tag.
@@ -3030,6 +3041,7 @@ LEAFLESS_ENUM(leafless_stop_reason, uint32_t) {
 /// Mass properties of a solid of density 1. All intervals contain the truth. All of it concerns the part
 /// inside of the universe; unless `is_clipped` says otherwise, that is the whole solid.
 typedef struct leafless_measures {
+    uint32_t struct_size;  ///< sizeof(leafless_measures).
     leafless_interval volume_model;  ///< Volume.
     leafless_interval centroid_model[3];  ///< Centroid; all numbers unless `has_centroid`.
     /// Tensor of inertia about the model's origin, row by row: the integral of |p|²δij - pi·pj over the
@@ -3052,6 +3064,7 @@ typedef struct leafless_measures {
 
 /// The area of a solid's boundary.
 typedef struct leafless_surface_area {
+    uint32_t struct_size;  ///< sizeof(leafless_surface_area).
     /// Area. It contains the truth; its upper end is infinite where nothing is known.
     leafless_interval area_model;
     uint64_t splits;  ///< How many times a cell was split.
@@ -3063,6 +3076,7 @@ typedef struct leafless_surface_area {
 
 /// The area of a solid's section with a plane.
 typedef struct leafless_section_area {
+    uint32_t struct_size;  ///< sizeof(leafless_section_area).
     leafless_interval area_model;  ///< Area. It contains the truth.
     leafless_proof proof;  ///< What of the solid is proven: what is not counts as undecided.
     uint64_t splits;  ///< How many times a cell was split.
@@ -3073,6 +3087,7 @@ typedef struct leafless_section_area {
 
 /// What is proven of a solid's bounding box inside of the universe.
 typedef struct leafless_extent {
+    uint32_t struct_size;  ///< sizeof(leafless_extent).
     leafless_interval min_model[3];  ///< Lower corner; all numbers if `is_empty`.
     leafless_interval max_model[3];  ///< Upper corner; all numbers if `is_empty`.
     leafless_proof proof;  ///< What of the solid is proven: what is not counts as undecided.
@@ -3298,6 +3313,7 @@ typedef struct leafless_interference {
 
 /// What is known of the distance between two solids inside of the universe of a frame.
 typedef struct leafless_clearance {
+    uint32_t struct_size;  ///< sizeof(leafless_clearance).
     /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
     /// bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
     /// if one of them is proven to be empty.
@@ -3394,6 +3410,7 @@ leafless_status leafless_solid_clearance(const leafless_solid *a, const leafless
 
 /// What can be said of a lazy octree at once.
 typedef struct leafless_lazy_info {
+    uint32_t struct_size;  ///< sizeof(leafless_lazy_info).
     leafless_frame frame;  ///< The universe, and how deep cells may be split.
     leafless_statistics statistics;  ///< Counts over all levels, and the certified volume.
     /// Cells that were split, as it happened: also those that were merged again. Nothing is counted twice.
@@ -3774,6 +3791,7 @@ LEAFLESS_ENUM(leafless_scalar_type, uint32_t) {
 
 /// What can be said of a channel at once.
 typedef struct leafless_channel_info {
+    uint32_t struct_size;  ///< sizeof(leafless_channel_info).
     leafless_frame frame;  ///< Where it lies: in the cube of its solid, with a depth of its own.
     leafless_scalar_type scalar;  ///< The type of the numbers.
     uint32_t components;  ///< How many numbers a value has: 1 to 4.
@@ -3997,6 +4015,7 @@ LEAFLESS_ENUM(leafless_interpolation, uint32_t) {
 /// What the values of a channel amount to in a region, number by number; places beyond the numbers of a value
 /// are 0. All intervals contain the truth, as far as the cells of the solid and of the channel tell it.
 typedef struct leafless_channel_summary {
+    uint32_t struct_size;  ///< sizeof(leafless_channel_summary).
     double least[4];  ///< The least value of any cell that may belong to the region.
     double greatest[4];  ///< The greatest value of any cell that may belong to the region.
     /// The integral of the value over the region, in the value's units times cubic model units: of a density,
@@ -4496,6 +4515,7 @@ typedef struct leafless_tridexel_format {
 
 /// What can be said of a tri-dexel model at once.
 typedef struct leafless_tridexel_info {
+    uint32_t struct_size;  ///< sizeof(leafless_tridexel_info).
     leafless_frame frame;  ///< The lattice: rays run through the centres of its finest cells.
     uint32_t directions;  ///< The axes that rays run along, a sum of leafless_axes.
     leafless_dexel_ends ends;  ///< How the ends of intervals are stored.
@@ -4694,6 +4714,7 @@ typedef struct leafless_dexel {
 
 /// What the rays along one axis hold.
 typedef struct leafless_dexel_statistics {
+    uint32_t struct_size;  ///< sizeof(leafless_dexel_statistics).
     uint64_t rays;  ///< Rays that cross the solid.
     uint64_t intervals;  ///< Intervals.
     uint64_t bytes;  ///< Bytes of the arrays.
@@ -4845,6 +4866,7 @@ leafless_status leafless_tridexel_with_material(const leafless_tridexel *tridexe
 /// Volumes are sums of the lengths along the rays of one axis, each times the area of a cell's face. So they
 /// are estimates, not bounds, and differ from axis to axis by what rays beside each other do not see.
 typedef struct leafless_dexel_change {
+    uint32_t struct_size;  ///< sizeof(leafless_dexel_change).
     uint64_t rays;  ///< Rays of all directions whose intervals begin or end elsewhere than before.
     /// The volume that the rays along x, y and z lost, in cubic model units; 0 for an axis without rays.
     double removed_model[3];
@@ -4938,6 +4960,7 @@ LEAFLESS_ENUM(leafless_dexel_surface_method, uint32_t) {
 
 /// How exactly a surface of a tri-dexel model follows its rays.
 typedef struct leafless_dexel_surface_report {
+    uint32_t struct_size;  ///< sizeof(leafless_dexel_surface_report).
     /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the
     /// surface.
     uint64_t crossings;
@@ -5069,6 +5092,7 @@ typedef struct leafless_file_tridexel_info {
 
 /// What header and section table of a file say.
 typedef struct leafless_file_info {
+    uint32_t struct_size;  ///< sizeof(leafless_file_info).
     uint32_t major;  ///< Major version of the format.
     uint32_t minor;  ///< Minor version of the format.
     leafless_frame frame;  ///< Where the octree or the tri-dexel model lies, and its depth.

@@ -507,7 +507,8 @@ public:
     [[nodiscard]] static returns<leafless::scene> read(const leafless_source &source,
         const leafless_scene_options &options);
     [[nodiscard]] returns<leafless_scene_info> describe() const;
-    [[nodiscard]] returns<leafless_scene_mesh_info> describe_mesh_at(uint64_t index) const;
+    [[nodiscard]] returns<std::tuple<leafless_scene_mesh_info,
+        leafless_mesh_report>> describe_mesh_at(uint64_t index) const;
     [[nodiscard]] returns<std::vector<uint8_t>> mesh_file_at(uint64_t index) const;
     [[nodiscard]] returns<leafless::scene> share() const;
     [[nodiscard]] returns<std::tuple<point, point>> bounds() const;
@@ -933,7 +934,7 @@ inline returns<double> mesh::area() const {
 }
 
 inline returns<leafless_mesh_report> mesh::inspect() const {
-    leafless_mesh_report report{};
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     const leafless_status status = leafless_mesh_inspect(get(), &report);
     return detail::finish(status, report);
 }
@@ -989,7 +990,7 @@ inline returns<std::tuple<double,
 
 inline returns<leafless_mesh_moments> mesh::measure(leafless_fill fill,
     const leafless_options *options) const {
-    leafless_mesh_moments moments{};
+    leafless_mesh_moments moments = LEAFLESS_INIT(leafless_mesh_moments);
     const leafless_status status = leafless_mesh_measure(get(), fill, options, &moments);
     return detail::finish(status, moments);
 }
@@ -1012,7 +1013,7 @@ inline returns<std::tuple<std::vector<leafless_intersecting_pair>,
 
 inline returns<std::tuple<leafless_mesh_file_info, leafless::mesh>> mesh::read(const leafless_source &source,
     const leafless_mesh_options &options) {
-    leafless_mesh_file_info found{};
+    leafless_mesh_file_info found = LEAFLESS_INIT(leafless_mesh_file_info);
     leafless_mesh *mesh_handle = nullptr;
     const leafless_status status = leafless_mesh_read(&source, &options, &found, &mesh_handle);
     return detail::finish(status, std::tuple<leafless_mesh_file_info, leafless::mesh>(found,
@@ -1353,7 +1354,7 @@ inline returns<leafless_interval> solid::volume_in(const leafless::solid &region
 
 inline returns<leafless_measures> solid::measure(const leafless_frame &frame, double relative,
     double absolute_model, const leafless_options *options) const {
-    leafless_measures measures{};
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
     const leafless_status status = leafless_solid_measure(get(), &frame, relative, absolute_model, options,
         &measures);
     return detail::finish(status, measures);
@@ -1361,7 +1362,7 @@ inline returns<leafless_measures> solid::measure(const leafless_frame &frame, do
 
 inline returns<leafless_surface_area> solid::surface_area(const leafless_frame &frame, double relative,
     double absolute_model, const leafless_options *options) const {
-    leafless_surface_area surface{};
+    leafless_surface_area surface = LEAFLESS_INIT(leafless_surface_area);
     const leafless_status status = leafless_solid_surface_area(get(), &frame, relative, absolute_model,
         options, &surface);
     return detail::finish(status, surface);
@@ -1370,7 +1371,7 @@ inline returns<leafless_surface_area> solid::surface_area(const leafless_frame &
 inline returns<leafless_section_area> solid::section_area(const leafless_frame &frame,
     const point &point_model, const point &normal, double relative, double absolute_model,
     const leafless_options *options) const {
-    leafless_section_area section{};
+    leafless_section_area section = LEAFLESS_INIT(leafless_section_area);
     const leafless_status status = leafless_solid_section_area(get(), &frame, point_model.data(),
         normal.data(), relative, absolute_model, options, &section);
     return detail::finish(status, section);
@@ -1378,7 +1379,7 @@ inline returns<leafless_section_area> solid::section_area(const leafless_frame &
 
 inline returns<leafless_extent> solid::bounding_box(const leafless_frame &frame, double tolerance_model,
     const leafless_options *options) const {
-    leafless_extent extent{};
+    leafless_extent extent = LEAFLESS_INIT(leafless_extent);
     const leafless_status status = leafless_solid_bounding_box(get(), &frame, tolerance_model, options,
         &extent);
     return detail::finish(status, extent);
@@ -1418,7 +1419,7 @@ inline returns<void> solid::interfere_many(const leafless::solid &b, const leafl
 
 inline returns<leafless_clearance> solid::clearance(const leafless::solid &b, const leafless_frame &frame,
     double tolerance_model, const leafless_options *options) const {
-    leafless_clearance clearance{};
+    leafless_clearance clearance = LEAFLESS_INIT(leafless_clearance);
     const leafless_status status = leafless_solid_clearance(get(), b.get(), &frame, tolerance_model, options,
         &clearance);
     return detail::finish(status, clearance);
@@ -1461,7 +1462,7 @@ inline returns<leafless::volume> volume::share() const {
 }
 
 inline returns<leafless_volume_info> volume::describe() const {
-    leafless_volume_info info{};
+    leafless_volume_info info = LEAFLESS_INIT(leafless_volume_info);
     const leafless_status status = leafless_volume_describe(get(), &info);
     return detail::finish(status, info);
 }
@@ -1536,15 +1537,17 @@ inline returns<leafless::scene> scene::read(const leafless_source &source,
 }
 
 inline returns<leafless_scene_info> scene::describe() const {
-    leafless_scene_info report{};
+    leafless_scene_info report = LEAFLESS_INIT(leafless_scene_info);
     const leafless_status status = leafless_scene_describe(get(), &report);
     return detail::finish(status, report);
 }
 
-inline returns<leafless_scene_mesh_info> scene::describe_mesh_at(uint64_t index) const {
-    leafless_scene_mesh_info mesh{};
-    const leafless_status status = leafless_scene_describe_mesh_at(get(), index, &mesh);
-    return detail::finish(status, mesh);
+inline returns<std::tuple<leafless_scene_mesh_info,
+    leafless_mesh_report>> scene::describe_mesh_at(uint64_t index) const {
+    leafless_scene_mesh_info mesh = LEAFLESS_INIT(leafless_scene_mesh_info);
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
+    const leafless_status status = leafless_scene_describe_mesh_at(get(), index, &mesh, &report);
+    return detail::finish(status, std::tuple<leafless_scene_mesh_info, leafless_mesh_report>(mesh, report));
 }
 
 inline returns<std::vector<uint8_t>> scene::mesh_file_at(uint64_t index) const {
@@ -1585,7 +1588,7 @@ inline returns<leafless::octree> octree::share() const {
 }
 
 inline returns<leafless_octree_info> octree::describe() const {
-    leafless_octree_info info{};
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     const leafless_status status = leafless_octree_describe(get(), &info);
     return detail::finish(status, info);
 }
@@ -1969,7 +1972,7 @@ inline returns<leafless::cursor> cursor::make(const leafless::octree &octree) {
 }
 
 inline returns<leafless_cursor_info> cursor::describe() const {
-    leafless_cursor_info state{};
+    leafless_cursor_info state = LEAFLESS_INIT(leafless_cursor_info);
     const leafless_status status = leafless_cursor_describe(get(), &state);
     return detail::finish(status, state);
 }
@@ -2110,7 +2113,7 @@ inline returns<leafless_membership> lazy::contains(const point &point_model) con
 }
 
 inline returns<leafless_lazy_info> lazy::describe() const {
-    leafless_lazy_info info{};
+    leafless_lazy_info info = LEAFLESS_INIT(leafless_lazy_info);
     const leafless_status status = leafless_lazy_describe(get(), &info);
     return detail::finish(status, info);
 }
@@ -2224,7 +2227,7 @@ inline returns<leafless::channel> channel::share() const {
 }
 
 inline returns<leafless_channel_info> channel::describe() const {
-    leafless_channel_info info{};
+    leafless_channel_info info = LEAFLESS_INIT(leafless_channel_info);
     const leafless_status status = leafless_channel_describe(get(), &info);
     return detail::finish(status, info);
 }
@@ -2313,7 +2316,7 @@ inline returns<leafless::channel> channel::with_value_in(const leafless::octree 
 
 inline returns<leafless_channel_summary> channel::summarise(const leafless::octree *solid,
     const point &min_model, const point &max_model, const leafless_options *options) const {
-    leafless_channel_summary summary{};
+    leafless_channel_summary summary = LEAFLESS_INIT(leafless_channel_summary);
     const leafless_status status = leafless_channel_summarise(get(), detail::handle_of(solid),
         min_model.data(), max_model.data(), options, &summary);
     return detail::finish(status, summary);
@@ -2341,7 +2344,7 @@ inline returns<leafless::tridexel> tridexel::share() const {
 }
 
 inline returns<leafless_tridexel_info> tridexel::describe() const {
-    leafless_tridexel_info info{};
+    leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
     const leafless_status status = leafless_tridexel_describe(get(), &info);
     return detail::finish(status, info);
 }
@@ -2403,7 +2406,7 @@ inline returns<leafless::tridexel> tridexel::make(const leafless_frame &frame,
 }
 
 inline returns<leafless_dexel_statistics> tridexel::statistics(uint32_t axis) const {
-    leafless_dexel_statistics statistics{};
+    leafless_dexel_statistics statistics = LEAFLESS_INIT(leafless_dexel_statistics);
     const leafless_status status = leafless_tridexel_statistics(get(), axis, &statistics);
     return detail::finish(status, statistics);
 }
@@ -2489,7 +2492,7 @@ inline returns<leafless::tridexel> tridexel::with_material(uint32_t material,
 inline returns<std::tuple<leafless_dexel_surface_report,
     leafless::mesh>> tridexel::surface(leafless_dexel_surface_method method,
     const leafless_options *options) const {
-    leafless_dexel_surface_report report{};
+    leafless_dexel_surface_report report = LEAFLESS_INIT(leafless_dexel_surface_report);
     leafless_mesh *mesh_handle = nullptr;
     const leafless_status status = leafless_tridexel_surface(get(), method, options, &report, &mesh_handle);
     return detail::finish(status, std::tuple<leafless_dexel_surface_report, leafless::mesh>(report,
@@ -2528,14 +2531,14 @@ inline returns<leafless::tridexel_editor> tridexel_editor::make(const leafless::
 }
 
 inline returns<leafless_tridexel_info> tridexel_editor::describe() const {
-    leafless_tridexel_info info{};
+    leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
     const leafless_status status = leafless_tridexel_editor_describe(get(), &info);
     return detail::finish(status, info);
 }
 
 inline returns<leafless_dexel_change> tridexel_editor::combine(leafless_operation operation,
     const leafless::tridexel &tridexel, const leafless_options *options) {
-    leafless_dexel_change change{};
+    leafless_dexel_change change = LEAFLESS_INIT(leafless_dexel_change);
     const leafless_status status = leafless_tridexel_editor_combine(get(), operation, tridexel.get(), options,
         &change);
     return detail::finish(status, change);
@@ -2543,7 +2546,7 @@ inline returns<leafless_dexel_change> tridexel_editor::combine(leafless_operatio
 
 inline returns<leafless_dexel_change> tridexel_editor::combine_solid(leafless_operation operation,
     const leafless::solid &solid, const leafless_options *options) {
-    leafless_dexel_change change{};
+    leafless_dexel_change change = LEAFLESS_INIT(leafless_dexel_change);
     const leafless_status status = leafless_tridexel_editor_combine_solid(get(), operation, solid.get(),
         options, &change);
     return detail::finish(status, change);
@@ -2757,7 +2760,7 @@ inline returns<std::tuple<std::vector<uint64_t>,
 
 inline returns<leafless_file_info> file_describe(const leafless_source &source,
     span<leafless_file_section> sections) {
-    leafless_file_info probe{};
+    leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     const leafless_status status = leafless_file_describe(&source, &probe, sections.data(), sections.size());
     return detail::finish(status, probe);
 }

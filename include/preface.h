@@ -42,7 +42,7 @@
  * Results. A function that can fail returns a leafless_status; LEAFLESS_OK is 0. leafless_last_error gives
  * the message of the last failure in the calling thread. Results are written to the last parameters, and only
  * on success. After a failure the results are as they were before the call; the contents of buffers may have
- * changed. No parameter is both read and written.
+ * changed. No parameter is both read and written, except struct_size.
  *
  * General errors. Every function may return these, and its comment does not repeat them:
  * - LEAFLESS_E_NULL: a pointer is NULL, and the function does not say that it may be.
@@ -76,9 +76,12 @@
  * the name of the enumeration, a leafless_status alone with an E. UNDECIDED is 2 in every answer, as
  * LEAFLESS_TAG_PARTIAL is. UNKNOWN, that nobody has said, is 0.
  *
- * Structs. A struct with a field struct_size begins with its own sizeof. All other fields may be zero, and
- * zero is the default: LEAFLESS_INIT(type) makes it. Programs that were compiled with an older, shorter
- * struct go on working. Other structs are fixed for one LEAFLESS_ABI.
+ * Structs. A struct with a field struct_size begins with its own sizeof, which the caller sets, also before
+ * the library fills it: LEAFLESS_INIT(type) does so, and zeroes all other fields. Zero is the default of what
+ * the library reads. Such structs may grow at their end, and programs that were compiled with an older,
+ * shorter one go on working: fields that they do not have count as zero, and are not written. Of a newer,
+ * longer one the library writes the fields that it knows. Structs without the field, elements of arrays among
+ * them, are fixed for one LEAFLESS_ABI.
  *
  * Numbers. A number that stands for a member of an enumeration has its type, and is checked: C++ refuses
  * another type, and the library refuses a number that is no member. In C, write leafless_tag for a variable,

@@ -518,6 +518,58 @@ pub(super) unsafe fn sized<T: Sized32>(pointer: *const T, name: &'static str) ->
     Ok(known)
 }
 
+/// A struct that the library fills and that begins with its own size, which the host sets: older hosts have
+/// shorter ones, newer ones longer.
+///
+/// # Safety
+/// It is `repr(C)`, and its first field is `struct_size`, a `u32`. [`output`] sees to that.
+pub(super) unsafe trait Output: Copy {}
+
+/// Says of a struct that it is an [`Output`].
+macro_rules! output {
+    ($name:ident) => {
+        const _: () = assert!(core::mem::offset_of!($name, struct_size) == 0);
+        // SAFETY: as just checked; `layout` has the fields of all structs.
+        unsafe impl $crate::boundary::Output for $name {}
+    };
+}
+pub(super) use output;
+
+/// A place for an output, checked before the work begins and written once it is done.
+pub(super) struct Filled<T> {
+    start: NonNull<T>,
+    size: usize,
+}
+
+/// # Safety
+/// Unless it is NULL or misaligned, `pointer` points to as many bytes as its first four say, which nothing
+/// else uses during the call.
+pub(super) unsafe fn filled<T: Output>(pointer: *mut T, name: &'static str) -> Result<Filled<T>, Failure> {
+    checked(pointer, name)?;
+    // SAFETY: the caller promises four bytes.
+    let size = unsafe { pointer.cast::<u32>().read() } as usize;
+    if !sensible::<T>(size) {
+        let problem = "has no sensible struct_size; was it initialised?";
+        return Err(Failure::Argument { name, problem });
+    }
+    NonNull::new(pointer).map(|start| Filled { start, size }).ok_or(Failure::Null { name })
+}
+
+impl<T: Output> Filled<T> {
+    /// Writes what the host's struct has room for. Its size stays, and so do fields that this library does not
+    /// know.
+    pub(super) fn write(self, value: T) -> Result<(), Failure> {
+        const FIRST: usize = size_of::<u32>();
+        let end = self.size.min(size_of::<T>());
+        // SAFETY: promised to `filled`, and within both structs.
+        unsafe {
+            let from = (&raw const value).cast::<u8>().add(FIRST);
+            core::ptr::copy_nonoverlapping(from, self.start.as_ptr().cast::<u8>().add(FIRST), end - FIRST);
+        }
+        Ok(())
+    }
+}
+
 /// Makes a struct of the host its default, of which the first field is its size: that, and zeros.
 ///
 /// # Safety

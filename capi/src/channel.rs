@@ -1,7 +1,7 @@
 //! Channels: what they hold, and the facts that travel with them.
 
 use super::attribute::{give as give_attribute, leafless_attribute};
-use super::boundary::{guard, handle, out, refer, release, shared};
+use super::boundary::{filled, guard, handle, out, output, refer, release, shared};
 use super::frame::leafless_frame;
 use super::metadata::{self, Fact};
 use super::number::enumeration;
@@ -60,6 +60,8 @@ impl From<ScalarType> for leafless_scalar_type {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_info {
+    /// sizeof(leafless_channel_info).
+    pub struct_size: u32,
     /// Where it lies: in the cube of its solid, with a depth of its own.
     pub frame: leafless_frame,
     /// The type of the numbers.
@@ -73,6 +75,8 @@ pub struct leafless_channel_info {
     /// Bytes that the channel takes in memory.
     pub bytes: u64,
 }
+
+output!(leafless_channel_info);
 
 /// A handle of a channel.
 pub(super) fn give(channel: Channel) -> *mut leafless_channel {
@@ -118,9 +122,10 @@ pub unsafe extern "C" fn leafless_channel_describe(
 ) -> leafless_status {
     guard(|| unsafe {
         let channel = &shared(channel, "channel")?.channel;
-        let info = out(info, "info")?;
+        let info = filled(info, "info")?;
         let value_type = channel.value_type();
         info.write(leafless_channel_info {
+            struct_size: size_of::<leafless_channel_info>() as u32,
             frame: channel.frame().into(),
             scalar: value_type.scalar().into(),
             components: value_type.components() as u32,

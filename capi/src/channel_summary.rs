@@ -1,7 +1,7 @@
 //! What the values of channels amount to, and where they lie in a band.
 
 use super::attribute::{give as give_attribute, leafless_attribute};
-use super::boundary::{array, buffer, guard, out, shared, slice};
+use super::boundary::{array, buffer, filled, guard, out, output, shared, slice};
 use super::channel::leafless_channel;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
@@ -40,6 +40,8 @@ enumeration! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_channel_summary {
+    /// sizeof(leafless_channel_summary).
+    pub struct_size: u32,
     /// The least value of any cell that may belong to the region.
     pub least: [f64; 4],
     /// The greatest value of any cell that may belong to the region.
@@ -57,6 +59,8 @@ pub struct leafless_channel_summary {
     pub has_values: bool,
 }
 
+output!(leafless_channel_summary);
+
 impl From<Option<ChannelSummary>> for leafless_channel_summary {
     fn from(found: Option<ChannelSummary>) -> leafless_channel_summary {
         let zero = Interval::exactly(0.0);
@@ -69,6 +73,7 @@ impl From<Option<ChannelSummary>> for leafless_channel_summary {
             volume_without: zero,
         });
         leafless_channel_summary {
+            struct_size: size_of::<leafless_channel_summary>() as u32,
             least: summary.least,
             greatest: summary.greatest,
             integral: summary.integral.map(Into::into),
@@ -129,7 +134,7 @@ pub unsafe extern "C" fn leafless_channel_summarise(
                 Some(Bounds { min: array(min_model, "min_model")?, max: array(max_model, "max_model")? })
             }
         };
-        let summary = out(summary, "summary")?;
+        let summary = filled(summary, "summary")?;
         let view = channel.view()?;
         summary.write(controlled(options, |control| view.summary(solid, bounds.as_ref(), control))?.into())
     })

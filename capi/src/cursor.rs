@@ -1,6 +1,6 @@
 //! Cursors on the nodes of an octree.
 
-use super::boundary::{Failure, discard, exclusive, guard, out, share, shared};
+use super::boundary::{Failure, discard, exclusive, filled, guard, out, output, share, shared};
 use super::octree::{leafless_octree, leafless_tag};
 use super::status::leafless_status;
 use leafless::octree::Cursor;
@@ -17,6 +17,8 @@ pub struct leafless_cursor(pub(super) Yoke<Cursor<'static>, Arc<leafless_octree>
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_cursor_info {
+    /// sizeof(leafless_cursor_info).
+    pub struct_size: u32,
     /// The cell's place among those of its level, per axis.
     pub cell: [u32; 3],
     /// The cell's level; 0 is the universe.
@@ -27,6 +29,8 @@ pub struct leafless_cursor_info {
     /// else eight times the cell's own.
     pub children: [leafless_tag; 8],
 }
+
+output!(leafless_cursor_info);
 
 /// Makes a cursor that stands on the universe.
 ///
@@ -74,7 +78,8 @@ pub unsafe extern "C" fn leafless_cursor_describe(
         let cursor = shared(cursor, "cursor")?.0.get();
         let (cell, tag) = (cursor.cell(), cursor.tag());
         let children = cursor.node().map_or([tag; 8], |node| node.tags());
-        out(state, "state")?.write(leafless_cursor_info {
+        filled(state, "state")?.write(leafless_cursor_info {
+            struct_size: size_of::<leafless_cursor_info>() as u32,
             cell: cell.at,
             level: cell.level.into(),
             tag: tag.into(),

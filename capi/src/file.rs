@@ -1,6 +1,6 @@
 //! Files: what they say of themselves, whether they are good; octrees.
 
-use super::boundary::{buffer, guard, out, shared};
+use super::boundary::{buffer, filled, guard, out, output, shared};
 use super::frame::leafless_frame;
 use super::octree::{give, leafless_octree, leafless_proof, leafless_tag};
 use super::source::leafless_access::*;
@@ -48,6 +48,8 @@ pub struct leafless_file_tridexel_info {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_file_info {
+    /// sizeof(leafless_file_info).
+    pub struct_size: u32,
     /// Major version of the format.
     pub major: u32,
     /// Minor version of the format.
@@ -73,6 +75,8 @@ pub struct leafless_file_info {
     /// What is stored of a tri-dexel model; all zeros for an octree.
     pub tridexel: leafless_file_tridexel_info,
 }
+
+output!(leafless_file_info);
 
 impl From<Option<&DexelProbe>> for leafless_file_tridexel_info {
     fn from(probe: Option<&DexelProbe>) -> leafless_file_tridexel_info {
@@ -113,6 +117,7 @@ pub struct leafless_file_section {
 impl From<&Probe> for leafless_file_info {
     fn from(probe: &Probe) -> leafless_file_info {
         leafless_file_info {
+            struct_size: size_of::<leafless_file_info>() as u32,
             major: probe.version.0.into(),
             minor: probe.version.1.into(),
             frame: (&probe.frame).into(),
@@ -167,7 +172,7 @@ pub unsafe extern "C" fn leafless_file_describe(
 ) -> leafless_status {
     guard(|| unsafe {
         let (source, _) = self::source(source)?;
-        let probe = out(probe, "probe")?;
+        let probe = filled(probe, "probe")?;
         let sections = buffer(sections, capacity, "sections")?;
         let found = match source {
             Source::Path(path) => file::probe(path)?,

@@ -1,6 +1,6 @@
 //! Two solids: do they overlap, by how much, how far are they apart?
 
-use super::boundary::{buffer, guard, out, shared, slice};
+use super::boundary::{buffer, filled, guard, out, output, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::csg::placement;
 use super::frame::{frame, frame_of, leafless_frame, leafless_interval};
@@ -88,6 +88,8 @@ impl From<&Interference> for leafless_interference {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_clearance {
+    /// sizeof(leafless_clearance).
+    pub struct_size: u32,
     /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
     /// bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
     /// if one of them is proven to be empty.
@@ -117,10 +119,13 @@ pub struct leafless_clearance {
     pub is_clipped: bool,
 }
 
+output!(leafless_clearance);
+
 impl From<&Clearance> for leafless_clearance {
     fn from(found: &Clearance) -> leafless_clearance {
         let [a, b] = found.nearest.unwrap_or([Cell::ROOT; 2]);
         leafless_clearance {
+            struct_size: size_of::<leafless_clearance>() as u32,
             distance_model: found.distance.into(),
             proof_a: found.proofs[0].into(),
             proof_b: found.proofs[1].into(),
@@ -283,7 +288,7 @@ pub unsafe extern "C" fn leafless_solid_clearance(
     guard(|| unsafe {
         let (a, b) = (&shared(a, "a")?.solid, &shared(b, "b")?.solid);
         let frame = self::frame(frame)?;
-        let result = out(clearance, "clearance")?;
+        let result = filled(clearance, "clearance")?;
         let found = controlled(options, |control| self::clearance(a, b, &frame, tolerance_model, control))?;
         result.write((&found).into())
     })

@@ -42,7 +42,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, reserved, path, path_length, write, write_ctx, bytes, capacity, length
         }
         leafless_cells_in { full_least, full_most, upper_least, upper_most }
-        leafless_mesh_report {
+        leafless_mesh_report { struct_size,
             facets_read, triangles, vertices, welded, degenerate, boundary_edges, boundary_loops, misoriented_edges,
             non_manifold_edges, duplicate, opposite, flat, bodies, open_bodies, inside_out_bodies, sewn,
             displacement_model, overlapping_bodies, undecided_bodies, polygons, bent_polygons, polygon_deviation_model,
@@ -57,17 +57,17 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, vertex_type, vertices, vertex_count, vertex_stride, corners, corner_count, loops, loop_count,
             faces, face_count, shells, shell_count, solids, solid_count, index_type, scale, tolerance_model
         }
-        leafless_mesh_moments {
+        leafless_mesh_moments { struct_size,
             volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, triangles, known, has_centroid
         }
         leafless_intersecting_pair { min_model, max_model, triangles }
         leafless_mesh_options { struct_size, format, unit, target, scale }
-        leafless_mesh_file_info { format, unit, skipped }
+        leafless_mesh_file_info { struct_size, format, unit, skipped }
         leafless_mesh_write_options { struct_size, format, is_text, unit, has_normals }
         leafless_volume_layout {
             struct_size, sample_type, extents, byte_order, skip, corner_model, spacing_model
         }
-        leafless_volume_info {
+        leafless_volume_info { struct_size,
             extents, sample_type, file_type, format, unit, is_placed, sample_count, rounded, default_threshold,
             corner_model, spacing_model, placement
         }
@@ -100,69 +100,69 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_solid_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
         leafless_value_range { values, kind }
         leafless_attribute_callbacks { struct_size, components, value, values, range, destroy, ctx }
-        leafless_channel_info { frame, scalar, components, value_count, elements, bytes }
+        leafless_channel_info { struct_size, frame, scalar, components, value_count, elements, bytes }
         leafless_channel_fill_options {
             struct_size, scalar, components, depth, solid, criterion, reserved, coarse_model, fine_model, tolerance, name,
             name_length
         }
-        leafless_channel_summary {
+        leafless_channel_summary { struct_size,
             least, greatest, integral, mean, volume_model, volume_without_model, has_values
         }
         leafless_material { value, measures }
         leafless_carry_rule { name, name_length, carry }
         leafless_proof { displacement_model, full, empty }
-        leafless_octree_info {
+        leafless_octree_info { struct_size,
             frame, elements, bricks, channels, bytes, proof, root, exterior, is_binary, is_clipped
         }
         leafless_statistics { nodes, empty, full, partial, lower_cells, upper_cells, volume_model }
         leafless_zone { struct_size, kind, min_model, max_model, point_model, direction_model, from, to }
-        leafless_lazy_info { frame, statistics, splits, replays, bytes }
+        leafless_lazy_info { struct_size, frame, statistics, splits, replays, bytes }
         leafless_interference {
             volume_model, proof_a, proof_b, splits_a, splits_b, verdict, level, witness, witness_level, is_clipped
         }
-        leafless_clearance {
+        leafless_clearance { struct_size,
             distance_model, proof_a, proof_b, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
             measured, has_nearest, is_clipped
         }
-        leafless_measures {
+        leafless_measures { struct_size,
             volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
             measured, has_centroid, is_clipped, is_exact
         }
-        leafless_surface_area { area_model, splits, level, measured, is_clipped }
-        leafless_section_area { area_model, proof, splits, measured, is_clipped }
-        leafless_extent {
+        leafless_surface_area { struct_size, area_model, splits, level, measured, is_clipped }
+        leafless_section_area { struct_size, area_model, proof, splits, measured, is_clipped }
+        leafless_extent { struct_size,
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
         }
         leafless_point_distance { distance_model, splits, measured }
         leafless_near_cell { point_model, distance_model, found }
-        leafless_cursor_info { cell, level, tag, children }
+        leafless_cursor_info { struct_size, cell, level, tag, children }
         leafless_ray { origin_model, direction_model, t_last }
         leafless_ray_hit { t, normal, cell, level, is_hit }
         leafless_run { start, length }
         leafless_cell { cell, level, tag }
         leafless_boundary_face { inner, outer, axis, is_upper, has_outer }
-        leafless_file_info {
+        leafless_file_info { struct_size,
             major, minor, frame, elements, bricks, file_length, sections, proof, root, exterior, is_binary, tridexel
         }
         leafless_tridexel_format { struct_size, directions, ends, normals, has_surfaces, has_materials }
-        leafless_tridexel_info {
+        leafless_tridexel_info { struct_size,
             frame, directions, ends, normals, has_surfaces, has_materials, bytes_per_interval, interval_count, bytes
         }
         leafless_dexel_end { at_model, at_cells, normal, surface }
         leafless_dexel { start, end, material }
-        leafless_dexel_change { rays, removed_model, added_model, min_cell, max_cell }
+        leafless_dexel_change { struct_size, rays, removed_model, added_model, min_cell, max_cell }
         leafless_tridexel_arrays {
             axis, reserved, first, end, offsets, interval_count, ends_model, normals, surfaces, materials, ends_cells
         }
-        leafless_dexel_surface_report {
+        leafless_dexel_surface_report { struct_size,
             crossings, several, without_rays, disagreeing, without_normals, means, clamped, vanished, without_centres
         }
         leafless_long_voxel { first, length, material, colour, kind }
         leafless_file_tridexel_info { directions, ends, normals, has_surfaces, has_materials, reserved, rays, intervals }
-        leafless_dexel_statistics { rays, intervals, bytes, volume_model, min_model, max_model }
+        leafless_dexel_statistics { struct_size, rays, intervals, bytes, volume_model, min_model, max_model }
         leafless_scene_options { struct_size, facets, folder, folder_length }
-        leafless_scene_info { polygons, exact, ignored_slices, meshes, is_empty }
-        leafless_scene_mesh_info { line, column, turned, report }
+        leafless_scene_info { struct_size, polygons, exact, ignored_slices, meshes, is_empty }
+        leafless_scene_mesh_info { struct_size, line, column, turned }
         leafless_file_section { kind, owner, is_required, name, offset, length, count }
     }
     values! { to;

@@ -1,6 +1,6 @@
 //! Octrees that are split on demand.
 
-use super::boundary::{Failure, Sized32, array, buffer, discard, guard, out, shared, sized};
+use super::boundary::{Failure, Sized32, array, buffer, discard, filled, guard, out, output, shared, sized};
 use super::contains::leafless_membership;
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
@@ -56,6 +56,8 @@ fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_lazy_info {
+    /// sizeof(leafless_lazy_info).
+    pub struct_size: u32,
     /// The universe, and how deep cells may be split.
     pub frame: leafless_frame,
     /// Counts over all levels, and the certified volume.
@@ -67,6 +69,8 @@ pub struct leafless_lazy_info {
     /// Bytes that the split cells take.
     pub bytes: u64,
 }
+
+output!(leafless_lazy_info);
 
 /// The cell at `pointer`.
 ///
@@ -329,7 +333,8 @@ pub unsafe extern "C" fn leafless_lazy_describe(
 ) -> leafless_status {
     guard(|| unsafe {
         let lazy = read(lazy)?;
-        out(info, "info")?.write(leafless_lazy_info {
+        filled(info, "info")?.write(leafless_lazy_info {
+            struct_size: size_of::<leafless_lazy_info>() as u32,
             frame: lazy.frame().into(),
             statistics: (&lazy.statistics()).into(),
             splits: lazy.splits(),

@@ -1,6 +1,6 @@
 //! Measures of solids: volume, centroid, inertia, areas of surface and sections, bounding box.
 
-use super::boundary::{array, guard, out, shared};
+use super::boundary::{array, filled, guard, output, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::octree::leafless_proof;
@@ -41,6 +41,8 @@ impl From<StopReason> for leafless_stop_reason {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_measures {
+    /// sizeof(leafless_measures).
+    pub struct_size: u32,
     /// Volume.
     pub volume_model: leafless_interval,
     /// Centroid; all numbers unless `has_centroid`.
@@ -68,10 +70,14 @@ pub struct leafless_measures {
     pub is_exact: bool,
 }
 
+output!(leafless_measures);
+
 /// The area of a solid's boundary.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_surface_area {
+    /// sizeof(leafless_surface_area).
+    pub struct_size: u32,
     /// Area. It contains the truth; its upper end is infinite where nothing is known.
     pub area_model: leafless_interval,
     /// How many times a cell was split.
@@ -84,9 +90,12 @@ pub struct leafless_surface_area {
     pub is_clipped: bool,
 }
 
+output!(leafless_surface_area);
+
 impl From<SurfaceArea> for leafless_surface_area {
     fn from(surface: SurfaceArea) -> leafless_surface_area {
         leafless_surface_area {
+            struct_size: size_of::<leafless_surface_area>() as u32,
             area_model: surface.area.into(),
             splits: surface.splits,
             level: surface.level.into(),
@@ -100,6 +109,8 @@ impl From<SurfaceArea> for leafless_surface_area {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_section_area {
+    /// sizeof(leafless_section_area).
+    pub struct_size: u32,
     /// Area. It contains the truth.
     pub area_model: leafless_interval,
     /// What of the solid is proven: what is not counts as undecided.
@@ -112,9 +123,12 @@ pub struct leafless_section_area {
     pub is_clipped: bool,
 }
 
+output!(leafless_section_area);
+
 impl From<SectionArea> for leafless_section_area {
     fn from(section: SectionArea) -> leafless_section_area {
         leafless_section_area {
+            struct_size: size_of::<leafless_section_area>() as u32,
             area_model: section.area.into(),
             proof: section.proof.into(),
             splits: section.splits,
@@ -128,6 +142,8 @@ impl From<SectionArea> for leafless_section_area {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_extent {
+    /// sizeof(leafless_extent).
+    pub struct_size: u32,
     /// Lower corner; all numbers if `is_empty`.
     pub min_model: [leafless_interval; 3],
     /// Upper corner; all numbers if `is_empty`.
@@ -146,6 +162,8 @@ pub struct leafless_extent {
     pub is_clipped: bool,
 }
 
+output!(leafless_extent);
+
 pub(super) fn row_by_row(tensor: [[Interval; 3]; 3]) -> [leafless_interval; 9] {
     core::array::from_fn(|k| tensor[k / 3][k % 3].into())
 }
@@ -153,6 +171,7 @@ pub(super) fn row_by_row(tensor: [[Interval; 3]; 3]) -> [leafless_interval; 9] {
 impl From<MassProperties> for leafless_measures {
     fn from(measures: MassProperties) -> leafless_measures {
         leafless_measures {
+            struct_size: size_of::<leafless_measures>() as u32,
             volume_model: measures.volume.into(),
             centroid_model: measures.centroid.unwrap_or([Interval::ALL; 3]).map(Into::into),
             inertia_origin_model: row_by_row(measures.inertia_about_origin),
@@ -172,6 +191,7 @@ impl From<Extent> for leafless_extent {
     fn from(extent: Extent) -> leafless_extent {
         let [min, max] = extent.corners.unwrap_or([[Interval::ALL; 3]; 2]);
         leafless_extent {
+            struct_size: size_of::<leafless_extent>() as u32,
             min_model: min.map(Into::into),
             max_model: max.map(Into::into),
             proof: extent.proof.into(),
@@ -210,7 +230,7 @@ pub unsafe extern "C" fn leafless_solid_measure(
     guard(|| unsafe {
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
-        let measures = out(measures, "measures")?;
+        let measures = filled(measures, "measures")?;
         let tolerance = Tolerance { relative, absolute: absolute_model };
         measures.write(controlled(options, |control| measure(solid, &frame, tolerance, control))?.into())
     })
@@ -239,7 +259,7 @@ pub unsafe extern "C" fn leafless_solid_surface_area(
     guard(|| unsafe {
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
-        let surface = out(surface, "surface")?;
+        let surface = filled(surface, "surface")?;
         let tolerance = Tolerance { relative, absolute: absolute_model };
         surface.write(controlled(options, |control| surface_area(solid, &frame, tolerance, control))?.into())
     })
@@ -281,7 +301,7 @@ pub unsafe extern "C" fn leafless_solid_section_area(
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
         let plane = SectionPlane::new(array(point_model, "point_model")?, array(normal, "normal")?)?;
-        let section = out(section, "section")?;
+        let section = filled(section, "section")?;
         let tolerance = Tolerance { relative, absolute: absolute_model };
         let found = controlled(options, |control| section_area(solid, &frame, &plane, tolerance, control))?;
         section.write(found.into())
@@ -315,7 +335,7 @@ pub unsafe extern "C" fn leafless_solid_bounding_box(
     guard(|| unsafe {
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
-        let extent = out(extent, "extent")?;
+        let extent = filled(extent, "extent")?;
         let found = controlled(options, |control| bounding_box(solid, &frame, tolerance_model, control))?;
         extent.write(found.into())
     })

@@ -1,6 +1,6 @@
 //! Triangle meshes: what they are like, and what becomes of them.
 
-use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared};
+use super::boundary::{Failure, array, buffer, filled, guard, handle, out, output, refer, release, shared};
 use super::number::{Number, enumeration};
 use super::status::leafless_status;
 use leafless::mesh::{DefectKind, MeshDefect, MeshReport};
@@ -50,6 +50,8 @@ enumeration! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_report {
+    /// sizeof(leafless_mesh_report).
+    pub struct_size: u32,
     /// Triangles that were handed in: triangles + degenerate.
     pub facets_read: u64,
     /// Triangles of the mesh.
@@ -118,9 +120,12 @@ pub struct leafless_mesh_report {
     pub is_manifold: bool,
 }
 
+output!(leafless_mesh_report);
+
 impl From<MeshReport> for leafless_mesh_report {
     fn from(found: MeshReport) -> leafless_mesh_report {
         leafless_mesh_report {
+            struct_size: size_of::<leafless_mesh_report>() as u32,
             facets_read: found.facets_read,
             triangles: found.triangles,
             vertices: found.vertices,
@@ -375,7 +380,7 @@ pub unsafe extern "C" fn leafless_mesh_inspect(
 ) -> leafless_status {
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
-        let report = out(report, "report")?;
+        let report = filled(report, "report")?;
         report.write(mesh.report()?.into())
     })
 }

@@ -1,6 +1,6 @@
 //! Mesh files.
 
-use super::boundary::{Failure, Sized32, guard, handle, out, shared, sized};
+use super::boundary::{Failure, Sized32, filled, guard, handle, out, output, shared, sized};
 use super::mesh::leafless_mesh;
 use super::number::{Number, enumeration};
 use super::source::{Source, copy, leafless_source};
@@ -113,6 +113,8 @@ unsafe impl Sized32 for leafless_mesh_options {}
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_file_info {
+    /// sizeof(leafless_mesh_file_info).
+    pub struct_size: u32,
     /// The file's format.
     pub format: leafless_mesh_format,
     /// The unit of the mesh, converted but not scaled, if it is known.
@@ -121,6 +123,8 @@ pub struct leafless_mesh_file_info {
     /// not contain.
     pub skipped: u64,
 }
+
+output!(leafless_mesh_file_info);
 
 /// # Safety
 /// `options` is NULL or points to valid options.
@@ -138,6 +142,7 @@ unsafe fn options(options: *const leafless_mesh_options) -> Result<MeshOptions, 
 impl From<&MeshFile> for leafless_mesh_file_info {
     fn from(file: &MeshFile) -> leafless_mesh_file_info {
         leafless_mesh_file_info {
+            struct_size: size_of::<leafless_mesh_file_info>() as u32,
             format: match file.format {
                 MeshFormat::Stl => LEAFLESS_MESH_FORMAT_STL,
                 MeshFormat::Obj => LEAFLESS_MESH_FORMAT_OBJ,
@@ -191,7 +196,7 @@ pub unsafe extern "C" fn leafless_mesh_read(
     guard(|| unsafe {
         let source = copy(source)?;
         let options = self::options(options)?;
-        let found = if found.is_null() { None } else { Some(out(found, "found")?) };
+        let found = if found.is_null() { None } else { Some(filled(found, "found")?) };
         let mesh = out(mesh, "mesh")?;
         let file = match source {
             Source::Path(path) => open_mesh(path, &options)?,

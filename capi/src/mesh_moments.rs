@@ -1,6 +1,6 @@
 //! Triangle meshes: volume, centroid and inertia from the triangles themselves, and triangles that intersect.
 
-use super::boundary::{buffer, guard, out, shared};
+use super::boundary::{buffer, filled, guard, out, output, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::leafless_interval;
 use super::measure::row_by_row;
@@ -29,6 +29,8 @@ use leafless_moments_verdict::*;
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_mesh_moments {
+    /// sizeof(leafless_mesh_moments).
+    pub struct_size: u32,
     /// Volume.
     pub volume_model: leafless_interval,
     /// Centroid; all numbers unless `has_centroid`.
@@ -45,10 +47,13 @@ pub struct leafless_mesh_moments {
     pub has_centroid: bool,
 }
 
+output!(leafless_mesh_moments);
+
 impl From<MeshMoments> for leafless_mesh_moments {
     fn from(moments: MeshMoments) -> leafless_mesh_moments {
         let any = leafless_interval::from(Interval::ALL);
         let unknown = leafless_mesh_moments {
+            struct_size: size_of::<leafless_mesh_moments>() as u32,
             volume_model: leafless_interval { lower: 0.0, ..any },
             centroid_model: [any; 3],
             inertia_origin_model: [any; 9],
@@ -59,6 +64,7 @@ impl From<MeshMoments> for leafless_mesh_moments {
         };
         match moments {
             MeshMoments::Known(moments) => leafless_mesh_moments {
+                struct_size: size_of::<leafless_mesh_moments>() as u32,
                 volume_model: moments.volume.into(),
                 centroid_model: moments.centroid().unwrap_or([Interval::ALL; 3]).map(Into::into),
                 inertia_origin_model: row_by_row(moments.inertia_about_origin()),
@@ -68,12 +74,17 @@ impl From<MeshMoments> for leafless_mesh_moments {
                 ..unknown
             },
             MeshMoments::Open => unknown,
-            MeshMoments::Intersecting(triangles) => {
-                leafless_mesh_moments { triangles, known: LEAFLESS_MOMENTS_VERDICT_INTERSECTING, ..unknown }
-            }
-            MeshMoments::Undecided => {
-                leafless_mesh_moments { known: LEAFLESS_MOMENTS_VERDICT_UNDECIDED, ..unknown }
-            }
+            MeshMoments::Intersecting(triangles) => leafless_mesh_moments {
+                struct_size: size_of::<leafless_mesh_moments>() as u32,
+                triangles,
+                known: LEAFLESS_MOMENTS_VERDICT_INTERSECTING,
+                ..unknown
+            },
+            MeshMoments::Undecided => leafless_mesh_moments {
+                struct_size: size_of::<leafless_mesh_moments>() as u32,
+                known: LEAFLESS_MOMENTS_VERDICT_UNDECIDED,
+                ..unknown
+            },
         }
     }
 }
@@ -117,7 +128,7 @@ pub unsafe extern "C" fn leafless_mesh_measure(
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
         let fill = fill.known("fill")?;
-        let moments = out(moments, "moments")?;
+        let moments = filled(moments, "moments")?;
         moments.write(controlled(options, |control| mesh.moments(fill, control))?.into())
     })
 }

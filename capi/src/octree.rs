@@ -1,6 +1,6 @@
 //! Octrees: what they hold, and the facts that travel with them.
 
-use super::boundary::{Failure, buffer, guard, handle, out, refer, release, shared};
+use super::boundary::{Failure, buffer, filled, guard, handle, out, output, refer, release, shared};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::metadata::{self, Fact};
 use super::number::{Byte, Number, enumeration};
@@ -101,6 +101,8 @@ enumeration! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_octree_info {
+    /// sizeof(leafless_octree_info).
+    pub struct_size: u32,
     /// Where it lies, and its depth.
     pub frame: leafless_frame,
     /// Array elements without bricks; each holds two levels.
@@ -123,6 +125,8 @@ pub struct leafless_octree_info {
     /// Whether the solid is not known to end inside of the universe: volumes then concern the part inside.
     pub is_clipped: bool,
 }
+
+output!(leafless_octree_info);
 
 /// Counts and certified volumes. The volume is that of the part inside of the universe.
 #[derive(Clone, Copy)]
@@ -239,7 +243,8 @@ pub unsafe extern "C" fn leafless_octree_describe(
     guard(|| unsafe {
         let octree = &shared(octree, "octree")?.octree;
         let view = octree.view();
-        out(info, "info")?.write(leafless_octree_info {
+        filled(info, "info")?.write(leafless_octree_info {
+            struct_size: size_of::<leafless_octree_info>() as u32,
             frame: view.frame().into(),
             elements: view.element_count(),
             bricks: view.brick_count(),

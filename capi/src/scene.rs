@@ -1,6 +1,8 @@
 //! Scenes in the language of OpenSCAD's CSG dumps.
 
-use super::boundary::{Failure, Sized32, buffer, guard, handle, out, refer, release, shared, sized, text};
+use super::boundary::{
+    Failure, Sized32, buffer, filled, guard, handle, out, output, refer, release, shared, sized, text,
+};
 use super::frame::{frame, leafless_frame};
 use super::mesh::leafless_mesh_report;
 use super::number::{Number, enumeration};
@@ -120,6 +122,8 @@ pub unsafe extern "C" fn leafless_scene_read(
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_scene_info {
+    /// sizeof(leafless_scene_info).
+    pub struct_size: u32,
     /// Calls of circle, sphere, cylinder and rotate_extrude that were drawn as polygons.
     pub polygons: u64,
     /// Calls of these that are exact. OpenSCAD draws them as polygons.
@@ -132,19 +136,23 @@ pub struct leafless_scene_info {
     pub is_empty: bool,
 }
 
+output!(leafless_scene_info);
+
 /// What is told of a mesh or polyhedron in a scene.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_scene_mesh_info {
+    /// sizeof(leafless_scene_mesh_info).
+    pub struct_size: u32,
     /// Line of the call in the text, counted from 1.
     pub line: u64,
     /// Column of the call in characters, counted from 1.
     pub column: u64,
     /// Triangles that face the other way than most of those that they hang together with.
     pub turned: u64,
-    /// What was found while the mesh was taken in.
-    pub report: leafless_mesh_report,
 }
+
+output!(leafless_scene_mesh_info);
 
 /// What was found while a scene was read.
 ///
@@ -157,9 +165,10 @@ pub unsafe extern "C" fn leafless_scene_describe(
 ) -> leafless_status {
     guard(|| unsafe {
         let scene = &shared(scene, "scene")?.scene;
-        let result = out(report, "report")?;
+        let result = filled(report, "report")?;
         let found = scene.report();
         result.write(leafless_scene_info {
+            struct_size: size_of::<leafless_scene_info>() as u32,
             polygons: found.polygons,
             exact: found.exact,
             ignored_slices: found.ignored_slices,
@@ -180,25 +189,29 @@ unsafe fn mesh<'a>(scene: *const leafless_scene, index: u64) -> Result<&'a Scene
 
 /// What was found while a mesh or polyhedron of a scene was taken in.
 ///
-/// - Buffers: `mesh`, one struct. `index`, in the order of the text, is less than the report's `meshes`.
-/// - Result: `*mesh`.
+/// - Buffers: `mesh`, one struct; `report`, one struct, or NULL if it is not wanted. `index`, in the order of
+///   the text, is less than `meshes` of leafless_scene_info.
+/// - Result: `*mesh`; `*report`, the report of the mesh as it was taken in.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_scene_describe_mesh_at(
     scene: *const leafless_scene,
     index: u64,
     mesh: *mut leafless_scene_mesh_info,
+    report: *mut leafless_mesh_report,
 ) -> leafless_status {
     guard(|| unsafe {
         let found = self::mesh(scene, index)?;
-        let result = out(mesh, "mesh")?;
+        let result = filled(mesh, "mesh")?;
+        let to = if report.is_null() { None } else { Some(filled(report, "report")?) };
         let SceneMesh { line, column, turned, report, .. } = found;
         result.write(leafless_scene_mesh_info {
+            struct_size: size_of::<leafless_scene_mesh_info>() as u32,
             line: *line,
             column: *column,
             turned: *turned,
-            report: (*report).into(),
-        })
+        })?;
+        to.map_or(Ok(()), |to| to.write((*report).into()))
     })
 }
 
@@ -206,7 +219,7 @@ pub unsafe extern "C" fn leafless_scene_describe_mesh_at(
 /// polyhedron.
 ///
 /// - Buffers: `bytes`, room for `capacity` bytes, or NULL to ask for the length only; `length`, one number.
-///   `index`, in the order of the text, is less than the report's `meshes`.
+///   `index`, in the order of the text, is less than `meshes` of leafless_scene_info.
 /// - Result: `*length`, the length of the name in bytes; the name in `bytes`.
 /// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_ARGUMENT if there is no such mesh.
 #[unsafe(no_mangle)]

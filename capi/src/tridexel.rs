@@ -1,6 +1,6 @@
 //! Tri-dexel models: made of solids, described, and the facts that travel with them.
 
-use super::boundary::{Failure, Sized32, guard, handle, out, refer, release, shared, sized};
+use super::boundary::{Failure, Sized32, filled, guard, handle, out, output, refer, release, shared, sized};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
 use super::metadata::{self, Fact};
@@ -148,6 +148,8 @@ impl leafless_tridexel_format {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_tridexel_info {
+    /// sizeof(leafless_tridexel_info).
+    pub struct_size: u32,
     /// The lattice: rays run through the centres of its finest cells.
     pub frame: leafless_frame,
     /// The axes that rays run along, a sum of leafless_axes.
@@ -167,6 +169,8 @@ pub struct leafless_tridexel_info {
     /// Bytes that the arrays take.
     pub bytes: u64,
 }
+
+output!(leafless_tridexel_info);
 
 /// A handle of a tri-dexel model.
 pub(super) fn give(model: TriDexel) -> *mut leafless_tridexel {
@@ -252,7 +256,7 @@ pub unsafe extern "C" fn leafless_tridexel_describe(
 ) -> leafless_status {
     guard(|| unsafe {
         let view = shared(tridexel, "tridexel")?.model.view();
-        let info = out(info, "info")?;
+        let info = filled(info, "info")?;
         let (format, count) = (view.format(), view.interval_count());
         info.write(described(view.frame(), format, view.directions(), count, view.bytes()))
     })
@@ -266,6 +270,7 @@ pub(super) fn described(
     bytes: u64,
 ) -> leafless_tridexel_info {
     leafless_tridexel_info {
+        struct_size: size_of::<leafless_tridexel_info>() as u32,
         frame: frame.into(),
         directions: axes(directions),
         ends: format.ends.into(),

@@ -1,6 +1,6 @@
 //! Tri-dexel models that are changed in place.
 
-use super::boundary::{Failure, discard, guard, out, shared};
+use super::boundary::{Failure, discard, filled, guard, out, output, shared};
 use super::control::{controlled, leafless_options};
 use super::number::Number;
 use super::operation::{leafless_operation, leafless_operation::*};
@@ -58,6 +58,8 @@ fn unlocked<G>(held: TryLockResult<G>) -> Result<G, Failure> {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_change {
+    /// sizeof(leafless_dexel_change).
+    pub struct_size: u32,
     /// Rays of all directions whose intervals begin or end elsewhere than before.
     pub rays: u64,
     /// The volume that the rays along x, y and z lost, in cubic model units; 0 for an axis without rays.
@@ -70,10 +72,13 @@ pub struct leafless_dexel_change {
     pub max_cell: [u32; 3],
 }
 
+output!(leafless_dexel_change);
+
 impl From<DexelChange> for leafless_dexel_change {
     fn from(change: DexelChange) -> leafless_dexel_change {
         let [min_cell, max_cell] = change.cells.unwrap_or_default();
         leafless_dexel_change {
+            struct_size: size_of::<leafless_dexel_change>() as u32,
             rays: change.rays,
             removed_model: change.removed,
             added_model: change.added,
@@ -92,7 +97,7 @@ unsafe fn changed(
 ) -> Result<(), Failure> {
     // SAFETY: the caller's promise.
     unsafe {
-        let change = if change.is_null() { None } else { Some(out(change, "change")?) };
+        let change = if change.is_null() { None } else { Some(filled(change, "change")?) };
         let done = controlled(options, operation)?;
         change.map_or(Ok(()), |change| change.write(done.into()))
     }
@@ -143,7 +148,7 @@ pub unsafe extern "C" fn leafless_tridexel_editor_describe(
 ) -> leafless_status {
     guard(|| unsafe {
         let editor = read(editor)?;
-        let info = out(info, "info")?;
+        let info = filled(info, "info")?;
         let (format, count) = (editor.format(), editor.interval_count());
         info.write(described(editor.frame(), format, editor.directions(), count, editor.bytes()))
     })

@@ -1,6 +1,6 @@
 //! What tri-dexel models hold: cells, rays, intervals in the host's arrays, statistics.
 
-use super::boundary::{Buffer, Failure, array, buffer, guard, out, shared};
+use super::boundary::{Buffer, Failure, array, buffer, filled, guard, out, output, shared};
 use super::status::leafless_status;
 use super::tridexel::leafless_tridexel;
 use core::ops::Range;
@@ -57,6 +57,8 @@ impl From<&Dexel> for leafless_dexel {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_statistics {
+    /// sizeof(leafless_dexel_statistics).
+    pub struct_size: u32,
     /// Rays that cross the solid.
     pub rays: u64,
     /// Intervals.
@@ -72,9 +74,12 @@ pub struct leafless_dexel_statistics {
     pub max_model: [f64; 3],
 }
 
+output!(leafless_dexel_statistics);
+
 impl From<&DexelStatistics> for leafless_dexel_statistics {
     fn from(found: &DexelStatistics) -> leafless_dexel_statistics {
         leafless_dexel_statistics {
+            struct_size: size_of::<leafless_dexel_statistics>() as u32,
             rays: found.rays,
             intervals: found.intervals,
             bytes: found.bytes,
@@ -109,7 +114,7 @@ pub unsafe extern "C" fn leafless_tridexel_statistics(
     guard(|| unsafe {
         let model = &shared(tridexel, "tridexel")?.model;
         let axis = rays(model, axis)?.axis();
-        let statistics = out(statistics, "statistics")?;
+        let statistics = filled(statistics, "statistics")?;
         let missing = Failure::Argument { name: "axis", problem: "is none that the model has rays along" };
         statistics.write((&model.view().statistics(axis).ok_or(missing)?).into())
     })

@@ -1,6 +1,6 @@
 //! What tri-dexel models become: meshes, octrees, solids, voxels.
 
-use super::boundary::{buffer, guard, out, shared, slice};
+use super::boundary::{buffer, filled, guard, out, output, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::mesh::{give as give_mesh, leafless_mesh};
 use super::number::{Number, enumeration};
@@ -38,6 +38,8 @@ enumeration! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_dexel_surface_report {
+    /// sizeof(leafless_dexel_surface_report).
+    pub struct_size: u32,
     /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the surface.
     pub crossings: u64,
     /// Crossings on edges that the ray crosses more than once: what is thinner than a cell is lost there.
@@ -60,9 +62,12 @@ pub struct leafless_dexel_surface_report {
     pub without_centres: u64,
 }
 
+output!(leafless_dexel_surface_report);
+
 impl From<DexelSurfaceReport> for leafless_dexel_surface_report {
     fn from(report: DexelSurfaceReport) -> leafless_dexel_surface_report {
         leafless_dexel_surface_report {
+            struct_size: size_of::<leafless_dexel_surface_report>() as u32,
             crossings: report.crossings,
             several: report.several,
             without_rays: report.without_rays,
@@ -141,7 +146,7 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
             LEAFLESS_DEXEL_SURFACE_METHOD_MARCHING_CUBES => marching_cubes_dexels,
             LEAFLESS_DEXEL_SURFACE_METHOD_DUAL_CONTOURING => dual_contouring_dexels,
         };
-        let report = if report.is_null() { None } else { Some(out(report, "report")?) };
+        let report = if report.is_null() { None } else { Some(filled(report, "report")?) };
         let mesh = out(mesh, "mesh")?;
         let (made, found) = controlled(options, |control| extract(model, control))?;
         if let Some(report) = report {

@@ -1,6 +1,6 @@
 //! Volumes: bitmaps and arrays of samples, and the solids that they are.
 
-use super::boundary::{Failure, array, guard, out, refer, release, shared};
+use super::boundary::{Failure, array, filled, guard, out, output, refer, release, shared};
 use super::control::{controlled, leafless_options};
 use super::frame::{leafless_frame, leafless_interval};
 use super::mesh_file::{leafless_unit, unit_of};
@@ -98,6 +98,8 @@ enumeration! {
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct leafless_volume_info {
+    /// sizeof(leafless_volume_info).
+    pub struct_size: u32,
     /// How many samples there are along x, y and z.
     pub extents: [u32; 3],
     /// Their type in memory: one of the first five.
@@ -125,6 +127,8 @@ pub struct leafless_volume_info {
     /// directions are rounded. The map that moves nothing unless `is_placed`.
     pub placement: [f64; 12],
 }
+
+output!(leafless_volume_info);
 
 pub(super) const TYPES: [(leafless_sample_type, SampleKind); 12] = [
     (LEAFLESS_SAMPLE_TYPE_U8, SampleKind::U8),
@@ -227,7 +231,8 @@ pub unsafe extern "C" fn leafless_volume_describe(
     guard(|| unsafe {
         let volume = shared(volume, "volume")?;
         let rows = *volume.placement.unwrap_or(Affine::IDENTITY).rows();
-        out(info, "info")?.write(leafless_volume_info {
+        filled(info, "info")?.write(leafless_volume_info {
+            struct_size: size_of::<leafless_volume_info>() as u32,
             extents: volume.grid.extents(),
             sample_type: volume.sample_type(),
             file_type: volume.file_type,

@@ -86,12 +86,12 @@ static leafless_status part(const leafless_solid *solid, int number, const leafl
 /* What all channels of an octree are, and what they take. */
 static leafless_status print_channels(const leafless_octree *octree) {
     static const char *const types[] = {"f32", "u8", "u16", "u32"};
-    leafless_octree_info of_octree;
+    leafless_octree_info of_octree = LEAFLESS_INIT(leafless_octree_info);
     uint64_t i;
     leafless_status s = leafless_octree_describe(octree, &of_octree);
     for (i = 0; !s && i < of_octree.channels; i++) {
         leafless_channel *channel = NULL;
-        leafless_channel_info info;
+        leafless_channel_info info = LEAFLESS_INIT(leafless_channel_info);
         const char *name = "";
         size_t length = 0;
         s = leafless_octree_channel_at(octree, i, &channel);

@@ -24,7 +24,7 @@ static void place(int step, double *centre) {
 
 /* Takes away what the mill touches at one place, and adds its volume. Only the rays through it are looked at. */
 static leafless_status cut(leafless_tridexel_editor *part, int step, double *removed) {
-    leafless_dexel_change change;
+    leafless_dexel_change change = LEAFLESS_INIT(leafless_dexel_change);
     double centre[3];
     leafless_solid *mill = NULL;
     leafless_status s;
@@ -38,8 +38,8 @@ static leafless_status cut(leafless_tridexel_editor *part, int step, double *rem
 
 /* What the model holds along each axis. The volumes agree as well as rays can tell. */
 static leafless_status print_model(const char *name, const leafless_tridexel *model) {
-    leafless_tridexel_info info;
-    leafless_dexel_statistics along;
+    leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
+    leafless_dexel_statistics along = LEAFLESS_INIT(leafless_dexel_statistics);
     uint32_t axis;
     leafless_status s = leafless_tridexel_describe(model, &info);
     if (!s) {
@@ -57,7 +57,7 @@ static leafless_status print_model(const char *name, const leafless_tridexel *mo
 
 /* The height of the part above some points of the x axis: the end of the last interval along z. */
 static leafless_status print_heights(const leafless_tridexel *model) {
-    leafless_tridexel_info info;
+    leafless_tridexel_info info = LEAFLESS_INIT(leafless_tridexel_info);
     double x;
     leafless_status s = leafless_tridexel_describe(model, &info);
     for (x = -30; !s && x <= 30; x += 10) {

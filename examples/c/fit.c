@@ -49,7 +49,7 @@ int main(void) {
     static const char *const verdicts[] = {"disjoint", "overlapping", "undecided"};
     const leafless_frame frame = {{-128, -128, -128}, 256, DEPTH};
     leafless_solid *fixed = NULL, *moving = NULL;
-    leafless_measures measures;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
     leafless_options options = LEAFLESS_INIT(leafless_options);
     leafless_status s = LEAFLESS_OK;
     int i;
@@ -65,7 +65,7 @@ int main(void) {
         /* Lowered until it rests on the step at z = -20, and beyond, a little askew in the end. */
         const double height = 60 - 10 * i, slope = i == POSITIONS - 2 ? 0.05 : 0;
         leafless_interference found;
-        leafless_clearance near;
+        leafless_clearance near = LEAFLESS_INIT(leafless_clearance);
         s = shaft(slope, height, &moving);
         if (!s) s = leafless_solid_interfere(moving, fixed, &frame, 10, &options, &found);
         if (!s) s = leafless_solid_clearance(moving, fixed, &frame, 0.25, &options, &near);

@@ -44,7 +44,7 @@ static leafless_status scan(leafless_volume **volume) {
 }
 
 static leafless_status print_volume(const leafless_volume *volume) {
-    leafless_volume_info info;
+    leafless_volume_info info = LEAFLESS_INIT(leafless_volume_info);
     leafless_interval range;
     leafless_status s = leafless_volume_describe(volume, &info);
     if (!s) s = leafless_volume_range(volume, NULL, &range);
@@ -68,7 +68,7 @@ static leafless_status frame_of(const leafless_volume *volume, leafless_frame *f
 }
 
 static leafless_status print_surface(const char *method, const leafless_mesh *mesh) {
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     double area, volume;
     leafless_status s = leafless_mesh_inspect(mesh, &report);
     if (!s) s = leafless_mesh_area(mesh, &area);

@@ -169,7 +169,7 @@ int main(void) {
     const leafless_frame frame = {{-1.1, -1.1, -1.1}, 2.2, 7};
     leafless_solid *solid = NULL;
     leafless_octree *octree = NULL;
-    leafless_octree_info info;
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
     leafless_status s = block(&solid);
     if (!s) s = leafless_octree_build(solid, &frame, LEAFLESS_RULE_CERTIFIED, NULL, &octree);
     if (!s) s = leafless_octree_describe(octree, &info);

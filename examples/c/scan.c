@@ -67,7 +67,7 @@ static leafless_status dome(leafless_mesh **mesh) {
 
 static leafless_status print_report(const leafless_mesh *mesh) {
     static const char *const KINDS[] = {"hole", "misoriented", "duplicate", "non-manifold", "flat"};
-    leafless_mesh_report report;
+    leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     leafless_mesh_defect worst[WORST];
     uint64_t count = 0, i;
     leafless_status s = leafless_mesh_inspect(mesh, &report);
