@@ -66,7 +66,7 @@ static leafless_status vertices(void *buffer, uint64_t capacity, uint64_t *count
     uint64_t other;
     const leafless_status status = leafless_mesh_copy(mesh, (double *)buffer, capacity, NULL, 0);
     if (status == LEAFLESS_OK) {
-        OK(leafless_mesh_counts(mesh, count, &other));
+        OK(check_counts(mesh, count, &other));
     }
     return status;
 }
@@ -79,7 +79,7 @@ static leafless_status triangles(void *buffer, uint64_t capacity, uint64_t *coun
     uint64_t other;
     const leafless_status status = leafless_mesh_copy(mesh, NULL, 0, (uint32_t *)buffer, capacity);
     if (status == LEAFLESS_OK) {
-        OK(leafless_mesh_counts(mesh, &other, count));
+        OK(check_counts(mesh, &other, count));
     }
     return status;
 }

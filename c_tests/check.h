@@ -122,6 +122,15 @@ static inline leafless_mesh_arrays check_arrays(const void *vertices, uint64_t v
     return arrays;
 }
 
+/* How many vertices and triangles a mesh has. */
+static inline leafless_status check_counts(const leafless_mesh *mesh, uint64_t *vertices, uint64_t *triangles) {
+    leafless_mesh_info info = LEAFLESS_INIT(leafless_mesh_info);
+    const leafless_status status = leafless_mesh_describe(mesh, &info);
+    *vertices = info.vertices;
+    *triangles = info.triangles;
+    return status;
+}
+
 /* A mesh of the cube's first triangles. */
 static inline leafless_mesh *check_some_of_cube(uint64_t triangle_count) {
     const leafless_mesh_arrays arrays = check_arrays(CHECK_CUBE, 8, CHECK_CUBE_TRIANGLES, triangle_count);

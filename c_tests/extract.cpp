@@ -69,7 +69,7 @@ struct arrays {
     std::vector<uint32_t> triangles;
     explicit arrays(const leafless_mesh *mesh) {
         uint64_t vertex_count, triangle_count;
-        OK(leafless_mesh_counts(mesh, &vertex_count, &triangle_count));
+        OK(check_counts(mesh, &vertex_count, &triangle_count));
         vertices.resize(3 * vertex_count);
         triangles.resize(3 * triangle_count);
         OK(leafless_mesh_copy(mesh, vertices.data(), vertex_count, triangles.data(), triangle_count));

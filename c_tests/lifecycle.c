@@ -50,7 +50,7 @@ static void meshes(void) {
     uint32_t triangles[12][3];
     uint8_t *stl;
 
-    OK(leafless_mesh_counts(cube, &vertex_count, &triangle_count));
+    OK(check_counts(cube, &vertex_count, &triangle_count));
     CHECK(vertex_count == 8 && triangle_count == 12);
     OK(leafless_mesh_copy(cube, &vertices[0][0], 8, &triangles[0][0], 12));
     CHECK(memcmp(vertices, CHECK_CUBE, sizeof vertices) == 0);

@@ -153,7 +153,7 @@ static void is_tetrahedron(const leafless_mesh *mesh, double edge) {
     double min[3], max[3], volume;
     uint64_t vertices, triangles;
     int axis;
-    OK(leafless_mesh_counts(mesh, &vertices, &triangles));
+    OK(check_counts(mesh, &vertices, &triangles));
     CHECK(vertices == 4 && triangles == 4);
     OK(leafless_mesh_check_closed(mesh, LEAFLESS_FILL_NON_ZERO));
     OK(leafless_mesh_bounds(mesh, min, max));

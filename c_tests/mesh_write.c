@@ -17,7 +17,7 @@ static void same(const leafless_mesh *a, const leafless_mesh *b, bool is_single)
     double vertices[2][4][3], volumes[2];
     uint32_t triangles[2][4][3];
     uint64_t vertex_count, triangle_count;
-    OK(leafless_mesh_counts(b, &vertex_count, &triangle_count));
+    OK(check_counts(b, &vertex_count, &triangle_count));
     CHECK(vertex_count == 4 && triangle_count == 4);
     OK(leafless_mesh_copy(a, vertices[0][0], 4, triangles[0][0], 4));
     OK(leafless_mesh_copy(b, vertices[1][0], 4, triangles[1][0], 4));
@@ -188,8 +188,8 @@ static void losses(void) {
         OK(leafless_mesh_written_form(far, &options, &kept));
         bytes = bytes_of(far, &options, &length);
         OK(mesh_from_bytes(bytes, length, NULL, NULL, &back));
-        OK(leafless_mesh_counts(kept, &counts[0][0], &counts[0][1]));
-        OK(leafless_mesh_counts(back, &counts[1][0], &counts[1][1]));
+        OK(check_counts(kept, &counts[0][0], &counts[0][1]));
+        OK(check_counts(back, &counts[1][0], &counts[1][1]));
         CHECK(memcmp(counts[0], counts[1], sizeof counts[0]) == 0);
         CHECK(counts[0][1] == (format == LEAFLESS_MESH_FORMAT_STL ? 4u : 12u));
         OK(leafless_mesh_volume(kept, &volumes[0]));

@@ -134,9 +134,8 @@ static void null_pointers(void) {
                  leafless_mesh_from_polyhedron(&polyhedron, (double *)out, NULL));
     NULL_POINTER(leafless_mesh_ref, mesh, leafless_mesh_ref(NULL, mesh_result));
     NULL_POINTER(leafless_mesh_ref, reference, leafless_mesh_ref(mesh, NULL));
-    NULL_POINTER(leafless_mesh_counts, mesh, leafless_mesh_counts(NULL, (uint64_t *)out, (uint64_t *)out + 1));
-    NULL_POINTER(leafless_mesh_counts, vertex_count, leafless_mesh_counts(mesh, NULL, (uint64_t *)out));
-    NULL_POINTER(leafless_mesh_counts, triangle_count, leafless_mesh_counts(mesh, (uint64_t *)out, NULL));
+    NULL_POINTER(leafless_mesh_describe, mesh, leafless_mesh_describe(NULL, (leafless_mesh_info *)out));
+    NULL_POINTER(leafless_mesh_describe, info, leafless_mesh_describe(mesh, NULL));
     NULL_POINTER(leafless_mesh_copy, mesh, leafless_mesh_copy(NULL, (double *)out, 1, NULL, 0));
     NULL_POINTER(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, NULL, 8, NULL, 0));
     NULL_POINTER(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, NULL, 0, NULL, 12));
@@ -690,8 +689,7 @@ static void misaligned(void) {
     MISALIGNED(leafless_mesh_new, arrays,
                leafless_mesh_new((const leafless_mesh_arrays *)WRONG(&arrays), mesh_result));
     MISALIGNED(leafless_mesh_new, mesh, leafless_mesh_new(&arrays, (leafless_mesh **)WRONG(out)));
-    MISALIGNED(leafless_mesh_counts, vertex_count,
-               leafless_mesh_counts(mesh, (uint64_t *)WRONG(out), (uint64_t *)out));
+    MISALIGNED(leafless_mesh_describe, info, leafless_mesh_describe(mesh, (leafless_mesh_info *)WRONG(out)));
     MISALIGNED(leafless_mesh_copy, vertices, leafless_mesh_copy(mesh, (double *)WRONG(out), 8, NULL, 0));
     MISALIGNED(leafless_mesh_copy, triangles, leafless_mesh_copy(mesh, NULL, 0, (uint32_t *)WRONG(out), 12));
     MISALIGNED(leafless_mesh_bounds, max_model, leafless_mesh_bounds(mesh, (double *)out, (double *)WRONG(out)));

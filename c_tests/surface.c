@@ -13,7 +13,7 @@ typedef struct surface_of {
 
 static surface_of take(const leafless_mesh *mesh) {
     surface_of s;
-    OK(leafless_mesh_counts(mesh, &s.vertex_count, &s.triangle_count));
+    OK(check_counts(mesh, &s.vertex_count, &s.triangle_count));
     s.vertices = (double (*)[3])malloc((size_t)s.vertex_count * sizeof *s.vertices + 1);
     s.triangles = (uint32_t (*)[3])malloc((size_t)s.triangle_count * sizeof *s.triangles + 1);
     CHECK(s.vertices != NULL && s.triangles != NULL);

@@ -32,7 +32,7 @@ static bool same(const leafless_tridexel *a, const leafless_tridexel *b) {
 /* The arrays of a mesh. */
 static void copied(const leafless_mesh *mesh, double (**vertices)[3], uint64_t *vertex_count, uint32_t (**triangles)[3],
                    uint64_t *triangle_count) {
-    OK(leafless_mesh_counts(mesh, vertex_count, triangle_count));
+    OK(check_counts(mesh, vertex_count, triangle_count));
     *vertices = (double(*)[3])malloc((size_t)*vertex_count * sizeof **vertices);
     *triangles = (uint32_t(*)[3])malloc((size_t)*triangle_count * sizeof **triangles);
     CHECK(*vertices != NULL && *triangles != NULL);

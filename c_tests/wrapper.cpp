@@ -134,7 +134,9 @@ void questions() {
     const std::vector<leafless_interval> heights = octree.heights(2, nullptr, nullptr, LEAFLESS_SIDE_ABOVE);
     CHECK(heights.size() == 64 * 64);
     const leafless::mesh mesh = octree.resolve(LEAFLESS_RULE_OUTER).surface();
-    const auto [vertices, triangles] = mesh.counts();
+    const leafless_mesh_info info = mesh.describe();
+    const std::uint64_t vertices = info.vertices, triangles = info.triangles;
+    CHECK(info.bytes >= 24 * vertices + 12 * triangles && info.attributes == 0);
     CHECK(vertices > 0 && mesh.normals().size() == vertices);
     std::vector<leafless::point> places(static_cast<std::size_t>(vertices));
     std::vector<leafless::cell_index> corners(static_cast<std::size_t>(triangles));

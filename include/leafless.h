@@ -833,14 +833,25 @@ leafless_status leafless_mesh_ref(const leafless_mesh *mesh, leafless_mesh **ref
 /// - Threads: any; no other call may use this reference.
 void leafless_mesh_free(leafless_mesh *mesh);
 
-/// How many vertices and triangles a mesh has. In memory a vertex takes 24 bytes, and a triangle 12.
-///
-/// - Buffers: `vertex_count` and `triangle_count`, one number each.
-/// - Result: both.
-leafless_status leafless_mesh_counts(const leafless_mesh *mesh, uint64_t *vertex_count,
-    uint64_t *triangle_count);
+/// What can be said of a mesh at once.
+typedef struct leafless_mesh_info {
+    uint32_t struct_size;  ///< sizeof(leafless_mesh_info).
+    /// Attributes that its triangles bear: leafless_mesh_peek_attribute_at tells of each.
+    uint32_t attributes;
+    uint64_t vertices;  ///< Vertices.
+    uint64_t triangles;  ///< Triangles.
+    /// Bytes of memory that it keeps: its arrays and attributes, and what was found out about its edges if
+    /// somebody asked. What meshes and solids share counts for each of them.
+    uint64_t bytes;
+} leafless_mesh_info;
 
-/// Copies the arrays of a mesh; leafless_mesh_counts tells their lengths.
+/// What can be said of a mesh at once. O(1), but for the names of attributes.
+///
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
+leafless_status leafless_mesh_describe(const leafless_mesh *mesh, leafless_mesh_info *info);
+
+/// Copies the arrays of a mesh; leafless_mesh_describe tells their lengths.
 ///
 /// - Buffers: `vertices`, room for `vertex_capacity` vertices of 3 numbers; `triangles`, room for
 ///   `triangle_capacity` triangles of 3 indices. Each may be NULL if it is not wanted.
@@ -1753,6 +1764,9 @@ typedef struct leafless_volume_info {
     /// The affine map x' = M x + t that moves the voxels to where the file says: three rows of M and t. Its
     /// directions are rounded. The map that moves nothing unless `is_placed`.
     double placement[12];
+    /// Bytes that the samples take, in memory or where the host has them, and what was found out about them
+    /// for solids.
+    uint64_t bytes;
 } leafless_volume_info;
 
 /// One more reference to a volume.
@@ -4405,7 +4419,7 @@ typedef struct leafless_surface_options {
 /// LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two
 /// vertices are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the
 /// same: that of the cells in Morton order, or for coplanar shrink that of places and planes.
-/// leafless_mesh_counts and leafless_mesh_copy hand the arrays out, leafless_mesh_inspect and
+/// leafless_mesh_describe and leafless_mesh_copy hand the arrays out, leafless_mesh_inspect and
 /// leafless_mesh_area tell about them, leafless_mesh_intersecting_pairs finds triangles that meet, and
 /// leafless_mesh_write writes them.
 ///

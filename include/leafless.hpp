@@ -359,7 +359,7 @@ class mesh : public detail::owner<leafless_mesh, leafless_mesh_free> {
 public:
     using owner::owner;
     [[nodiscard]] returns<leafless::mesh> share() const;
-    [[nodiscard]] returns<std::tuple<uint64_t, uint64_t>> counts() const;
+    [[nodiscard]] returns<leafless_mesh_info> describe() const;
     returns<void> copy(span<point> vertices, span<cell_index> triangles) const;
     [[nodiscard]] returns<std::vector<point>> normals() const;
     [[nodiscard]] returns<std::tuple<point, point>> bounds() const;
@@ -890,11 +890,10 @@ inline returns<leafless::mesh> mesh::share() const {
     return detail::finish(status, leafless::mesh(reference_handle));
 }
 
-inline returns<std::tuple<uint64_t, uint64_t>> mesh::counts() const {
-    uint64_t vertex_count{};
-    uint64_t triangle_count{};
-    const leafless_status status = leafless_mesh_counts(get(), &vertex_count, &triangle_count);
-    return detail::finish(status, std::tuple<uint64_t, uint64_t>(vertex_count, triangle_count));
+inline returns<leafless_mesh_info> mesh::describe() const {
+    leafless_mesh_info info = LEAFLESS_INIT(leafless_mesh_info);
+    const leafless_status status = leafless_mesh_describe(get(), &info);
+    return detail::finish(status, info);
 }
 
 inline returns<void> mesh::copy(span<point> vertices, span<cell_index> triangles) const {

@@ -49,6 +49,11 @@ pub fn refilled<T: Clone>(mut list: Vec<T>, count: usize, value: T) -> Result<Ve
     Ok(list)
 }
 
+/// The bytes that a list takes in memory, with its room to spare.
+pub fn bytes_of<T>(list: &Vec<T>) -> usize {
+    list.capacity() * size_of::<T>()
+}
+
 /// What an iterator yields that knows how much that is.
 pub fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>, Error> {
     let mut list = with_capacity(items.len())?;

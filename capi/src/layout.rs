@@ -42,6 +42,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, reserved, path, path_length, write, write_ctx, bytes, capacity, length
         }
         leafless_cells_in { full_least, full_most, upper_least, upper_most }
+        leafless_mesh_info { struct_size, attributes, vertices, triangles, bytes }
         leafless_mesh_report { struct_size,
             facets_read, triangles, vertices, welded, degenerate, boundary_edges, boundary_loops, misoriented_edges,
             non_manifold_edges, duplicate, opposite, flat, bodies, open_bodies, inside_out_bodies, sewn,
@@ -69,7 +70,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_volume_info { struct_size,
             extents, sample_type, file_type, format, unit, is_placed, sample_count, rounded, default_threshold,
-            corner_model, spacing_model, placement
+            corner_model, spacing_model, placement, bytes
         }
         leafless_voxel_options {
             struct_size, boundary_depth, boundary, lists, coarse_model, fine_model, tolerance, attribute,

@@ -235,26 +235,47 @@ pub unsafe extern "C" fn leafless_mesh_free(mesh: *mut leafless_mesh) {
     unsafe { release(mesh) }
 }
 
-/// How many vertices and triangles a mesh has. In memory a vertex takes 24 bytes, and a triangle 12.
+/// What can be said of a mesh at once.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_mesh_info {
+    /// sizeof(leafless_mesh_info).
+    pub struct_size: u32,
+    /// Attributes that its triangles bear: leafless_mesh_peek_attribute_at tells of each.
+    pub attributes: u32,
+    /// Vertices.
+    pub vertices: u64,
+    /// Triangles.
+    pub triangles: u64,
+    /// Bytes of memory that it keeps: its arrays and attributes, and what was found out about its edges if
+    /// somebody asked. What meshes and solids share counts for each of them.
+    pub bytes: u64,
+}
+
+output!(leafless_mesh_info);
+
+/// What can be said of a mesh at once. O(1), but for the names of attributes.
 ///
-/// - Buffers: `vertex_count` and `triangle_count`, one number each.
-/// - Result: both.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_mesh_counts(
+pub unsafe extern "C" fn leafless_mesh_describe(
     mesh: *const leafless_mesh,
-    vertex_count: *mut u64,
-    triangle_count: *mut u64,
+    info: *mut leafless_mesh_info,
 ) -> leafless_status {
     guard(|| unsafe {
         let mesh = &shared(mesh, "mesh")?.mesh;
-        let vertex_count = out(vertex_count, "vertex_count")?;
-        let triangle_count = out(triangle_count, "triangle_count")?;
-        vertex_count.write(mesh.vertices().len() as u64)?;
-        triangle_count.write(mesh.triangles().len() as u64)
+        filled(info, "info")?.write(leafless_mesh_info {
+            struct_size: size_of::<leafless_mesh_info>() as u32,
+            attributes: mesh.attributes().len() as u32,
+            vertices: mesh.vertices().len() as u64,
+            triangles: mesh.triangles().len() as u64,
+            bytes: mesh.bytes(),
+        })
     })
 }
 
-/// Copies the arrays of a mesh; leafless_mesh_counts tells their lengths.
+/// Copies the arrays of a mesh; leafless_mesh_describe tells their lengths.
 ///
 /// - Buffers: `vertices`, room for `vertex_capacity` vertices of 3 numbers; `triangles`, room for
 ///   `triangle_capacity` triangles of 3 indices. Each may be NULL if it is not wanted.

@@ -197,7 +197,7 @@ impl leafless_surface_options {
 /// Every edge is run along as often in one direction as in the other, but for
 /// LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED. Triangles turn counter-clockwise as seen from outside; no two vertices
 /// are equal, and no triangle has a vertex twice. The order of vertices and triangles is always the same:
-/// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_counts
+/// that of the cells in Morton order, or for coplanar shrink that of places and planes. leafless_mesh_describe
 /// and leafless_mesh_copy hand the arrays out, leafless_mesh_inspect and leafless_mesh_area tell about them,
 /// leafless_mesh_intersecting_pairs finds triangles that meet, and leafless_mesh_write writes them.
 ///

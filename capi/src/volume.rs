@@ -126,6 +126,9 @@ pub struct leafless_volume_info {
     /// The affine map x' = M x + t that moves the voxels to where the file says: three rows of M and t. Its
     /// directions are rounded. The map that moves nothing unless `is_placed`.
     pub placement: [f64; 12],
+    /// Bytes that the samples take, in memory or where the host has them, and what was found out about them
+    /// for solids.
+    pub bytes: u64,
 }
 
 output!(leafless_volume_info);
@@ -245,6 +248,7 @@ pub unsafe extern "C" fn leafless_volume_describe(
             corner_model: volume.grid.corner(),
             spacing_model: volume.grid.spacing(),
             placement: core::array::from_fn(|k| rows[k / 4][k % 4]),
+            bytes: (volume.samples.bytes() + volume.ranges.get().map_or(0, Volume::bytes)) as u64,
         })
     })
 }

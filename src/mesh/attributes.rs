@@ -63,6 +63,20 @@ enum Rows {
 }
 
 impl MeshAttribute {
+    /// Bytes of memory that the attribute keeps.
+    pub fn bytes(&self) -> u64 {
+        let table = match &self.table {
+            Table::Labels => 0,
+            Table::Values(values) => memory::bytes_of(values),
+        };
+        let rows = match &self.rows {
+            Rows::Triangles(rows) => memory::bytes_of(rows),
+            Rows::Corners(rows) => memory::bytes_of(rows),
+        };
+        let names = memory::bytes_of(&self.names) + self.names.iter().map(String::capacity).sum::<usize>();
+        (self.name.capacity() + table + rows + names) as u64
+    }
+
     /// In the place of a row's number: no value.
     pub const NO_ROW: u32 = u32::MAX;
 

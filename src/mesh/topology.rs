@@ -45,6 +45,11 @@ pub(super) struct Bodies {
 }
 
 impl Topology {
+    /// Bytes of memory that it keeps.
+    pub fn bytes(&self) -> usize {
+        size_of::<Topology>() + memory::bytes_of(&self.open_vertices) + memory::bytes_of(&self.boundary)
+    }
+
     /// Analyses `triangles`, whose corners must be three different numbers below `vertices`.
     ///
     /// O(t + v) time on ordinary meshes, O(t log t) when many edges share one vertex; 28 bytes per triangle and 9

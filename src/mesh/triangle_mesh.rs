@@ -228,6 +228,15 @@ impl TriangleMesh {
         &self.triangles
     }
 
+    /// Bytes of memory that the mesh keeps: vertices, triangles, attributes, and what was found out about its
+    /// edges if somebody asked. Room that its arrays have to spare is in.
+    pub fn bytes(&self) -> u64 {
+        let TriangleMesh { vertices, triangles, attributes, topology, details, .. } = self;
+        let arrays = memory::bytes_of(vertices) + memory::bytes_of(triangles) + memory::bytes_of(attributes);
+        let known = topology.get().map_or(0, Topology::bytes) + details.get().map_or(0, size_of_val);
+        (arrays + known) as u64 + attributes.iter().map(MeshAttribute::bytes).sum::<u64>()
+    }
+
     /// What is known of the triangles: in the order in which attributes were added.
     pub fn attributes(&self) -> &[MeshAttribute] {
         &self.attributes

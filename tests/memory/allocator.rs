@@ -95,6 +95,13 @@ pub fn refusing<R>(n: u64, spared: usize, for_good: bool, work: impl FnOnce() ->
     (result, REFUSED.get())
 }
 
+/// The bytes that `work` leaves behind in this thread.
+pub fn left<R>(work: impl FnOnce() -> R) -> (R, usize) {
+    HELD.set([0; 2]);
+    let result = work();
+    (result, HELD.get()[0] as usize)
+}
+
 /// The most bytes that `work` held at once, beyond what there was before.
 pub fn most_held<R>(work: impl FnOnce() -> R) -> (R, usize) {
     HELD.set([0; 2]);

@@ -9,4 +9,5 @@ mod zip;
 
 mod allocator;
 mod failures;
+mod objects;
 mod surfaces;

@@ -99,6 +99,17 @@ impl Samples<'_> {
         }
     }
 
+    /// Bytes that the array takes, whoever owns it.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Samples::Bits(words) => size_of_val(words.values()),
+            Samples::U8(values) => size_of_val(values.values()),
+            Samples::U16(values) => size_of_val(values.values()),
+            Samples::I16(values) => size_of_val(values.values()),
+            Samples::F32(values) => size_of_val(values.values()),
+        }
+    }
+
     /// Refuses an array that does not have one element for each sample of a grid.
     ///
     /// # Errors
