@@ -128,7 +128,20 @@ static void functions(void) {
     leafless_solid_free(a);
 }
 
+/* Whether a point is proven to lie inside. */
+static bool contains(const leafless_solid *solid, double x, double y, double z) {
+    const leafless_frame around = {{-4, -4, -4}, 8, 12};
+    const double point[3] = {x, y, z};
+    leafless_membership membership = LEAFLESS_MEMBERSHIP_UNDECIDED;
+    OK(leafless_solid_contains_many(solid, &around, point, 1, NULL, &membership));
+    CHECK(membership != LEAFLESS_MEMBERSHIP_UNDECIDED);
+    return membership == LEAFLESS_MEMBERSHIP_INSIDE;
+}
+
 static void other_primitives(void) {
+    const double up[3] = {0, 0, 2}, aside[3] = {0.5, 0.25, 0}, slanted[3] = {0.5, 1, 0.25};
+    /* A quarter turn around z: x to y. */
+    const double turned[12] = {0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0}, singular[12] = {0};
     const double pi = 3.14159265358979323846;
     const double weights[3] = {-1, -1, -1}, centre[3] = {0, 0, 0}, size[3] = {1, 1.5, 0.5};
     const uint32_t exponents[3] = {4, 4, 4}, too_high[3] = {4, 65, 4};
@@ -142,12 +155,25 @@ static void other_primitives(void) {
     OK(leafless_solid_new_power(weights, centre, exponents, 1, &a));
     /* 8 gamma(5/4)^3 / gamma(7/4) */
     has_volume(a, 6.48200);
-    OK(leafless_solid_new_torus(1.25, 0.5, &a));
+    OK(leafless_solid_new_torus(centre, up, 1.25, 0.5, &a));
     has_volume(a, 2 * pi * pi * 1.25 * 0.25);
-    OK(leafless_solid_new_wedge(size, 0.25, &a));
+    OK(leafless_solid_new_torus(aside, slanted, 0.75, 0.25, &a));
+    CHECK(contains(a, 0.5 + 0.75 * 2 / sqrt(5), 0.25 - 0.75 / sqrt(5), 0) && !contains(a, 0.5, 0.25, 0));
+    CHECK(!contains(a, 0.5 + 0.3, 0.25 + 0.6, 0.15));
+    has_volume(a, 2 * pi * pi * 0.75 * 0.0625);
+    OK(leafless_solid_new_wedge(size, 0.25, NULL, &a));
     has_volume(a, 0.5 * 1.5 * (1 + 0.25) / 2);
-    OK(leafless_solid_new_prism(&polygon[0][0], 6, -1, 1, &a));
+    OK(leafless_solid_new_wedge(size, 0.25, turned, &a));
+    CHECK(contains(a, -1.4, 0.2, 0.25) && !contains(a, -1.4, 0.9, 0.25) && contains(a, -0.1, 0.9, 0.25));
+    has_volume(a, 0.5 * 1.5 * (1 + 0.25) / 2);
+    OK(leafless_solid_new_prism(&polygon[0][0], 6, -1, 1, NULL, &a));
     has_volume(a, 6);
+    OK(leafless_solid_new_prism(&polygon[0][0], 6, -1, 1, turned, &a));
+    CHECK(contains(a, -1.5, 0.5, 0) && contains(a, -0.5, 1.5, 0) && !contains(a, -1.5, 1.5, 0));
+    has_volume(a, 6);
+    OK(leafless_solid_new_ellipsoid(aside, size, turned, &a));
+    CHECK(contains(a, -0.25 - 1.4, 0.5, 0) && !contains(a, -0.25, 0.5 + 1.1, 0) && contains(a, -0.25, 0.5 + 0.9, 0));
+    has_volume(a, 4.0 / 3.0 * pi * 0.75);
     for (i = 0; i < 8; i++) {
         planes[i][0] = i & 1 ? 1 : -1, planes[i][1] = i & 2 ? 1 : -1, planes[i][2] = i & 4 ? 1 : -1;
         planes[i][3] = 1;
@@ -156,11 +182,13 @@ static void other_primitives(void) {
     has_volume(a, 4.0 / 3.0);
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_power(weights, centre, too_high, 1, &a));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_power(centre, centre, exponents, 1, &a));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_torus(1, 0, &a));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_wedge(size, -1, &a));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&crossing[0][0], 4, 0, 1, &a));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&polygon[0][0], 2, 0, 1, &a));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&polygon[0][0], 6, 1, 0, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_torus(centre, up, 1, 0, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_torus(centre, centre, 1, 0.5, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_wedge(size, 0.25, singular, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_wedge(size, -1, NULL, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&crossing[0][0], 4, 0, 1, NULL, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&polygon[0][0], 2, 0, 1, NULL, &a));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_prism(&polygon[0][0], 6, 1, 0, NULL, &a));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_convex(NULL, 0, &a));
 }
 
@@ -425,7 +453,7 @@ int main(void) {
     other_numbers();
     OK(leafless_solid_new_quadric(quadric, &a));
     has_volume(a, 4.0 / 3.0 * pi / sqrt(0.75));
-    OK(leafless_solid_new_ellipsoid(origin, radii, &a));
+    OK(leafless_solid_new_ellipsoid(origin, radii, NULL, &a));
     has_volume(a, 4.0 / 3.0 * pi * 0.75);
     OK(leafless_solid_new_cylinder(from, to, 1, &a));
     has_volume(a, pi * 2.5);
@@ -512,7 +540,7 @@ int main(void) {
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_cylinder(from, to, NAN, &c));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_frustum(from, to, 0, 0, &c));
     FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_frustum(from, to, -1, 1, &c));
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_ellipsoid(origin, origin, &c));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_ellipsoid(origin, origin, NULL, &c));
     {
         const double constant[10] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
         FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_new_quadric(constant, &c));

@@ -41,7 +41,7 @@ static leafless_cursor *cursor;
 static leafless_point_cursor *point_cursor;
 static leafless_point_table *point_table;
 static leafless_options options;
-static const double point[3] = {0, 0, 0}, above[3] = {1, 1, 1};
+static const double point[3] = {0, 0, 0}, above[3] = {1, 1, 1}, outline[6] = {0, 0, 1, 0, 0, 1};
 
 static void null_pointers(void) {
     void *out = fresh();
@@ -241,10 +241,10 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_new_quadric, coefficients, leafless_solid_new_quadric(NULL, solid_result));
     NULL_POINTER(leafless_solid_new_quadric, solid, leafless_solid_new_quadric(matrix, NULL));
     NULL_POINTER(leafless_solid_new_ellipsoid, centre_model,
-                 leafless_solid_new_ellipsoid(NULL, above, solid_result));
+                 leafless_solid_new_ellipsoid(NULL, above, NULL, solid_result));
     NULL_POINTER(leafless_solid_new_ellipsoid, radii_model,
-                 leafless_solid_new_ellipsoid(point, NULL, solid_result));
-    NULL_POINTER(leafless_solid_new_ellipsoid, solid, leafless_solid_new_ellipsoid(point, above, NULL));
+                 leafless_solid_new_ellipsoid(point, NULL, NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_ellipsoid, solid, leafless_solid_new_ellipsoid(point, above, NULL, NULL));
     NULL_POINTER(leafless_solid_new_cylinder, from_model,
                  leafless_solid_new_cylinder(NULL, above, 1, solid_result));
     NULL_POINTER(leafless_solid_new_cylinder, to_model,
@@ -262,11 +262,13 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_new_power, exponents,
                  leafless_solid_new_power(above, point, NULL, 1, solid_result));
     NULL_POINTER(leafless_solid_new_power, solid, leafless_solid_new_power(above, point, exponents, 1, NULL));
-    NULL_POINTER(leafless_solid_new_torus, solid, leafless_solid_new_torus(2, 1, NULL));
-    NULL_POINTER(leafless_solid_new_wedge, size_model, leafless_solid_new_wedge(NULL, 1, solid_result));
-    NULL_POINTER(leafless_solid_new_wedge, solid, leafless_solid_new_wedge(above, 1, NULL));
-    NULL_POINTER(leafless_solid_new_prism, polygon_model, leafless_solid_new_prism(NULL, 3, 0, 1, solid_result));
-    NULL_POINTER(leafless_solid_new_prism, solid, leafless_solid_new_prism(triangle, 3, 0, 1, NULL));
+    NULL_POINTER(leafless_solid_new_torus, centre_model, leafless_solid_new_torus(NULL, above, 2, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_torus, axis, leafless_solid_new_torus(point, NULL, 2, 1, solid_result));
+    NULL_POINTER(leafless_solid_new_torus, solid, leafless_solid_new_torus(point, above, 2, 1, NULL));
+    NULL_POINTER(leafless_solid_new_wedge, size_model, leafless_solid_new_wedge(NULL, 1, NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_wedge, solid, leafless_solid_new_wedge(above, 1, NULL, NULL));
+    NULL_POINTER(leafless_solid_new_prism, polygon_model, leafless_solid_new_prism(NULL, 3, 0, 1, NULL, solid_result));
+    NULL_POINTER(leafless_solid_new_prism, solid, leafless_solid_new_prism(triangle, 3, 0, 1, NULL, NULL));
     NULL_POINTER(leafless_solid_new_convex, planes, leafless_solid_new_convex(NULL, 3, solid_result));
     NULL_POINTER(leafless_solid_new_convex, solid, leafless_solid_new_convex(matrix, 3, NULL));
     NULL_POINTER(leafless_solid_new_function, function, leafless_solid_new_function(NULL, solid_result));
@@ -549,6 +551,15 @@ static void null_pointers(void) {
     MAY_BE_NULL(leafless_octree_peek_metadata, key,
                 leafless_octree_peek_metadata(octree, NULL, 0, &text, &text_length));
     {
+        leafless_solid *moved = NULL;
+        MAY_BE_NULL(leafless_solid_new_ellipsoid, matrix, leafless_solid_new_ellipsoid(point, above, NULL, &moved));
+        leafless_solid_free(moved);
+        MAY_BE_NULL(leafless_solid_new_wedge, matrix, leafless_solid_new_wedge(above, 1, NULL, &moved));
+        leafless_solid_free(moved);
+        MAY_BE_NULL(leafless_solid_new_prism, matrix, leafless_solid_new_prism(outline, 3, 0, 1, NULL, &moved));
+        leafless_solid_free(moved);
+    }
+    {
         leafless_interference found;
         leafless_clearance near = LEAFLESS_INIT(leafless_clearance);
         MAY_BE_NULL(leafless_solid_interfere, options,
@@ -710,6 +721,12 @@ static void misaligned(void) {
     MISALIGNED(leafless_mesh_translated, mesh,
                leafless_mesh_translated((leafless_mesh *)WRONG(mesh), point, mesh_result));
     MISALIGNED(leafless_solid_new_ball, centre_model, leafless_solid_new_ball(numbers, 1, solid_result));
+    MISALIGNED(leafless_solid_new_torus, centre_model, leafless_solid_new_torus(numbers, point, 2, 1, solid_result));
+    MISALIGNED(leafless_solid_new_torus, axis, leafless_solid_new_torus(point, numbers, 2, 1, solid_result));
+    MISALIGNED(leafless_solid_new_ellipsoid, matrix,
+               leafless_solid_new_ellipsoid(point, above, numbers, solid_result));
+    MISALIGNED(leafless_solid_new_wedge, matrix, leafless_solid_new_wedge(above, 1, numbers, solid_result));
+    MISALIGNED(leafless_solid_new_prism, matrix, leafless_solid_new_prism(outline, 3, 0, 1, numbers, solid_result));
     MISALIGNED(leafless_solid_new_cylinder, from_model,
                leafless_solid_new_cylinder(numbers, point, 1, solid_result));
     MISALIGNED(leafless_solid_new_cylinder, to_model,

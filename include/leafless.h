@@ -1374,16 +1374,18 @@ leafless_status leafless_solid_new_halfspace(const double normal[3], double offs
 /// - Untrusted input: any numbers.
 leafless_status leafless_solid_new_quadric(const double coefficients[10], leafless_solid **solid);
 
-/// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z. Its verdicts are exact.
+/// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z, moved by `matrix` if there is
+/// one. The surface has exact coefficients. Its verdicts are exact, too, unless `matrix` turns it.
 ///
-/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `solid`, one pointer.
+/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `matrix`, 12 numbers as for
+///   leafless_solid_placed, or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
-///   of such a magnitude.
+///   of such a magnitude; for `matrix` as leafless_solid_placed.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 leafless_status leafless_solid_new_ellipsoid(const double centre_model[3], const double radii_model[3],
-    leafless_solid **solid);
+    const double matrix[12], leafless_solid **solid);
 
 /// The cylinder of `radius` around the segment between two points, with flat ends through them. The axis may
 /// have any direction, and nothing is rounded: the surface has exact coefficients. If the axis is parallel to
@@ -1423,43 +1425,48 @@ leafless_status leafless_solid_new_frustum(const double from_model[3], const dou
 leafless_status leafless_solid_new_power(const double coefficients[3], const double centre_model[3],
     const uint32_t exponents[3], double constant, leafless_solid **solid);
 
-/// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z =
-/// 0; where `minor` is greater, there is no hollow core. leafless_solid_placed moves it elsewhere without
-/// rounding.
+/// The torus around the axis through `centre` in the direction `axis`, of any length: all points at most
+/// `minor` from the circle of radius `major` around the centre; where `minor` is greater, there is no hollow
+/// core. If the axis is parallel to x, y or z, nothing is rounded. Otherwise its direction is rounded to
+/// double precision.
 ///
-/// - Buffers: `solid`, one pointer.
+/// - Buffers: `centre_model` and `axis`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a
-///   ball.
+/// - Errors: LEAFLESS_E_ARGUMENT if the axis is zero, a radius is not between 2^-256 and 2^256, or a
+///   coordinate neither 0 nor of such a magnitude; `major` may be 0, which makes a ball.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
-leafless_status leafless_solid_new_torus(double major_model, double minor_model, leafless_solid **solid);
+leafless_status leafless_solid_new_torus(const double centre_model[3], const double axis[3],
+    double major_model, double minor_model, leafless_solid **solid);
 
 /// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed,
 /// or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
-/// leafless_solid_placed moves it elsewhere without rounding.
+/// `matrix` moves it elsewhere without rounding.
 ///
-/// - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
+/// - Buffers: `size_model`, 3 numbers; `matrix`, 12 numbers as for leafless_solid_placed, or NULL; `solid`,
+///   one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
+/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256; for
+///   `matrix` as leafless_solid_placed.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 leafless_status leafless_solid_new_wedge(const double size_model[3], double top_model,
-    leafless_solid **solid);
+    const double matrix[12], leafless_solid **solid);
 
 /// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners
 /// are given in order, in either direction of rotation; the last is joined to the first. The planes through
-/// its edges are exact. leafless_solid_placed moves it elsewhere without rounding.
+/// its edges are exact. `matrix` moves it elsewhere without rounding.
 ///
-/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
+/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `matrix`, 12 numbers as for
+///   leafless_solid_placed, or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate
-///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`;
-///   LEAFLESS_E_NO_MEMORY.
+///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; for `matrix` as
+///   leafless_solid_placed; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 leafless_status leafless_solid_new_prism(const double *polygon_model, uint64_t count, double low_model,
-    double high_model, leafless_solid **solid);
+    double high_model, const double matrix[12], leafless_solid **solid);
 
 /// The convex polyhedron of the points p with normal · p + offset ≥ 0 for all of the planes. It may be
 /// unbounded, or empty.

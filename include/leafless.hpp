@@ -404,17 +404,19 @@ public:
     [[nodiscard]] static returns<leafless::solid> new_halfspace(const point &normal, double offset);
     [[nodiscard]] static returns<leafless::solid> new_quadric(const std::array<double,10> &coefficients);
     [[nodiscard]] static returns<leafless::solid> new_ellipsoid(const point &centre_model,
-        const point &radii_model);
+        const point &radii_model, const affine *matrix = nullptr);
     [[nodiscard]] static returns<leafless::solid> new_cylinder(const point &from_model, const point &to_model,
         double radius_model);
     [[nodiscard]] static returns<leafless::solid> new_frustum(const point &from_model, const point &to_model,
         double from_radius_model, double to_radius_model);
     [[nodiscard]] static returns<leafless::solid> new_power(const point &coefficients,
         const point &centre_model, const cell_index &exponents, double constant);
-    [[nodiscard]] static returns<leafless::solid> new_torus(double major_model, double minor_model);
-    [[nodiscard]] static returns<leafless::solid> new_wedge(const point &size_model, double top_model);
+    [[nodiscard]] static returns<leafless::solid> new_torus(const point &centre_model, const point &axis,
+        double major_model, double minor_model);
+    [[nodiscard]] static returns<leafless::solid> new_wedge(const point &size_model, double top_model,
+        const affine *matrix = nullptr);
     [[nodiscard]] static returns<leafless::solid> new_prism(span<const std::array<double,2>> polygon_model,
-        double low_model, double high_model);
+        double low_model, double high_model, const affine *matrix = nullptr);
     [[nodiscard]] static returns<leafless::solid> new_convex(span<const std::array<double,4>> planes);
     [[nodiscard]] static returns<leafless::solid> combine(leafless_operation operation,
         span<const leafless_solid *const> solids);
@@ -1135,10 +1137,11 @@ inline returns<leafless::solid> solid::new_quadric(const std::array<double,10> &
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_ellipsoid(const point &centre_model, const point &radii_model) {
+inline returns<leafless::solid> solid::new_ellipsoid(const point &centre_model, const point &radii_model,
+    const affine *matrix) {
     leafless_solid *solid_handle = nullptr;
     const leafless_status status = leafless_solid_new_ellipsoid(centre_model.data(), radii_model.data(),
-        &solid_handle);
+        matrix == nullptr ? nullptr : matrix->data(), &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
@@ -1166,23 +1169,28 @@ inline returns<leafless::solid> solid::new_power(const point &coefficients, cons
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_torus(double major_model, double minor_model) {
+inline returns<leafless::solid> solid::new_torus(const point &centre_model, const point &axis,
+    double major_model, double minor_model) {
     leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_solid_new_torus(major_model, minor_model, &solid_handle);
+    const leafless_status status = leafless_solid_new_torus(centre_model.data(), axis.data(), major_model,
+        minor_model, &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<leafless::solid> solid::new_wedge(const point &size_model, double top_model) {
+inline returns<leafless::solid> solid::new_wedge(const point &size_model, double top_model,
+    const affine *matrix) {
     leafless_solid *solid_handle = nullptr;
-    const leafless_status status = leafless_solid_new_wedge(size_model.data(), top_model, &solid_handle);
+    const leafless_status status = leafless_solid_new_wedge(size_model.data(), top_model,
+        matrix == nullptr ? nullptr : matrix->data(), &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
 inline returns<leafless::solid> solid::new_prism(span<const std::array<double,2>> polygon_model,
-    double low_model, double high_model) {
+    double low_model, double high_model, const affine *matrix) {
     leafless_solid *solid_handle = nullptr;
     const leafless_status status = leafless_solid_new_prism(detail::numbers(polygon_model),
-        polygon_model.size(), low_model, high_model, &solid_handle);
+        polygon_model.size(), low_model, high_model, matrix == nullptr ? nullptr : matrix->data(),
+        &solid_handle);
     return detail::finish(status, leafless::solid(solid_handle));
 }
 

@@ -45,6 +45,19 @@ pub(super) unsafe fn placement(matrix: *const f64) -> Result<Affine, Failure> {
     Ok(Affine::new([0, 4, 8].map(|row| [m[row], m[row + 1], m[row + 2], m[row + 3]]))?)
 }
 
+/// A solid under the map with these rows, or where it is if that is NULL.
+///
+/// # Safety
+/// As [`array`], unless it is NULL.
+unsafe fn moved(solid: Csg, matrix: *const f64) -> Result<Csg, Failure> {
+    if matrix.is_null() {
+        return Ok(solid);
+    }
+    // SAFETY: the caller's promise.
+    let placement = unsafe { placement(matrix)? };
+    Ok(solid.placed(&placement)?)
+}
+
 /// The ball of all points at most `radius` from `centre`. Its verdicts are exact.
 ///
 /// - Buffers: `centre_model`, 3 numbers; `solid`, one pointer.
@@ -138,26 +151,29 @@ pub unsafe extern "C" fn leafless_solid_new_quadric(
     })
 }
 
-/// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z. Its verdicts are exact.
+/// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z, moved by `matrix` if there is one. The
+/// surface has exact coefficients. Its verdicts are exact, too, unless `matrix` turns it.
 ///
-/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `solid`, one pointer.
+/// - Buffers: `centre_model` and `radii_model`, 3 numbers each; `matrix`, 12 numbers as for leafless_solid_placed, or
+///   NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256, or a coordinate neither 0 nor
-///   of such a magnitude.
+///   of such a magnitude; for `matrix` as leafless_solid_placed.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
-/// cbindgen:ptrs-as-arrays=[[centre_model; 3], [radii_model; 3]]
+/// cbindgen:ptrs-as-arrays=[[centre_model; 3], [radii_model; 3], [matrix; 12]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_ellipsoid(
     centre_model: *const f64,
     radii_model: *const f64,
+    matrix: *const f64,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
         let (centre, radii) = (array(centre_model, "centre_model")?, array(radii_model, "radii_model")?);
         let solid = out(solid, "solid")?;
-        solid.write(give(Csg::ellipsoid(centre, radii)?))
+        solid.write(give(moved(Csg::ellipsoid(centre, radii)?, matrix)?))
     })
 }
 
@@ -242,74 +258,86 @@ pub unsafe extern "C" fn leafless_solid_new_power(
     })
 }
 
-/// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane z =
-/// 0; where `minor` is greater, there is no hollow core. leafless_solid_placed moves it elsewhere without rounding.
+/// The torus around the axis through `centre` in the direction `axis`, of any length: all points at most `minor` from
+/// the circle of radius `major` around the centre; where `minor` is greater, there is no hollow core. If the axis is
+/// parallel to x, y or z, nothing is rounded. Otherwise its direction is rounded to double precision.
 ///
-/// - Buffers: `solid`, one pointer.
+/// - Buffers: `centre_model` and `axis`, 3 numbers each; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a
-///   ball.
+/// - Errors: LEAFLESS_E_ARGUMENT if the axis is zero, a radius is not between 2^-256 and 2^256, or a coordinate neither
+///   0 nor of such a magnitude; `major` may be 0, which makes a ball.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
+///
+/// cbindgen:ptrs-as-arrays=[[centre_model; 3], [axis; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_torus(
+    centre_model: *const f64,
+    axis: *const f64,
     major_model: f64,
     minor_model: f64,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
+        let (centre, axis) = (array(centre_model, "centre_model")?, array(axis, "axis")?);
         let solid = out(solid, "solid")?;
-        solid.write(give(Csg::torus(major_model, minor_model)?))
+        solid.write(give(Csg::torus_around(centre, axis, major_model, minor_model)?))
     })
 }
 
 /// The right angular wedge: the box between the origin and `size` whose face at the greatest y is narrowed,
 /// or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by STEP, ISO 10303-42.)
-/// leafless_solid_placed moves it elsewhere without rounding.
+/// `matrix` moves it elsewhere without rounding.
 ///
-/// - Buffers: `size_model`, 3 numbers; `solid`, one pointer.
+/// - Buffers: `size_model`, 3 numbers; `matrix`, 12 numbers as for leafless_solid_placed, or NULL; `solid`, one pointer.
 /// - Result: `*solid`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
+/// - Errors: LEAFLESS_E_ARGUMENT if a size, or `top` unless it is 0, is not between 2^-256 and 2^256; for `matrix` as
+///   leafless_solid_placed.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
 ///
-/// cbindgen:ptrs-as-arrays=[[size_model; 3]]
+/// cbindgen:ptrs-as-arrays=[[size_model; 3], [matrix; 12]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_wedge(
     size_model: *const f64,
     top_model: f64,
+    matrix: *const f64,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
         let size = array(size_model, "size_model")?;
         let solid = out(solid, "solid")?;
-        solid.write(give(Csg::wedge(size, top_model)?))
+        solid.write(give(moved(Csg::wedge(size, top_model)?, matrix)?))
     })
 }
 
 /// The prism over a simple polygon in the xy plane, between z = `low` and z = `high`. The polygon's corners
 /// are given in order, in either direction of rotation; the last is joined to the first. The planes through
-/// its edges are exact. leafless_solid_placed moves it elsewhere without rounding.
+/// its edges are exact. `matrix` moves it elsewhere without rounding.
 ///
-/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `solid`, one pointer.
+/// - Buffers: `polygon_model`, `count` points of 2 numbers each; `matrix`, 12 numbers as for leafless_solid_placed, or
+///   NULL; `solid`, one pointer.
 /// - Result: `*solid`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the outline touches or crosses itself or encloses nothing, a coordinate
-///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`;
-///   LEAFLESS_E_NO_MEMORY.
+///   is neither 0 nor of a magnitude between 2^-256 and 2^256, or `low` not less than `high`; for `matrix` as
+///   leafless_solid_placed; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: give `*solid` back with leafless_solid_free.
 /// - Untrusted input: any numbers.
+///
+/// cbindgen:ptrs-as-arrays=[[matrix; 12]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_solid_new_prism(
     polygon_model: *const f64,
     count: u64,
     low_model: f64,
     high_model: f64,
+    matrix: *const f64,
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
         let polygon = slice(polygon_model.cast::<[f64; 2]>(), count, "polygon_model")?;
         let solid = out(solid, "solid")?;
-        solid.write(give(Csg::prism(polygon, low_model, high_model)?))
+        solid.write(give(moved(Csg::prism(polygon, low_model, high_model)?, matrix)?))
     })
 }
 

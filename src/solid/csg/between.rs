@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, dot};
 use crate::lattice::valid::{self, length};
-use crate::lattice::{Bounds, Interval};
+use crate::lattice::{Affine, Bounds, Interval};
 
 impl Csg {
     /// The cylinder of `radius` around the segment between two points (model units), with flat ends through them.
@@ -79,6 +79,48 @@ impl Csg {
         let parts = Csg::intersection_of([mantle.into(), bottom.into(), top.into()])?;
         let Bounds { min, max } = bounds(from, to, radii);
         Ok(parts.within(min, max))
+    }
+}
+
+impl Csg {
+    /// The torus around the axis through `centre` (model units) in the direction `axis`, of any length: all points at
+    /// most `minor` from the circle of radius `major` around the centre.
+    ///
+    /// Along a coordinate axis nothing is rounded. Any other direction is rounded to numbers of double precision, and
+    /// the torus is the image of the exact one under the matrix of these: it is off by some 2^-52 of its size.
+    ///
+    /// ```
+    /// use leafless::{Control, Csg, Frame, measure};
+    /// let ring = Csg::torus_around([0.1, 0.0, 0.0], [1.0, 1.0, 0.0], 0.5, 0.25)?;
+    /// let found = measure(&ring, &Frame::new([-1.0; 3], 2.0, 8)?, 1e-4, &Control::default())?;
+    /// assert!(found.volume.contains(2.0 * (core::f64::consts::PI * 0.25).powi(2) * 0.5));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Argument`] as for [`torus`](Self::torus), if the axis is zero, or if a coordinate is not zero and not of
+    /// a magnitude between 2^-256 and 2^256.
+    pub fn torus_around(centre: [f64; 3], axis: [f64; 3], major: f64, minor: f64) -> Result<Csg, Error> {
+        valid::numbers("centre", &centre)?;
+        valid::numbers("axis", &axis)?;
+        let greatest = axis.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        if greatest == 0.0 {
+            return Err(Error::Argument { name: "axis", problem: "must not be zero" });
+        }
+        let unit = |v: [f64; 3]| {
+            let length = libm::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+            v.map(|x| x / length)
+        };
+        let cross = |a: [f64; 3], b: [f64; 3]| {
+            axes(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
+        };
+        let w = unit(axis.map(|x| x / greatest));
+        // The coordinate axis that is farthest from `w`.
+        let least = (0..3).fold(0, |least, k| if w[k].abs() < w[least].abs() { k } else { least });
+        let u = unit(cross(axes(|k| f64::from(u8::from(k == least))), w));
+        let v = cross(w, u);
+        let matrix = Affine::new(axes(|k| [u[k], v[k], w[k], centre[k]]))?;
+        Csg::torus(major, minor)?.placed(&matrix)
     }
 }
 
