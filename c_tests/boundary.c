@@ -1,4 +1,5 @@
-/* What a point query costs through the C interface: one by one, in a batch, and with a cursor along lines.
+/* What queries cost through the C interface: points, rays and distances, one by one and in a batch, and points with a
+ * cursor along lines.
  *
  *     ./boundary [POINTS]
  *
@@ -9,9 +10,10 @@
 
 #include <time.h>
 
+/* Processor time: other programs may run beside this one. */
 static double now(void) {
     struct timespec time;
-    CHECK(clock_gettime(CLOCK_MONOTONIC, &time) == 0);
+    CHECK(clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time) == 0);
     return (double)time.tv_sec * 1e9 + (double)time.tv_nsec;
 }
 
@@ -24,7 +26,63 @@ enum { ROUNDS = 11 };
 
 static void report(const char *name, double *times, size_t points) {
     qsort(times, ROUNDS, sizeof times[0], ascending);
-    printf("%-12s %8.2f ns a point\n", name, times[ROUNDS / 2] / (double)points);
+    printf("%-22s %9.2f ns\n", name, times[ROUNDS / 2] / (double)points);
+}
+
+/* Rays from points of the universe to the next ones, and distances of points from the surface. */
+static void rays_and_distances(const leafless_octree *ball, const double *points, size_t rays, size_t far) {
+    leafless_ray *list = (leafless_ray *)calloc(rays, sizeof *list);
+    leafless_ray_hit *hits = (leafless_ray_hit *)calloc(rays, sizeof *hits);
+    leafless_interval *distances = (leafless_interval *)calloc(far, sizeof *distances);
+    leafless_options options = LEAFLESS_INIT(leafless_options);
+    double times[4][ROUNDS], sums[2] = {0, 0};
+    size_t i, met[2] = {0, 0};
+    int round, axis;
+    CHECK(list != NULL && hits != NULL && distances != NULL);
+    options.threads = 1;
+    for (i = 0; i < rays; i++) {
+        for (axis = 0; axis < 3; axis++) {
+            list[i].origin_model[axis] = points[3 * i + axis];
+            list[i].direction_model[axis] = points[(3 * i + 3) % (3 * rays) + axis] - points[3 * i + axis];
+        }
+        list[i].t_last = INFINITY;
+    }
+    for (round = 0; round < ROUNDS; round++) {
+        double start = now();
+        met[0] = met[1] = 0;
+        sums[0] = sums[1] = 0;
+        for (i = 0; i < rays; i++) {
+            leafless_octree_cast_rays(ball, list + i, 1, LEAFLESS_OBSTACLE_UPPER, hits);
+            met[0] += hits[0].is_hit;
+        }
+        times[0][round] = now() - start;
+        start = now();
+        leafless_octree_cast_rays(ball, list, rays, LEAFLESS_OBSTACLE_UPPER, hits);
+        times[1][round] = now() - start;
+        for (i = 0; i < rays; i++) {
+            met[1] += hits[i].is_hit;
+        }
+        start = now();
+        for (i = 0; i < far; i++) {
+            leafless_octree_distances(ball, points + 3 * i, 1, LEAFLESS_DISTANCE_TO_BOUNDARY, &options, distances);
+            sums[0] += distances[0].lower;
+        }
+        times[2][round] = now() - start;
+        start = now();
+        leafless_octree_distances(ball, points, far, LEAFLESS_DISTANCE_TO_BOUNDARY, &options, distances);
+        times[3][round] = now() - start;
+        for (i = 0; i < far; i++) {
+            sums[1] += distances[i].lower;
+        }
+        CHECK(met[0] == met[1] && sums[0] == sums[1]);
+    }
+    report("rays one by one", times[0], rays);
+    report("rays batch", times[1], rays);
+    report("distances one by one", times[2], far);
+    report("distances batch", times[3], far);
+    free(list);
+    free(hits);
+    free(distances);
 }
 
 int main(int argc, char **argv) {
@@ -72,9 +130,10 @@ int main(int argc, char **argv) {
         times[2][round] = now() - start;
         CHECK(inside[0] == inside[1]);
     }
-    report("one by one", times[0], count);
-    report("batch", times[1], count);
-    report("lines", times[2], count);
+    report("points one by one", times[0], count);
+    report("points batch", times[1], count);
+    report("points on lines", times[2], count);
+    rays_and_distances(ball, points, count / 10, count / 100);
     fprintf(stderr, "%lu and %lu of %lu points inside\n", (unsigned long)inside[0], (unsigned long)inside[2],
             (unsigned long)count);
     leafless_point_cursor_free(cursor);

@@ -391,8 +391,10 @@ fn golden() {
 /// A smoke test: figures come from more points, see the file.
 #[test]
 fn boundary() {
-    let told = run("boundary", C99, Link::Static, &["10000"]);
-    assert_eq!(told.lines().filter(|line| line.contains(" ns")).count(), 3, "{told}");
+    for language in [C99, CPP17] {
+        let told = run("boundary", language, Link::Static, &["10000"]);
+        assert_eq!(told.lines().filter(|line| line.contains(" ns")).count(), 7, "{told}");
+    }
 }
 
 // --- What users read
