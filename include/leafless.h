@@ -5096,7 +5096,7 @@ leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel, cons
 #define LEAFLESS_FORMAT_MAJOR 0
 
 /// Minor version of the file format that this library writes; it reads newer ones, too.
-#define LEAFLESS_FORMAT_MINOR 3
+#define LEAFLESS_FORMAT_MINOR 4
 
 /// What header and section table of a tri-dexel model's file say of it.
 typedef struct leafless_file_tridexel_info {
