@@ -40,7 +40,7 @@ impl SurfaceOptions {
     ///
     /// ```
     /// use leafless::{Bounds, SurfaceOptions};
-    /// let bounds = Bounds::new([0.0; 3], [100.0, 60.0, 30.0])?;
+    /// let bounds = Bounds::new([0.0; 3], [100.0, 60.0, 30.0]).unwrap();
     /// assert_eq!(SurfaceOptions::default().frame(&bounds)?.depth(), 20);
     /// assert_eq!(SurfaceOptions { tolerance: Some(0.05) }.frame(&bounds)?.depth(), 12);
     /// # Ok::<(), leafless::Error>(())
