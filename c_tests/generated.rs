@@ -28,6 +28,7 @@ const SECTIONS: &[Section] = &[
     Section { title: "Volumes", files: &["volume", "volume_arrays", "volume_file"] },
     Section { title: "Scenes", files: &["scene"] },
     Section { title: "Octrees", files: &["metadata", "octree", "op"] },
+    Section { title: "Extended octrees", files: &["extended"] },
     Section { title: "Points and boxes", files: &["contains", "point_cursor"] },
     Section { title: "Cells of octrees", files: &["cursor", "cells", "bitmap"] },
     Section { title: "Rays, columns, heights", files: &["rays", "columns"] },

@@ -33,12 +33,14 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
                        const leafless_file_section *sections, uint64_t *metadata) {
     static const char *const ANSWERS[] = {"outside", "inside", "undecided"};
     leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
+    leafless_cut_counts cuts = LEAFLESS_INIT(leafless_cut_counts);
     leafless_statistics all, levels[32];
     const char *value;
     char *end;
     double parsed[3];
     uint64_t count, i;
     OK(leafless_octree_describe(octree, &info));
+    OK(leafless_octree_count_cuts(octree, &cuts));
     if ((value = value_of(line, "length")) != NULL) {
         CHECK(probe->file_length == whole(value, &end));
     } else if ((value = value_of(line, "version")) != NULL) {
@@ -101,6 +103,15 @@ static void check_fact(const char *line, const leafless_octree *octree, const le
         CHECK(key_length == (size_t)(tab - value) && memcmp(key, value, key_length) == 0);
         CHECK(found_length == strlen(tab + 1) && memcmp(found, tab + 1, found_length) == 0);
     } else if ((value = value_of(line, "point")) != NULL) {
+        leafless_membership answer;
+        numbers(value, parsed, 3);
+        OK(leafless_octree_contains(octree, parsed, &answer));
+        /* The line is about tags alone: cuts decide points of PARTIAL cells. */
+        if (cuts.surfaces == 0 || strcmp(strrchr(value, ' ') + 1, "undecided") != 0) {
+            CHECK(strcmp(strrchr(value, ' ') + 1, ANSWERS[answer]) == 0);
+        }
+        points++;
+    } else if ((value = value_of(line, "cut-point")) != NULL) {
         leafless_membership answer;
         numbers(value, parsed, 3);
         OK(leafless_octree_contains(octree, parsed, &answer));

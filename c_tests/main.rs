@@ -343,6 +343,11 @@ fn solid_geometry() {
 }
 
 #[test]
+fn extended() {
+    run("extended", C99, Link::Static, &[]);
+}
+
+#[test]
 fn interferences() {
     run("interference", C99, Link::Static, &[]);
 }

@@ -109,6 +109,11 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_frame_around, min_model, leafless_frame_around(NULL, above, 4, (leafless_frame *)out));
     NULL_POINTER(leafless_frame_around, max_model, leafless_frame_around(point, NULL, 4, (leafless_frame *)out));
     NULL_POINTER(leafless_frame_around, frame, leafless_frame_around(point, above, 4, NULL));
+    NULL_POINTER(leafless_frame_to_tolerance, min_model,
+                 leafless_frame_to_tolerance(NULL, above, 0.5, 0, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_to_tolerance, max_model,
+                 leafless_frame_to_tolerance(point, NULL, 0.5, 0, (leafless_frame *)out));
+    NULL_POINTER(leafless_frame_to_tolerance, frame, leafless_frame_to_tolerance(point, above, 0.5, 0, NULL));
     NULL_POINTER(leafless_frame_aligned, min_model, leafless_frame_aligned(NULL, above, 4, (leafless_frame *)out));
     NULL_POINTER(leafless_frame_aligned, max_model, leafless_frame_aligned(point, NULL, 4, (leafless_frame *)out));
     NULL_POINTER(leafless_frame_aligned, frame, leafless_frame_aligned(point, above, 4, NULL));
@@ -683,6 +688,12 @@ static void misaligned(void) {
     MISALIGNED(leafless_frame_around, min_model, leafless_frame_around(numbers, above, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_around, max_model, leafless_frame_around(point, numbers, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_around, frame, leafless_frame_around(point, above, 4, (leafless_frame *)WRONG(out)));
+    MISALIGNED(leafless_frame_to_tolerance, min_model,
+               leafless_frame_to_tolerance(numbers, above, 0.5, 0, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_to_tolerance, max_model,
+               leafless_frame_to_tolerance(point, numbers, 0.5, 0, (leafless_frame *)out));
+    MISALIGNED(leafless_frame_to_tolerance, frame,
+               leafless_frame_to_tolerance(point, above, 0.5, 0, (leafless_frame *)WRONG(out)));
     MISALIGNED(leafless_frame_aligned, min_model, leafless_frame_aligned(numbers, above, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_aligned, max_model, leafless_frame_aligned(point, numbers, 4, (leafless_frame *)out));
     MISALIGNED(leafless_frame_aligned, frame, leafless_frame_aligned(point, above, 4, (leafless_frame *)WRONG(out)));
@@ -2202,6 +2213,128 @@ static void attributes_and_channels(void) {
     leafless_attribute_free(NULL);
 }
 
+/* Surfaces of cells: all pointers, all numbers. */
+static void extended_octrees(void) {
+    static const uint32_t not_a_depth[] = {0, 21, 255, 256, 257, UINT32_MAX}, not_a_rule[] = {4, 255, 256, UINT32_MAX};
+    static const double not_a_tolerance[] = {NAN, INFINITY, -INFINITY, -1, 1e300};
+    const uint32_t cell[3] = {0, 0, 0}, outside[3] = {8, 0, 0}, *bad_cell = (const uint32_t *)WRONG(CHECK_CUBE);
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    leafless_octree **result = (leafless_octree **)&never, *extended = NULL;
+    leafless_stored_surface_info stored = LEAFLESS_INIT(leafless_stored_surface_info);
+    leafless_cut_options cuts = LEAFLESS_INIT(leafless_cut_options);
+    leafless_cell_function function;
+    double terms[1];
+    size_t i;
+    OK(leafless_octree_build_extended(solid, &frame, NULL, NULL, &extended));
+    NULL_POINTER(leafless_octree_build_extended, solid,
+                 leafless_octree_build_extended(NULL, &frame, NULL, NULL, result));
+    NULL_POINTER(leafless_octree_build_extended, frame,
+                 leafless_octree_build_extended(solid, NULL, NULL, NULL, result));
+    NULL_POINTER(leafless_octree_build_extended, octree,
+                 leafless_octree_build_extended(solid, &frame, NULL, NULL, NULL));
+    NULL_POINTER(leafless_octree_plain, octree, leafless_octree_plain(NULL, 3, 0, NULL, result));
+    NULL_POINTER(leafless_octree_plain, plain, leafless_octree_plain(octree, 3, 0, NULL, NULL));
+    NULL_POINTER(leafless_octree_count_cuts, octree,
+                 leafless_octree_count_cuts(NULL, (leafless_cut_counts *)out));
+    NULL_POINTER(leafless_octree_count_cuts, counts, leafless_octree_count_cuts(octree, NULL));
+    NULL_POINTER(leafless_octree_surface_at, octree,
+                 leafless_octree_surface_at(NULL, 0, &stored, NULL, 0, NULL, 0));
+    NULL_POINTER(leafless_octree_surface_at, info, leafless_octree_surface_at(extended, 0, NULL, NULL, 0, NULL, 0));
+    NULL_POINTER(leafless_octree_surface_at, terms,
+                 leafless_octree_surface_at(extended, 0, &stored, NULL, 9, NULL, 0));
+    NULL_POINTER(leafless_octree_surface_at, placements,
+                 leafless_octree_surface_at(extended, 0, &stored, NULL, 0, NULL, 9));
+    MAY_BE_NULL(leafless_octree_surface_at, terms,
+                leafless_octree_surface_at(extended, 0, &stored, NULL, 0, NULL, 0));
+    MAY_BE_NULL(leafless_octree_surface_at, placements,
+                leafless_octree_surface_at(extended, 0, &stored, NULL, 0, NULL, 0));
+    NULL_POINTER(leafless_octree_cell_function, octree,
+                 leafless_octree_cell_function(NULL, 0, cell, (leafless_cell_function *)out));
+    NULL_POINTER(leafless_octree_cell_function, cell,
+                 leafless_octree_cell_function(octree, 0, NULL, (leafless_cell_function *)out));
+    NULL_POINTER(leafless_octree_cell_function, function, leafless_octree_cell_function(octree, 0, cell, NULL));
+    untouched();
+    CHECK(never == UNTOUCHED);
+    MAY_BE_NULL(leafless_octree_build_extended, cuts,
+                leafless_octree_build_extended(solid, &frame, NULL, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_build_extended, options,
+                leafless_octree_build_extended(solid, &frame, NULL, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_plain, options, leafless_octree_plain(octree, 3, 0, NULL, result));
+    leafless_octree_free(*result);
+
+    never = UNTOUCHED;
+    out = fresh();
+    MISALIGNED(leafless_octree_build_extended, solid,
+               leafless_octree_build_extended((leafless_solid *)WRONG(solid), &frame, NULL, NULL, result));
+    MISALIGNED(leafless_octree_build_extended, frame,
+               leafless_octree_build_extended(solid, (leafless_frame *)WRONG(&frame), NULL, NULL, result));
+    MISALIGNED(leafless_octree_build_extended, cuts,
+               leafless_octree_build_extended(solid, &frame, (leafless_cut_options *)WRONG(&cuts), NULL, result));
+    MISALIGNED(leafless_octree_build_extended, options,
+               leafless_octree_build_extended(solid, &frame, NULL, (leafless_options *)WRONG(&options), result));
+    MISALIGNED(leafless_octree_build_extended, octree,
+               leafless_octree_build_extended(solid, &frame, NULL, NULL, (leafless_octree **)WRONG(out)));
+    MISALIGNED(leafless_octree_plain, octree,
+               leafless_octree_plain((leafless_octree *)WRONG(octree), 3, 0, NULL, result));
+    MISALIGNED(leafless_octree_plain, options,
+               leafless_octree_plain(octree, 3, 0, (leafless_options *)WRONG(&options), result));
+    MISALIGNED(leafless_octree_plain, plain,
+               leafless_octree_plain(octree, 3, 0, NULL, (leafless_octree **)WRONG(out)));
+    MISALIGNED(leafless_octree_count_cuts, octree,
+               leafless_octree_count_cuts((leafless_octree *)WRONG(octree), (leafless_cut_counts *)out));
+    MISALIGNED(leafless_octree_count_cuts, counts,
+               leafless_octree_count_cuts(octree, (leafless_cut_counts *)WRONG(out)));
+    MISALIGNED(leafless_octree_surface_at, octree,
+               leafless_octree_surface_at((leafless_octree *)WRONG(extended), 0, &stored, NULL, 0, NULL, 0));
+    MISALIGNED(leafless_octree_surface_at, info,
+               leafless_octree_surface_at(extended, 0, (leafless_stored_surface_info *)WRONG(out), NULL, 0, NULL, 0));
+    MISALIGNED(leafless_octree_surface_at, terms,
+               leafless_octree_surface_at(extended, 0, &stored, (double *)WRONG(out), 9, NULL, 0));
+    MISALIGNED(leafless_octree_surface_at, placements,
+               leafless_octree_surface_at(extended, 0, &stored, NULL, 0, (double *)WRONG(out), 9));
+    MISALIGNED(leafless_octree_cell_function, octree,
+               leafless_octree_cell_function((leafless_octree *)WRONG(octree), 0, cell, (leafless_cell_function *)out));
+    MISALIGNED(leafless_octree_cell_function, cell,
+               leafless_octree_cell_function(octree, 0, bad_cell, (leafless_cell_function *)out));
+    MISALIGNED(leafless_octree_cell_function, function,
+               leafless_octree_cell_function(octree, 0, cell, (leafless_cell_function *)WRONG(out)));
+
+    for (i = 0; i < COUNT(not_a_depth); i++) {
+        leafless_frame bad = frame;
+        bad.depth = not_a_depth[i];
+        BAD_NUMBER(leafless_octree_build_extended, depth,
+                   leafless_octree_build_extended(solid, &bad, NULL, NULL, result));
+        BAD_NUMBER(leafless_octree_plain, depth, leafless_octree_plain(octree, bad.depth, 0, NULL, result));
+    }
+    for (i = 0; i < COUNT(not_a_rule); i++) {
+        BAD_NUMBER(leafless_octree_plain, rule, leafless_octree_plain(octree, 3, not_a_rule[i], NULL, result));
+    }
+    for (i = 0; i < COUNT(not_a_tolerance); i++) {
+        cuts.tolerance_model = not_a_tolerance[i];
+        BAD_NUMBER(leafless_octree_build_extended, tolerance,
+                   leafless_octree_build_extended(solid, &frame, &cuts, NULL, result));
+        if (!(not_a_tolerance[i] > 0)) {
+            BAD_NUMBER(leafless_frame_to_tolerance, tolerance,
+                       leafless_frame_to_tolerance(point, above, not_a_tolerance[i], 0, (leafless_frame *)out));
+        }
+    }
+    BAD_NUMBER(leafless_octree_surface_at, surface, leafless_octree_surface_at(octree, 0, &stored, NULL, 0, NULL, 0));
+    BAD_NUMBER(leafless_octree_surface_at, surface,
+               leafless_octree_surface_at(extended, UINT32_MAX, &stored, NULL, 0, NULL, 0));
+    FAILS(LEAFLESS_E_BUFFER, leafless_octree_surface_at(extended, 0, &stored, terms, 1, NULL, 0));
+    untouched();
+    CHECK(never == UNTOUCHED);
+    /* Cells that are none have no function. */
+    OK(leafless_octree_cell_function(extended, 3, outside, &function));
+    CHECK(function.surface_count == 0 && function.table == 0);
+    OK(leafless_octree_cell_function(extended, UINT32_MAX, cell, &function));
+    CHECK(function.surface_count == 0);
+    leafless_octree_free(extended);
+}
+
 int main(void) {
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
@@ -2214,6 +2347,7 @@ int main(void) {
     null_pointers();
     misaligned();
     numbers();
+    extended_octrees();
     lazy_octrees();
     cells_and_faces();
     volumes_and_surfaces();

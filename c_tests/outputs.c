@@ -6,7 +6,7 @@ static leafless_frame frame;
 static leafless_mesh *mesh;
 static leafless_volume *volume;
 static leafless_scene *scene;
-static leafless_octree *octree;
+static leafless_octree *octree, *extended;
 static leafless_cursor *cursor;
 static leafless_solid *solid, *other;
 static leafless_lazy *lazy;
@@ -28,6 +28,8 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_scene_mesh_info, leafless_scene_describe_mesh_at(scene, 0, out, NULL))                              \
     FILLS(leafless_mesh_report, leafless_scene_describe_mesh_at(scene, 0, &of_scene, out))                             \
     FILLS(leafless_octree_info, leafless_octree_describe(octree, out))                                                 \
+    FILLS(leafless_cut_counts, leafless_octree_count_cuts(extended, out))                                              \
+    FILLS(leafless_stored_surface_info, leafless_octree_surface_at(extended, 0, out, NULL, 0, NULL, 0))                \
     FILLS(leafless_cursor_info, leafless_cursor_describe(cursor, out))                                                 \
     FILLS(leafless_measures, leafless_solid_measure(solid, &frame, 0.1, 0, NULL, out))                                 \
     FILLS(leafless_surface_area, leafless_solid_surface_area(solid, &frame, 0.1, 0, NULL, out))                        \
@@ -149,6 +151,7 @@ int main(void) {
     solid = check_ball_solid();
     OK(leafless_solid_new_ball(far_centre, 0.0625, &other));
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
+    OK(leafless_octree_build_extended(solid, &frame, NULL, NULL, &extended));
     file = check_bytes(octree, &file_length);
     layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
     layout.spacing_model[0] = layout.spacing_model[1] = layout.spacing_model[2] = 1;
@@ -167,6 +170,7 @@ int main(void) {
     }
     CHECK(which >= 20);
     values();
+    leafless_octree_free(extended);
     leafless_tridexel_editor_free(editor);
     leafless_tridexel_free(tridexel);
     leafless_channel_free(channel);

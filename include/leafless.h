@@ -48,19 +48,20 @@
  *   11. Volumes
  *   12. Scenes
  *   13. Octrees
- *   14. Points and boxes
- *   15. Cells of octrees
- *   16. Rays, columns, heights
- *   17. Volumes, areas, bounding boxes
- *   18. Distance and interference
- *   19. Octrees that are split on demand
- *   20. Attributes
- *   21. Channels
- *   22. Voxel records
- *   23. Surfaces
- *   24. Tri-dexel models
- *   25. Files of octrees and tri-dexel models
- *   26. Pictures
+ *   14. Extended octrees
+ *   15. Points and boxes
+ *   16. Cells of octrees
+ *   17. Rays, columns, heights
+ *   18. Volumes, areas, bounding boxes
+ *   19. Distance and interference
+ *   20. Octrees that are split on demand
+ *   21. Attributes
+ *   22. Channels
+ *   23. Voxel records
+ *   24. Surfaces
+ *   25. Tri-dexel models
+ *   26. Files of octrees and tri-dexel models
+ *   27. Pictures
  *
  * RULES that hold for all functions
  *
@@ -523,6 +524,17 @@ leafless_status leafless_frame_check(const leafless_frame *frame);
 /// - Untrusted input: any values.
 leafless_status leafless_frame_around(const double min_model[3], const double max_model[3], uint32_t depth,
     leafless_frame *frame);
+
+/// The frame of leafless_frame_around whose finest cells are no longer than a tolerance, the greater of a
+/// length and a part of the longest extent. It has the least such depth; where 20 levels do not suffice, and
+/// for tolerances of 0, it has 20.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
+/// - Result: `*frame`.
+/// - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT if a tolerance is negative or no number.
+/// - Untrusted input: any values.
+leafless_status leafless_frame_to_tolerance(const double min_model[3], const double max_model[3],
+    double tolerance_model, double relative, leafless_frame *frame);
 
 /// A frame whose lattice planes are round numbers, around a shape with these bounds: its edge is the smallest
 /// power of two that holds them, its origin a multiple of as great a power of two as possible. Faces at 25,
@@ -2336,7 +2348,130 @@ leafless_status leafless_octree_combine(leafless_operation operation, const leaf
 leafless_status leafless_octree_complement(const leafless_octree *octree, const leafless_options *options,
     leafless_octree **result);
 
-/* ---- 14. Points and boxes ----------------------------------------------------------------------------- */
+/* ---- 14. Extended octrees ----------------------------------------------------------------------------- */
+
+/// Which surfaces an extended octree keeps.
+typedef struct leafless_cut_options {
+    uint32_t struct_size;  ///< sizeof(leafless_cut_options).
+    /// Where nothing exact is known of a surface (a mesh, a function of the host), two parallel planes may
+    /// stand for it that are at most this far apart. 0: only exact surfaces are kept.
+    double tolerance_model;
+} leafless_cut_options;
+
+/// What the PARTIAL cells of an octree keep of the surfaces that cross them.
+typedef struct leafless_cut_counts {
+    uint32_t struct_size;  ///< sizeof(leafless_cut_counts).
+    uint32_t surfaces;  ///< Surfaces.
+    /// Cells of which it is known which function of surfaces the solid is. Parts of cells count that have
+    /// functions of their own.
+    uint64_t cells;
+    uint64_t given_up;  ///< Cells of which nothing is known.
+    /// PARTIAL cells that are split, and have no node, because all of their parts are PARTIAL.
+    uint64_t splits;
+    uint64_t bytes;  ///< Bytes of all of this.
+} leafless_cut_counts;
+
+/// What kind of function a surface is the zero set of, and what its numbers are.
+LEAFLESS_ENUM(leafless_stored_surface_kind, uint32_t) {
+    LEAFLESS_STORED_SURFACE_KIND_PLANE = 0,  ///< a, b, c, d of a x + b y + c z + d.
+    LEAFLESS_STORED_SURFACE_KIND_QUADRIC = 1,  ///< The coefficients of x², y², z², xy, yz, zx, x, y, z and 1.
+    /// A, a, n, B, b, m, C, c, k, D of A (x - a)^n + B (y - b)^m + C (z - c)^k + D.
+    LEAFLESS_STORED_SURFACE_KIND_POWERS = 2,
+    LEAFLESS_STORED_SURFACE_KIND_TORUS = 3,  ///< R, q, s, t of q - (sqrt((s x)² + (s y)²) - R)² - (s z + t)².
+    /// a, b, c and two offsets: positive where a x + b y + c z is less than the first, negative where it is
+    /// greater than the second, and not known between. The last two numbers tell which slab it is: an origin,
+    /// and a number.
+    LEAFLESS_STORED_SURFACE_KIND_SLAB = 4,
+};
+
+/// A surface of an octree.
+typedef struct leafless_stored_surface_info {
+    uint32_t struct_size;  ///< sizeof(leafless_stored_surface_info).
+    leafless_stored_surface_kind kind;  ///< What its numbers are.
+    uint32_t number_count;  ///< How many numbers there are.
+    uint32_t placement_count;  ///< How many maps place it.
+    uint32_t terms[10];  ///< Of how many doubles each number is the exact sum.
+    uint32_t term_count;  ///< How many doubles that is in all.
+    bool has_origin;  ///< Whether a slab can be told from others.
+    uint32_t origin_number;  ///< If so: its number where it was made.
+    uint64_t origin[2];  ///< And the fingerprint of what it was made from, the lower half first.
+} leafless_stored_surface_info;
+
+/// The function that the solid is in a cell.
+typedef struct leafless_cell_function {
+    uint32_t surfaces[3];  ///< The numbers of its surfaces, ascending.
+    uint32_t surface_count;  ///< How many they are; 0 if nothing is known of the cell, or if it is decided.
+    /// Bit m is set if points lie in the solid that are on the positive side of those surfaces i for which
+    /// bit i of m is set, and on the negative side of the others.
+    uint8_t table;
+} leafless_cell_function;
+
+/// Builds the extended octree of a solid: a certified octree whose PARTIAL cells keep the surfaces that cross
+/// them, up to three, and the function of their sides that the solid is. A cell ends as soon as three
+/// surfaces are left in it, at any size, so that the octree is small, and as exact as the solid. With exact
+/// surfaces alone take a frame of depth 20. The result is the same bit for bit for any number of threads.
+///
+/// Points, rays and boxes of an octree (leafless_octree_contains, leafless_octree_cast_rays,
+/// leafless_octree_classify_box) are decided by the surfaces where they lie; next to a surface they may stay
+/// undecided. As a solid (leafless_solid_from_octree) it answers as its source would. Functions that mean
+/// cells see the cells alone: leafless_octree_plain makes them.
+///
+/// - Buffers: `frame`, one struct; `cuts`, one struct or NULL; `options`, one struct or NULL; `octree`, one
+///   pointer.
+/// - Result: `*octree`.
+/// - Errors: as leafless_octree_build under LEAFLESS_RULE_CERTIFIED; LEAFLESS_E_ARGUMENT if the tolerance is
+///   negative or no number; LEAFLESS_E_LIMIT also if an exact number of a surface is the sum of more than
+///   seven doubles.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid; set `max_bytes` where the depth or the solid is not your own choice.
+leafless_status leafless_octree_build_extended(const leafless_solid *solid, const leafless_frame *frame,
+    const leafless_cut_options *cuts, const leafless_options *options, leafless_octree **octree);
+
+/// The octree without surfaces that says what one with surfaces does, to a depth: for functions that mean
+/// cells. What is undecided at the depth is resolved by a rule. Of an octree without surfaces it is the same
+/// octree, cut at the depth.
+///
+/// - Buffers: `options`, one struct or NULL; `plain`, one pointer. `rule` is a leafless_rule.
+/// - Result: `*plain`, with the octree's metadata and channels.
+/// - Errors: as leafless_octree_build; LEAFLESS_E_ARGUMENT if `depth` is not 1 to 20.
+/// - Ownership: `octree` stays as it is; give `*plain` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree; set `max_bytes` where the depth is not your own choice.
+leafless_status leafless_octree_plain(const leafless_octree *octree, uint32_t depth, leafless_rule rule,
+    const leafless_options *options, leafless_octree **plain);
+
+/// What the PARTIAL cells of an octree keep of the surfaces that cross them; all 0 if they keep nothing.
+/// O(cells that keep something).
+///
+/// - Buffers: `counts`, one struct.
+/// - Result: `*counts`.
+/// - Untrusted input: any octree; of one that was mapped unverified the numbers may be wrong.
+leafless_status leafless_octree_count_cuts(const leafless_octree *octree, leafless_cut_counts *counts);
+
+/// A surface of an extended octree: what it is, its numbers, and the maps that place it. O(1).
+///
+/// - Buffers: `info`, one struct; `terms`, room for `term_capacity` doubles, or NULL: those whose sums the
+///   numbers are, one number after the other; `placements`, room for `placement_capacity` doubles, or NULL:
+///   the 12 of the rows of [M | t] of each map, in the order in which the maps are applied.
+/// - Result: `*info`, `terms` and `placements`.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such surface, or it is damaged; LEAFLESS_E_BUFFER if a
+///   capacity is too small.
+/// - Untrusted input: any octree, any number.
+leafless_status leafless_octree_surface_at(const leafless_octree *octree, uint32_t surface,
+    leafless_stored_surface_info *info, double *terms, uint64_t term_capacity, double *placements,
+    uint64_t placement_capacity);
+
+/// The function that the solid is in a cell that lies in a PARTIAL one, or is one. O(depth).
+///
+/// - Buffers: `cell`, 3 numbers, of which each is less than 2^level; `function`, one struct.
+/// - Result: `*function`. It has no surface if nothing is known of the cell, if the cell is decided, if
+///   different functions hold in parts of it, or if there is no such cell.
+/// - Untrusted input: any octree, any numbers.
+leafless_status leafless_octree_cell_function(const leafless_octree *octree, uint32_t level,
+    const uint32_t cell[3], leafless_cell_function *function);
+
+/* ---- 15. Points and boxes ----------------------------------------------------------------------------- */
 
 /// The answer to a point query.
 LEAFLESS_ENUM(leafless_membership, uint8_t) {
@@ -2492,7 +2627,7 @@ leafless_status leafless_point_table_contains(const leafless_point_table *table,
 leafless_status leafless_point_table_contains_many(const leafless_point_table *table,
     const double *points_model, uint64_t count, leafless_membership *memberships);
 
-/* ---- 15. Cells of octrees ----------------------------------------------------------------------------- */
+/* ---- 16. Cells of octrees ----------------------------------------------------------------------------- */
 
 /// Where a cursor stands.
 typedef struct leafless_cursor_info {
@@ -2731,7 +2866,7 @@ leafless_status leafless_octree_bitmap(const leafless_octree *octree, uint32_t l
     const uint32_t min_cell[3], const uint32_t max_cell[3], const leafless_options *options, uint64_t *inner,
     uint64_t *outer, uint64_t capacity, uint64_t *count);
 
-/* ---- 16. Rays, columns, heights ----------------------------------------------------------------------- */
+/* ---- 17. Rays, columns, heights ----------------------------------------------------------------------- */
 
 /// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or
 /// has a magnitude between 2^-256 and 2^256.
@@ -2943,7 +3078,7 @@ leafless_status leafless_solid_heights(const leafless_solid *solid, const leafle
     uint32_t axis, const uint32_t first[2], const uint32_t end[2], leafless_side side,
     const leafless_options *options, leafless_interval *heights_model, uint64_t capacity, uint64_t *count);
 
-/* ---- 17. Volumes, areas, bounding boxes --------------------------------------------------------------- */
+/* ---- 18. Volumes, areas, bounding boxes --------------------------------------------------------------- */
 
 /// How many finest cells of a solid lie in a region, between bounds. A cell where the region is FULL lies in
 /// it, one where it is EMPTY does not, and one where it is PARTIAL may: so the bounds hold whether a cell
@@ -3194,7 +3329,7 @@ leafless_status leafless_solid_section_area(const leafless_solid *solid, const l
 leafless_status leafless_solid_bounding_box(const leafless_solid *solid, const leafless_frame *frame,
     double tolerance_model, const leafless_options *options, leafless_extent *extent);
 
-/* ---- 18. Distance and interference -------------------------------------------------------------------- */
+/* ---- 19. Distance and interference -------------------------------------------------------------------- */
 
 /// What a distance is measured to.
 LEAFLESS_ENUM(leafless_distance_to, uint32_t) {
@@ -3427,7 +3562,7 @@ leafless_status leafless_solid_clearance(const leafless_solid *a, const leafless
     const leafless_frame *frame, double tolerance_model, const leafless_options *options,
     leafless_clearance *clearance);
 
-/* ---- 19. Octrees that are split on demand ------------------------------------------------------------- */
+/* ---- 20. Octrees that are split on demand ------------------------------------------------------------- */
 
 /// What can be said of a lazy octree at once.
 typedef struct leafless_lazy_info {
@@ -3589,7 +3724,7 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy, uint64_t *splits
 leafless_status leafless_lazy_freeze(const leafless_lazy *lazy, const leafless_options *options,
     leafless_octree **octree);
 
-/* ---- 20. Attributes ----------------------------------------------------------------------------------- */
+/* ---- 21. Attributes ----------------------------------------------------------------------------------- */
 
 /// What is known of the values in the interior of a box.
 LEAFLESS_ENUM(leafless_range_kind, uint32_t) {
@@ -3799,7 +3934,7 @@ leafless_status leafless_attribute_from_mesh(const leafless_mesh *mesh, const ch
 leafless_status leafless_attribute_from_mesh_values(const leafless_mesh *mesh, const double *values,
     uint64_t count, uint32_t components, bool per_corner, leafless_attribute **attribute);
 
-/* ---- 21. Channels ------------------------------------------------------------------------------------- */
+/* ---- 22. Channels ------------------------------------------------------------------------------------- */
 
 /// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even
 /// integer half-way.
@@ -4198,7 +4333,7 @@ leafless_status leafless_octree_carry_channels(const leafless_octree *octree,
     const leafless_carry_rule *rules, uint64_t rule_count, const leafless_options *options,
     leafless_octree **result);
 
-/* ---- 22. Voxel records -------------------------------------------------------------------------------- */
+/* ---- 23. Voxel records -------------------------------------------------------------------------------- */
 
 /// What a voxel is: a number in the array `kinds`.
 LEAFLESS_ENUM(leafless_voxel_kind, uint8_t) {
@@ -4350,7 +4485,7 @@ leafless_status leafless_octree_from_voxels(const leafless_frame *lattice, const
     const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, leafless_tag boundary,
     const leafless_options *options, leafless_octree **octree);
 
-/* ---- 23. Surfaces ------------------------------------------------------------------------------------- */
+/* ---- 24. Surfaces ------------------------------------------------------------------------------------- */
 
 /// How a surface is made.
 LEAFLESS_ENUM(leafless_surface_method, uint32_t) {
@@ -4495,7 +4630,7 @@ leafless_status leafless_solid_surface(const leafless_solid *solid, const leafle
 leafless_status leafless_volume_surface(const leafless_volume *volume, const leafless_interval *band,
     const leafless_options *options, leafless_mesh **mesh);
 
-/* ---- 24. Tri-dexel models ----------------------------------------------------------------------------- */
+/* ---- 25. Tri-dexel models ----------------------------------------------------------------------------- */
 
 /// The axes that rays run along. The numbers may be added.
 LEAFLESS_ENUM(leafless_axes, uint32_t) {
@@ -5090,7 +5225,7 @@ leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel, cons
     const uint8_t *colours, uint64_t colour_count, leafless_long_voxel *voxels, uint64_t capacity,
     uint64_t *count);
 
-/* ---- 25. Files of octrees and tri-dexel models -------------------------------------------------------- */
+/* ---- 26. Files of octrees and tri-dexel models -------------------------------------------------------- */
 
 /// Major version of the file format that this library writes, and the only one that it reads.
 #define LEAFLESS_FORMAT_MAJOR 0
@@ -5211,7 +5346,7 @@ leafless_status leafless_tridexel_read(const leafless_source *source, leafless_t
 /// - Untrusted input: any model.
 leafless_status leafless_tridexel_write(const leafless_tridexel *tridexel, const leafless_sink *sink);
 
-/* ---- 26. Pictures ------------------------------------------------------------------------------------- */
+/* ---- 27. Pictures ------------------------------------------------------------------------------------- */
 
 /// From where a picture is taken. leafless_camera_fitted sets all of it; a host may as well.
 typedef struct leafless_camera {

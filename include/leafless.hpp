@@ -543,6 +543,15 @@ public:
     [[nodiscard]] static returns<leafless::octree> combine(leafless_operation operation,
         span<const leafless_octree *const> octrees, const leafless_options *options = nullptr);
     [[nodiscard]] returns<leafless::octree> complement(const leafless_options *options = nullptr) const;
+    [[nodiscard]] static returns<leafless::octree> build_extended(const leafless::solid &solid,
+        const leafless_frame &frame, const leafless_cut_options *cuts = nullptr,
+        const leafless_options *options = nullptr);
+    [[nodiscard]] returns<leafless::octree> plain(uint32_t depth, leafless_rule rule,
+        const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<leafless_cut_counts> count_cuts() const;
+    [[nodiscard]] returns<leafless_stored_surface_info> surface_at(uint32_t surface, span<double> terms,
+        span<double> placements) const;
+    [[nodiscard]] returns<leafless_cell_function> cell_function(uint32_t level, const cell_index &cell) const;
     [[nodiscard]] returns<leafless_membership> contains(const point &point_model) const;
     returns<void> contains_many(span<const point> points_model, span<leafless_membership> memberships) const;
     [[nodiscard]] returns<leafless_tag> tag_at(const cell_index &cell) const;
@@ -816,6 +825,8 @@ public:
 returns<void> frame_check(const leafless_frame &frame);
 [[nodiscard]] returns<leafless_frame> frame_around(const point &min_model, const point &max_model,
     uint32_t depth);
+[[nodiscard]] returns<leafless_frame> frame_to_tolerance(const point &min_model, const point &max_model,
+    double tolerance_model, double relative);
 [[nodiscard]] returns<leafless_frame> frame_aligned(const point &min_model, const point &max_model,
     uint32_t depth);
 [[nodiscard]] returns<leafless_frame> frame_with_cells(const point &min_model, const point &max_model,
@@ -1701,6 +1712,41 @@ inline returns<leafless::octree> octree::complement(const leafless_options *opti
     leafless_octree *result_handle = nullptr;
     const leafless_status status = leafless_octree_complement(get(), options, &result_handle);
     return detail::finish(status, leafless::octree(result_handle));
+}
+
+inline returns<leafless::octree> octree::build_extended(const leafless::solid &solid,
+    const leafless_frame &frame, const leafless_cut_options *cuts, const leafless_options *options) {
+    leafless_octree *octree_handle = nullptr;
+    const leafless_status status = leafless_octree_build_extended(solid.get(), &frame, cuts, options,
+        &octree_handle);
+    return detail::finish(status, leafless::octree(octree_handle));
+}
+
+inline returns<leafless::octree> octree::plain(uint32_t depth, leafless_rule rule,
+    const leafless_options *options) const {
+    leafless_octree *plain_handle = nullptr;
+    const leafless_status status = leafless_octree_plain(get(), depth, rule, options, &plain_handle);
+    return detail::finish(status, leafless::octree(plain_handle));
+}
+
+inline returns<leafless_cut_counts> octree::count_cuts() const {
+    leafless_cut_counts counts = LEAFLESS_INIT(leafless_cut_counts);
+    const leafless_status status = leafless_octree_count_cuts(get(), &counts);
+    return detail::finish(status, counts);
+}
+
+inline returns<leafless_stored_surface_info> octree::surface_at(uint32_t surface, span<double> terms,
+    span<double> placements) const {
+    leafless_stored_surface_info info = LEAFLESS_INIT(leafless_stored_surface_info);
+    const leafless_status status = leafless_octree_surface_at(get(), surface, &info, terms.data(),
+        terms.size(), placements.data(), placements.size());
+    return detail::finish(status, info);
+}
+
+inline returns<leafless_cell_function> octree::cell_function(uint32_t level, const cell_index &cell) const {
+    leafless_cell_function function{};
+    const leafless_status status = leafless_octree_cell_function(get(), level, cell.data(), &function);
+    return detail::finish(status, function);
 }
 
 inline returns<leafless_membership> octree::contains(const point &point_model) const {
@@ -2662,6 +2708,14 @@ inline returns<void> frame_check(const leafless_frame &frame) {
 inline returns<leafless_frame> frame_around(const point &min_model, const point &max_model, uint32_t depth) {
     leafless_frame frame{};
     const leafless_status status = leafless_frame_around(min_model.data(), max_model.data(), depth, &frame);
+    return detail::finish(status, frame);
+}
+
+inline returns<leafless_frame> frame_to_tolerance(const point &min_model, const point &max_model,
+    double tolerance_model, double relative) {
+    leafless_frame frame{};
+    const leafless_status status = leafless_frame_to_tolerance(min_model.data(), max_model.data(),
+        tolerance_model, relative, &frame);
     return detail::finish(status, frame);
 }
 

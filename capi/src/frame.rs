@@ -131,6 +131,30 @@ pub unsafe extern "C" fn leafless_frame_around(
     })
 }
 
+/// The frame of leafless_frame_around whose finest cells are no longer than a tolerance, the greater of a length and a part of the
+/// longest extent. It has the least such depth; where 20 levels do not suffice, and for tolerances of 0, it has 20.
+///
+/// - Buffers: `min_model` and `max_model`, 3 numbers each; `frame`, one struct.
+/// - Result: `*frame`.
+/// - Errors: as leafless_frame_around; LEAFLESS_E_ARGUMENT if a tolerance is negative or no number.
+/// - Untrusted input: any values.
+///
+/// cbindgen:ptrs-as-arrays=[[min_model; 3], [max_model; 3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_frame_to_tolerance(
+    min_model: *const f64,
+    max_model: *const f64,
+    tolerance_model: f64,
+    relative: f64,
+    frame: *mut leafless_frame,
+) -> leafless_status {
+    guard(|| unsafe {
+        around(min_model, max_model, frame, |min, max| {
+            Frame::to_tolerance(min, max, tolerance_model, relative)
+        })
+    })
+}
+
 /// A frame whose lattice planes are round numbers, around a shape with these bounds: its edge is the smallest
 /// power of two that holds them, its origin a multiple of as great a power of two as possible. Faces at 25,
 /// 12.5 or -0.75 then lie on lattice planes, where they take no cells and the certified volume is exact. The

@@ -112,6 +112,12 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_material { value, measures }
         leafless_carry_rule { name, name_length, carry }
         leafless_proof { displacement_model, full, empty }
+        leafless_cut_options { struct_size, tolerance_model }
+        leafless_cut_counts { struct_size, surfaces, cells, given_up, splits, bytes }
+        leafless_stored_surface_info { struct_size,
+            kind, number_count, placement_count, terms, term_count, has_origin, origin_number, origin
+        }
+        leafless_cell_function { surfaces, surface_count, table }
         leafless_octree_info { struct_size,
             frame, elements, bricks, channels, bytes, proof, root, exterior, is_binary, is_clipped
         }
@@ -188,6 +194,10 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_obstacle { LEAFLESS_OBSTACLE_FULL, LEAFLESS_OBSTACLE_UPPER }
         leafless_side { LEAFLESS_SIDE_ABOVE, LEAFLESS_SIDE_BELOW }
         leafless_sight { LEAFLESS_SIGHT_CLEAR, LEAFLESS_SIGHT_BLOCKED, LEAFLESS_SIGHT_UNDECIDED }
+        leafless_stored_surface_kind {
+            LEAFLESS_STORED_SURFACE_KIND_PLANE, LEAFLESS_STORED_SURFACE_KIND_QUADRIC, LEAFLESS_STORED_SURFACE_KIND_POWERS,
+            LEAFLESS_STORED_SURFACE_KIND_TORUS, LEAFLESS_STORED_SURFACE_KIND_SLAB
+        }
         leafless_proven {
             LEAFLESS_PROVEN_NOTHING, LEAFLESS_PROVEN_FULL, LEAFLESS_PROVEN_EMPTY, LEAFLESS_PROVEN_BOTH
         }

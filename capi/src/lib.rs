@@ -49,6 +49,7 @@
 //! | `octree_channels` | channels of octrees, carried to others |
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
+//! | `extended` | extended octrees: surfaces that PARTIAL cells keep |
 //! | `contains` | points, boxes |
 //! | `cursor` | cursors on the nodes of an octree |
 //! | `point_cursor` | cursors and tables for points |
@@ -98,6 +99,7 @@ mod control;
 mod csg;
 mod cursor;
 mod distance;
+mod extended;
 mod file;
 mod frame;
 mod host;
@@ -160,6 +162,7 @@ pub use control::*;
 pub use csg::*;
 pub use cursor::*;
 pub use distance::*;
+pub use extended::*;
 pub use file::*;
 pub use frame::*;
 pub use host::*;

@@ -76,8 +76,8 @@ impl Frame {
     /// # Ok::<(), leafless::Error>(())
     /// ```
     pub fn to_tolerance(min: [f64; 3], max: [f64; 3], absolute: f64, relative: f64) -> Result<Frame, Error> {
-        valid::tolerance("absolute", absolute)?;
-        valid::tolerance("relative", relative)?;
+        valid::tolerance("absolute tolerance", absolute)?;
+        valid::tolerance("relative tolerance", relative)?;
         let tolerance = absolute.max(relative * longest_extent(min, max)?);
         let frame = Frame::around(min, max, MAX_DEPTH)?;
         let fits = |depth: u8| frame.with_depth(depth).is_ok_and(|frame| frame.cell_size() <= tolerance);

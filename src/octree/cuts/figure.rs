@@ -2,19 +2,17 @@
 //!
 //! What is next to a surface stays open; [exact signs](crate::solid) are for those who put the tree on a frame.
 
-use super::surfaces::{SurfaceKind, SurfacesRef};
+use super::surfaces::{MOST_MAPS, SurfaceKind, SurfacesRef};
 use crate::lattice::{Ball, axes};
-
-/// Most maps that a surface is placed by; of one with more nothing is found in place.
-const MOST_MAPS: usize = 8;
 
 /// A surface in its own space.
 #[derive(Clone, Copy)]
 pub(crate) struct Figure<'a> {
     kind: SurfaceKind,
     numbers: [Ball; 10],
-    /// Rows of the maps that place it, the outermost last.
-    maps: [Option<&'a [[f64; 4]; 3]>; MOST_MAPS],
+    surfaces: SurfacesRef<'a>,
+    id: usize,
+    is_placed: bool,
 }
 
 /// Points on a line, in the space of a figure: `at` + t · `direction`.
@@ -50,17 +48,32 @@ impl<'a> Figure<'a> {
         for (to, number) in numbers.iter_mut().zip(own) {
             *to = Ball::sum(number);
         }
-        let mut maps = [None; MOST_MAPS];
-        for (i, rows) in surfaces.placements(id as usize).enumerate() {
-            *maps.get_mut(i)? = Some(rows);
+        let id = id as usize;
+        let maps = surfaces.placements(id).count();
+        let is_placed = maps > 0;
+        (maps <= MOST_MAPS).then_some(Figure { kind, numbers, surfaces: *surfaces, id, is_placed })
+    }
+
+    /// The maps that place the figure, the outermost first, and how many they are.
+    fn maps(&self) -> ([&'a [[f64; 4]; 3]; MOST_MAPS], usize) {
+        const NONE: [[f64; 4]; 3] = [[0.0; 4]; 3];
+        let (mut maps, mut count) = ([&NONE; MOST_MAPS], 0);
+        for (to, rows) in maps.iter_mut().zip(self.surfaces.placements(self.id)) {
+            *to = rows;
+            count += 1;
         }
-        Some(Figure { kind, numbers, maps })
+        maps[..count].reverse();
+        (maps, count)
     }
 
     /// The same points in the figure's space: a centre and what reaches from it.
     #[inline]
     fn pulled(&self, mut at: [Ball; 3], mut vectors: [Ball; 3], is_box: bool) -> ([Ball; 3], [Ball; 3]) {
-        for rows in self.maps.iter().rev().flatten() {
+        if !self.is_placed {
+            return (at, vectors);
+        }
+        let (maps, count) = self.maps();
+        for rows in &maps[..count] {
             let (adjugate, scale) = inverse(rows);
             let moved = axes(|i| at[i].minus(Ball::exactly(rows[i][3])));
             at = axes(|i| dot(adjugate[i], moved).times(scale));
@@ -82,12 +95,11 @@ impl<'a> Figure<'a> {
     /// The side of all points of the box `centre` ± `radius` (model units); `None` if it is not known, or not one.
     #[inline]
     pub(crate) fn side(&self, centre: [Ball; 3], radius: [f64; 3]) -> Option<bool> {
-        let (at, reach) = match self.maps[0] {
-            None => (centre, radius),
-            Some(_) => {
-                let (at, reach) = self.pulled(centre, radius.map(Ball::exactly), true);
-                (at, reach.map(Ball::magnitude))
-            }
+        let (at, reach) = if self.is_placed {
+            let (at, reach) = self.pulled(centre, radius.map(Ball::exactly), true);
+            (at, reach.map(Ball::magnitude))
+        } else {
+            (centre, radius)
         };
         let Some((value, gradient)) = self.polynomial(at) else {
             return self.natural(axes(|axis| at[axis].widened(reach[axis]))).is_positive();
@@ -211,7 +223,8 @@ impl<'a> Figure<'a> {
                 n[3 * i].value * f64::from(exponent) * power
             }),
         };
-        for rows in self.maps.iter().flatten() {
+        let (maps, count) = self.maps();
+        for rows in maps[..count].iter().rev() {
             let (adjugate, scale) = inverse(rows);
             gradient = axes(|j| (0..3).map(|i| adjugate[i][j].value * gradient[i] * scale.value).sum());
         }
