@@ -145,7 +145,8 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
         taking.reading.refuse(input, "a scene")?;
         output.check()?;
         output.check_spares(input, "scene")?;
-        let splitting = Splitting { depth, rule, adaptive: None, touch: TouchName::Exact };
+        let splitting = Splitting { rule, adaptive: None, surfaces: None, touch: TouchName::Exact };
+        let job = &Job { depth: Some(depth), ..job.clone() };
         return octree_of_scene::make(job, found, &taking.drawing, splitting);
     }
     taking.drawing.refuse(input, "no scene")?;

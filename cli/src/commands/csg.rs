@@ -35,9 +35,9 @@ pub struct Arguments {
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
-    /// times as long
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
-    depth: u8,
+    /// times as long. With --surfaces it may be left out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64), required_unless_present = "surfaces")]
+    depth: Option<u8>,
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_parser = octree_rules(), default_value = "certified")]
     rule: Rule,
@@ -46,6 +46,11 @@ pub struct Arguments {
     /// undecided
     #[arg(long, value_name = "T", value_parser = thickness, allow_hyphen_values = true)]
     adaptive: Option<f64>,
+    /// Keep the surfaces that cross undecided cells: the file is small, and as exact as the scene. Cells end where three
+    /// surfaces are left, at any size; the depth bounds where more meet. Of meshes the surface is kept within layers of this
+    /// thickness, as a part of the longest side of the scene; without it exact surfaces alone are kept
+    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, require_equals = true, value_parser = tolerance)]
+    surfaces: Option<Option<f64>>,
     /// What counts as touching
     #[arg(long, value_enum, default_value_t = TouchName::Exact)]
     touch: TouchName,
@@ -71,11 +76,26 @@ fn thickness(text: &str) -> Result<f64, String> {
     number(text, "a length not below 0", |thickness| thickness >= 0.0)
 }
 
+fn tolerance(text: &str) -> Result<f64, String> {
+    number(text, "a part of the longest side, above 0 and below 1", |part| part > 0.0 && part < 1.0)
+}
+
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { depth, rule, adaptive, touch, bounds, threads, json, .. } = *arguments;
+    let Arguments { depth, rule, adaptive, surfaces, touch, bounds, threads, json, .. } = *arguments;
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
-    let job = Job { input, output, start: Instant::now(), depth: Some(depth), bounds, threads, json };
+    let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     job.output.check()?;
+    if surfaces.is_some() {
+        let useless = match (rule, touch, adaptive) {
+            (Rule::Certified, TouchName::Exact, None) => None,
+            (.., Some(_)) => Some("--adaptive: cells end where few surfaces are left"),
+            (Rule::Certified, ..) => Some("--touch paper, by which no surfaces are known"),
+            _ => Some("a --rule but certified: undecided cells keep them"),
+        };
+        if let Some(useless) = useless {
+            return Err(Failure::Usage(format!("--surfaces does not go with {useless}")));
+        }
+    }
     if adaptive.is_some() {
         let useless = match (rule, touch) {
             (Rule::Certified, TouchName::Exact) => None,
@@ -88,5 +108,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     job.output.check_spares(&job.input, "scene")?;
     let found = Found::look(&job.input, None)?;
-    octree_of_scene::make(&job, found, &arguments.drawing, Splitting { depth, rule, adaptive, touch })
+    octree_of_scene::make(&job, found, &arguments.drawing, Splitting { rule, adaptive, surfaces, touch })
 }

@@ -8,11 +8,14 @@ use crate::report::octree::Info;
 use crate::report::scene::Curves;
 use crate::source::content::Content;
 use crate::source::file::Found;
-use crate::source::scene::{Drawing, frame_of};
+use crate::source::input::Input;
+use crate::source::scene::{Drawing, bounds_of, frame_of};
 use crate::words::{count, number};
 use clap::ValueEnum;
+use leafless::lattice::MAX_DEPTH;
+use leafless::scene::Scene;
 use leafless::solid::{Adaptive, SplitCounter, Touch};
-use leafless::{Rule, build};
+use leafless::{Frame, Rule, SurfaceOptions, build, build_extended};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -26,10 +29,12 @@ pub enum TouchName {
 
 /// How space is split.
 pub struct Splitting {
-    pub depth: u8,
     pub rule: Rule,
     /// The thickness of layers that are not split. Without it all are.
     pub adaptive: Option<f64>,
+    /// Whether surfaces are kept, and how thick the layers may be that stand for them where they are not exact, as a part of the
+    /// longest side.
+    pub surfaces: Option<Option<f64>>,
     pub touch: TouchName,
 }
 
@@ -41,6 +46,9 @@ struct Report {
     touch: String,
     /// The thickness of layers that are not split; absent (null) if all are.
     adaptive: Option<f64>,
+    /// The thickness of layers that stand for surfaces in the cells that keep them: 0 if exact surfaces alone are kept, absent (null)
+    /// if none are.
+    surfaces: Option<f64>,
     timings: Timings,
     /// Cells that were split; null if there are meshes or octrees in the scene, which work in bulk.
     splits: Option<u64>,
@@ -54,10 +62,16 @@ struct Report {
     info: Info,
 }
 
+/// The longest side of the box around a scene.
+fn longest_side(input: &Input, scene: &Scene) -> Result<f64, Failure> {
+    let (min, max) = bounds_of(input, scene)?;
+    Ok((0..3).map(|axis| max[axis] - min[axis]).fold(0.0, f64::max))
+}
+
 /// Makes an octree of a scene, and saves it.
 pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
-    let Splitting { depth, rule, adaptive, touch } = splitting;
+    let Splitting { rule, adaptive, surfaces, touch } = splitting;
     let problem = match found.content {
         Content::Scene => None,
         Content::Solid => Some("is a solid already, not a scene"),
@@ -70,7 +84,19 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
     let (scene, fingerprint) = (found.scene(drawing)?, found.fingerprint());
     // The text is not needed any more.
     drop(found);
-    let frame = frame_of(input, &scene, job.bounds.as_ref(), depth)?;
+    let frame = frame_of(input, &scene, job.bounds.as_ref(), job.depth.unwrap_or(MAX_DEPTH))?;
+    let tolerance = match surfaces.flatten() {
+        Some(part) => Some(part * longest_side(input, &scene)?),
+        None => None,
+    };
+    // Cells are no finer than the layers need to be.
+    let frame = match (job.depth, tolerance) {
+        (None, Some(tolerance)) => {
+            let is_fine = |frame: &Frame| frame.cell_size() <= tolerance;
+            (1..MAX_DEPTH).find_map(|depth| frame.with_depth(depth).ok().filter(is_fine)).unwrap_or(frame)
+        }
+        _ => frame,
+    };
     let solid = scene.solid(&frame).of(input)?.with_touch(match touch {
         TouchName::Exact => Touch::Exact,
         TouchName::Paper => Touch::Paper,
@@ -80,7 +106,10 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
+    let options = SurfaceOptions { tolerance };
     let octree = watched("csg", job.threads, |control| match (&counted, adaptive) {
+        (Some(counted), None) if surfaces.is_some() => build_extended(counted, &frame, &options, control),
+        (None, None) if surfaces.is_some() => build_extended(&solid, &frame, &options, control),
         (Some(counted), Some(t)) => build(&Adaptive::new(counted, t)?, &frame, rule, control),
         (Some(counted), None) => build(counted, &frame, rule, control),
         (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule, control),
@@ -89,6 +118,9 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
     let mut metadata = facts(input, fingerprint, rule, None);
     if let Some(thickness) = adaptive {
         metadata.insert("adaptive", number(thickness));
+    }
+    if let Some(tolerance) = tolerance {
+        metadata.insert("surfaces", number(tolerance));
     }
     if let TouchName::Paper = touch {
         metadata.insert("touch", name_of(touch));
@@ -115,6 +147,7 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
         rule: rule_name(rule),
         touch: name_of(touch),
         adaptive,
+        surfaces: surfaces.map(|_| tolerance.unwrap_or(0.0)),
         timings: Timings { read, build, save, total: start.elapsed().as_secs_f64() },
         splits: splits.map(|splits| splits.iter().sum()),
         evaluations: solid.evaluations(),
@@ -124,8 +157,9 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
     };
     output.tell(job.json, &report, |report| {
         let more = format!(
-            "{}splits  {}{} evaluations of half-spaces\n",
+            "{}{}splits  {}{} evaluations of half-spaces\n",
             report.curves.text().map_or(String::new(), |curves| format!("curves  {curves}\n")),
+            report.info.cuts_text().map_or(String::new(), |cuts| format!("keeps   {cuts}\n")),
             report.splits.map_or(String::new(), |splits| count(splits) + ", "),
             count(report.evaluations),
         );

@@ -2,6 +2,7 @@
 
 pub mod bounds;
 pub mod channel;
+pub mod cuts;
 pub mod dexels;
 pub mod mesh;
 pub mod octree;

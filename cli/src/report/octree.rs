@@ -2,6 +2,7 @@
 
 use crate::report::bounds::{Proven, Volume};
 use crate::report::channel::ChannelInfo;
+use crate::report::cuts::Cuts;
 use crate::words::{count, ends, measured, number, put_line, table};
 use leafless::octree::Statistics;
 use leafless::{Interval, Octree, Tag};
@@ -41,7 +42,13 @@ pub struct Info {
     pub nodes: u64,
     pub classical_nodes: u64,
     cells: Cells,
+    /// What is known of the volume: by the surfaces that cells keep, if they do.
     pub volume: Volume,
+    /// What the cells alone say; absent where they keep no surfaces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    volume_of_cells: Option<Volume>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cuts: Option<Cuts>,
     pub bytes: u64,
     /// Absent (null) where there is no node.
     pub bytes_per_node: Option<f64>,
@@ -52,10 +59,14 @@ pub struct Info {
 }
 
 impl Info {
-    /// Of a tree whose file has so many bytes. O(depth) for a tree from a file.
+    /// Of a tree whose file has so many bytes. O(depth) for a tree from a file; of one whose cells keep surfaces O(n), and as long as
+    /// its volume takes.
     pub fn new(octree: &Octree, bytes: u64) -> Info {
         let (view, frame, statistics) = (octree.view(), octree.frame(), octree.statistics());
         let nodes = statistics.nodes();
+        let cuts = Cuts::new(octree);
+        let of_cells = statistics.volume();
+        let sharp = cuts.as_ref().and_then(|_| Cuts::volume(octree));
         Info {
             depth: frame.depth(),
             origin: frame.origin(),
@@ -67,7 +78,9 @@ impl Info {
             // The level table of a damaged file may hold anything.
             classical_nodes: nodes.saturating_mul(8).saturating_add(1),
             cells: Cells::new(&statistics),
-            volume: statistics.volume().into(),
+            volume: sharp.unwrap_or(of_cells).into(),
+            volume_of_cells: cuts.is_some().then(|| of_cells.into()),
+            cuts,
             bytes,
             bytes_per_node: (nodes > 0).then(|| bytes as f64 / nodes as f64),
             levels: (statistics.levels().iter())
@@ -111,6 +124,12 @@ impl Info {
         );
         line("proven", self.proof.text());
         line("volume", self.volume_text());
+        if let Some(of_cells) = &self.volume_of_cells {
+            line("volume of cells", measured(of_cells.interval()));
+        }
+        if let Some(cuts) = &self.cuts {
+            line("surfaces", cuts.text());
+        }
         line("nodes", count(self.nodes));
         line("classical nodes", count(self.classical_nodes));
         let Cells { empty, full, partial, .. } = &self.cells;
@@ -134,6 +153,11 @@ impl Info {
         text.push('\n');
         text.push_str(&table(&head, &rows));
         text
+    }
+
+    /// What is told of the surfaces that cells keep, if they do.
+    pub fn cuts_text(&self) -> Option<String> {
+        self.cuts.as_ref().map(Cuts::text)
     }
 
     /// What the volume is the volume of.

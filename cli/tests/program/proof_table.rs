@@ -82,6 +82,7 @@ const ITSELF: [&str; 4] = ["11", "11", "11", "11"];
 const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
     (&["csg ball.csg -o out.lfl FRAME --rule RULE"], ball, SAME),
     (&["csg ball.csg -o out.lfl FRAME --adaptive 0.1"], ball, ITSELF),
+    (&["csg ball.csg -o out.lfl FRAME --surfaces"], ball, ITSELF),
     (&["csg file.csg -o out.lfl FRAME"], ball, SAME),
     (&["csg file.csg -o out.lfl FRAME --rule inner"], ball, ["10", "10", "00", "00"]),
     (&["csg file.csg -o out.lfl FRAME --rule outer"], ball, ["01", "00", "01", "00"]),

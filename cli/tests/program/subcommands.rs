@@ -78,6 +78,11 @@ fn wrong_usage_is_one_line_and_code_2() {
         ("csg part.csg -o out.lfl --depth 5 --adaptive inf", &["--adaptive", "not below 0"]),
         ("csg part.csg -o out.lfl --depth 5 --adaptive 0.1 --rule sampled", &["--adaptive", "--rule"]),
         ("csg part.csg -o out.lfl --depth 5 --adaptive 0.1 --touch paper", &["--adaptive", "--touch paper"]),
+        ("csg part.csg -o out.lfl --surfaces=0", &["--surfaces", "above 0"]),
+        ("csg part.csg -o out.lfl --surfaces=nan", &["--surfaces", "above 0"]),
+        ("csg part.csg -o out.lfl --surfaces --rule sampled", &["--surfaces", "--rule"]),
+        ("csg part.csg -o out.lfl --surfaces --touch paper", &["--surfaces", "--touch paper"]),
+        ("csg part.csg -o out.lfl --surfaces --depth 5 --adaptive 1", &["--surfaces", "--adaptive"]),
         ("csg part.csg -o out.lfl --depth 5 --bounds 1,2,3", &["--bounds", "four numbers"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --threads 9999", &["--threads", "1024"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --bounds 1,2,3", &["--bounds", "four numbers"]),
@@ -394,6 +399,51 @@ fn adaptive_octrees_of_scenes_are_coarse() {
     place.write("both.csg", format!("union() {{ {turn} {{ {part} }} octree(\"small.lfl\"); }}"));
     let line = "csg both.csg -o both.lfl --depth 4 --bounds 0,0,0,64 --adaptive 1 --json";
     assert!(place.run(line).good().json()["splits"].is_null());
+}
+
+/// Undecided cells keep the surfaces that cross them: a small file, which knows the volume and the points as the scene does.
+#[test]
+fn octrees_of_scenes_keep_their_surfaces() {
+    let place = Place::new();
+    let to = "multmatrix([[1, 0, 0, 10], [0, 1, 0, 10], [0, 0, 1, -1], [0, 0, 0, 1]])";
+    let part = format!("difference() {{ cube([30, 20, 10]); {to} cylinder(h = 12, r = 4, $fn = 0); }}");
+    place.write("part.csg", &part);
+    let truth = 30.0 * 20.0 * 10.0 - std::f64::consts::PI * 16.0 * 10.0;
+    let made = place.run("csg part.csg -o part.lfl --surfaces --json").good().json();
+    assert_eq!((&made["surfaces"], &made["depth"]), (&Value::from(0.0), &Value::from(20)));
+    let told = place.run("info part.lfl --json").good().json();
+    for report in [&made, &told] {
+        let (lower, upper) = volume(report);
+        assert!(lower < truth && truth < upper && upper - lower < 1e-3 * truth, "{report}");
+        let of_cells = |end: &str| report["volume_of_cells"][end].as_f64().unwrap();
+        assert!(of_cells("lower") <= lower && upper <= of_cells("upper"));
+        assert_eq!(report["cuts"]["given_up"], 0);
+        assert_eq!(report["cuts"]["surfaces"]["quadrics"], 1);
+    }
+    assert!(place.bytes("part.lfl").len() < 6000);
+    let run = place.run("info part.lfl").good();
+    let text = run.text();
+    assert!(
+        text.contains("volume of cells") && text.contains("1 quadric") && text.contains("none given up"),
+        "{text}"
+    );
+    place.run("verify part.lfl").good();
+    // Points next to the bore and to a face.
+    let points = b"14.000001 10 5\n13.999999 10 5\n29.999999 1 1\n30.000001 1 1\n";
+    let answers = place.run_with("contains part.lfl", points).good();
+    assert_eq!(answers.text(), "inside\noutside\ninside\noutside\n");
+    // The same bytes by any number of threads, and with a depth of one's own.
+    let bytes = place.bytes("part.lfl");
+    place.run("csg part.csg -o part.lfl --surfaces --threads 3").good();
+    assert_eq!(place.bytes("part.lfl"), bytes);
+    let coarse = place.run("csg part.csg -o coarse.lfl --surfaces --depth 6 --json").good().json();
+    assert_eq!(coarse["depth"], 6);
+    // A mesh, of which layers are kept.
+    place.write("cube.stl", stl(&block([-3.0; 3], [-1.0; 3])));
+    place.write("both.csg", format!("union() {{ {part} import(file = \"cube.stl\"); }}"));
+    let both = place.run("csg both.csg -o both.lfl --surfaces=1e-3 --json").good().json();
+    assert!(both["cuts"]["surfaces"]["slabs"].as_u64().unwrap() > 0, "{both}");
+    assert!((both["surfaces"].as_f64().unwrap() - 0.03).abs() < 1e-9 && both["depth"].as_u64().unwrap() < 14);
 }
 
 #[test]
