@@ -21,6 +21,17 @@ pub const BRICKS: u32 = 7;
 pub const INDICES: u32 = 8;
 pub const ENTRIES: u32 = 9;
 pub const SEGMENTS: u32 = 10;
+pub const CUT_HEADS: u32 = 11;
+pub const CUT_IDS: u32 = 12;
+pub const CUT_BLOCKS: u32 = 13;
+pub const CUT_FIRST: u32 = 14;
+pub const SURFACES: u32 = 15;
+pub const NUMBERS: u32 = 20;
+pub const PLACEMENTS: u32 = 21;
+pub const ORIGINS: u32 = 22;
+/// Those of cuts.
+pub const CUTS: [u32; 8] =
+    [CUT_HEADS, CUT_IDS, CUT_BLOCKS, CUT_FIRST, SURFACES, NUMBERS, PLACEMENTS, ORIGINS];
 
 /// Fields of the header: offset and length.
 pub const HEADER_FIELDS: [(usize, usize); 28] = [
@@ -173,6 +184,8 @@ pub struct Repairs {
     pub dictionary: bool,
     /// The level table.
     pub levels: bool,
+    /// Cuts: as many as there are PARTIAL cells and splits, what is counted before them, and which surfaces they have.
+    pub cuts: bool,
     /// The order of the table, and elements and counts, in the entries and in the header.
     pub counts: bool,
     /// The records of objects.
@@ -188,6 +201,7 @@ impl Repairs {
         links: true,
         dictionary: true,
         levels: true,
+        cuts: true,
         counts: true,
         objects: true,
         places: true,
@@ -197,19 +211,23 @@ impl Repairs {
         links: false,
         dictionary: false,
         levels: false,
+        cuts: false,
         counts: false,
         objects: false,
         places: false,
         checksums: [false; 3],
     };
     /// Whatever says where things are, and the checksums, but nothing of the tree.
-    pub const FRAME: Repairs = Repairs { links: false, dictionary: false, levels: false, ..Repairs::ALL };
+    pub const FRAME: Repairs =
+        Repairs { links: false, dictionary: false, levels: false, cuts: false, ..Repairs::ALL };
 }
 
 /// Sections that are looked at; files may have more.
 const MOST_SECTIONS: usize = 64;
 /// Elements and bricks that a repaired tree may have.
 const MOST_ENTRIES: usize = 600;
+/// Cuts that a repaired tree may have.
+const MOST_CUTS: usize = 2000;
 
 impl File {
     /// The parts of `bytes`, if there are a signature and a header. Sections that lie elsewhere than in the
@@ -470,9 +488,155 @@ impl File {
         self.set_words(LEVELS, &counts.concat());
     }
 
+    /// Whether the sections of cuts are ones, according to the header.
+    fn has_cuts(&self) -> bool {
+        number(&self.header, 10, 2) >= 4 && self.bytes(CUT_HEADS) != [0u8; 0]
+    }
+
+    /// The PARTIAL cells' levels in the order of their cuts, and how many there are before each element and brick.
+    fn partial_cells(&self, depth: usize) -> (Vec<usize>, Vec<u32>) {
+        let (mut cells, mut first) = (vec![], vec![]);
+        match self.header[65] {
+            1 => {}
+            2 => return (vec![0], vec![1]),
+            _ => return (cells, vec![0]),
+        }
+        let bricks = self.decoded();
+        let size = self.brick_size();
+        let upper = |brick: &[u8]| [number(brick, 0, 8), number(brick, size - 8, 8)];
+        let elements = self.words(PLANES);
+        let elements = elements.chunks_exact(2).map(|pair| [pair[0], pair[1]]);
+        let entries: Vec<[u64; 2]> = elements.chain(bricks.iter().map(|brick| upper(brick))).collect();
+        // Where the levels end, by the branches.
+        let (mut e, mut end, mut children) = (0, 1, 0);
+        for (n, [lower, upper]) in entries.into_iter().enumerate() {
+            if n == end {
+                (e, end, children) = (e + 1, end + children, 0);
+            }
+            children += (lower & !upper).count_ones() as usize;
+            first.push(cells.len() as u32);
+            let level = (2 * e + 2 - depth % 2).min(depth);
+            for octant in 0..8 {
+                match (!lower & upper) >> (8 * octant) as u8 & 0xFF {
+                    0xFF => cells.push(level - 1),
+                    some => cells.extend((0..some.count_ones()).map(|_| level)),
+                }
+            }
+        }
+        first.push(cells.len() as u32);
+        (cells, first)
+    }
+
+    fn repair_cuts(&mut self) {
+        let Some(depth) = self.depth().filter(|_| self.has_cuts()) else { return };
+        let (mut levels, first) = self.partial_cells(depth);
+        if levels.is_empty() || levels.len() > MOST_CUTS {
+            return CUTS.into_iter().for_each(|kind| self.set(kind, vec![]));
+        }
+        let known = levels.len();
+        let width = self.section(CUT_IDS).map_or(1, |section| section.size().min(4));
+        let old_ids: Vec<u64> =
+            self.bytes(CUT_IDS).chunks_exact(width).map(|id| number(id, 0, width)).collect();
+        let old_heads = self.bytes(CUT_HEADS).to_vec();
+        let all = self.bytes(SURFACES).len() / 16;
+        let (mut heads, mut ids, mut used) = (vec![], vec![], 0);
+        let mut drawn = old_ids.iter().cycle();
+        let mut record = 0;
+        while record < levels.len() {
+            let mut head = *old_heads.get(record).unwrap_or(&0);
+            let is_last_of_group = record >= known && (record - known) % 8 == 7;
+            let depends = |i: usize| {
+                let mask = [0xAA, 0xCC, 0xF0][i];
+                (head & mask) >> (1 << i) != head & !mask
+            };
+            let count = (0..3).rev().find(|&i| depends(i)).map_or(0, |i| i + 1);
+            if (0..count).any(|i| !depends(i)) || count > all {
+                head = 0;
+            }
+            if head == 0xFF && (levels[record] >= depth || levels.len() + 8 > MOST_CUTS) {
+                head = 0;
+            }
+            if head == 0 && is_last_of_group && all > 0 && heads[record - 7..].iter().all(|&head| head == 0) {
+                head = 0xAA;
+            }
+            let count = match head {
+                0 | 0xFF => 0,
+                0xAA | 0x55 => 1,
+                _ => count,
+            };
+            if head == 0xFF {
+                let level = levels[record] + 1;
+                levels.extend([level; 8]);
+            }
+            // Different ones of those that were used, or the next.
+            let mut own: Vec<u64> = vec![];
+            while own.len() < count {
+                let drawn = drawn.next().map_or(0, |&id| id);
+                let mut id = drawn.min(used).min(all as u64 - 1);
+                while own.contains(&id) {
+                    id = (id + 1) % (used + 1).min(all as u64);
+                    if own.len() as u64 == (used + 1).min(all as u64) {
+                        break;
+                    }
+                }
+                if own.contains(&id) {
+                    break;
+                }
+                used = used.max(id + 1).min(all as u64);
+                own.push(id);
+            }
+            own.sort_unstable();
+            ids.extend(own);
+            heads.push(head);
+            record += 1;
+        }
+        // Those that are left, with their doubles.
+        let used = used as usize;
+        let mut records = self.bytes(SURFACES)[..16 * used].to_vec();
+        let (old, mut doubles) = (self.bytes(NUMBERS).to_vec(), vec![]);
+        for surface in records.chunks_exact_mut(16) {
+            let (terms, begin) = (number(surface, 4, 4), number(surface, 8, 4) as usize);
+            let length: u64 = (0..10).map(|i| terms >> (3 * i) & 7).sum();
+            put(surface, 8, doubles.len() as u64 / 8, 4);
+            let range = begin.saturating_mul(8)..begin.saturating_add(length as usize).saturating_mul(8);
+            doubles.extend_from_slice(old.get(range).unwrap_or(&[]));
+        }
+        let (mut blocks, mut counted) = (vec![], [0u32; 2]);
+        for (record, head) in heads.iter().enumerate() {
+            if record % 32 == 0 {
+                blocks.extend(counted.map(u32::to_le_bytes).concat());
+            }
+            let depends = |i: usize| {
+                let mask = [0xAA, 0xCC, 0xF0][i];
+                (head & mask) >> (1 << i) != head & !mask
+            };
+            counted[0] += (0..3u32).rev().find(|&i| depends(i as usize)).map_or(0, |i| i + 1);
+            counted[1] += u32::from(*head == 0xFF);
+        }
+        let width = match used {
+            0..=256 => 1,
+            257..=65_536 => 2,
+            _ => 4,
+        };
+        self.set(CUT_HEADS, heads);
+        self.set(CUT_IDS, ids.iter().flat_map(|id| id.to_le_bytes()[..width].to_vec()).collect());
+        if let Some(section) = self.section(CUT_IDS) {
+            put(&mut section.entry, 8, [0, 1, 2, 0, 3][width] | 0x100, 2);
+        }
+        self.set(CUT_BLOCKS, blocks);
+        self.set(CUT_FIRST, first.iter().flat_map(|n| n.to_le_bytes()).collect());
+        self.set(SURFACES, records);
+        self.set(NUMBERS, doubles);
+        if used == 0 {
+            self.set(PLACEMENTS, vec![]);
+            self.set(ORIGINS, vec![]);
+        }
+    }
+
     /// The table's order, the elements of the solid's sections, and the counts.
     fn repair_counts(&mut self) {
         let planes = self.brick_size() as u64 / 8;
+        let has_cuts = number(&self.header, 10, 2) >= 4;
         let place = |file: &File, i: usize| (file.sections[i].owner(), file.sections[i].kind());
         let mut order: Vec<usize> = (0..self.sections.len()).collect();
         order.sort_by_key(|&i| place(self, i));
@@ -487,6 +651,13 @@ impl File {
                 REL | INDICES => (2, 1),
                 BASE | SEGMENTS => (4, 1),
                 BRICKS | ENTRIES => (4, planes),
+                CUT_HEADS if has_cuts => (1, 1),
+                CUT_BLOCKS if has_cuts => (3, 2),
+                CUT_FIRST if has_cuts => (3, 1),
+                SURFACES if has_cuts => (3, 4),
+                NUMBERS if has_cuts => (6, 1),
+                PLACEMENTS if has_cuts => (0, 13),
+                ORIGINS if has_cuts => (4, 2),
                 _ => continue,
             };
             put(&mut section.entry, 8, kind | components << 8, 4);
@@ -508,7 +679,7 @@ impl File {
     /// The records of the objects: the solid's says what the header says, the others nothing that must be
     /// understood; and every section belongs to one of them.
     fn repair_objects(&mut self) {
-        let newer = number(&self.header, 10, 2) > 2;
+        let newer = number(&self.header, 10, 2) > 4;
         let mut records = self.bytes(OBJECTS).to_vec();
         records.resize((records.len() / RECORD * RECORD).max(RECORD), 0);
         for (i, record) in records.chunks_exact_mut(RECORD).enumerate() {
@@ -551,7 +722,7 @@ impl File {
             };
             let of = self.sections[of].clone();
             let section = &mut self.sections[i];
-            if section.owner() != 0 || section.kind() > SEGMENTS {
+            if section.owner() != 0 || section.kind() > SEGMENTS && !CUTS.contains(&section.kind()) {
                 section.entry[8..12].copy_from_slice(&of.entry[8..12]);
                 section.bytes = of.bytes;
             } else if section.entry[8..12] != of.entry[8..12] || section.bytes != of.bytes {
@@ -570,6 +741,9 @@ impl File {
         }
         if repairs.levels {
             self.repair_levels();
+        }
+        if repairs.cuts {
+            self.repair_cuts();
         }
         if repairs.objects {
             self.repair_objects();

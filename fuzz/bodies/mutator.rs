@@ -1,8 +1,9 @@
 //! Changes of files that know what a file is: without them hardly any input would get past the checksums.
 
 use super::layout::{
-    BASE, ENTRIES, ENTRY_FIELDS, File, HEADER_FIELDS, INDICES, LEVELS, METADATA, OBJECTS, PLANES, RECORD,
-    RECORD_FIELDS, REL, Repairs, SEGMENTS, Section, number, put,
+    BASE, CUT_BLOCKS, CUT_FIRST, CUT_HEADS, CUT_IDS, CUTS, ENTRIES, ENTRY_FIELDS, File, HEADER_FIELDS,
+    INDICES, LEVELS, METADATA, NUMBERS, OBJECTS, ORIGINS, PLACEMENTS, PLANES, RECORD, RECORD_FIELDS, REL,
+    Repairs, SEGMENTS, SURFACES, Section, number, put,
 };
 use super::{Random, halves, joined};
 
@@ -76,11 +77,12 @@ pub fn repairs(random: &mut Random) -> Repairs {
     };
     match random.below(4) {
         0 => {}
-        1 => repairs.levels = true,
+        1 => (repairs.levels, repairs.cuts) = (true, true),
         _ => {
             repairs.links = true;
             repairs.dictionary = !random.one_in(8);
             repairs.levels = !random.one_in(8);
+            repairs.cuts = !random.one_in(8);
         }
     }
     repairs
@@ -275,9 +277,84 @@ fn change_metadata(file: &mut File, random: &mut Random) {
     }
 }
 
+/// A double that is likely to be on one side of some border.
+fn double_near(old: u64, random: &mut Random) -> u64 {
+    let value = f64::from_bits(old);
+    let new = match random.below(12) {
+        0 => f64::NAN,
+        1 => f64::INFINITY,
+        2 => 0.0,
+        3 => -value,
+        4 => value.next_up(),
+        5 => value * 2f64.powi(random.below(600) as i32 - 300),
+        6 => random.below(70) as f64,
+        7 => f64::MAX,
+        8 => f64::from_bits(1),
+        9 => 2f64.powi(random.below(140) as i32 - 70),
+        10 => value * (random.below(9) as f64 - 4.0) / 3.0,
+        _ => return number_near(old, random),
+    };
+    new.to_bits()
+}
+
+fn change_double(file: &mut File, kind: u32, random: &mut Random) {
+    if let Some(section) = file.section(kind).filter(|section| section.bytes.len() >= 8) {
+        let at = 8 * random.below(section.bytes.len() / 8);
+        let new = double_near(number(&section.bytes, at, 8), random);
+        put(&mut section.bytes, at, new, 8);
+    }
+}
+
+/// Changes something about cuts; adds some where there are none, or takes them away.
+fn change_cuts(file: &mut File, random: &mut Random) {
+    if file.section(CUT_HEADS).is_none() {
+        // A plane, a quadric and a slab. How many cuts there must be is repaired.
+        put(&mut file.header, 10, 4, 2);
+        file.header[67] = if random.one_in(8) { file.header[67] } else { 2 };
+        let surfaces = [[0, 0o1111, 0, 0], [1, 0o1_001_000_111, 4, 0], [4, 0o11111, 9, 0]];
+        let doubles = [1.0, -2.0, 0.5, 7.0, -1.0, -1.0, -1.0, 20.0, 100.0, 1.0, 1.0, -1.0, 3.0, 9.0];
+        let heads = (0..40 + random.below(40)).map(|_| match random.below(4) {
+            0 => [0, 0xFF, 0xAA, 0x55][random.below(4)],
+            _ => random.next() as u8,
+        });
+        let parts = [
+            (CUT_HEADS, heads.collect(), 0x101),
+            (CUT_IDS, (0..60).map(|_| random.below(3) as u8).collect(), 0x101),
+            (CUT_BLOCKS, vec![0; 24], 0x203),
+            (CUT_FIRST, vec![0; 8], 0x103),
+            (SURFACES, surfaces.as_flattened().iter().flat_map(|n: &u32| n.to_le_bytes()).collect(), 0x403),
+            (NUMBERS, doubles.iter().flat_map(|c: &f64| c.to_le_bytes()).collect(), 0x106),
+        ];
+        for (kind, bytes, element) in parts {
+            let mut section = Section::new(kind, bytes);
+            put(&mut section.entry, 8, element, 2);
+            file.sections.push(section);
+        }
+        return file
+            .sections
+            .sort_by_key(|section| (number(&section.entry, 4, 4), number(&section.entry, 0, 4)));
+    }
+    match random.below(16) {
+        0..3 => change_number(file, CUT_HEADS, 1, random),
+        3 | 4 => change_number(file, CUT_IDS, 1 + random.below(2), random),
+        5 => change_number(file, CUT_BLOCKS, 4, random),
+        6 => change_number(file, CUT_FIRST, 4, random),
+        7 | 8 => change_number(file, SURFACES, 4, random),
+        9..12 => change_double(file, NUMBERS, random),
+        12 | 13 => change_double(file, PLACEMENTS, random),
+        14 => change_number(file, if random.one_in(2) { ORIGINS } else { PLACEMENTS }, 8, random),
+        _ => {
+            let gone = CUTS[random.below(CUTS.len())];
+            if let Some(i) = file.sections.iter().position(|section| section.is(gone)) {
+                file.remove(i);
+            }
+        }
+    }
+}
+
 /// One change.
 fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
-    match random.below(26) {
+    match random.below(32) {
         0 => change_field(&mut file.header, &HEADER_FIELDS, random),
         // Depth, tags, bricks and counts, which the rest hangs on.
         1 => change_field(&mut file.header, &HEADER_FIELDS[11..22], random),
@@ -311,6 +388,7 @@ fn change(file: &mut File, random: &mut Random, blind: Blind<'_>) {
         18 => change_number(file, ENTRIES, 8, random),
         19 => change_metadata(file, random),
         20 | 21 => change_objects(file, random),
+        26..32 => change_cuts(file, random),
         _ => change_tag(file, random),
     }
 }

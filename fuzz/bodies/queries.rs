@@ -5,7 +5,7 @@ use super::{Aligned, CONTROL, Random, ask_measures, halves, walk};
 use leafless::octree::{CellFilter, Cursor, Direction, TaggedCell};
 use leafless::op::Zone;
 use leafless::query::{
-    Columns, DistanceTo, Obstacle, PointCursor, PointTable, Region, Run, Side, classify_box,
+    Columns, DistanceTo, Obstacle, PointCursor, PointTable, Region, Run, Side, classify_box, surface_area,
 };
 use leafless::render::{
     Camera, ColourMap, Finish, Layer, Lens, OctreeLayer, Outline, Shot, SliceLayer, SlicePlane, Transfer,
@@ -13,8 +13,8 @@ use leafless::render::{
 };
 use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{
-    Cell, Classifier, Control, Csg, Frame, LazyOctree, Membership, OctreeRef, Proof, Ray, Rule, Solid, Tag,
-    Verdict, Worker, build, contains, file,
+    Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Membership, OctreeRef, Proof, Ray, Rule, Solid,
+    SurfaceOptions, Tag, Verdict, Worker, build, build_extended, contains, file, measure,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -29,6 +29,11 @@ pub fn queries(data: &[u8]) {
 /// Asks `tree` everything.
 pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     let points = points(tree.frame(), questions);
+    if tree.cuts().is_some() {
+        ask_cuts(tree, &points, verified);
+    }
+    // What follows is about the cells.
+    let tree = &tree.without_cuts();
     ask_points(tree, &points);
     ask_boxes(tree, &points);
     replay(tree, &points);
@@ -50,6 +55,90 @@ pub fn ask(tree: &OctreeRef<'_>, questions: &[u8], verified: bool) {
     // An element has 8 + 64 cells at the most.
     let steps = walk(Cursor::new(tree)).steps;
     assert!(steps <= 1 + 72 * (tree.element_count() + tree.brick_count()), "{steps} steps");
+}
+
+/// Splits and nodes that a question to a tree with cuts may take: a cut can be split down to any depth.
+const SOME: Control<'static> = Control { max_splits: Some(200), max_nodes: Some(2000), ..CONTROL };
+
+/// What cuts say never contradicts the cells. A verified tree is a solid; of another one nobody knows.
+fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
+    let (plain, frame) = (tree.without_cuts(), *tree.frame());
+    // As if everything were proven.
+    let solid = tree.with_proof(Proof::CERTIFIED);
+    let may_be =
+        |found: Membership, of_cells: Membership| of_cells == Membership::Undecided || found == of_cells;
+    let mut answers = vec![Membership::Inside; points.len()];
+    tree.contains_many(points, &mut answers).expect("as many answers as points");
+    let mut remembering = PointCursor::new(tree);
+    for (&point, &answer) in points.iter().zip(&answers) {
+        let of_cells = plain.contains(point);
+        assert!(may_be(answer, of_cells) && tree.contains(point) == answer, "{point:?}");
+        assert!(may_be(remembering.contains(point), of_cells), "{point:?}");
+    }
+    for pair in points.windows(2).take(12) {
+        let Ok(ray) = Ray::between(pair[0], pair[1]) else { continue };
+        let _ = (tree.cast_ray(&ray, Obstacle::Full), tree.cast_ray(&ray, Obstacle::Upper));
+    }
+    match solid.on(&frame, &CONTROL) {
+        Ok(_) => {}
+        // Placements within each other may be too long for exact numbers.
+        Err(Error::Limit { .. }) => return,
+        Err(error) => return assert!(!verified && matches!(error, Error::Damaged(_)), "{error}"),
+    }
+    let mut exact = vec![Membership::Inside; points.len()];
+    contains(&solid, &frame, points, &mut exact, &CONTROL).expect("it is a solid");
+    for ((&point, &exact), &answer) in points.iter().zip(&exact).zip(&answers) {
+        assert!(may_be(exact, plain.contains(point)) && may_be(exact, answer), "{point:?}");
+    }
+    for corners in points.chunks_exact(2).take(8) {
+        let min = [0, 1, 2].map(|axis: usize| corners[0][axis].min(corners[1][axis]));
+        let max = [0, 1, 2].map(|axis: usize| corners[0][axis].max(corners[1][axis]));
+        let (Ok(found), Ok(region)) =
+            (classify_box(&solid, &frame, min, max, &SOME), plain.classify_box(min, max))
+        else {
+            continue;
+        };
+        let decided = [Region::Inside, Region::Outside];
+        assert!(!decided.contains(&region) || found == region, "{min:?} {max:?}: {found:?}, {region:?}");
+        assert!(found != Region::Inside || region != Region::Outside);
+    }
+    let measured = measure(&solid, &frame, 0.0, &SOME).expect("it is a solid").volume;
+    let upper = frame.origin().map(|c| c + frame.edge());
+    let cells = plain.volume_in_box(frame.origin(), upper).expect("the universe");
+    let slack = 1e-9 * frame.edge().powi(3);
+    assert!(measured.lower <= measured.upper, "{measured:?}");
+    if verified {
+        assert!(
+            measured.lower <= cells.upper + slack && measured.upper >= cells.lower - slack,
+            "{measured:?}, {cells:?}"
+        );
+    }
+    let area = surface_area(&solid, &frame, 0.0, &SOME).expect("it is a solid").area;
+    assert!(0.0 <= area.lower && area.lower <= area.upper);
+    let coarse = frame.with_depth(frame.depth().min(3)).expect("no deeper");
+    let (built, extended) = (
+        build(&solid, &coarse, Rule::Certified, &SOME),
+        build_extended(&solid, &coarse, &SurfaceOptions::default(), &SOME),
+    );
+    if let (Ok(built), Ok(extended)) = (&built, &extended) {
+        for built in [built, extended] {
+            built.view().check().expect("what was built is sound");
+        }
+        let again = file::to_bytes(extended).and_then(|bytes| file::from_bytes(&bytes));
+        assert!(&again.expect("what was built can be written and read") == extended);
+        for (&point, &exact) in points.iter().zip(&exact) {
+            assert!(may_be(exact, built.view().contains(point)), "{point:?}");
+        }
+    }
+    for result in [built, extended] {
+        assert!(matches!(result, Ok(_) | Err(Error::Limit { .. })), "{:?}", result.err());
+    }
+    if let Ok(mut lazy) = LazyOctree::new(solid, &frame) {
+        for &point in points.iter().take(4) {
+            let _ = lazy.refine(&Zone::Point(point), frame.depth(), &SOME);
+            assert!(may_be(lazy.contains(point), plain.contains(point)), "{point:?}");
+        }
+    }
 }
 
 /// Small pictures of the surface, of a slice and of the voxels, from anywhere. Where a surface is seen, a ray meets it.

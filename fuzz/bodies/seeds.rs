@@ -1,14 +1,15 @@
 //! Small files of every kind, made by the library.
 
-use super::layout::{File, OBJECTS, PLANES, RECORD, Repairs, Section, put};
+use super::layout::{CUTS, File, OBJECTS, PLANES, RECORD, Repairs, Section, number, put};
 use super::{CONTROL, Random, joined};
 use leafless::attribute::{Channel, FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
 use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::DexelOptions;
 use leafless::solid::{FreeParts, OneByOne, Question, WholeQuestion};
 use leafless::{
-    Cell, Classifier, Control, Csg, Error, Frame, Metadata, Octree, Proof, Rule, Solid, Tag, Verdict, Worker,
-    build, dexelize, file,
+    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, FillRule, Frame, MeshSolid, Metadata, Octree,
+    Proof, Rule, Solid, SurfaceOptions, Tag, TriangleMesh, Verdict, Worker, build, build_extended, dexelize,
+    file,
 };
 
 /// A different tree for every seed, with coarse and fine cells of every tag.
@@ -140,6 +141,37 @@ fn trees_with_channels() -> Vec<Octree> {
     ]
 }
 
+/// Trees with cuts: surfaces of all kinds, placed and not, in one cell and in many.
+fn trees_with_cuts() -> Vec<Octree> {
+    let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, 3.0], [0.0, 0.0, 1.0, 16.0]]);
+    let turn = turn.expect("a good map");
+    let ball = Csg::ball([15.0, 16.0, 17.0], 12.0).expect("a ball");
+    let plane = Csg::half_space([1.0, 2.0, -0.5], 30.0).expect("a plane");
+    let bar = Csg::cuboid([3.5, 4.25, 5.0], [20.0, 11.0, 30.5]).expect("a box");
+    let bar = bar.placed(&turn).expect("a good map");
+    let ring = Csg::torus(7.0, 2.5).expect("a torus").placed(&turn).expect("a good map");
+    let corners = vec![[2.0, 3.0, 4.0], [28.0, 5.0, 6.0], [8.0, 27.0, 3.0], [12.0, 10.0, 29.0]];
+    let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+    let mesh = TriangleMesh::new(corners, triangles).expect("a mesh");
+    let mesh = Csg::solid(AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero).expect("a closed mesh")));
+    let make = |csg: &Csg, depth: u8, tolerance: Option<f64>| {
+        build_extended(csg, &frame(depth), &SurfaceOptions { tolerance }, &CONTROL).expect("no limits")
+    };
+    let of = |result: Result<Csg, Error>| result.expect("two figures");
+    vec![
+        make(&plane, 9, None),
+        make(&ball, 3, None),
+        make(&of(ball.difference(&bar)), 2, None).with_metadata(facts()),
+        make(&of(ball.difference(&bar)), 5, None),
+        make(&of(Csg::union_of([ring.clone(), bar])), 4, None),
+        make(&ring, 1, None),
+        make(&mesh, 3, Some(0.5)),
+        make(&of(mesh.difference(&ball)), 4, Some(2.0))
+            .with_channel(channel("heat", 2, ScalarType::F32, 1))
+            .expect("of this cube"),
+    ]
+}
+
 /// Small trees of every kind.
 pub fn trees() -> Vec<Octree> {
     let mut trees = vec![];
@@ -164,6 +196,7 @@ pub fn trees() -> Vec<Octree> {
         build(&small, &frame(20), certified, &CONTROL).expect("no limits"),
     ]);
     trees.extend(trees_with_channels());
+    trees.extend(trees_with_cuts());
     trees
 }
 
@@ -177,7 +210,7 @@ pub fn files() -> Vec<Vec<u8>> {
     };
     let more = [
         newer(6, &|file| {
-            put(&mut file.header, 10, 4, 2);
+            put(&mut file.header, 10, 5, 2);
             put(&mut file.header, 20, 1, 4);
             file.header[71] = 5;
             file.header[115] = 9;
@@ -251,6 +284,10 @@ pub fn pairs() -> Vec<Vec<u8>> {
 pub fn has_unknown_parts(bytes: &[u8]) -> bool {
     let mut file = File::parse(bytes).expect("a file");
     let objects = file.section(OBJECTS).map_or(0, |objects| objects.bytes.len() / RECORD);
-    let known = |section: &Section| (1..=10).contains(&section.kind()) && section.same().is_none();
+    let has_cuts = number(&file.header, 10, 2) >= 4;
+    let known = |section: &Section| {
+        let is_known = (1..=10).contains(&section.kind()) || has_cuts && CUTS.contains(&section.kind());
+        is_known && section.same().is_none()
+    };
     objects > 1 || !file.sections.iter().all(known)
 }

@@ -14,10 +14,35 @@ pub fn set_algebra(data: &[u8]) {
     let (first, second) = (Aligned::new(first), Aligned::new(second));
     let Ok(a) = file::view(first.bytes()) else { return };
     let sure = file::verify(first.bytes()).is_ok();
+    cuts_do_not_matter(&a);
+    // The laws are those of the cells.
+    let a = a.without_cuts();
     alone(&a, sure);
     match file::view(second.bytes()) {
-        Ok(b) => together(&a, &b, sure && file::verify(second.bytes()).is_ok()),
+        Ok(b) => {
+            cuts_do_not_matter(&b);
+            together(&a, &b.without_cuts(), sure && file::verify(second.bytes()).is_ok());
+        }
         Err(_) => together(&a, &a, sure),
+    }
+}
+
+/// Operations on stored trees see the cells alone.
+fn cuts_do_not_matter(tree: &OctreeRef<'_>) {
+    if tree.cuts().is_none() {
+        return;
+    }
+    let plain = tree.without_cuts();
+    type Operation = fn(&OctreeRef<'_>) -> Result<Octree, Error>;
+    let operations: [Operation; 3] =
+        [|a| complement(a, &CONTROL), |a| union(a, a, &CONTROL), |a| resolve(a, Rule::Outer, &CONTROL)];
+    for operation in operations {
+        match (operation(tree), operation(&plain)) {
+            (Ok(with), Ok(without)) => {
+                assert!(compact(&with.view().without_cuts()).is_ok_and(|with| with == without))
+            }
+            (with, without) => assert!(with.is_err() || without.is_ok(), "{:?}", without.err()),
+        }
     }
 }
 
@@ -26,7 +51,7 @@ pub fn threads(bytes: &[u8]) {
     let aligned = Aligned::new(bytes);
     let Ok(tree) = file::view(aligned.bytes()) else { return };
     let several = Control { threads: 3, ..CONTROL };
-    let solid = tree;
+    let solid = tree.without_cuts();
     let built = [CONTROL, several].map(|control| build(&solid, tree.frame(), Rule::Certified, &control));
     match built {
         [Ok(one), Ok(several)] => assert!(one == several),

@@ -3,12 +3,14 @@
 #![cfg(all(feature = "mmap", target_endian = "little"))]
 
 use crate::bodies;
-use crate::bodies::layout::{BASE, BRICKS, File, LEVELS, PLANES, REL, Repairs, Section, put};
+use crate::bodies::layout::{
+    BASE, BRICKS, CUTS, File, LEVELS, NUMBERS, PLACEMENTS, PLANES, REL, Repairs, SURFACES, Section, put,
+};
 use crate::bodies::{Aligned, Random, joined, read_in_all_ways, seeds, walk};
 use crate::common::on_all_processors;
 use leafless::error::{Damage, FormatError};
 use leafless::octree::Cursor;
-use leafless::{Error, file};
+use leafless::{Error, Solid, file};
 use std::path::Path;
 
 // ---- inputs ---------------------------------------------------------------------------------------------
@@ -64,7 +66,8 @@ fn small_files() -> Vec<Vec<u8>> {
         file.sections.iter().any(|section| section.kind() == kind)
     };
     // Without an element, with raw bricks, with elements, with a dictionary, with metadata, with a section
-    // that nobody knows, with one of an application, with other objects, of a later version, with channels.
+    // that nobody knows, with one of an application, with other objects, of a later version, with channels, with
+    // cuts of one cell and with splits.
     let mut chosen = vec![files[0].clone()];
     for kind in [BRICKS, PLANES, bodies::layout::ENTRIES, bodies::layout::METADATA, 17, 1 << 31] {
         chosen.extend(files.iter().find(|bytes| has(bytes, kind)).cloned());
@@ -72,9 +75,14 @@ fn small_files() -> Vec<Vec<u8>> {
     let shares =
         |bytes: &[u8]| File::parse(bytes).unwrap().sections.iter().any(|section| section.same().is_some());
     chosen.extend(files.iter().find(|bytes| shares(bytes)).cloned());
-    chosen.extend(files.iter().find(|bytes| bytes[10] > 3).cloned());
+    chosen.extend(files.iter().find(|bytes| bytes[10] > 4).cloned());
     chosen.extend(files.iter().find(|bytes| bytes[10] == 2).cloned());
-    assert_eq!(chosen.len(), 10);
+    let cuts = |bytes: &[u8]| file::from_bytes(bytes).unwrap().view().cuts();
+    for splits in [0..1, 1..u64::MAX] {
+        let is_it = |bytes: &&Vec<u8>| cuts(bytes).is_some_and(|cuts| splits.contains(&cuts.splits));
+        chosen.extend(files.iter().find(is_it).cloned());
+    }
+    assert_eq!(chosen.len(), 12);
     chosen
 }
 
@@ -227,7 +235,7 @@ fn every_byte_and_the_first_bits_flipped() {
                 if good {
                     verified += 1;
                     let written = file::to_bytes(&file::from_bytes(&sealed).unwrap()).unwrap();
-                    let later = sealed[10..12] != [1, 0] || seeds::has_unknown_parts(&sealed);
+                    let later = sealed[10..12] != written[10..12] || seeds::has_unknown_parts(&sealed);
                     assert!(later || written == sealed || sealed == *bytes, "byte {at} ^ {flip:#x}");
                 }
             }
@@ -344,7 +352,7 @@ fn of_a_sound_tree_a_cursor_sees_all_in_any_order() {
 /// Parts of one tree, which a caller may mistake for those of another.
 #[test]
 fn parts_of_another_tree_lead_nowhere() {
-    use leafless::{Cell, Classifier, Solid, Verdict, Worker};
+    use leafless::{Cell, Classifier, Verdict, Worker};
     let trees = seeds::trees();
     let on_frames = trees.iter().map(|tree| tree.view().on(tree.frame(), &bodies::CONTROL).unwrap());
     let mut workers: Vec<_> = on_frames.map(|classifier| classifier.worker().unwrap()).collect();
@@ -368,8 +376,9 @@ fn parts_of_another_tree_lead_nowhere() {
             assert_eq!(planes.branch(), 0);
             nowhere += children.iter().all(|child| matches!(child, Verdict::Undecided)) as usize;
         }
-        // A tree without elements has no place where a part could lie.
-        assert!(tree.view().element_count() + tree.view().brick_count() > 0 || nowhere == parts.len());
+        // A tree without elements and cuts has no place where a part could lie.
+        let has_places = tree.view().element_count() + tree.view().brick_count() > 0;
+        assert!(has_places || tree.view().cuts().is_some() || nowhere == parts.len());
     }
 }
 
@@ -517,4 +526,75 @@ fn other_kinds_of_files_are_refused_at_once() {
     }
     let magic = |bytes: &[u8]| matches!(file::probe_bytes(bytes), Err(Error::Format(FormatError::Magic)));
     assert!(magic(b"solid x") && magic(&[0; 4096]) && !magic(b"\x89LFL"));
+}
+
+// ---- cuts -----------------------------------------------------------------------------------------------
+
+/// The file of a PARTIAL universe whose cut is the side of a plane.
+fn a_plane() -> File {
+    let is_it = |bytes: &&Vec<u8>| bytes[65] == 2 && bytes[10] == 4;
+    File::parse(seeds::files().iter().find(is_it).unwrap()).unwrap()
+}
+
+/// Surfaces that are moved by long chains of maps would cost work and memory for each pair of the two.
+#[test]
+fn long_chains_of_maps_are_refused() {
+    for (maps, is_good) in [(1u64, true), (64, true), (65, false), (20_000, false)] {
+        let mut file = a_plane();
+        let rows = [[1.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0f64]];
+        let map = |outer: u64| rows.as_flattened().iter().map(|c| c.to_bits()).chain([outer]);
+        let bytes = (0..maps).flat_map(map).flat_map(u64::to_le_bytes).collect();
+        let at = file.sections.iter().position(|section| section.is(NUMBERS)).unwrap() + 1;
+        file.insert(at, Section::new(PLACEMENTS, bytes));
+        put(&mut file.section(SURFACES).unwrap().bytes, 12, maps, 4);
+        let bytes = file.assemble(&Repairs::FRAME);
+        assert_eq!(read_in_all_ways(&bytes, true), is_good, "{maps} maps");
+        let aligned = Aligned::new(&bytes);
+        let solid = file::view(aligned.bytes()).unwrap();
+        assert_eq!(solid.on(solid.frame(), &bodies::CONTROL).is_ok(), is_good);
+        exercise(&bytes);
+    }
+}
+
+/// Found by changing bytes: a mapped tree was another one than its clone if a number of a surface was none.
+#[test]
+fn numbers_that_are_none_do_not_make_a_tree_unlike_itself() {
+    for bits in [f64::NAN.to_bits(), f64::INFINITY.to_bits(), (-0.0f64).to_bits(), 1] {
+        let mut file = a_plane();
+        put(&mut file.section(NUMBERS).unwrap().bytes, 0, bits, 8);
+        let bytes = file.assemble(&Repairs::FRAME);
+        read_in_all_ways(&bytes, true);
+        exercise(&bytes);
+    }
+}
+
+/// Every head, every count and every id of the cuts of small files, with right checksums.
+#[test]
+fn every_byte_of_cuts() {
+    let with_cuts = |bytes: &Vec<u8>| bytes[10] == 4 && bytes.len() < 2500;
+    let files: Vec<_> = seeds::files().into_iter().filter(with_cuts).collect();
+    assert!(files.len() > 3);
+    let counts = on_all_processors(&files, |bytes| {
+        let file = File::parse(bytes).unwrap();
+        let (mut good, mut all) = (0, 0);
+        for kind in CUTS {
+            let length = file.clone().section(kind).map_or(0, |section| section.bytes.len());
+            for at in 0..length.min(160) {
+                for value in [0, 1, 2, 3, 0x7F, 0x80, 0xAA, 0xF0, 0xFF] {
+                    let mut file = file.clone();
+                    file.section(kind).unwrap().bytes[at] = value;
+                    let bytes = file.assemble(&Repairs::FRAME);
+                    good += u32::from(read_in_all_ways(&bytes, false));
+                    all += 1;
+                    if (at + usize::from(value)) % 7 == 0 {
+                        bodies::queries(&joined(&bytes, &bytes[bytes.len() / 2..][..90]));
+                    }
+                }
+            }
+        }
+        (good, all)
+    });
+    let (good, all) = counts.into_iter().fold((0, 0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+    println!("{good} of {all} are good");
+    assert!(good > 100 && all - good > 1000, "{good} of {all}");
 }
