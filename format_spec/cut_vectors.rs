@@ -319,7 +319,7 @@ impl Model {
         let mut elements = VecDeque::new();
         match self.canonical(Cell::ROOT) {
             Tag::Partial => cells.push(Cell::ROOT),
-            Tag::Branch if self.frame.depth() % 2 == 0 => elements.push_back(Some(Cell::ROOT)),
+            Tag::Branch if self.frame.depth().is_multiple_of(2) => elements.push_back(Some(Cell::ROOT)),
             Tag::Branch => elements.push_back(None),
             _ => {}
         }

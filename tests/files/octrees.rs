@@ -813,13 +813,13 @@ fn what_later_versions_may_add_is_skipped() {
     let bytes = file::to_bytes(&tree).unwrap();
     // A newer minor version with a flag and a field of its own.
     let newer = changed(&bytes, false, |bytes| {
-        put(bytes, 10, 4, 2);
+        put(bytes, 10, 5, 2);
         put(bytes, 20, 8, 4);
         bytes[71] = 7;
         bytes[115] = 7;
     });
     assert_eq!(file::from_bytes(&newer).unwrap(), tree);
-    assert_eq!(file::probe_bytes(&newer).unwrap().version, (0, 4));
+    assert_eq!(file::probe_bytes(&newer).unwrap().version, (0, 5));
     // A section of an unknown kind behind all others; its entry takes the place of padding.
     let sections = file::probe_bytes(&bytes).unwrap().sections;
     let table_end = 128 + ENTRY * sections.len();
