@@ -103,14 +103,15 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
         assert!(found != Region::Inside || region != Region::Outside);
     }
     let measured = measure(&solid, &frame, 0.0, &SOME).expect("it is a solid").volume;
-    let upper = frame.origin().map(|c| c + frame.edge());
-    let cells = plain.volume_in_box(frame.origin(), upper).expect("the universe");
+    // (Far from the origin of space the universe may have no width in doubles.)
+    let (least, most) = plain.cells_in_box([0; 3], [frame.cells(); 3]).expect("the universe");
+    let cell = (frame.edge() / f64::from(frame.cells())).powi(3);
     let slack = 1e-9 * frame.edge().powi(3);
     assert!(measured.lower <= measured.upper, "{measured:?}");
     if verified {
         assert!(
-            measured.lower <= cells.upper + slack && measured.upper >= cells.lower - slack,
-            "{measured:?}, {cells:?}"
+            measured.lower <= most as f64 * cell + slack && measured.upper >= least as f64 * cell - slack,
+            "{measured:?}, {least} to {most} cells"
         );
     }
     let area = surface_area(&solid, &frame, 0.0, &SOME).expect("it is a solid").area;
