@@ -4,7 +4,7 @@
 //! cargo run --release --example extended_sizes
 //! ```
 //!
-//! Bytes are those of the planes as a file and of the cuts in memory; the width is that of the volume's interval, of extended trees
+//! Bytes are those of the file; the width is that of the volume's interval, of extended trees
 //! after 4096, 2^16 and 2^20 splits. (2026-11-25, one thread on a busy machine.)
 //!
 //! | part | tree | nodes | cuts | bytes | build | width |
@@ -56,14 +56,14 @@ fn sponge() -> Result<Csg, Error> {
 
 fn row(name: &str, what: &str, tree: &Octree, seconds: f64, volume: Interval) -> Result<(), Error> {
     let cells = tree.view().cuts();
-    let planes = file::to_bytes(&tree.without_cuts())?.len() as u64;
+    let bytes = file::to_bytes(tree)?.len();
     println!(
         "{name:<8} {what:<12} {:>9} {:>7} {:>8} {:>9} {:>11} {:>9.1} {:>10.1e}",
         tree.statistics().nodes(),
         cells.map_or(0, |cuts| cuts.cells),
         cells.map_or(0, |cuts| cuts.given_up),
         cells.map_or(0, |cuts| cuts.surfaces),
-        planes + cells.map_or(0, |cuts| cuts.bytes),
+        bytes,
         seconds * 1e3,
         volume.width() / (0.5 * (volume.lower + volume.upper)),
     );

@@ -443,7 +443,9 @@ fn octrees_of_scenes_keep_their_surfaces() {
     place.write("both.csg", format!("union() {{ {part} import(file = \"cube.stl\"); }}"));
     let both = place.run("csg both.csg -o both.lfl --surfaces=1e-3 --json").good().json();
     assert!(both["cuts"]["surfaces"]["slabs"].as_u64().unwrap() > 0, "{both}");
-    assert!((both["surfaces"].as_f64().unwrap() - 0.0331).abs() < 1e-7 && both["depth"].as_u64().unwrap() < 14);
+    assert!(
+        (both["surfaces"].as_f64().unwrap() - 0.0331).abs() < 1e-7 && both["depth"].as_u64().unwrap() < 14
+    );
 }
 
 #[test]

@@ -15,11 +15,13 @@ pub(crate) struct Figure<'a> {
     is_placed: bool,
 }
 
-/// Points on a line, in the space of a figure: `at` + t · `direction`.
+/// A surface along a line from `at` to `at` + `direction`.
 #[derive(Clone, Copy)]
-pub(crate) struct FigureLine {
-    at: [Ball; 3],
-    direction: [Ball; 3],
+pub(crate) enum FigureLine<'a> {
+    /// Of a polynomial of degree two: the coefficients of 1, t and t², in which all that is rounded is bounded.
+    Polynomial { figure: Figure<'a>, coefficients: [Ball; 3] },
+    /// Of another function: the line in the space of the figure.
+    Other { figure: Figure<'a>, at: [Ball; 3], direction: [Ball; 3] },
 }
 
 #[inline(always)]
@@ -111,26 +113,22 @@ impl<'a> Figure<'a> {
         self.of_value(value.widened(bounded(first + self.second(reach))))
     }
 
-    /// The same line in the figure's space.
-    pub(crate) fn line(&self, at: [Ball; 3], direction: [Ball; 3]) -> FigureLine {
+    /// The surface along the line from `at` to `at` + `direction` (model units).
+    pub(crate) fn line(self, at: [Ball; 3], direction: [Ball; 3]) -> FigureLine<'a> {
         let (at, direction) = self.pulled(at, direction, false);
-        FigureLine { at, direction }
-    }
-
-    /// The side of all points of a line from t = `low` to `high`; `None` if it is not known, or not one.
-    #[inline]
-    pub(crate) fn side_along(&self, line: &FigureLine, low: f64, high: f64) -> Option<bool> {
-        let middle = 0.5 * low + 0.5 * high;
-        let half = (high - middle).max(middle - low) * (1.0 + f64::EPSILON);
-        let t = Ball::exactly(middle);
-        let at = axes(|axis| line.at[axis].plus(line.direction[axis].times(t)));
         let Some((value, gradient)) = self.polynomial(at) else {
-            let reach = |axis: usize| bounded(line.direction[axis].magnitude() * half);
-            return self.natural(axes(|axis| at[axis].widened(reach(axis)))).is_positive();
+            return FigureLine::Other { figure: self, at, direction };
         };
-        let slope = dot(gradient, line.direction).magnitude();
-        let bend = self.second(line.direction.map(Ball::magnitude));
-        self.of_value(value.widened(bounded(slope * half + bend * half * half)))
+        let bend = if self.kind == SurfaceKind::Quadric {
+            let [a, b, c, d, e, f, ..] = self.numbers;
+            let [x, y, z] = direction;
+            let along =
+                [a.times(x).plus(d.times(y)), b.times(y).plus(e.times(z)), c.times(z).plus(f.times(x))];
+            dot(direction, along)
+        } else {
+            Ball::ZERO
+        };
+        FigureLine::Polynomial { figure: self, coefficients: [value, dot(gradient, direction), bend] }
     }
 
     /// Value and gradient of a polynomial of degree two; of a slab those of its linear form.
@@ -229,6 +227,37 @@ impl<'a> Figure<'a> {
             gradient = axes(|j| (0..3).map(|i| adjugate[i][j].value * gradient[i] * scale.value).sum());
         }
         gradient
+    }
+}
+
+impl FigureLine<'_> {
+    /// The surface.
+    pub(crate) fn figure(&self) -> &Figure<'_> {
+        match self {
+            FigureLine::Polynomial { figure, .. } | FigureLine::Other { figure, .. } => figure,
+        }
+    }
+
+    /// The side of all points from t = `low` to `high`; `None` if it is not known, or not one.
+    #[inline]
+    pub(crate) fn side(&self, low: f64, high: f64) -> Option<bool> {
+        let middle = 0.5 * low + 0.5 * high;
+        let half = (high - middle).max(middle - low) * (1.0 + f64::EPSILON);
+        let t = Ball::exactly(middle);
+        match self {
+            FigureLine::Polynomial { figure, coefficients: [c, b, a] } => {
+                let bent = a.times(t);
+                let rise = b.plus(bent);
+                let value = c.plus(rise.times(t));
+                let slope = rise.plus(bent).magnitude();
+                figure.of_value(value.widened(bounded(slope * half + a.magnitude() * half * half)))
+            }
+            FigureLine::Other { figure, at, direction } => {
+                let reach = |axis: usize| bounded(direction[axis].magnitude() * half);
+                let point = |axis: usize| at[axis].plus(direction[axis].times(t)).widened(reach(axis));
+                figure.natural(axes(point)).is_positive()
+            }
+        }
     }
 }
 

@@ -4,13 +4,15 @@ use super::line::Line;
 use crate::lattice::{Ball, axes};
 use crate::octree::cuts::{CellIds, Figure, FigureLine, Head, SurfacesRef};
 
-/// The table of a cell, and its surfaces along a ray.
+/// The table of a cell, and its surfaces along a ray between two times.
 pub(super) struct CutLine<'a> {
-    surfaces: [Option<(Figure<'a>, FigureLine)>; 3],
+    surfaces: [Option<FigureLine<'a>>; 3],
     table: u8,
+    low: f64,
+    high: f64,
 }
 
-/// A piece of a ray.
+/// A piece of a ray, from one part of its stay in the cell to another, 0 to 1.
 #[derive(Clone, Copy)]
 pub(super) struct Piece {
     pub low: f64,
@@ -31,46 +33,51 @@ const FINEST: f64 = 1.0 / (1u64 << 36) as f64;
 const MOST_WAITING: usize = 48;
 
 impl<'a> CutLine<'a> {
-    pub(super) fn new(surfaces: &SurfacesRef<'a>, ids: &CellIds, table: u8, line: &Line<'_>) -> CutLine<'a> {
-        let from = line.ray.from.map(Ball::exactly);
+    pub(super) fn new(
+        surfaces: &SurfacesRef<'a>,
+        ids: &CellIds,
+        table: u8,
+        line: &Line<'_>,
+        [low, high]: [f64; 2],
+    ) -> CutLine<'a> {
         let direction = line.ray.direction.map(|[high, low]| Ball::exactly(high).plus(Ball::exactly(low)));
+        // In the cell, time is counted from 0 to 1, so that what is far away takes no digits.
+        let (begin, stay) = (Ball::exactly(low), Ball::exactly(high).minus(Ball::exactly(low)));
+        let at = axes(|axis| Ball::exactly(line.ray.from[axis]).plus(direction[axis].times(begin)));
+        let direction = direction.map(|c| c.times(stay));
         let mut own = [None; 3];
-        for (to, &id) in own.iter_mut().zip(ids.iter()) {
-            *to = Figure::new(surfaces, id).map(|figure| (figure, figure.line(from, direction)));
+        // (A ray that does not end in a cell has no length there that could be told.)
+        for (to, &id) in own.iter_mut().zip(ids.iter()).filter(|_| (high - low).is_finite()) {
+            *to = Figure::new(surfaces, id).map(|figure| figure.line(at, direction));
         }
-        CutLine { surfaces: own, table }
+        CutLine { surfaces: own, table, low, high }
     }
 
-    /// Shows the pieces of the ray between two times in their order, until `visit` has seen enough.
-    pub(super) fn walk(&self, low: f64, high: f64, mut visit: impl FnMut(Piece) -> bool) {
-        let finest = (high - low) * FINEST;
+    /// Shows the pieces of the ray in their order, until `visit` has seen enough.
+    pub(super) fn walk(&self, mut visit: impl FnMut(Piece) -> bool) {
         let mut waiting = [(0.0, 0.0, 0u8); MOST_WAITING];
-        waiting[0] = (low, high, self.table);
+        waiting[0] = (0.0, 1.0, self.table);
         let (mut count, mut left) = (1, MOST_PIECES);
         while count > 0 {
             count -= 1;
             let (low, high, mut table) = waiting[count];
             left = left.saturating_sub(1);
             let mut surface = None;
-            for (i, own) in self.surfaces.iter().enumerate() {
+            for (i, line) in self.surfaces.iter().enumerate() {
                 if !Head::needs(table, i) {
                     continue;
                 }
-                match own.as_ref().and_then(|(figure, line)| figure.side_along(line, low, high)) {
+                match line.as_ref().and_then(|line| line.side(low, high)) {
                     Some(side) => table = Head::on_side(table, i, side),
                     None => surface = surface.or(Some(i as u8)),
                 }
             }
-            let middle = 0.5 * low + 0.5 * high;
             let is_inside = match Head(table) {
                 Head::NOWHERE => Some(false),
                 Head::EVERYWHERE => Some(true),
-                _ if left > 0
-                    && high - low > finest
-                    && low < middle
-                    && middle < high
-                    && count + 2 <= MOST_WAITING =>
-                {
+                _ if left > 0 && high - low > FINEST && count + 2 <= MOST_WAITING => {
+                    // (Halves of halves of 1 are exact.)
+                    let middle = 0.5 * (low + high);
                     waiting[count] = (middle, high, table);
                     waiting[count + 1] = (low, middle, table);
                     count += 2;
@@ -84,9 +91,30 @@ impl<'a> CutLine<'a> {
         }
     }
 
+    /// The times of a piece, rounded outward. The ends of the stay are met exactly.
+    pub(super) fn around(&self, low: f64, high: f64) -> [f64; 2] {
+        [self.time(low, false), self.time(high, true)]
+    }
+
+    /// The same rounded inward.
+    pub(super) fn within(&self, low: f64, high: f64) -> [f64; 2] {
+        [self.time(low, true), self.time(high, false)]
+    }
+
+    fn time(&self, part: f64, is_upper: bool) -> f64 {
+        let time = self.low + part * (self.high - self.low);
+        let slack = 4.0 * f64::EPSILON * (self.low.abs() + self.high.abs());
+        match part {
+            0.0 => self.low,
+            1.0 => self.high,
+            _ if is_upper => time + slack,
+            _ => time - slack,
+        }
+    }
+
     /// The outward normal, against the ray, of a surface where the ray is at a time.
     pub(super) fn normal(&self, line: &Line<'_>, surface: u8, t: f64) -> Option<[f64; 3]> {
-        let (figure, _) = self.surfaces[usize::from(surface)].as_ref()?;
+        let figure = self.surfaces[usize::from(surface)].as_ref()?.figure();
         let point = axes(|axis| line.ray.from[axis] + t * line.ray.direction[axis][0]);
         let gradient = figure.gradient(point);
         let along: f64 = (0..3).map(|axis| gradient[axis] * line.ray.direction[axis][0]).sum();

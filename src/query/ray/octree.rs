@@ -252,10 +252,10 @@ impl Cells for Stored<'_, '_> {
         Ok(None)
     }
 
-    fn table(&self, part: &Described, line: &Line<'_>) -> Option<CutLine<'_>> {
+    fn table(&self, part: &Described, line: &Line<'_>, times: [f64; 2]) -> Option<CutLine<'_>> {
         let (Described::Record(record), Some(cuts)) = (*part, &self.0.cuts) else { return None };
         let CellCut::Table { ids, table } = cuts.at(record) else { return None };
-        Some(CutLine::new(&cuts.surfaces, &ids, table, line))
+        Some(CutLine::new(&cuts.surfaces, &ids, table, line, times))
     }
 
     fn mark(&self) -> usize {

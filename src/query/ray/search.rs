@@ -1,6 +1,6 @@
 //! The cells along a ray, front to back.
 
-use super::cut::{CutLine, Piece};
+use super::cut::CutLine;
 use super::line::{Line, Moment, Passage};
 use super::{Obstacle, RayHit, RaySpans};
 use crate::error::Error;
@@ -24,8 +24,8 @@ pub(super) trait Cells {
     /// As [`Ask::enclosure`](crate::solid::Ask::enclosure).
     fn enclosure(&mut self, cell: Cell, part: &Self::Part) -> Result<Option<Enclosure>, Error>;
 
-    /// The table of surfaces that a cell keeps, along a ray.
-    fn table(&self, _: &Self::Part, _: &Line<'_>) -> Option<CutLine<'_>> {
+    /// The table of surfaces that a cell keeps, along a ray between two times.
+    fn table(&self, _: &Self::Part, _: &Line<'_>, _: [f64; 2]) -> Option<CutLine<'_>> {
         None
     }
 
@@ -88,7 +88,8 @@ fn walk<C: Cells>(
             Ok(())
         }
         None => {
-            if let Some(table) = cells.table(&part, line) {
+            let times = [passage.entry.t.lower, passage.exit.t.upper];
+            if let Some(table) = cells.table(&part, line, times) {
                 return visitor.meet(line, cell, &passage, Known::Table(table));
             }
             let enclosure = cells.enclosure(cell, &part)?;
@@ -188,19 +189,23 @@ impl Visitor for First {
             Known::Table(table) => {
                 // The normal is that of the surface by which the ray enters what may be solid.
                 let mut normal = None;
-                table.walk(entry.lower, passage.exit.t.upper, |piece| {
+                table.walk(|piece| {
                     if piece.is_inside == Some(false) {
                         normal = None;
                         return true;
                     }
+                    let [from, _] = table.around(piece.low, piece.high);
                     let own = *normal.get_or_insert_with(|| {
-                        let crossed = piece.surface.filter(|_| piece.low > entry.lower);
-                        crossed.and_then(|surface| table.normal(line, surface, piece.low)).map_or(face, unit)
+                        let crossed = piece.surface.filter(|_| piece.low > 0.0);
+                        crossed.and_then(|surface| table.normal(line, surface, from)).map_or(face, unit)
                     });
-                    keep(&mut self.outer, piece.low, cell, own);
-                    let Some(stay) = piece.certain(passage) else { return true };
-                    keep(&mut self.inner, stay.entry.t.upper, cell, own);
-                    false
+                    keep(&mut self.outer, from, cell, own);
+                    let [from, to] = table.within(piece.low, piece.high);
+                    let stay = piece.is_inside.and_then(|_| certain_stay(passage, from, to));
+                    if let Some(stay) = stay {
+                        keep(&mut self.inner, stay.entry.t.upper, cell, own);
+                    }
+                    stay.is_none()
                 });
             }
         }
@@ -283,15 +288,17 @@ fn certain_stay(passage: &Passage, from: f64, to: f64) -> Option<Passage> {
     (stay.entry.t.upper < stay.exit.t.lower).then_some(stay)
 }
 
-impl Piece {
-    /// When the ray may be in the solid.
-    fn possible(&self, passage: &Passage) -> Passage {
-        possible_stay(passage, self.low, self.high)
-    }
+/// Parts of a ray's stay in a cell, ascending, of which no two meet.
+#[derive(Default)]
+struct Spans(Vec<(f64, f64)>);
 
-    /// When the ray is in the solid.
-    fn certain(&self, passage: &Passage) -> Option<Passage> {
-        self.is_inside.filter(|&inside| inside).and_then(|_| certain_stay(passage, self.low, self.high))
+impl Spans {
+    fn add(&mut self, low: f64, high: f64) -> Result<(), Error> {
+        match self.0.last_mut() {
+            Some((_, end)) if *end == low => *end = high,
+            _ => memory::push(&mut self.0, (low, high))?,
+        }
+        Ok(())
     }
 }
 
@@ -396,18 +403,31 @@ impl Visitor for Stays {
                 possible.iter().flatten().try_for_each(|(stay, _)| add(line, &mut self.outer, stay))
             }
             Known::Table(table) => {
+                // Pieces that follow each other are one.
+                let (mut inner, mut outer) = (Spans::default(), Spans::default());
                 let mut added = Ok(());
-                table.walk(passage.entry.t.lower, passage.exit.t.upper, |piece| {
-                    if piece.is_inside == Some(false) {
-                        return true;
-                    }
-                    added = add(line, &mut self.outer, &piece.possible(passage));
-                    if let (Ok(()), Some(stay)) = (&added, piece.certain(passage)) {
-                        added = add(line, &mut self.inner, &stay);
-                    }
+                table.walk(|piece| {
+                    added = [
+                        (piece.is_inside != Some(false), &mut outer),
+                        (piece.is_inside == Some(true), &mut inner),
+                    ]
+                    .into_iter()
+                    .filter(|(is_of, _)| *is_of)
+                    .try_for_each(|(_, spans)| spans.add(piece.low, piece.high));
                     added.is_ok()
                 });
-                added
+                added?;
+                for (low, high) in outer.0 {
+                    let [from, to] = table.around(low, high);
+                    add(line, &mut self.outer, &possible_stay(passage, from, to))?;
+                }
+                for (low, high) in inner.0 {
+                    let [from, to] = table.within(low, high);
+                    if let Some(stay) = certain_stay(passage, from, to) {
+                        add(line, &mut self.inner, &stay)?;
+                    }
+                }
+                Ok(())
             }
         }
     }
