@@ -52,7 +52,7 @@ enum Known<'a> {
     /// PARTIAL, perhaps with slabs.
     Partial(Option<Enclosure>),
     /// PARTIAL, with surfaces.
-    Table(CutLine<'a>),
+    Table(&'a CutLine<'a>),
 }
 
 /// Shows all cells along a ray to a visitor, roughly front to back. The recursion is as deep as the frame.
@@ -90,7 +90,7 @@ fn walk<C: Cells>(
         None => {
             let times = [passage.entry.t.lower, passage.exit.t.upper];
             if let Some(table) = cells.table(&part, line, times) {
-                return visitor.meet(line, cell, &passage, Known::Table(table));
+                return visitor.meet(line, cell, &passage, Known::Table(&table));
             }
             let enclosure = cells.enclosure(cell, &part)?;
             visitor.meet(line, cell, &passage, Known::Partial(enclosure))
