@@ -1,15 +1,40 @@
-//! Point queries from Rust: what `c_tests/boundary.c`, with the same ball and points, is held against for what the C
-//! interface costs.
+//! Queries from Rust: what `c_tests/boundary.c` and `boundary.cpp`, with the same ball and points, are held against for
+//! what the interfaces for C and C++ cost. Like them it prints medians of processor time.
 //!
 //! ```text
 //! cargo bench --bench boundary
 //! ```
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use leafless::query::PointCursor;
-use leafless::{Control, Csg, Frame, Membership, Rule, build};
+use leafless::query::{DistanceTo, Obstacle, PointCursor};
+use leafless::{Control, Csg, Frame, Interval, Membership, Ray, Rule, build};
+use rustix::time::{ClockId, clock_gettime};
 
 const POINTS: usize = 1_000_000;
+const RAYS: usize = POINTS / 10;
+const FAR: usize = POINTS / 100;
+const ROUNDS: usize = 11;
+
+fn now() -> f64 {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    time.tv_sec as f64 * 1e9 + time.tv_nsec as f64
+}
+
+/// Prints the median time of `work` for each of `count` questions. `work` returns what every round must return.
+fn timed<R: PartialEq>(name: &str, count: usize, mut work: impl FnMut() -> R) -> R {
+    let mut times = [0.0; ROUNDS];
+    let mut results = times.each_mut().map(|time| {
+        let start = now();
+        let found = std::hint::black_box(work());
+        *time = now() - start;
+        found
+    });
+    assert!(results.iter().all(|found| *found == results[0]), "{name}");
+    times.sort_unstable_by(f64::total_cmp);
+    println!("{name:<22} {:9.2} ns", times[ROUNDS / 2] / count as f64);
+    results.swap(0, ROUNDS - 1);
+    let [.., first] = results;
+    first
+}
 
 /// Uniform random points in [-1, 1]³, the same as in `c_tests/boundary.c`.
 fn points() -> Vec<[f64; 3]> {
@@ -21,38 +46,50 @@ fn points() -> Vec<[f64; 3]> {
     (0..POINTS).map(|_| [next(), next(), next()]).collect()
 }
 
-/// Lines of 1000 points through the universe.
-fn lines(points: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let on_line = |(i, _)| {
-        let [y, z, _] = points[i / 1000 * 1000];
-        [((i % 1000) as f64 + 0.5) / 500.0 - 1.0, y, z]
-    };
-    points.iter().enumerate().map(on_line).collect()
-}
-
-fn boundary(criterion: &mut Criterion) {
+fn main() {
     let points = points();
-    let lines = lines(&points);
     let frame = Frame::new([-1.0; 3], 2.0, 10).expect("a frame");
     let ball = Csg::ball([0.0; 3], 0.75).expect("a ball");
-    let rust = build(&ball, &frame, Rule::Certified, &Control::default()).expect("an octree");
+    let ball = build(&ball, &frame, Rule::Certified, &Control::default()).expect("an octree");
+    let ball = ball.view();
+
+    timed("points one by one", POINTS, || {
+        points.iter().filter(|&&point| ball.contains(point) == Membership::Inside).count()
+    });
     let mut memberships = vec![Membership::Undecided; POINTS];
+    timed("points batch", POINTS, || {
+        ball.contains_many(&points, &mut memberships).expect("as long as the points");
+    });
+    let mut cursor = PointCursor::new(ball);
+    timed("points on lines", POINTS, || {
+        let on_line = |i: usize| {
+            let [y, z, _] = points[i / 1000 * 1000];
+            [((i % 1000) as f64 + 0.5) / 500.0 - 1.0, y, z]
+        };
+        (0..POINTS).filter(|&i| cursor.contains(on_line(i)) == Membership::Inside).count()
+    });
 
-    let mut group = criterion.benchmark_group("boundary");
-    group.throughput(Throughput::Elements(POINTS as u64)).sample_size(20);
-    let inside = Membership::Inside as u8;
-    group.bench_function("one by one", |bencher| {
-        bencher.iter(|| points.iter().filter(|&&point| rust.contains(point) as u8 == inside).count());
+    // Rays from each point to the next.
+    let ends = points[1..RAYS].iter().chain(&points[..1]);
+    let ray = |(from, to): (&[f64; 3], &[f64; 3])| {
+        Ray::new(*from, [0, 1, 2].map(|axis| to[axis] - from[axis])).expect("a ray")
+    };
+    let rays: Vec<Ray> = points.iter().zip(ends).map(ray).collect();
+    timed("rays one by one", RAYS, || {
+        rays.iter().filter(|ray| ball.cast_ray(ray, Obstacle::Upper).is_some()).count()
     });
-    group.bench_function("batch", |bencher| {
-        bencher.iter(|| rust.contains_many(&points, &mut memberships).expect("as long as the points"));
+    let mut hits = vec![None; RAYS];
+    timed("rays batch", RAYS, || {
+        ball.cast_rays(&rays, Obstacle::Upper, &mut hits).expect("as long as the rays");
     });
-    group.bench_function("lines", |bencher| {
-        let mut cursor = PointCursor::new(rust.view());
-        bencher.iter(|| lines.iter().filter(|&&point| cursor.contains(point) as u8 == inside).count());
+
+    let far = &points[..FAR];
+    timed("distances one by one", FAR, || {
+        let distance = |&point| ball.distance(point, DistanceTo::Boundary).expect("an answer").lower;
+        far.iter().map(distance).sum::<f64>()
     });
-    group.finish();
+    let (mut distances, control) = (vec![Interval::ALL; FAR], Control::threads(1));
+    timed("distances batch", FAR, || {
+        ball.distances(far, DistanceTo::Boundary, &mut distances, &control).expect("as long as the points");
+    });
 }
-
-criterion_group!(benches, boundary);
-criterion_main!(benches);
