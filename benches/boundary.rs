@@ -11,7 +11,7 @@ use rustix::time::{ClockId, clock_gettime};
 
 const POINTS: usize = 1_000_000;
 const RAYS: usize = POINTS / 10;
-const FAR: usize = POINTS / 100;
+const FAR: usize = POINTS / 1000;
 const ROUNDS: usize = 11;
 
 fn now() -> f64 {

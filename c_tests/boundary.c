@@ -133,7 +133,7 @@ int main(int argc, char **argv) {
     report("points one by one", times[0], count);
     report("points batch", times[1], count);
     report("points on lines", times[2], count);
-    rays_and_distances(ball, points, count / 10, count / 100);
+    rays_and_distances(ball, points, count / 10, count / 1000);
     fprintf(stderr, "%lu and %lu of %lu points inside\n", (unsigned long)inside[0], (unsigned long)inside[2],
             (unsigned long)count);
     leafless_point_cursor_free(cursor);

@@ -151,10 +151,10 @@ static void attributes(void) {
     leafless_value_range range;
     double found[15], also[15], expected[3];
     static double crowd[3 * 1000], numbers[3 * 1000];
-    uint32_t components = 0;
+    leafless_attribute_info info = LEAFLESS_INIT(leafless_attribute_info);
     int i, k;
-    OK(leafless_attribute_components(one, &components));
-    CHECK(components == 3);
+    OK(leafless_attribute_describe(one, &info));
+    CHECK(info.components == 3 && info.bytes == 0);
     OK(leafless_attribute_values(one, &points[0][0], 5, found));
     OK(leafless_attribute_values(batch, &points[0][0], 5, also));
     CHECK(own.calls == 5 && many.calls == 1 && many.points == 5);

@@ -293,9 +293,9 @@ static void motions(void) {
 }
 
 static uint64_t evaluations_of(const leafless_solid *solid) {
-    uint64_t count = UINT64_MAX;
-    OK(leafless_solid_evaluations(solid, &count));
-    return count;
+    leafless_solid_info info = LEAFLESS_INIT(leafless_solid_info);
+    OK(leafless_solid_describe(solid, &info));
+    return info.evaluations;
 }
 
 static void build_alone(const leafless_solid *solid) {

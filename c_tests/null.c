@@ -316,8 +316,8 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_placed, matrix,
                  leafless_solid_placed(solid, NULL, (leafless_motion *)out, solid_result));
     NULL_POINTER(leafless_solid_placed, solid, leafless_solid_placed(solid, matrix, (leafless_motion *)out, NULL));
-    NULL_POINTER(leafless_solid_evaluations, solid, leafless_solid_evaluations(NULL, (uint64_t *)out));
-    NULL_POINTER(leafless_solid_evaluations, evaluations, leafless_solid_evaluations(solid, NULL));
+    NULL_POINTER(leafless_solid_describe, solid, leafless_solid_describe(NULL, (leafless_solid_info *)out));
+    NULL_POINTER(leafless_solid_describe, info, leafless_solid_describe(solid, NULL));
     NULL_POINTER(leafless_solid_transformed, operand,
                  leafless_solid_transformed(NULL, &frame, matrix, solid_result));
     NULL_POINTER(leafless_solid_transformed, own, leafless_solid_transformed(solid, NULL, matrix, solid_result));
@@ -831,7 +831,7 @@ static void misaligned(void) {
     MISALIGNED(leafless_solid_classify_box, options,
                leafless_solid_classify_box(solid, &frame, point, above, (leafless_options *)WRONG(&options),
                                            (leafless_region *)out));
-    MISALIGNED(leafless_solid_evaluations, evaluations, leafless_solid_evaluations(solid, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_solid_describe, info, leafless_solid_describe(solid, (leafless_solid_info *)WRONG(out)));
     MISALIGNED(leafless_solid_placed, matrix,
                leafless_solid_placed(solid, numbers, (leafless_motion *)out, solid_result));
     MISALIGNED(leafless_solid_placed, motion,
@@ -2023,8 +2023,9 @@ static void attributes_and_channels(void) {
     NULL_POINTER(leafless_attribute_placed, matrix, leafless_attribute_placed(attribute, NULL, made));
     NULL_POINTER(leafless_attribute_placed, attribute, leafless_attribute_placed(attribute, matrix, NULL));
     BAD_NUMBER(leafless_attribute_placed, singular, leafless_attribute_placed(attribute, flat, made));
-    NULL_POINTER(leafless_attribute_components, attribute, leafless_attribute_components(NULL, (uint32_t *)out));
-    NULL_POINTER(leafless_attribute_components, components, leafless_attribute_components(attribute, NULL));
+    NULL_POINTER(leafless_attribute_describe, attribute,
+                 leafless_attribute_describe(NULL, (leafless_attribute_info *)out));
+    NULL_POINTER(leafless_attribute_describe, info, leafless_attribute_describe(attribute, NULL));
     NULL_POINTER(leafless_attribute_values, attribute, leafless_attribute_values(NULL, point, 1, values));
     NULL_POINTER(leafless_attribute_values, points_model, leafless_attribute_values(attribute, NULL, 1, values));
     NULL_POINTER(leafless_attribute_values, values, leafless_attribute_values(attribute, point, 1, NULL));
@@ -2183,6 +2184,8 @@ static void attributes_and_channels(void) {
                leafless_attribute_range(attribute, point, above, (leafless_value_range *)WRONG(out)));
     MISALIGNED(leafless_channel_fill, fill,
                leafless_channel_fill(attribute, &frame, (leafless_channel_fill_options *)WRONG(&fill), NULL, channel_result));
+    MISALIGNED(leafless_attribute_describe, info,
+               leafless_attribute_describe(attribute, (leafless_attribute_info *)WRONG(out)));
     MISALIGNED(leafless_channel_describe, info, leafless_channel_describe(channel, (leafless_channel_info *)WRONG(out)));
     MISALIGNED(leafless_channel_values, values, leafless_channel_values(channel, point, 1, (double *)WRONG(out)));
     MISALIGNED(leafless_channel_value, value, leafless_channel_value(channel, point, (double *)WRONG(out)));

@@ -57,6 +57,9 @@ static void layers(void) {
     BAD_NUMBER(leafless_layer_clipped, box_model, leafless_layer_clipped(layer, plane, 1, wrong_box, result));
     MISALIGNED(leafless_layer_clipped, box_model,
                leafless_layer_clipped(layer, plane, 1, (const double *)WRONG(wrong_box), result));
+    NULL_POINTER(leafless_layer_bytes, layer, leafless_layer_bytes(NULL, (uint64_t *)out));
+    NULL_POINTER(leafless_layer_bytes, bytes, leafless_layer_bytes(layer, NULL));
+    MISALIGNED(leafless_layer_bytes, bytes, leafless_layer_bytes(layer, (uint64_t *)WRONG(out)));
     NULL_POINTER(leafless_layer_ref, layer, leafless_layer_ref(NULL, result));
     NULL_POINTER(leafless_layer_ref, reference, leafless_layer_ref(layer, NULL));
     leafless_layer_free(NULL);

@@ -11,6 +11,7 @@ static leafless_cursor *cursor;
 static leafless_solid *solid, *other;
 static leafless_lazy *lazy;
 static leafless_channel *channel;
+static leafless_attribute *attribute;
 static leafless_tridexel *tridexel;
 static leafless_tridexel_editor *editor;
 static uint8_t *file;
@@ -37,6 +38,8 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_extent, leafless_solid_bounding_box(solid, &frame, 0.1, NULL, out))                                 \
     FILLS(leafless_clearance, leafless_solid_clearance(solid, other, &frame, 0.1, NULL, out))                          \
     FILLS(leafless_lazy_info, leafless_lazy_describe(lazy, out))                                                       \
+    FILLS(leafless_solid_info, leafless_solid_describe(solid, out))                                                    \
+    FILLS(leafless_attribute_info, leafless_attribute_describe(attribute, out))                                        \
     FILLS(leafless_channel_info, leafless_channel_describe(channel, out))                                              \
     FILLS(leafless_channel_summary, leafless_channel_summarise(channel, octree, NULL, NULL, NULL, out))                \
     FILLS(leafless_tridexel_info, leafless_tridexel_describe(tridexel, out))                                           \
@@ -142,7 +145,6 @@ int main(void) {
     const leafless_source of_samples = leafless_from_bytes(samples, 8, LEAFLESS_ACCESS_COPY);
     const double far_centre[3] = {0.9, 0.9, 0.9}, one = 1;
     leafless_volume_layout layout = LEAFLESS_INIT(leafless_volume_layout);
-    leafless_attribute *attribute = NULL;
     const char *name;
     size_t size;
     int which;

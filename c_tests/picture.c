@@ -82,6 +82,7 @@ static void surfaces(void) {
     leafless_solid *solid = check_ball_solid();
     leafless_octree *octree = check_ball(7, LEAFLESS_RULE_CERTIFIED);
     leafless_layer *layer, *clipped, *again;
+    uint64_t bytes = 0;
     leafless_shot shot = shot_of(1);
     leafless_mesh *mesh;
     leafless_look look;
@@ -112,6 +113,8 @@ static void surfaces(void) {
     look.colour[1] = look.colour[3] = 255;
     OK(leafless_layer_from_octree(octree, &look, &layer));
     leafless_octree_free(octree);
+    OK(leafless_layer_bytes(layer, &bytes));
+    CHECK(bytes > 10000);
     take(&shot, layer);
     /* A cell is seen where the surface is anywhere in it, and that rises by up to three cells a cell. */
     check_ball_depths(-1, 5.5 / 64);

@@ -252,7 +252,7 @@ void hosts() {
         CHECK(false);
     } catch (const std::invalid_argument &) {
     }
-    CHECK(values[0] == 0.25 && values[1] == -0.5 && height.components() == 1);
+    CHECK(values[0] == 0.25 && values[1] == -0.5 && height.describe().components == 1);
     struct colour {
         void values(leafless::span<const leafless::point> at, leafless::span<double> found) const {
             CHECK(found.size() == 3 * at.size());

@@ -1309,15 +1309,27 @@ leafless_status leafless_solid_from_mesh(const leafless_mesh *mesh, leafless_fil
 /// - Untrusted input: any octree.
 leafless_status leafless_solid_from_octree(const leafless_octree *octree, leafless_solid **solid);
 
-/// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of
-/// half-spaces (see leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have
-/// returned, and by lazy octrees and the like that are given back. What else is made of the solid counts for
-/// itself.
+/// What can be said of a solid at once.
+typedef struct leafless_solid_info {
+    uint32_t struct_size;  ///< sizeof(leafless_solid_info).
+    /// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of
+    /// half-spaces (see leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that
+    /// have returned, and by lazy octrees and the like that are given back. What else is made of the solid
+    /// counts for itself. 0 for solids of other kinds.
+    uint64_t evaluations;
+    /// About how many bytes of memory (or of mapped files) the solid keeps alive: its own, those of the
+    /// meshes, octrees and samples that it shares, and those of the last frame that it was prepared for. An
+    /// expression counts each of its parts once, but two parts that share a mesh count the mesh twice.
+    /// Objects of the host are not counted.
+    uint64_t bytes;
+} leafless_solid_info;
+
+/// What can be said of a solid at once. O(1), but O(n) in the parts of an expression.
 ///
-/// - Buffers: `evaluations`, one number.
-/// - Result: `*evaluations`; 0 for solids of other kinds.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
 /// - Untrusted input: any solid.
-leafless_status leafless_solid_evaluations(const leafless_solid *solid, uint64_t *evaluations);
+leafless_status leafless_solid_describe(const leafless_solid *solid, leafless_solid_info *info);
 
 /// One more reference to a solid.
 ///
@@ -3765,17 +3777,27 @@ leafless_status leafless_attribute_new_constant(const double *value, uint32_t co
 leafless_status leafless_attribute_placed(const leafless_attribute *operand, const double matrix[12],
     leafless_attribute **attribute);
 
-/// How many numbers a value of an attribute has.
+/// What can be said of an attribute at once.
+typedef struct leafless_attribute_info {
+    uint32_t struct_size;  ///< sizeof(leafless_attribute_info).
+    uint32_t components;  ///< How many numbers a value has: 1 to 4.
+    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of
+    /// the mesh, channel or samples that it shares. 0 for constants and for objects of the host.
+    uint64_t bytes;
+} leafless_attribute_info;
+
+/// What can be said of an attribute at once. O(1).
 ///
-/// - Buffers: `components`, one number.
-/// - Result: `*components`, 1 to 4.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
 /// - Untrusted input: any attribute.
-leafless_status leafless_attribute_components(const leafless_attribute *attribute, uint32_t *components);
+leafless_status leafless_attribute_describe(const leafless_attribute *attribute,
+    leafless_attribute_info *info);
 
 /// The values of an attribute at points.
 ///
 /// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many
-///   numbers as leafless_attribute_components says. Both may be NULL if `count` is 0.
+///   numbers as leafless_attribute_describe says. Both may be NULL if `count` is 0.
 /// - Result: the value at point i from `values[components * i]` on; NaN where there is none.
 /// - Errors: LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any attribute, any numbers.
@@ -5429,6 +5451,15 @@ leafless_status leafless_transfer_colour(const leafless_transfer *transfer, cons
 /// - Untrusted input: any numbers.
 leafless_status leafless_layer_clipped(const leafless_layer *layer, const double *planes,
     uint64_t plane_count, const double *box_model, leafless_layer **clipped);
+
+/// About how many bytes of memory (or of mapped files) a layer keeps alive: its own, and those of the octree,
+/// solid, mesh and attribute that it shows, as leafless_octree_describe, leafless_solid_describe and so on
+/// tell them. What a picture needs while it is rendered is not in.
+///
+/// - Buffers: `bytes`, one number.
+/// - Result: `*bytes`.
+/// - Untrusted input: any layer.
+leafless_status leafless_layer_bytes(const leafless_layer *layer, uint64_t *bytes);
 
 /// One more reference to a layer.
 ///

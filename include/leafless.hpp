@@ -246,8 +246,8 @@ template <class T, std::size_t N> T *numbers(std::vector<std::array<T, N>> &arra
 
 /// How many numbers a value has; the most that there may be, if that is not told.
 inline std::size_t components_of(const leafless_attribute *attribute) noexcept {
-    std::uint32_t components = 4;
-    return leafless_attribute_components(attribute, &components) == LEAFLESS_OK ? components : 4;
+    leafless_attribute_info info = LEAFLESS_INIT(leafless_attribute_info);
+    return leafless_attribute_describe(attribute, &info) == LEAFLESS_OK ? info.components : 4;
 }
 inline std::size_t components_of(const leafless_channel *channel) noexcept {
     leafless_channel_info info{};
@@ -397,7 +397,7 @@ public:
     using owner::owner;
     [[nodiscard]] static returns<leafless::solid> from_mesh(const leafless::mesh &mesh, leafless_fill fill);
     [[nodiscard]] static returns<leafless::solid> from_octree(const leafless::octree &octree);
-    [[nodiscard]] returns<uint64_t> evaluations() const;
+    [[nodiscard]] returns<leafless_solid_info> describe() const;
     [[nodiscard]] returns<leafless::solid> share() const;
     [[nodiscard]] static returns<leafless::solid> new_ball(const point &centre_model, double radius_model);
     [[nodiscard]] static returns<leafless::solid> new_box(const point &min_model, const point &max_model);
@@ -691,7 +691,7 @@ public:
     using owner::owner;
     [[nodiscard]] static returns<leafless::attribute> new_constant(const double *value, uint32_t components);
     [[nodiscard]] returns<leafless::attribute> placed(const affine &matrix) const;
-    [[nodiscard]] returns<uint32_t> components() const;
+    [[nodiscard]] returns<leafless_attribute_info> describe() const;
     returns<void> values(span<const point> points_model, span<double> values) const;
     [[nodiscard]] returns<leafless_value_range> range(const point &min_model, const point &max_model) const;
     [[nodiscard]] returns<leafless::attribute> share() const;
@@ -798,6 +798,7 @@ public:
     using owner::owner;
     [[nodiscard]] returns<leafless::layer> clipped(span<const std::array<double,4>> planes,
         const double *box_model) const;
+    [[nodiscard]] returns<uint64_t> bytes() const;
     [[nodiscard]] returns<leafless::layer> share() const;
     [[nodiscard]] static returns<leafless::layer> from_octree(const leafless::octree &octree,
         const leafless_look *look = nullptr);
@@ -1112,10 +1113,10 @@ inline returns<leafless::solid> solid::from_octree(const leafless::octree &octre
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
-inline returns<uint64_t> solid::evaluations() const {
-    uint64_t evaluations{};
-    const leafless_status status = leafless_solid_evaluations(get(), &evaluations);
-    return detail::finish(status, evaluations);
+inline returns<leafless_solid_info> solid::describe() const {
+    leafless_solid_info info = LEAFLESS_INIT(leafless_solid_info);
+    const leafless_status status = leafless_solid_describe(get(), &info);
+    return detail::finish(status, info);
 }
 
 inline returns<leafless::solid> solid::share() const {
@@ -2211,10 +2212,10 @@ inline returns<leafless::attribute> attribute::placed(const affine &matrix) cons
     return detail::finish(status, leafless::attribute(attribute_handle));
 }
 
-inline returns<uint32_t> attribute::components() const {
-    uint32_t components{};
-    const leafless_status status = leafless_attribute_components(get(), &components);
-    return detail::finish(status, components);
+inline returns<leafless_attribute_info> attribute::describe() const {
+    leafless_attribute_info info = LEAFLESS_INIT(leafless_attribute_info);
+    const leafless_status status = leafless_attribute_describe(get(), &info);
+    return detail::finish(status, info);
 }
 
 inline returns<void> attribute::values(span<const point> points_model, span<double> values) const {
@@ -2617,6 +2618,12 @@ inline returns<leafless::layer> layer::clipped(span<const std::array<double,4>> 
     const leafless_status status = leafless_layer_clipped(get(), detail::numbers(planes), planes.size(),
         box_model, &clipped_handle);
     return detail::finish(status, leafless::layer(clipped_handle));
+}
+
+inline returns<uint64_t> layer::bytes() const {
+    uint64_t bytes{};
+    const leafless_status status = leafless_layer_bytes(get(), &bytes);
+    return detail::finish(status, bytes);
 }
 
 inline returns<leafless::layer> layer::share() const {

@@ -246,8 +246,8 @@ template <class T, std::size_t N> T *numbers(std::vector<std::array<T, N>> &arra
 
 /// How many numbers a value has; the most that there may be, if that is not told.
 inline std::size_t components_of(const leafless_attribute *attribute) noexcept {
-    std::uint32_t components = 4;
-    return leafless_attribute_components(attribute, &components) == LEAFLESS_OK ? components : 4;
+    leafless_attribute_info info = LEAFLESS_INIT(leafless_attribute_info);
+    return leafless_attribute_describe(attribute, &info) == LEAFLESS_OK ? info.components : 4;
 }
 inline std::size_t components_of(const leafless_channel *channel) noexcept {
     leafless_channel_info info{};

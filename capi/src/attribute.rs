@@ -1,6 +1,8 @@
 //! Attributes: what has a value at every point, or at some.
 
-use super::boundary::{Failure, array, buffer, guard, handle, out, refer, release, shared, slice};
+use super::boundary::{
+    Failure, array, buffer, filled, guard, handle, out, output, refer, release, shared, slice,
+};
 use super::csg::placement;
 use super::frame::leafless_interval;
 use super::status::leafless_status;
@@ -35,6 +37,10 @@ impl Attribute for AnyAttribute {
 
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
         self.0.range(bounds)
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        self.0.kept_bytes()
     }
 }
 
@@ -203,26 +209,45 @@ pub unsafe extern "C" fn leafless_attribute_placed(
     })
 }
 
-/// How many numbers a value of an attribute has.
+/// What can be said of an attribute at once.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_attribute_info {
+    /// sizeof(leafless_attribute_info).
+    pub struct_size: u32,
+    /// How many numbers a value has: 1 to 4.
+    pub components: u32,
+    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of the mesh, channel
+    /// or samples that it shares. 0 for constants and for objects of the host.
+    pub bytes: u64,
+}
+
+output!(leafless_attribute_info);
+
+/// What can be said of an attribute at once. O(1).
 ///
-/// - Buffers: `components`, one number.
-/// - Result: `*components`, 1 to 4.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
 /// - Untrusted input: any attribute.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_attribute_components(
+pub unsafe extern "C" fn leafless_attribute_describe(
     attribute: *const leafless_attribute,
-    components: *mut u32,
+    info: *mut leafless_attribute_info,
 ) -> leafless_status {
     guard(|| unsafe {
         let attribute = &shared(attribute, "attribute")?.attribute;
-        out(components, "components")?.write(attribute.components() as u32)
+        filled(info, "info")?.write(leafless_attribute_info {
+            struct_size: size_of::<leafless_attribute_info>() as u32,
+            components: attribute.components() as u32,
+            bytes: attribute.kept_bytes(),
+        })
     })
 }
 
 /// The values of an attribute at points.
 ///
 /// - Buffers: `points_model`, `count` points of 3 numbers; `values`, room for `count` values of as many numbers
-///   as leafless_attribute_components says. Both may be NULL if `count` is 0.
+///   as leafless_attribute_describe says. Both may be NULL if `count` is 0.
 /// - Result: the value at point i from `values[components * i]` on; NaN where there is none.
 /// - Errors: LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY.
 /// - Untrusted input: any attribute, any numbers.

@@ -25,6 +25,9 @@ pub struct leafless_layer {
 pub(super) trait Shown: Send + Sync {
     /// The layer that shows it.
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure>;
+
+    /// About how many bytes it keeps alive.
+    fn kept_bytes(&self) -> u64;
 }
 
 /// A handle of a layer.
@@ -137,6 +140,11 @@ pub unsafe extern "C" fn leafless_transfer_colour(
     })
 }
 
+/// Bytes that the values of a layer keep alive, if it has some.
+pub(super) fn bytes_of_values(values: &Option<Values>) -> u64 {
+    values.as_ref().map_or(0, |values| values.attribute.kept_bytes())
+}
+
 /// An attribute, and the colours of its values on surfaces.
 pub(super) struct Values {
     pub(super) attribute: AnyAttribute,
@@ -230,6 +238,24 @@ pub unsafe extern "C" fn leafless_layer_clipped(
         let clip = clip(start, planes, plane_count, box_model, ["planes", "box_model"])?;
         let clipped = out(clipped, "clipped")?;
         clipped.write(handle(leafless_layer { shape: layer.shape.clone(), clip: Some(clip) }))
+    })
+}
+
+/// About how many bytes of memory (or of mapped files) a layer keeps alive: its own, and those of the octree, solid, mesh and
+/// attribute that it shows, as leafless_octree_describe, leafless_solid_describe and so on tell them. What a picture needs
+/// while it is rendered is not in.
+///
+/// - Buffers: `bytes`, one number.
+/// - Result: `*bytes`.
+/// - Untrusted input: any layer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layer_bytes(
+    layer: *const leafless_layer,
+    bytes: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let layer = shared(layer, "layer")?;
+        out(bytes, "bytes")?.write(layer.shape.kept_bytes())
     })
 }
 

@@ -4,16 +4,16 @@ use super::attribute::leafless_attribute;
 use super::boundary::{Failure, Sized32, array, buffer, guard, out, share, shared, sized, slice};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame};
-use super::layer::{Shown, Values, chosen, give, leafless_layer, leafless_transfer, values};
+use super::layer::{Shown, Values, bytes_of_values, chosen, give, leafless_layer, leafless_transfer, values};
 use super::number::Byte;
 use super::octree::leafless_octree;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
 use super::voxel::{leafless_voxel_kind, records};
-use leafless::Frame;
 use leafless::memory;
 use leafless::render::{Compositing, Layer, SliceLayer, SlicePlane, TAG_COLOURS, Transfer, VolumeLayer};
 use leafless::voxel::VoxelRecords;
+use leafless::{Frame, Solid};
 use std::sync::Arc;
 
 /// What a plane section looks like. NULL means the defaults. All fields but the first may be zero, which is their
@@ -58,6 +58,14 @@ enum Cut {
 }
 
 impl Shown for OfSlice {
+    fn kept_bytes(&self) -> u64 {
+        let cut = match &self.cut {
+            Cut::Octree(octree) => octree.octree.bytes(),
+            Cut::Solid(solid, _) => solid.solid.kept_bytes(),
+        };
+        cut + bytes_of_values(&self.values)
+    }
+
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
         let slice = match &self.cut {
             Cut::Octree(octree) => SliceLayer::new(octree.octree.view(), self.plane),
@@ -210,6 +218,10 @@ struct OfVoxels {
 }
 
 impl Shown for OfVoxels {
+    fn kept_bytes(&self) -> u64 {
+        self.records.bytes() + self.weights.as_ref().map_or(0, |weights| size_of_val(&**weights) as u64)
+    }
+
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
         let layer = VolumeLayer::new(self.records.view(), self.transfer).compositing(self.compositing)?;
         Ok(match &self.weights {

@@ -4,7 +4,7 @@ use super::attribute::leafless_attribute;
 use super::boundary::{Failure, Sized32, guard, out, share, shared, sized, slice};
 use super::cells::leafless_cell;
 use super::frame::{frame, leafless_frame};
-use super::layer::{Shown, Values, chosen, give, leafless_layer, leafless_transfer, values};
+use super::layer::{Shown, Values, bytes_of_values, chosen, give, leafless_layer, leafless_transfer, values};
 use super::mesh::leafless_mesh;
 use super::number::{Number, enumeration};
 use super::octree::leafless_octree;
@@ -14,7 +14,7 @@ use core::mem::MaybeUninit;
 use leafless::TriangleMesh;
 use leafless::memory;
 use leafless::render::{Finish, Layer, LinesLayer, MeshEdges, MeshLayer, OctreeLayer, Outline, SolidLayer};
-use leafless::{Cell, Frame};
+use leafless::{Cell, Frame, Solid};
 use std::sync::Arc;
 
 /// Which edges are drawn as lines.
@@ -131,6 +131,10 @@ struct OfOctree {
 }
 
 impl Shown for OfOctree {
+    fn kept_bytes(&self) -> u64 {
+        self.octree.octree.bytes() + bytes_of_values(&self.values)
+    }
+
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
         let layer = OctreeLayer::new(self.octree.octree.view(), self.finish);
         Ok(match &self.values {
@@ -172,6 +176,10 @@ struct OfSolid {
 }
 
 impl Shown for OfSolid {
+    fn kept_bytes(&self) -> u64 {
+        self.solid.solid.kept_bytes() + bytes_of_values(&self.values)
+    }
+
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
         let layer = SolidLayer::new(&self.solid.solid, &self.frame, self.finish);
         Ok(match &self.values {
@@ -227,6 +235,10 @@ struct MeshLook {
 }
 
 impl Shown for OfMesh {
+    fn kept_bytes(&self) -> u64 {
+        self.mesh.bytes() + self.colours.as_ref().map_or(0, |colours| size_of_val(&**colours) as u64)
+    }
+
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
         let look = &self.look;
         let mut layer = MeshLayer::new(&self.mesh).edges(look.edges, look.edge_width, look.edge_colour);
@@ -306,6 +318,10 @@ impl OfLines {
 }
 
 impl Shown for OfLines {
+    fn kept_bytes(&self) -> u64 {
+        size_of_val(&*self.lines) as u64
+    }
+
     fn layer(&self) -> Result<Box<dyn Layer + '_>, Failure> {
         Ok(Box::new(LinesLayer::new(&self.lines).width(self.width).colour(self.colour)))
     }

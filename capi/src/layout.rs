@@ -101,6 +101,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_solid_function { struct_size, reserved, value, range, destroy, ctx, fingerprint }
         leafless_value_range { values, kind }
         leafless_attribute_callbacks { struct_size, components, value, values, range, destroy, ctx }
+        leafless_solid_info { struct_size, evaluations, bytes }
+        leafless_attribute_info { struct_size, components, bytes }
         leafless_channel_info { struct_size, frame, scalar, components, value_count, elements, bytes }
         leafless_channel_fill_options {
             struct_size, scalar, components, depth, solid, criterion, reserved, coarse_model, fine_model, tolerance, name,

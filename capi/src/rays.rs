@@ -147,6 +147,10 @@ pub unsafe extern "C" fn leafless_octree_cast_rays(
         for (index, given) in rays.iter().enumerate() {
             ray(index, given)?;
         }
+        // What a batch prepares costs more than a ray.
+        if let [given] = rays {
+            return out(hits, "hits")?.write(octree.cast_ray(&ray(0, given)?, on).into());
+        }
         let mut some: Vec<Ray> = memory::with_capacity(rays.len().min(BATCH))?;
         let mut to = hits;
         for batch in rays.chunks(BATCH) {

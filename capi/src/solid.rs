@@ -1,12 +1,12 @@
 //! Solids: everything that can split a cell.
 
-use super::boundary::{guard, handle, out, refer, release, shared};
+use super::boundary::{filled, guard, handle, out, output, refer, release, shared};
 use super::mesh::{leafless_fill, leafless_mesh};
 use super::number::Number;
 use super::octree::leafless_octree;
 use super::status::leafless_status;
 use leafless::solid::{Erasable, Prepared};
-use leafless::{AnySolid, Csg, MeshSolid};
+use leafless::{AnySolid, Csg, MeshSolid, Solid};
 
 /// Anything that has a shape: it can split a cell of space into eight classified ones.
 ///
@@ -80,22 +80,41 @@ pub unsafe extern "C" fn leafless_solid_from_octree(
     })
 }
 
-/// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of
-/// half-spaces (see leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have
-/// returned, and by lazy octrees and the like that are given back. What else is made of the solid counts for
-/// itself.
+/// What can be said of a solid at once.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_solid_info {
+    /// sizeof(leafless_solid_info).
+    pub struct_size: u32,
+    /// Half-spaces that were evaluated so far, each at a point or over a box, for a solid that is made of half-spaces (see
+    /// leafless_solid_new_halfspace and what follows it) and perhaps others: by calls that have returned, and by lazy octrees
+    /// and the like that are given back. What else is made of the solid counts for itself. 0 for solids of other kinds.
+    pub evaluations: u64,
+    /// About how many bytes of memory (or of mapped files) the solid keeps alive: its own, those of the meshes, octrees and
+    /// samples that it shares, and those of the last frame that it was prepared for. An expression counts each of its parts
+    /// once, but two parts that share a mesh count the mesh twice. Objects of the host are not counted.
+    pub bytes: u64,
+}
+
+output!(leafless_solid_info);
+
+/// What can be said of a solid at once. O(1), but O(n) in the parts of an expression.
 ///
-/// - Buffers: `evaluations`, one number.
-/// - Result: `*evaluations`; 0 for solids of other kinds.
+/// - Buffers: `info`, one struct.
+/// - Result: `*info`.
 /// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_evaluations(
+pub unsafe extern "C" fn leafless_solid_describe(
     solid: *const leafless_solid,
-    evaluations: *mut u64,
+    info: *mut leafless_solid_info,
 ) -> leafless_status {
     guard(|| unsafe {
-        let solid = shared(solid, "solid")?.solid.solid();
-        out(evaluations, "evaluations")?.write(solid.get::<Csg>().map_or(0, Csg::evaluations))
+        let solid = &shared(solid, "solid")?.solid;
+        filled(info, "info")?.write(leafless_solid_info {
+            struct_size: size_of::<leafless_solid_info>() as u32,
+            evaluations: solid.solid().get::<Csg>().map_or(0, Csg::evaluations),
+            bytes: solid.kept_bytes(),
+        })
     })
 }
 

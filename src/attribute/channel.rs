@@ -45,6 +45,10 @@ impl Attribute for Channel {
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
         Attribute::range(self.view()?, bounds)
     }
+
+    fn kept_bytes(&self) -> u64 {
+        self.bytes()
+    }
 }
 
 /// What was met in a window so far.
@@ -112,6 +116,10 @@ impl<A: Attribute> MovedAttribute<A> {
 impl<A: Attribute> Attribute for MovedAttribute<A> {
     fn components(&self) -> usize {
         self.attribute.components()
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        self.attribute.kept_bytes()
     }
 
     fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {

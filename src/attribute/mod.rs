@@ -90,6 +90,12 @@ pub trait Attribute: Sync {
         Ok(ValueRange::Unknown)
     }
 
+    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of the meshes, channels
+    /// and samples that it shares with others. 0, the default, if nobody knows.
+    fn kept_bytes(&self) -> u64 {
+        0
+    }
+
     /// The value at one point.
     ///
     /// # Errors
@@ -112,5 +118,9 @@ impl<A: Attribute + ?Sized> Attribute for &A {
 
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
         (**self).range(bounds)
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        (**self).kept_bytes()
     }
 }

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use super::{Attribute, ValueRange};
 use crate::error::Error;
 use crate::lattice::{Bounds, Interval};
+use crate::memory;
 use crate::mesh::{MeshAttribute, NearVisitor, NearestPoint, TriangleMesh, TriangleTree};
 
 /// The attribute whose value at a point is that of a mesh at the point of its surface that is nearest.
@@ -221,6 +222,18 @@ impl NearVisitor for Joined<'_> {
 }
 
 impl Attribute for SurfaceAttribute {
+    /// The mesh, the tree over its triangles, and the values.
+    fn kept_bytes(&self) -> u64 {
+        let Surface { mesh, tree } = &*self.surface;
+        let given = match &self.source {
+            Source::OfMesh(_) => 0,
+            Source::Given(attribute) => size_of_val(&**attribute) as u64 + attribute.bytes(),
+        };
+        mesh.bytes()
+            + (size_of::<Surface>() + tree.bytes() + memory::bytes_of(&self.summaries)) as u64
+            + given
+    }
+
     fn components(&self) -> usize {
         self.attribute().components()
     }

@@ -90,6 +90,11 @@ impl<'a, S: Solid> Solid for ValueRegion<'a, S> {
     fn home(&self) -> Option<Frame> {
         Some(*self.channel.frame())
     }
+
+    /// The solid's: the channel is borrowed.
+    fn kept_bytes(&self) -> u64 {
+        self.solid.kept_bytes()
+    }
 }
 
 /// A region on a frame: handle and worker.
@@ -123,6 +128,10 @@ impl<'a, C: Classifier> Classifier for RegionOnFrame<'a, C> {
     /// What is known of the solid says nothing of its values.
     fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
         Ok(())
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        self.solid.kept_bytes()
     }
 }
 

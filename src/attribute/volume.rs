@@ -4,7 +4,7 @@ use super::{Attribute, ValueRange};
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::{Bounds, Interval};
-use crate::solid::Volume;
+use crate::solid::{Solid, Volume};
 
 /// Samples that are looked at before a range is given up.
 const MOST_SAMPLES: u64 = 4096;
@@ -37,6 +37,10 @@ impl<'a> VolumeAttribute<'a> {
 impl Attribute for VolumeAttribute<'_> {
     fn components(&self) -> usize {
         1
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        self.volume.kept_bytes()
     }
 
     fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {

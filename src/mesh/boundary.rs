@@ -13,6 +13,11 @@ pub(crate) struct Loops {
 }
 
 impl Loops {
+    /// Bytes that the lists take.
+    pub(crate) fn bytes(&self) -> usize {
+        memory::bytes_of(&self.vertices) + memory::bytes_of(&self.ends)
+    }
+
     /// The loops of directed edges of which every vertex begins as many as it ends. Each has three vertices
     /// or more, and none twice; together they have the edges given.
     ///

@@ -67,6 +67,11 @@ pub(crate) trait NearVisitor {
 }
 
 impl TriangleTree {
+    /// Bytes that the lists take.
+    pub(crate) fn bytes(&self) -> usize {
+        memory::bytes_of(&self.0.items) + memory::bytes_of(&self.0.nodes)
+    }
+
     /// O(t log t); 46 bytes a triangle.
     pub(crate) fn new(mesh: &TriangleMesh) -> Result<TriangleTree, Error> {
         Ok(TriangleTree(Tree::new(mesh, |_| true)?))

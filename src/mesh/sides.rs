@@ -20,6 +20,11 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
+    /// Bytes that the lists take.
+    pub(crate) fn bytes(&self) -> usize {
+        memory::bytes_of(&self.senses) + memory::bytes_of(&self.pairs)
+    }
+
     /// A triangle that intersects others, or that belongs to an open surface.
     const UNKNOWN: i8 = 2;
     /// A triangle without area of which nothing else is known.

@@ -71,6 +71,10 @@ impl<S: Solid> Solid for Adaptive<S> {
     fn motion(&self) -> Motion {
         Motion::Conservative
     }
+
+    fn kept_bytes(&self) -> u64 {
+        self.solid.kept_bytes()
+    }
 }
 
 /// Such a solid on a frame.

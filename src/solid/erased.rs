@@ -96,6 +96,7 @@ trait ErasedSolid: Send + Sync {
     fn fingerprint(&self) -> Option<Fingerprint>;
     fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error>;
     fn motion(&self) -> Motion;
+    fn kept_bytes(&self) -> u64;
 }
 
 impl<S: Erasable> ErasedSolid for S {
@@ -125,6 +126,10 @@ impl<S: Erasable> ErasedSolid for S {
 
     fn motion(&self) -> Motion {
         Solid::motion(self)
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        Solid::kept_bytes(self)
     }
 }
 
@@ -171,6 +176,10 @@ impl Shallow<'_> {
     fn motion(&self) -> Motion {
         self.known().map_or(Motion::Conservative, |solid| solid.motion())
     }
+
+    fn kept_bytes(&self) -> u64 {
+        self.known().map_or(0, |solid| solid.kept_bytes())
+    }
 }
 
 trait ErasedClassifier: Send + Sync {
@@ -179,6 +188,7 @@ trait ErasedClassifier: Send + Sync {
     fn exterior(&self) -> Tag;
     fn proof(&self) -> Proof;
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error>;
+    fn kept_bytes(&self) -> u64;
 }
 
 impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier for C {
@@ -202,6 +212,10 @@ impl<C: Classifier<Worker: Worker<Part: 'static> + 'static>> ErasedClassifier fo
 
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         Classifier::answer_whole(self, question, control)
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        Classifier::kept_bytes(self)
     }
 }
 

@@ -18,8 +18,15 @@ macro_rules! forward_solid {
 
         $crate::solid::forward::forward_solid!(@description $self => $to);
     };
-    // Those that say what the shape is, without a frame.
+    // Those that say what the shape is, without a frame, and what it keeps.
     (@description $self:ident => $to:expr) => {
+        fn kept_bytes(&$self) -> u64 {
+            $to.kept_bytes()
+        }
+
+        $crate::solid::forward::forward_solid!(@shape $self => $to);
+    };
+    (@shape $self:ident => $to:expr) => {
         fn bounds(&$self) -> Option<$crate::lattice::Bounds> {
             $to.bounds()
         }
@@ -59,6 +66,10 @@ macro_rules! forward_classifier {
             control: &$crate::control::Control<'_>,
         ) -> Result<(), $crate::error::Error> {
             $to.answer_whole(question, control)
+        }
+
+        fn kept_bytes(&$self) -> u64 {
+            $to.kept_bytes()
         }
     };
 }

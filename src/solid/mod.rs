@@ -252,6 +252,13 @@ pub trait Solid: Send + Sync {
     fn motion(&self) -> Motion {
         Motion::Conservative
     }
+
+    /// About how many bytes of memory (or of mapped files) the shape keeps alive: its own, and those of the meshes, octrees and
+    /// samples that it shares with others. An expression counts each of its parts once, but two parts that share a mesh count the
+    /// mesh twice. 0, the default, if nobody knows. A solid in small structs only may say 0.
+    fn kept_bytes(&self) -> u64 {
+        0
+    }
 }
 
 /// A shape on a frame: a cheap shared handle, for threads, queries and poses.
@@ -284,6 +291,12 @@ pub trait Classifier: Clone + Send + Sync {
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error>;
+
+    /// About how many bytes of memory the handle and its clones keep alive beyond those of the solid
+    /// ([`Solid::kept_bytes`]). 0, the default, if nobody knows.
+    fn kept_bytes(&self) -> u64 {
+        0
+    }
 }
 
 /// A classifier with scratch memory: what answers.

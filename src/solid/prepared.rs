@@ -1,7 +1,7 @@
 //! A solid that keeps what it is on a frame.
 
 use super::forward::forward_solid;
-use super::{AnyClassifier, AnySolid, Solid};
+use super::{AnyClassifier, AnySolid, Classifier, Solid};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Frame};
@@ -56,5 +56,11 @@ impl Solid for Prepared {
         Ok(Some(Prepared::new(AnySolid::placed(&self.solid, placement)?)))
     }
 
-    forward_solid!(@description self => self.solid);
+    /// The solid's, and what is kept for the last frame.
+    fn kept_bytes(&self) -> u64 {
+        let last = self.last.with(|last| last.as_ref().map(|(_, classifier)| classifier.clone()));
+        self.solid.kept_bytes() + last.map_or(0, |classifier| classifier.kept_bytes())
+    }
+
+    forward_solid!(@shape self => self.solid);
 }

@@ -101,6 +101,10 @@ impl Solid for DexelSolid {
     fn motion(&self) -> Motion {
         self.surface.motion()
     }
+
+    fn kept_bytes(&self) -> u64 {
+        self.surface.kept_bytes()
+    }
 }
 
 /// The surface on a frame.
@@ -133,5 +137,9 @@ impl Classifier for DexelClassifier {
 
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         self.surface.answer_whole(question, control)
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        self.surface.kept_bytes()
     }
 }

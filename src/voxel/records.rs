@@ -7,6 +7,7 @@ use crate::attribute::Attribute;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, MAX_DEPTH};
+use crate::memory;
 use crate::octree::{OctreeRef, Proof, Tag};
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -49,6 +50,13 @@ pub struct VoxelRecordsRef<'a> {
 }
 
 impl VoxelRecords {
+    /// Bytes of memory that the arrays take, with their room to spare.
+    pub fn bytes(&self) -> u64 {
+        let VoxelRecords { codes, levels, kinds, values, .. } = self;
+        let lists = memory::bytes_of(codes) + memory::bytes_of(levels) + memory::bytes_of(kinds);
+        (lists + memory::bytes_of(values)) as u64
+    }
+
     /// No records on a lattice.
     pub(super) fn empty(frame: Frame, exterior: Tag, proof: Proof, components: usize) -> VoxelRecords {
         let (codes, levels, kinds, values) = Default::default();

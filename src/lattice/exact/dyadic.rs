@@ -16,6 +16,11 @@ pub(crate) struct Dyadic {
 }
 
 impl Dyadic {
+    /// About how many bytes the digits take beside the number itself.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        self.mantissa.bits().div_ceil(64) as usize * size_of::<u64>()
+    }
+
     pub(crate) fn zero() -> Dyadic {
         Dyadic { mantissa: BigInt::zero(), exponent: 0 }
     }

@@ -5,6 +5,7 @@
 //! approximations: see [`Csg`].
 
 mod between;
+mod bytes;
 mod extent;
 mod faceted;
 mod figure;

@@ -30,6 +30,10 @@ pub(crate) fn is_exact(coefficients: &[Dyadic], places: i64, size: f64) -> bool 
 }
 
 impl Linear {
+    pub(super) fn heap_bytes(&self) -> usize {
+        self.exact.iter().map(Dyadic::heap_bytes).sum()
+    }
+
     /// The function with the coefficients a to d, which are neither all zero nor, rounded, near the ends of
     /// the range of doubles.
     pub(crate) fn new(exact: [Dyadic; 4]) -> Linear {

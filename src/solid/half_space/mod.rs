@@ -1,6 +1,7 @@
 //! Half-spaces: what all primitives are made of.
 
 pub(crate) mod bounds;
+mod bytes;
 pub(crate) mod function;
 mod host;
 pub(crate) mod linear;

@@ -28,6 +28,10 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
+    pub(super) fn heap_bytes(&self) -> usize {
+        self.exact.len()
+    }
+
     /// The plane `given` as the map shows it on the universe, whose lattice has 2^depth cells.
     pub(crate) fn new(given: &[Dyadic; 4], map: &ExactMap, depth: u8) -> Plane {
         let exact = map.linear(given);

@@ -9,6 +9,7 @@ use crate::cut::{Quadratic, Taylor};
 use crate::lattice::PAIRS;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, sign};
+use crate::memory;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 use wide::f64x4;
@@ -62,6 +63,12 @@ struct Aligned {
 }
 
 impl PlacedPowers {
+    pub(super) fn heap_bytes(&self) -> usize {
+        let terms = self.terms.iter().map(|term| term.line.heap_bytes() + term.exact_weight.heap_bytes());
+        let factors = self.aligned.as_ref().map_or(0, |aligned| memory::bytes_of(&aligned.factors));
+        memory::bytes_of(&self.terms) + terms.sum::<usize>() + factors + self.exact_constant.heap_bytes()
+    }
+
     /// The sum `given` as the map shows it on the universe, times something positive.
     pub(crate) fn new(given: &Powers, map: &ExactMap) -> PlacedPowers {
         let present = || (0..3).filter(|&axis| given.terms[axis].0 != 0.0);

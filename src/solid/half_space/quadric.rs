@@ -85,6 +85,10 @@ struct Mixed {
 }
 
 impl Quadric {
+    pub(super) fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.exact) + self.exact.iter().map(Dyadic::heap_bytes).sum::<usize>()
+    }
+
     /// The quadric `given` as the map shows it on the universe, whose lattice has 2^depth cells.
     pub(crate) fn new(given: &Coefficients, map: &ExactMap, depth: u8) -> Quadric {
         let exact = substitute(given, map);

@@ -47,6 +47,11 @@ pub(crate) struct PlacedTorus {
 }
 
 impl PlacedTorus {
+    pub(super) fn heap_bytes(&self) -> usize {
+        let lines = self.lines.iter().map(Linear::heap_bytes).sum::<usize>();
+        lines + self.exact_major.heap_bytes() + self.gap.heap_bytes()
+    }
+
     /// The torus as the map shows it on the universe.
     pub(crate) fn new(given: &Torus, map: &ExactMap) -> PlacedTorus {
         let w = if map.w.sign() < 0 { -&map.w } else { map.w.clone() };

@@ -15,6 +15,7 @@ use crate::dexel::Beam;
 use crate::error::{Error, MeshError};
 use crate::lattice::axes;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
+use crate::memory;
 use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
 use crate::solid::{
@@ -262,6 +263,15 @@ impl Solid for MeshSolid {
         Motion::Vertices
     }
 
+    /// The mesh, and what was found out about its boundary and what it encloses.
+    fn kept_bytes(&self) -> u64 {
+        let Boundary { loops, reach, moments, sides } = &*self.boundary;
+        let found = reach.get().map_or(0, size_of_val)
+            + moments.get().map_or(0, size_of_val)
+            + sides.get().map_or(0, |sides| size_of_val(sides) + sides.as_ref().map_or(0, Sides::bytes));
+        self.mesh.bytes() + (size_of::<Boundary>() + loops.bytes() + found) as u64
+    }
+
     /// Of the mesh. O(v + t).
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (vertices, triangles) =
@@ -301,6 +311,11 @@ impl Classifier for MeshClassifier {
 
     fn proof(&self) -> Proof {
         Proof::CERTIFIED.moved(self.mesh.placed.mesh.displacement())
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        let MeshOnFrame { placed, caps, roots, .. } = &*self.mesh;
+        (size_of::<MeshOnFrame>() + placed.bytes() + caps.bytes() + memory::bytes_of(roots)) as u64
     }
 
     /// Moments and area are known if the mesh is closed and no two triangles intersect. O(t).

@@ -7,6 +7,7 @@
 use crate::error::{Error, MeshError};
 use crate::lattice::Frame;
 use crate::lattice::exact::{floor, two_diff, two_product};
+use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -87,6 +88,15 @@ fn error_of(at: f64) -> f32 {
 pub(super) type Corners = [Vertex; 3];
 
 impl Placed {
+    /// Bytes that the vertices and caps take.
+    pub(super) fn bytes(&self) -> usize {
+        let Vertices { at, ranks, flags } = &self.vertices;
+        memory::bytes_of(at)
+            + memory::bytes_of(ranks)
+            + memory::bytes_of(flags)
+            + memory::bytes_of(&self.caps)
+    }
+
     /// The mesh without caps.
     ///
     /// # Errors

@@ -206,6 +206,11 @@ impl Local {
 }
 
 impl Caps {
+    /// Bytes that the lists take.
+    pub(super) fn bytes(&self) -> usize {
+        memory::bytes_of(&self.rims) + memory::bytes_of(&self.sizes) + memory::bytes_of(&self.nodes)
+    }
+
     /// Closes `placed` by caps over the loops of its boundary.
     ///
     /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 250 bytes a cap.

@@ -42,6 +42,19 @@ fn widened(table: u8) -> Table {
 }
 
 impl PlacedCuts {
+    /// About how many bytes it takes.
+    pub(super) fn bytes(&self) -> usize {
+        let placed =
+            |list: &Vec<Placed>| memory::bytes_of(list) + list.iter().map(Placed::heap_bytes).sum::<usize>();
+        let surface =
+            |surface: &PlacedHalfSpace| surface.half_space.bytes() + size_of_val(&*surface.placements);
+        size_of::<PlacedCuts>()
+            + memory::bytes_of(&self.surfaces)
+            + self.surfaces.iter().map(surface).sum::<usize>()
+            + placed(&self.cells)
+            + self.points.get().map_or(0, placed)
+    }
+
     /// Of a tree with cuts, on a frame of its universe. O(surfaces).
     ///
     /// # Errors

@@ -174,6 +174,10 @@ impl<T: Tree> Classifier for StoredOnFrame<T> {
         self.tree.tree().proof()
     }
 
+    fn kept_bytes(&self) -> u64 {
+        self.cuts.as_ref().map_or(0, |cuts| cuts.bytes() as u64)
+    }
+
     fn answer_whole(&self, question: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
         if let (WholeQuestion::Surfaces(known), Some(cuts)) = (question, &self.cuts) {
             *known = Some(memory::collected(cuts.surfaces().iter().cloned())?);
@@ -359,7 +363,11 @@ impl Solid for Octree {
         StoredOnFrame::new(self.clone(), frame)
     }
 
-    forward_solid!(@description self => self.view());
+    fn kept_bytes(&self) -> u64 {
+        self.bytes()
+    }
+
+    forward_solid!(@shape self => self.view());
 }
 
 impl CutsRef<'_> {

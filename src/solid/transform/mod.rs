@@ -201,6 +201,10 @@ impl<S: Solid> Solid for Transform<S> {
         let moved = || Transform { solid: self.solid.clone(), own: self.own, placement: *placement };
         Ok(self.placement.is_identity().then(moved))
     }
+
+    fn kept_bytes(&self) -> u64 {
+        self.solid.kept_bytes()
+    }
 }
 
 impl<S> Clone for Transform<S> {
@@ -290,6 +294,10 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
 
     fn proof(&self) -> Proof {
         self.proof
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        self.inner.kept_bytes()
     }
 
     /// Surfaces move along.

@@ -217,4 +217,10 @@ impl<'a> Solid for Volume<'a> {
         };
         Some(all.finish())
     }
+
+    /// The samples, unless they are borrowed, and what was found out about them.
+    fn kept_bytes(&self) -> u64 {
+        let samples = if self.field.samples.is_borrowed() { 0 } else { self.field.samples.bytes() };
+        (samples + self.bytes()) as u64
+    }
 }

@@ -99,6 +99,17 @@ impl Samples<'_> {
         }
     }
 
+    /// Whether the array is somebody else's.
+    pub(super) fn is_borrowed(&self) -> bool {
+        match self {
+            Samples::Bits(words) => matches!(words, SampleArray::Borrowed(_)),
+            Samples::U8(values) => matches!(values, SampleArray::Borrowed(_)),
+            Samples::U16(values) => matches!(values, SampleArray::Borrowed(_)),
+            Samples::I16(values) => matches!(values, SampleArray::Borrowed(_)),
+            Samples::F32(values) => matches!(values, SampleArray::Borrowed(_)),
+        }
+    }
+
     /// Bytes that the array takes, whoever owns it.
     pub fn bytes(&self) -> usize {
         match self {

@@ -95,6 +95,11 @@ pub(crate) struct Groups {
 }
 
 impl Groups {
+    /// Bytes that the lists take.
+    pub(crate) fn bytes(&self) -> usize {
+        memory::bytes_of(&self.groups) + memory::bytes_of(&self.grouped)
+    }
+
     /// Puts those of the operands at the end of `words` that are small into groups, and writes what takes
     /// their place; returns how many operands there then are.
     pub(crate) fn gather(

@@ -147,6 +147,21 @@ impl Program {
 }
 
 impl Program {
+    /// About how many bytes it takes beyond the expression, with what the other solids keep for the universe.
+    pub(crate) fn bytes(&self) -> u64 {
+        let lists = memory::bytes_of(&self.half_spaces)
+            + memory::bytes_of(&self.sources)
+            + memory::bytes_of(&self.chains)
+            + self.surfaces.get().map_or(0, |list| size_of_val(list) + memory::bytes_of(list))
+            + memory::bytes_of(&self.solids)
+            + self.groups.bytes()
+            + memory::bytes_of(&self.words)
+            + memory::bytes_of(&self.recalls);
+        let placed = self.half_spaces.iter().map(Placed::heap_bytes).sum::<usize>();
+        let others = self.solids.iter().map(Classifier::kept_bytes).sum::<u64>();
+        (size_of::<Program>() + lists + placed) as u64 + others
+    }
+
     /// The solid that this is another name of, if it is.
     pub(crate) fn sole(&self) -> Option<&AnyClassifier> {
         let [word] = &*self.words else { return None };

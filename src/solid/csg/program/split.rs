@@ -73,6 +73,10 @@ impl Solid for Csg {
     fn motion(&self) -> crate::solid::csg::Motion {
         self.motion_of_expression()
     }
+
+    fn kept_bytes(&self) -> u64 {
+        self.bytes_of_expression()
+    }
 }
 
 impl Classifier for CsgClassifier {
@@ -98,6 +102,10 @@ impl Classifier for CsgClassifier {
 
     fn proof(&self) -> Proof {
         self.program.proof
+    }
+
+    fn kept_bytes(&self) -> u64 {
+        self.program.bytes()
     }
 
     /// What is known of the solid that the expression is another name of, if it is; and what of its half-spaces lies in
