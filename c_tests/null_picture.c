@@ -44,6 +44,7 @@ static void layers(void) {
     leafless_cell cells[2];
     leafless_look look;
     leafless_slice_look slice_look;
+    uint64_t bytes = 77;
     leafless_frame deep = frame;
     memset(cells, 0, sizeof cells);
     cells[1].level = UINT32_MAX;
@@ -57,9 +58,10 @@ static void layers(void) {
     BAD_NUMBER(leafless_layer_clipped, box_model, leafless_layer_clipped(layer, plane, 1, wrong_box, result));
     MISALIGNED(leafless_layer_clipped, box_model,
                leafless_layer_clipped(layer, plane, 1, (const double *)WRONG(wrong_box), result));
-    NULL_POINTER(leafless_layer_bytes, layer, leafless_layer_bytes(NULL, (uint64_t *)out));
+    NULL_POINTER(leafless_layer_bytes, layer, leafless_layer_bytes(NULL, &bytes));
     NULL_POINTER(leafless_layer_bytes, bytes, leafless_layer_bytes(layer, NULL));
-    MISALIGNED(leafless_layer_bytes, bytes, leafless_layer_bytes(layer, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_layer_bytes, bytes, leafless_layer_bytes(layer, (uint64_t *)WRONG(&bytes)));
+    CHECK(bytes == 77);
     NULL_POINTER(leafless_layer_ref, layer, leafless_layer_ref(NULL, result));
     NULL_POINTER(leafless_layer_ref, reference, leafless_layer_ref(layer, NULL));
     leafless_layer_free(NULL);

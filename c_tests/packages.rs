@@ -82,6 +82,30 @@ fn loads_the_library(program: &Path) -> bool {
     String::from_utf8_lossy(&std::fs::read(program).unwrap()).contains("libleafless.so.0")
 }
 
+/// The notices name what is linked into the libraries, with licences and their texts, and nothing else.
+fn third_party(file: &Path) {
+    let all = std::fs::read_to_string(file).unwrap();
+    let (list, texts) = all.split_once("\n----").expect("texts behind the list");
+    let lines: Vec<&str> = list.lines().skip(2).collect();
+    assert!(lines.len() > 30 && lines[0].starts_with("Rust's standard library (rustc 1."), "{list}");
+    for line in &lines[1..] {
+        let (package, licence) = line.split_once(": ").expect(line);
+        assert!(
+            !licence.is_empty() && (licence.contains("without a text") || texts.contains(package)),
+            "{line}"
+        );
+    }
+    for name in ["rayon", "num-bigint", "crc32fast", "png"] {
+        assert!(lines.iter().any(|line| line.starts_with(&format!("{name} "))), "{name}");
+    }
+    // What runs while it is built, or in tests only, is not linked.
+    for name in ["proptest", "cbindgen", "syn", "criterion", "leafless"] {
+        assert!(!lines.iter().any(|line| line.starts_with(&format!("{name} "))), "{name}");
+    }
+    // (The exception of LLVM's licence speaks of the GPL.)
+    assert!(!list.contains("GPL") && texts.contains("Permission is hereby granted"));
+}
+
 #[test]
 fn installed_files() {
     let kit = kit();
@@ -94,6 +118,12 @@ fn installed_files() {
     };
     let version = env!("CARGO_PKG_VERSION");
     let all = install(&["--prefix", "/usr", "--libdir=/usr/lib/x86"]).unwrap();
+    // Some toolchains come without the notices of the standard library.
+    let notices =
+        ["share/licenses/leafless/THIRD-PARTY.txt", "share/licenses/leafless/RUST-STANDARD-LIBRARY.html"];
+    assert!(all.iter().any(|place| place == notices[0]), "{all:?}");
+    third_party(&folder.join("usr").join(notices[0]));
+    let all: Vec<_> = all.into_iter().filter(|place| !notices.contains(&place.as_str())).collect();
     let (headers, lib) = all.split_at(4);
     let licences = ["share/licenses/leafless/LICENSE-APACHE", "share/licenses/leafless/LICENSE-MIT"];
     assert_eq!(headers, [&["include/leafless.h", "include/leafless.hpp"][..], &licences].concat());

@@ -2,6 +2,8 @@
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    // For `packaging/notices.rs`.
+    println!("cargo::rustc-env=LEAFLESS_TARGET={}", std::env::var("TARGET").unwrap_or_default());
     // The number is LEAFLESS_ABI, so that programs never meet a library that does not fit.
     let (name, option) = match std::env::var("CARGO_CFG_TARGET_OS").as_deref() {
         Ok("linux") => ("libleafless.so.0", "-Wl,-soname,"),

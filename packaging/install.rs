@@ -1,4 +1,5 @@
-//! Installs the C interface: both headers, both libraries, the licences, and files for CMake and pkg-config.
+//! Installs the C interface: both headers, both libraries, the licences (those of the crates in the libraries, too), and files
+//! for CMake and pkg-config.
 //!
 //! ```text
 //! cargo run --release -p leafless-capi -- --prefix /usr/local
@@ -7,6 +8,9 @@
 //! It is a program in Rust because whoever builds Leafless has Rust, on every platform. What it installs finds the
 //! prefix from its own place, so that the prefix can be moved.
 
+mod notices;
+
+use notices::{Notices, notices};
 use std::env::consts::OS;
 use std::path::{Component, Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -41,6 +45,10 @@ const PKG_CONFIG: [(&str, &str); 2] = [
     ("leafless.pc", include_str!("templates/leafless.pc")),
     ("leafless-static.pc", include_str!("templates/leafless-static.pc")),
 ];
+
+/// Where the notices of what the libraries contain are installed.
+const THIRD_PARTY: &str = "share/licenses/leafless/THIRD-PARTY.txt";
+const STANDARD_LIBRARY: &str = "share/licenses/leafless/RUST-STANDARD-LIBRARY.html";
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -219,6 +227,11 @@ fn install(options: &Options) -> Result<(), String> {
     }
     for (place, text) in FILES {
         target.put(Path::new(place), |path| fs::write(path, text))?;
+    }
+    let Notices { crates, standard_library } = notices()?;
+    target.put(Path::new(THIRD_PARTY), |path| fs::write(path, crates))?;
+    if let Some(text) = standard_library {
+        target.put(Path::new(STANDARD_LIBRARY), |path| fs::write(path, text))?;
     }
     if !options.without_static {
         target.copy(&libraries.join(names.archive), &lib.join(names.archive))?;

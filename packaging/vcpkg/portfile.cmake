@@ -21,6 +21,7 @@ vcpkg_fixup_pkgconfig()
 # vcpkg wants one file of all licences.
 vcpkg_install_copyright(FILE_LIST
   "${CURRENT_PACKAGES_DIR}/share/licenses/leafless/LICENSE-MIT"
-  "${CURRENT_PACKAGES_DIR}/share/licenses/leafless/LICENSE-APACHE")
+  "${CURRENT_PACKAGES_DIR}/share/licenses/leafless/LICENSE-APACHE"
+  "${CURRENT_PACKAGES_DIR}/share/licenses/leafless/THIRD-PARTY.txt")
 file(REMOVE_RECURSE "${CURRENT_PACKAGES_DIR}/share/licenses")
 file(INSTALL "${CMAKE_CURRENT_LIST_DIR}/usage" DESTINATION "${CURRENT_PACKAGES_DIR}/share/${PORT}")
