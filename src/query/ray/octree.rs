@@ -104,11 +104,23 @@ pub(super) fn cast_all<Q: Question>(
         return Err(Error::Argument { name: "hits", problem: "must be as long as rays" });
     }
     if Q::BY_CUTS && tree.cuts.is_some() {
-        rays.iter().zip(answers).for_each(|(ray, answer)| *answer = question.exactly(tree, ray));
+        cast_by_cuts(tree, rays, question, answers);
     } else {
         with_vectors(CastAll { tree, rays, question, answers });
     }
     Ok(())
+}
+
+/// The same of a tree with cuts.
+#[cold]
+#[inline(never)]
+fn cast_by_cuts<Q: Question>(
+    tree: &OctreeRef<'_>,
+    rays: &[Ray],
+    question: Q,
+    answers: &mut [Option<Q::Answer>],
+) {
+    rays.iter().zip(answers).for_each(|(ray, answer)| *answer = question.exactly(tree, ray));
 }
 
 /// Answers a question about a ray.
