@@ -205,22 +205,23 @@ fn viewed(tree: &OctreeRef<'_>, facts: &Facts<'_>) {
         (facts.number("elements"), facts.number("bricks"))
     );
     assert_eq!(tree.is_binary(), facts.one("planes") == "1");
-    for (point, answer) in facts.all("cut-point").map(answer) {
-        let found = tree.contains(point);
-        assert!([answer, Membership::Undecided].contains(&found), "{point:?}: {found:?}");
-    }
+    // The cuts answer in place: the points keep a distance from all surfaces.
+    answered(tree, facts.all("cut-point").map(answer).collect());
     // The other points are answered without the cuts.
-    let tree = &tree.without_cuts();
+    let points: Vec<_> = facts.all("point").map(answer).collect();
+    assert!(points.len() >= 30);
+    answered(&tree.without_cuts(), points);
+}
+
+/// Every way to ask a tree gives these answers.
+fn answered(tree: &OctreeRef<'_>, expected: Vec<([f64; 3], Membership)>) {
     let mut cursor = PointCursor::new(tree);
     let table = PointTable::new(tree, 4).unwrap();
-    let (mut points, mut expected) = (vec![], vec![]);
-    for (point, answer) in facts.all("point").map(answer) {
-        assert_eq!(tree.contains(point), answer, "{point:?}");
-        assert_eq!((cursor.contains(point), table.contains(point)), (answer, answer), "{point:?}");
-        points.push(point);
-        expected.push(answer);
+    for &(point, answer) in &expected {
+        let found = [tree.contains(point), cursor.contains(point), table.contains(point)];
+        assert_eq!(found, [answer; 3], "{point:?}");
     }
-    assert!(points.len() >= 30);
+    let (points, expected): (Vec<_>, Vec<_>) = expected.into_iter().unzip();
     let mut answers = vec![Membership::Undecided; points.len()];
     tree.contains_many(&points, &mut answers).unwrap();
     assert_eq!(answers, expected);
