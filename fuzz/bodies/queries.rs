@@ -5,7 +5,8 @@ use super::{Aligned, CONTROL, Random, ask_measures, halves, walk};
 use leafless::octree::{CellFilter, Cursor, Direction, TaggedCell};
 use leafless::op::Zone;
 use leafless::query::{
-    Columns, DistanceTo, Obstacle, PointCursor, PointTable, Region, Run, Side, classify_box, surface_area,
+    Columns, DistanceTo, Obstacle, PointCursor, PointTable, RayHit, Region, Run, Side, classify_box,
+    ray_spans, surface_area,
 };
 use leafless::render::{
     Camera, ColourMap, Finish, Layer, Lens, OctreeLayer, Outline, Shot, SliceLayer, SlicePlane, Transfer,
@@ -13,8 +14,9 @@ use leafless::render::{
 };
 use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{
-    Cell, Classifier, Control, Csg, Error, Frame, LazyOctree, Membership, OctreeRef, Proof, Ray, Rule, Solid,
-    SurfaceOptions, Tag, Verdict, Worker, build, build_extended, contains, file, measure,
+    Cell, Classifier, Control, Csg, Error, Frame, Interval, LazyOctree, Membership, OctreeRef, Proof, Ray,
+    Rule, Solid, SurfaceOptions, Tag, Verdict, Worker, build, build_extended, cast_rays, contains, file,
+    measure,
 };
 
 /// Asks the tree in the first half of `data` what the second half says.
@@ -70,17 +72,16 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     let mut answers = vec![Membership::Inside; points.len()];
     tree.contains_many(points, &mut answers).expect("as many answers as points");
     let mut remembering = PointCursor::new(tree);
+    let tables = [1, 4].map(|level| PointTable::new(tree, level).expect("a small table"));
     for (&point, &answer) in points.iter().zip(&answers) {
-        let of_cells = plain.contains(point);
-        assert!(may_be(answer, of_cells) && tree.contains(point) == answer, "{point:?}");
-        assert!(may_be(remembering.contains(point), of_cells), "{point:?}");
+        assert!(may_be(answer, plain.contains(point)), "{point:?}");
+        assert_eq!((tree.contains(point), remembering.contains(point)), (answer, answer), "{point:?}");
+        assert_eq!(tables.each_ref().map(|table| table.contains(point)), [answer; 2], "{point:?}");
     }
-    for pair in points.windows(2).take(12) {
-        let Ok(ray) = Ray::between(pair[0], pair[1]) else { continue };
-        let _ = (tree.cast_ray(&ray, Obstacle::Full), tree.cast_ray(&ray, Obstacle::Upper));
-    }
-    match solid.on(&frame, &CONTROL) {
-        Ok(_) => {}
+    let is_solid = solid.on(&frame, &CONTROL).map(|_| ());
+    ask_cut_rays(tree, points, verified && is_solid.is_ok());
+    match is_solid {
+        Ok(()) => {}
         // Placements within each other may be too long for exact numbers.
         Err(Error::Limit { .. }) => return,
         Err(error) => return assert!(!verified && matches!(error, Error::Damaged(_)), "{error}"),
@@ -101,6 +102,26 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
         let decided = [Region::Inside, Region::Outside];
         assert!(!decided.contains(&region) || found == region, "{min:?} {max:?}: {found:?}, {region:?}");
         assert!(found != Region::Inside || region != Region::Outside);
+        let in_place = tree.classify_box(min, max).expect("a box");
+        assert!(
+            !decided.contains(&region) || in_place == region,
+            "{min:?} {max:?}: {in_place:?}, {region:?}"
+        );
+        if !verified {
+            continue;
+        }
+        let both = [in_place, found];
+        let is_open = both.contains(&Region::Undecided);
+        assert!(is_open || in_place == found, "{min:?} {max:?}: {in_place:?}, {found:?}");
+        for (point, &exact) in points.iter().zip(&exact) {
+            let is_within = (0..3).all(|axis| min[axis] < point[axis] && point[axis] < max[axis]);
+            let contradicts = match exact {
+                Membership::Inside => both.contains(&Region::Outside),
+                Membership::Outside => both.contains(&Region::Inside),
+                Membership::Undecided => false,
+            };
+            assert!(!(is_within && contradicts), "{min:?} {max:?}: {both:?}, but {point:?} is {exact:?}");
+        }
     }
     let measured = measure(&solid, &frame, 0.0, &SOME).expect("it is a solid").volume;
     // (Far from the origin of space the universe may have no width in doubles.)
@@ -138,6 +159,48 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
         for &point in points.iter().take(4) {
             let _ = lazy.refine(&Zone::Point(point), frame.depth(), &SOME);
             assert!(may_be(lazy.contains(point), plain.contains(point)), "{point:?}");
+        }
+    }
+}
+
+/// Rays in a tree with cuts end. In one that is known to be a solid, the cells and surfaces that are asked in place
+/// never contradict the solid.
+fn ask_cut_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]], is_solid: bool) {
+    let rays: Vec<Ray> =
+        points.windows(2).take(12).filter_map(|pair| Ray::between(pair[0], pair[1]).ok()).collect();
+    let (solid, frame) = (tree.with_proof(Proof::CERTIFIED), tree.frame());
+    let [mut full, mut upper] = [vec![None; rays.len()], vec![None; rays.len()]];
+    for (on, hits) in [(Obstacle::Full, &mut full), (Obstacle::Upper, &mut upper)] {
+        tree.cast_rays(&rays, on, hits).expect("as many hits as rays");
+        for (ray, hit) in rays.iter().zip(&*hits) {
+            assert_eq!(tree.cast_ray(ray, on), *hit);
+            assert!(hit.is_none_or(|hit| hit.t.lower <= hit.t.upper && hit.t.lower <= 1.0));
+        }
+    }
+    if is_solid {
+        let exact = |on| cast_rays(&solid, frame, &rays, on, &SOME).expect("it is a solid");
+        let (exact_full, exact_upper) = (exact(Obstacle::Full), exact(Obstacle::Upper));
+        for (i, ray) in rays.iter().enumerate() {
+            // What is hit for sure may be hit, and when it may be.
+            for (sure, perhaps) in [(full[i], exact_upper[i]), (exact_full[i], upper[i])] {
+                let overlap = |a: RayHit, b: RayHit| a.t.lower <= b.t.upper && b.t.lower <= a.t.upper;
+                let agree = sure.is_none_or(|sure| perhaps.is_some_and(|perhaps| overlap(sure, perhaps)));
+                assert!(agree, "{ray:?}: {sure:?}, {perhaps:?}");
+            }
+        }
+    }
+    // Each of these may take 3 · 2^depth steps.
+    for ray in rays.iter().take(if frame.depth() < 12 { 4 } else { 0 }) {
+        let spans = tree.ray_spans(ray).expect("there is memory");
+        let within = |inner: &[Interval], outer: &[Interval]| {
+            let holds = |a: &Interval, b: &Interval| b.lower <= a.lower && a.upper <= b.upper;
+            inner.iter().all(|inner| outer.iter().any(|outer| holds(inner, outer)))
+        };
+        assert!(within(&spans.inner, &spans.outer), "{ray:?}: {spans:?}");
+        if is_solid {
+            let exact = ray_spans(&solid, frame, ray, &SOME).expect("it is a solid");
+            let agree = within(&exact.inner, &spans.outer) && within(&spans.inner, &exact.outer);
+            assert!(agree, "{ray:?}: {spans:?}, {exact:?}");
         }
     }
 }
