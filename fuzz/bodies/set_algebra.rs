@@ -4,8 +4,8 @@
 use super::{Aligned, CONTROL, halves, queries};
 use leafless::op::{intersection_of, resolve, union_of, xor_of};
 use leafless::{
-    Control, Error, Octree, OctreeRef, Rule, Solid, Tag, build, compact, complement, difference, file,
-    intersection, union, xor,
+    Control, Error, Membership, Octree, OctreeRef, Rule, Solid, Tag, build, compact, complement, difference,
+    file, intersection, union, xor,
 };
 
 /// Combines the trees in the two halves of `data`.
@@ -14,34 +14,75 @@ pub fn set_algebra(data: &[u8]) {
     let (first, second) = (Aligned::new(first), Aligned::new(second));
     let Ok(a) = file::view(first.bytes()) else { return };
     let sure = file::verify(first.bytes()).is_ok();
-    cuts_do_not_matter(&a);
     // The laws are those of the cells.
-    let a = a.without_cuts();
-    alone(&a, sure);
+    let plain = a.without_cuts();
+    alone(&plain, sure);
     match file::view(second.bytes()) {
         Ok(b) => {
-            cuts_do_not_matter(&b);
-            together(&a, &b.without_cuts(), sure && file::verify(second.bytes()).is_ok());
+            let sure = sure && file::verify(second.bytes()).is_ok();
+            cuts_do_not_matter(&a, &b, sure);
+            together(&plain, &b.without_cuts(), sure);
         }
-        Err(_) => together(&a, &a, sure),
+        Err(_) => {
+            cuts_do_not_matter(&a, &a, sure);
+            together(&plain, &plain, sure);
+        }
     }
 }
 
-/// Operations on stored trees see the cells alone.
-fn cuts_do_not_matter(tree: &OctreeRef<'_>) {
-    if tree.cuts().is_none() {
+/// Operations on stored trees see the cells alone, and have results without cuts, as certain as the operands are.
+fn cuts_do_not_matter(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
+    if a.cuts().is_none() && b.cuts().is_none() {
         return;
     }
-    let plain = tree.without_cuts();
-    type Operation = fn(&OctreeRef<'_>) -> Result<Octree, Error>;
-    let operations: [Operation; 3] =
-        [|a| complement(a, &CONTROL), |a| union(a, a, &CONTROL), |a| resolve(a, Rule::Outer, &CONTROL)];
+    type Operation = fn(&OctreeRef<'_>, &OctreeRef<'_>) -> Result<Octree, Error>;
+    let operations: [Operation; 11] = [
+        |a, _| complement(a, &CONTROL),
+        |a, _| resolve(a, Rule::Outer, &CONTROL),
+        |a, _| resolve(a, Rule::Certified, &CONTROL),
+        |a, _| union(a, a, &CONTROL),
+        |a, b| union(a, b, &CONTROL),
+        |a, b| intersection(a, b, &CONTROL),
+        |a, b| difference(a, b, &CONTROL),
+        |a, b| xor(a, b, &CONTROL),
+        |a, b| union_of(&[*a, *b, *a], &CONTROL),
+        |a, b| intersection_of(&[*a, *b, *a], &CONTROL),
+        |a, b| xor_of(&[*a, *b, *a], &CONTROL),
+    ];
+    let plain = [a.without_cuts(), b.without_cuts()];
     for operation in operations {
-        match (operation(tree), operation(&plain)) {
+        match (operation(a, b), operation(&plain[0], &plain[1])) {
             (Ok(with), Ok(without)) => {
-                assert!(compact(&with.view().without_cuts()).is_ok_and(|with| with == without))
+                assert!(with == without && with.view().cuts().is_none() && with.proof() == without.proof());
+                assert!(!sure || with.view().check().is_ok());
             }
-            (with, without) => assert!(with.is_err() || without.is_ok(), "{:?}", without.err()),
+            (Err(with), Err(without)) => assert_eq!(with.to_string(), without.to_string()),
+            (with, without) => panic!("{:?} and {:?}", with.err(), without.err()),
+        }
+    }
+    // A copy keeps them.
+    if let (true, Ok(same)) = (sure, compact(a)) {
+        assert!(same.view().cuts() == a.cuts() && same.view().check().is_ok());
+    }
+    if sure && a.frame() == b.frame() {
+        what_is_certain_stays_so(a, b);
+    }
+}
+
+/// Where the results are decided, they are what cells and cuts of the operands say.
+fn what_is_certain_stays_so(a: &OctreeRef<'_>, b: &OctreeRef<'_>) {
+    let seed = [a.element_count(), b.brick_count()].map(u64::to_le_bytes).concat().repeat(27);
+    let points = queries::points(a.frame(), &seed);
+    let known = |tree: &OctreeRef<'_>, point| match tree.contains(point) {
+        Membership::Inside => Some(true),
+        Membership::Outside => Some(false),
+        Membership::Undecided => None,
+    };
+    for (operation, logic) in OPERATIONS {
+        let result = operation(a, b, &CONTROL).expect("good operands");
+        for &point in &points {
+            let (found, expected) = (known(result.view(), point), logic(known(a, point), known(b, point)));
+            assert!(found.is_none() || found == expected, "{point:?}: {found:?}, {expected:?}");
         }
     }
 }
@@ -87,6 +128,16 @@ fn decided(tag: Tag) -> Option<bool> {
         Tag::Partial | Tag::Branch => None,
     }
 }
+
+type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
+
+/// The operations of two trees, and what they are.
+const OPERATIONS: [(Binary, Logic); 4] = [
+    (union, |a, b| not(and(not(a), not(b)))),
+    (intersection, and),
+    (difference, |a, b| and(a, not(b))),
+    (xor, |a, b| a.zip(b).map(|(a, b)| a ^ b)),
+];
 
 /// What holds of every result, `most` being the elements and bricks that it may have.
 fn sound(result: Result<Octree, Error>, most: u64, sure: bool) -> Option<Octree> {
@@ -156,15 +207,7 @@ fn together(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
         return;
     }
     let most = size(a) + size(b);
-    type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
-    let both: Logic = and;
-    let operations: [(Binary, Logic); 4] = [
-        (union, |a, b| not(and(not(a), not(b)))),
-        (intersection, both),
-        (difference, |a, b| and(a, not(b))),
-        (xor, |a, b| a.zip(b).map(|(a, b)| a ^ b)),
-    ];
-    for (operation, logic) in operations {
+    for (operation, logic) in OPERATIONS {
         let result = sound(operation(a, b, &CONTROL), most, sure);
         let turned = sound(operation(b, a, &CONTROL), most, sure);
         let alike = sound(operation(a, a, &CONTROL), 2 * size(a), false);
