@@ -15,6 +15,7 @@ pub(crate) struct Lock<T> {
 }
 
 impl<T> Lock<T> {
+    #[cfg(feature = "parallel")]
     pub(crate) fn new(value: T) -> Lock<T> {
         Lock { mark: AtomicBool::new(false), value: Mutex::new(value) }
     }

@@ -59,10 +59,10 @@
 //!
 //! # The format
 //!
-//! Version 0.3. **Later versions of major version 0 only add to it**: a file of version 0.1 stays readable,
+//! Version 0.4. **Later versions of major version 0 only add to it**: a file of version 0.1 stays readable,
 //! and a reader of version 0.1 reads any later file that holds an octree. Version 0.2 added channels,
-//! version 0.3 tri-dexel models, which older readers refuse. A file has the oldest version that knows all of its objects,
-//! so an octree without channels is in a file of version 0.1.
+//! version 0.3 tri-dexel models, which older readers refuse, version 0.4 cuts, without which older readers read the tree. A file has
+//! the oldest version that knows all of its objects and sections, so an octree without channels and cuts is in a file of version 0.1.
 //!
 //! A file is a header of 128 bytes, a table of sections, and the sections: the arrays of an
 //! [`OctreeRef`](crate::OctreeRef), each on a multiple of 64 bytes, all numbers little-endian. Header, table
@@ -80,9 +80,17 @@
 //! | 8 | brick indices | u16 | bricks, if through a dictionary |
 //! | 9 | dictionary entries | one or two u64 | dictionary entries |
 //! | 10 | dictionary segments | u64 | segments of the dictionary |
+//! | 11 | cut heads | u8 | cuts |
+//! | 12 | cut ids | u8, u16 or u32 | surfaces of all cuts |
+//! | 13 | cut blocks | two u32 | ⌈cuts / 32⌉ |
+//! | 14 | cut first | u32 | elements + bricks + 1 |
+//! | 15 | surfaces | four u32 | surfaces |
 //! | 16 | values of a channel | one to four u8, u16, u32 or f32 | values |
 //! | 18 | value rel of a channel | u16 | elements + bricks |
 //! | 19 | value base of a channel | u64 | ⌈(elements + bricks) / 1024⌉ |
+//! | 20 | surface numbers | f64 | doubles of all surfaces |
+//! | 21 | placements | twelve f64, u64 | maps |
+//! | 22 | origins | two u64 | what slabs were made from |
 //! | 32 | windows of a tri-dexel model | four u32 | directions |
 //! | 33, 38, 43 | starts along x, y, z | u32 | rays of the window + 1 |
 //! | 34, 39, 44 | spans along x, y, z | two u32 or f64 | intervals |

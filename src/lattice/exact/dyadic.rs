@@ -1,7 +1,6 @@
 //! Integers times powers of two. Every double is one, and so are sums and products of them. All of it is
 //! cold.
 
-use crate::memory;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -13,6 +12,22 @@ use num_traits::{ToPrimitive, Zero};
 pub(crate) struct Dyadic {
     mantissa: BigInt,
     exponent: i64,
+}
+
+/// Doubles whose sum is an exact number, in memory of fixed size: that a surface cannot be stored is another failure than that
+/// memory is refused.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Terms {
+    doubles: [f64; 8],
+    count: usize,
+}
+
+impl core::ops::Deref for Terms {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.doubles[..self.count]
+    }
 }
 
 impl Dyadic {
@@ -118,20 +133,21 @@ impl Dyadic {
     }
 
     /// Doubles whose sum is exactly this, the largest first, each at most 2^-53 of the one before; none for zero. `None` if
-    /// there are more than `most`, or the number reaches beyond the doubles.
-    pub(crate) fn expansion(&self, most: usize) -> Option<Vec<f64>> {
-        let mut terms = Vec::new();
+    /// there are more than `most`, which is 8 or less, or the number reaches beyond the doubles.
+    pub(crate) fn expansion(&self, most: usize) -> Option<Terms> {
+        let mut terms = Terms { doubles: [0.0; 8], count: 0 };
         let mut rest = self.clone();
         while !rest.is_zero() {
             // The nearest of the doubles on both sides.
             let inner = rest.rounded();
             let outer = if inner > 0.0 { inner.next_up() } else { inner.next_down() };
-            if terms.len() == most || !outer.is_finite() || inner == 0.0 {
+            if terms.count == most || !outer.is_finite() || inner == 0.0 {
                 return None;
             }
             let [to_inner, to_outer] = [inner, outer].map(|term| &rest - &Dyadic::new(term));
             let is_outer = (&to_inner + &to_outer).sign() == rest.sign();
-            memory::push(&mut terms, if is_outer { outer } else { inner }).ok()?;
+            *terms.doubles.get_mut(terms.count)? = if is_outer { outer } else { inner };
+            terms.count += 1;
             rest = if is_outer { to_outer } else { to_inner };
         }
         Some(terms)

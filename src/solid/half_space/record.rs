@@ -238,7 +238,7 @@ impl PlacedHalfSpace {
         if let Some((kind, numbers)) = self.half_space.numbers() {
             bits.push(kind as u64);
             let terms = numbers.iter().map(|number| number.expansion(MOST_TERMS)).collect::<Option<Vec<_>>>();
-            doubles = terms.unwrap_or_default().concat();
+            doubles = terms.unwrap_or_default().iter().flat_map(|terms| terms.iter().copied()).collect();
         }
         let maps = self.placements.iter().flat_map(|map| map.rows().as_flattened().iter().copied());
         bits.extend(doubles.into_iter().chain(maps).map(f64::to_bits));
@@ -298,7 +298,7 @@ impl PlacedHalfSpace {
                 let own = number.expansion(MOST_TERMS).ok_or_else(too_long)?;
                 terms |= (own.len() as u32) << (3 * i);
                 all.doubles.try_reserve(own.len())?;
-                all.doubles.extend(own);
+                all.doubles.extend_from_slice(&own);
             }
             all.records.push(SurfaceRecord { kind: kind as u32, terms, first, placement: outer as u32 });
         }
