@@ -427,6 +427,15 @@ const WAYS: &[Way] = &[
         proven: SAME,
     },
     Way {
+        name: "plain of extended",
+        through: &["op/extended.rs build_extended", "op/extended.rs plain"],
+        make: |a| {
+            let tree = build_extended(&a.csg(), &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?;
+            of_ball(leafless::op::plain(&tree, DEPTH, Rule::Certified, &CONTROL)?)
+        },
+        proven: SAME,
+    },
+    Way {
         name: "union expression",
         through: &["solid/csg/mod.rs union_of"],
         make: |a| of(whole(&Csg::union_of([a.csg(), a.other_csg()])?)?, or),
