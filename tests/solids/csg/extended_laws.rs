@@ -136,7 +136,7 @@ fn any_number_of_threads_makes_the_same_tree() {
             let other = of(threads).unwrap();
             assert_eq!((&one, Solid::fingerprint(&one)), (&other, Solid::fingerprint(&other)), "{model:#?}");
         }
-        cells += one.view().cuts().unwrap().cells;
+        cells += one.view().cuts().unwrap_or_default().cells;
         made += 1;
         if made == 12 {
             break;
@@ -294,7 +294,7 @@ fn every_kind_of_solid_answers_its_questions() {
     assert_eq!(told(&callback, &frame), Told::default());
     // A tree of such a solid keeps nothing, and is the plain tree.
     let kept = build_extended(&callback, &frame, &SurfaceOptions::default(), &alone()).unwrap();
-    assert_eq!(kept.view().cuts().unwrap().surfaces, 0);
+    assert_eq!(kept.view().cuts().unwrap_or_default().surfaces, 0);
     assert_eq!(kept.without_cuts(), build(&callback, &frame, Rule::Certified, &alone()).unwrap());
 }
 
@@ -361,7 +361,7 @@ fn equal_expressions_make_equal_trees() {
                 assert_eq!(tree(other).unwrap(), own, "{seed} {i}");
             }
             made += 1;
-            cuts += own.view().cuts().unwrap().cells;
+            cuts += own.view().cuts().unwrap_or_default().cells;
         }
     }
     assert!(made > 60 && cuts > 100, "{made} {cuts}");
