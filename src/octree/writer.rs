@@ -148,6 +148,17 @@ impl<T: Copy + Send + Sync> Chunks<T> {
     }
 }
 
+/// Neighbouring subtrees that are copied.
+pub(crate) struct Subtrees {
+    /// The element that they are parts of.
+    pub parent: usize,
+    /// Their first elements, which lie on level `e`, and have been admitted.
+    pub range: Range<usize>,
+    pub e: usize,
+    /// Whether their complement is meant.
+    pub flip: bool,
+}
+
 enum BrickChunks {
     One(Chunks<u64>),
     Two(Chunks<Planes>),
@@ -254,23 +265,26 @@ impl<'j> Writer<'j> {
         self.job.spend(core::mem::take(&mut self.nodes), core::mem::take(&mut self.bytes))
     }
 
-    /// Copies the subtrees below the elements `range` of level `e`, complemented if `flip`: one run per
-    /// level. They must be admissible by `windows`, which they pass.
+    /// Copies a run of subtrees: one run of elements per level. They must be admissible by `windows`, which they pass. `copied` hears
+    /// of each run of elements.
+    #[inline(always)]
     pub(crate) fn copy(
         &mut self,
         tree: &OctreeRef<'_>,
         windows: &mut Windows,
-        parent: usize,
-        e: usize,
-        mut range: Range<usize>,
-        flip: bool,
+        run: Subtrees,
+        mut copied: impl FnMut(usize, Range<usize>) -> Result<(), Error>,
     ) -> Result<(), Error> {
+        let Subtrees { parent, e, mut range, flip } = run;
         let last = self.levels.len();
         for level in e..=last {
-            windows.admit(parent, level, range.start, range.end)?;
+            if level > e {
+                windows.admit(parent, level, range.start, range.end)?;
+            }
             if range.is_empty() {
                 return Ok(());
             }
+            copied(level, range.clone())?;
             let count = range.len();
             let reported = u32::try_from(count).unwrap_or(u32::MAX);
             if level == last {

@@ -11,13 +11,14 @@
 //! PARTIAL cells follow Kleene's logic, so the bounds stay bounds. Operands may be mapped files with
 //! dictionaries; they are read where they lie.
 
+use super::extended::{self, Combination};
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::{Damage, Error};
 use crate::memory;
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
-use crate::octree::writer::Writer;
+use crate::octree::writer::{Subtrees, Writer};
 use crate::octree::{Octree, Planes, Proof, Tag};
 use crate::parallel::each;
 use core::ops::Range;
@@ -75,6 +76,9 @@ pub fn xor(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Resul
 /// # Errors
 /// As [`union`].
 pub fn complement(a: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
+    if a.cuts.is_some() {
+        return extended::combine(&[(*a, true)], Combination::All { flip: false }, control);
+    }
     let all = Octree::uniform(*a.frame(), Tag::Full, Tag::Full)?;
     combine(Kernel { operands: [Operand::of(a), Operand::of(all.view())], op: Op::And, flip: true }, control)
 }
@@ -85,6 +89,9 @@ pub fn complement(a: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Er
 /// # Errors
 /// [`Error::Argument`] if there is no tree; else as [`union`].
 pub fn union_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
+    if keep_surfaces(trees) {
+        return with_surfaces(trees, |_| true, Combination::All { flip: true }, control);
+    }
     reduce(trees, union, control)
 }
 
@@ -93,6 +100,9 @@ pub fn union_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree
 /// # Errors
 /// As [`union_of`].
 pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
+    if keep_surfaces(trees) {
+        return with_surfaces(trees, |_| false, Combination::All { flip: false }, control);
+    }
     reduce(trees, intersection, control)
 }
 
@@ -101,6 +111,9 @@ pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result
 /// # Errors
 /// As [`union_of`].
 pub fn difference_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
+    if keep_surfaces(trees) {
+        return with_surfaces(trees, |i| i > 0, Combination::All { flip: false }, control);
+    }
     match trees {
         [first, others @ ..] if others.len() > 1 => {
             check_all(trees)?;
@@ -117,7 +130,26 @@ pub fn difference_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<O
 /// # Errors
 /// As [`union_of`].
 pub fn xor_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
+    if keep_surfaces(trees) {
+        return with_surfaces(trees, |_| false, Combination::Odd, control);
+    }
     reduce(trees, xor, control)
+}
+
+/// Whether a tree keeps surfaces.
+fn keep_surfaces(trees: &[OctreeRef<'_>]) -> bool {
+    trees.iter().any(|tree| tree.cuts.is_some())
+}
+
+/// All trees at once; of those whose place says so the complement is meant.
+fn with_surfaces(
+    trees: &[OctreeRef<'_>],
+    not: impl Fn(usize) -> bool,
+    combination: Combination,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    let operands = memory::collected(trees.iter().enumerate().map(|(i, tree)| (*tree, not(i))))?;
+    extended::combine(&operands, combination, control)
 }
 
 type Binary = fn(&OctreeRef<'_>, &OctreeRef<'_>, &Control<'_>) -> Result<Octree, Error>;
@@ -259,6 +291,14 @@ struct Visit<'v, 'a, 'w, 'j> {
 const WORTH_THREADS: u64 = 1 << 21;
 
 fn combine(kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {
+    let operands = kernel.operands.each_ref().map(|operand| (operand.tree, operand.flip));
+    if operands.iter().any(|(tree, _)| tree.cuts.is_some()) {
+        let combination = match kernel.op {
+            Op::And => Combination::All { flip: kernel.flip },
+            Op::Xor => Combination::Odd,
+        };
+        return extended::combine(&operands, combination, control);
+    }
     combine_above(WORTH_THREADS, kernel, control)
 }
 
@@ -385,7 +425,9 @@ impl Kernel<'_> {
         match step {
             Step::Copy { of, flip, parent, range } => {
                 let windows = &mut walk.windows[of];
-                walk.writer.copy(&self.operands[of].tree, windows, parent, e, range, flip)?;
+                windows.admit(parent, e, range.start, range.end)?;
+                let run = Subtrees { parent, range, e, flip };
+                walk.writer.copy(&self.operands[of].tree, windows, run, |_, _| Ok(()))?;
                 Ok(None)
             }
             Step::Visit(c, sources) if e + 1 == self.operands[0].tree.levels() => {

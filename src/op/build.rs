@@ -8,7 +8,7 @@ use crate::memory;
 use crate::octree::block::BLOCK_LEVELS;
 use crate::octree::links::Windows;
 use crate::octree::view::{OctreeRef, element_levels, starts_half_way};
-use crate::octree::writer::Writer;
+use crate::octree::writer::{Subtrees, Writer};
 use crate::octree::{Block, Octree, Planes, Tag};
 use crate::parallel::{self, each_with};
 use crate::solid::{Ask, Batch, Classifier, Parts, Solid, Subtree, Verdict, Worker};
@@ -69,14 +69,19 @@ pub(crate) fn build_on<C: Classifier>(
     })
 }
 
-/// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`]. Cells are meant: what they
-/// keep of surfaces is dropped.
+/// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`]. Of a tree that keeps surfaces
+/// it is not known which cells are meant: [`plain`](super::plain) takes a depth, and
+/// [`without_cuts`](OctreeRef::without_cuts) leaves the cells that there are.
 ///
 /// # Errors
 /// [`Error::NotSampled`] under [`Rule::Sampled`] if a cell is PARTIAL, because a stored tree knows no more
-/// about it; and what `control` asks for.
+/// about it; [`Error::Argument`] if the tree keeps surfaces; and what `control` asks for.
 pub fn resolve(tree: &OctreeRef<'_>, rule: Rule, control: &Control<'_>) -> Result<Octree, Error> {
-    build(&tree.without_cuts(), tree.frame(), rule, control)
+    if tree.cuts.is_some() {
+        let problem = "keeps surfaces: take the plain tree to a depth, or the tree without its cuts";
+        return Err(Error::Argument { name: "tree", problem });
+    }
+    build(tree, tree.frame(), rule, control)
 }
 
 /// The same tree with its bricks encoded as a file would have them, through a dictionary where that is
@@ -385,5 +390,7 @@ struct Run {
 /// on the frame.
 fn copy(first: &Subtree<'_>, count: usize, writer: &mut Writer<'_>) -> Result<(), Error> {
     let &Subtree { tree, level, index, flip } = first;
-    writer.copy(tree, &mut Windows::new(tree), index, level, index..index + count, flip)
+    let (mut windows, range) = (Windows::new(tree), index..index + count);
+    windows.admit(index, level, range.start, range.end)?;
+    writer.copy(tree, &mut windows, Subtrees { parent: index, range, e: level, flip }, |_, _| Ok(()))
 }

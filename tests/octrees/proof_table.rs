@@ -111,6 +111,17 @@ impl Given {
         Csg::solid(AnySolid::new(self.other.clone()))
     }
 
+    /// The two with their surfaces, of which that is said which is proven of the inputs.
+    fn extended(&self) -> Result<[Octree; 2], Error> {
+        let of = |(centre, radius), proof| {
+            let ball = Csg::ball(centre, radius)?;
+            let tree = build_extended(&ball, &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?;
+            assert!(tree.view().cuts().is_some());
+            Ok::<_, Error>(tree.with_proof(proof))
+        };
+        Ok([of(BALL, self.tree.proof())?, of(OTHER, self.other.proof())?])
+    }
+
     fn records(&self, options: &VoxelOptions) -> VoxelRecords {
         VoxelRecords::of(self.tree.view(), options, None, &CONTROL).unwrap()
     }
@@ -395,13 +406,13 @@ const WAYS: &[Way] = &[
     },
     Way {
         name: "extended",
-        through: &["Octree", "op/extended.rs build_extended"],
+        through: &["Octree", "op/extended/build.rs build_extended"],
         make: |a| of_ball(build_extended(&a.tree, &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?),
         proven: SAME,
     },
     Way {
         name: "extended expression",
-        through: &["solid/csg/mod.rs union_of", "op/extended.rs build_extended"],
+        through: &["solid/csg/mod.rs union_of", "op/extended/build.rs build_extended"],
         make: |a| {
             let csg = Csg::union_of([a.csg(), a.other_csg()])?;
             of(build_extended(&csg, &frame(DEPTH), &SurfaceOptions { tolerance: Some(0.01) }, &CONTROL)?, or)
@@ -419,7 +430,7 @@ const WAYS: &[Way] = &[
     },
     Way {
         name: "built of extended",
-        through: &["op/extended.rs build_extended", "op/build.rs build"],
+        through: &["op/extended/build.rs build_extended", "op/build.rs build"],
         make: |a| {
             let tree = build_extended(&a.csg(), &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?;
             of_ball(build(&tree, &frame(DEPTH), Rule::Certified, &CONTROL)?)
@@ -427,8 +438,57 @@ const WAYS: &[Way] = &[
         proven: SAME,
     },
     Way {
+        name: "union of extended",
+        through: &["op/boolean.rs union", "op/boolean.rs union_of"],
+        make: |a| {
+            let [one, other] = a.extended()?;
+            let pair = union(one.view(), other.view(), &CONTROL)?;
+            of(union_of(&[*pair.view(), *one.view(), *other.view()], &CONTROL)?, or)
+        },
+        proven: SAME,
+    },
+    Way {
+        name: "intersection of extended and plain",
+        through: &["op/boolean.rs intersection", "op/boolean.rs intersection_of"],
+        make: |a| {
+            let [one, other] = a.extended()?;
+            let pair = intersection(one.view(), a.other.view(), &CONTROL)?;
+            of(intersection_of(&[*pair.view(), *other.view()], &CONTROL)?, and)
+        },
+        proven: SAME,
+    },
+    Way {
+        name: "difference of extended",
+        through: &["op/boolean.rs difference", "op/boolean.rs difference_of"],
+        make: |a| {
+            let [one, other] = a.extended()?;
+            let pair = difference(one.view(), other.view(), &CONTROL)?;
+            of(difference_of(&[*pair.view(), *other.view(), *a.other.view()], &CONTROL)?, without)
+        },
+        proven: IF_BOTH,
+    },
+    Way {
+        name: "symmetric difference of extended",
+        through: &["op/boolean.rs xor", "op/boolean.rs xor_of"],
+        make: |a| {
+            let [one, other] = a.extended()?;
+            let pair = xor(one.view(), other.view(), &CONTROL)?;
+            of(xor_of(&[*pair.view(), *other.view(), *other.view()], &CONTROL)?, odd)
+        },
+        proven: IF_BOTH,
+    },
+    Way {
+        name: "complement of extended",
+        through: &["op/boolean.rs complement"],
+        make: |a| {
+            let [one, _] = a.extended()?;
+            of(complement(one.view(), &CONTROL)?, |p| ball(p).map(|inside| !inside))
+        },
+        proven: SWAPPED,
+    },
+    Way {
         name: "plain of extended",
-        through: &["op/extended.rs build_extended", "op/extended.rs plain"],
+        through: &["op/extended/build.rs build_extended", "op/extended/build.rs plain"],
         make: |a| {
             let tree = build_extended(&a.csg(), &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?;
             of_ball(leafless::op::plain(&tree, DEPTH, Rule::Certified, &CONTROL)?)

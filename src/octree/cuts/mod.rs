@@ -23,14 +23,17 @@ pub(crate) use ids::{CellIds, Ids, OwnedIds, width};
 pub use read::{CellFunction, StoredSurface};
 pub(crate) use record::Head;
 pub use surfaces::SurfaceKind;
-pub(crate) use surfaces::{MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceRecord, Surfaces, SurfacesRef};
-pub(crate) use writer::{Cut, CutWriter};
+pub(crate) use surfaces::{
+    MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceRecord, SurfaceWriter, Surfaces, SurfacesRef,
+};
+pub(crate) use writer::{Cut, CutWriter, Names};
 
 use super::word::Planes;
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 use bytemuck::{Pod, Zeroable};
+use core::ops::Range;
 
 /// Records that share a [`Block`].
 pub(crate) const BLOCK: usize = 32;
@@ -146,6 +149,25 @@ impl CutsRef<'_> {
         self.checked(record).unwrap_or(CellCut::None)
     }
 
+    /// Ids, and splits, of the records before one.
+    fn before(&self, record: usize) -> Option<(usize, usize)> {
+        let before = self.heads.get(record - record % BLOCK..record)?;
+        let block = self.blocks.get(record / BLOCK)?;
+        let splits = before.iter().filter(|&&head| Head(head).is_split()).count();
+        let ids = before.iter().map(|&head| Head(head).surfaces()).sum::<usize>();
+        Some((block.ids as usize + ids, block.splits as usize + splits))
+    }
+
+    /// The records of the parts of those records of a run that are splits.
+    fn parts(&self, run: Range<usize>) -> Range<usize> {
+        let splits =
+            self.heads.get(run.clone()).unwrap_or(&[]).iter().filter(|&&head| Head(head).is_split()).count();
+        let before = self.before(run.start).map_or(0, |(_, splits)| splits);
+        let first = self.of_planes() + 8 * before;
+        // (Children come after their parents, so that every way ends.)
+        if splits > 0 && first >= run.end { first..first + 8 * splits } else { 0..0 }
+    }
+
     fn checked(&self, record: usize) -> Option<CellCut> {
         let head = Head(*self.heads.get(record)?);
         let before = &self.heads[record - record % BLOCK..record];
@@ -166,6 +188,12 @@ impl CutsRef<'_> {
             CellCut::Table { ids, table: head.0 }
         })
     }
+}
+
+/// How many records an element has whose cells are `planes`.
+fn records(planes: Planes) -> u32 {
+    let [.., whole] = planes.octants();
+    planes.partial().count_ones() - 7 * whole.count_ones()
 }
 
 /// The records of an element's cells before cell `c`.

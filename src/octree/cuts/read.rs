@@ -60,8 +60,6 @@ impl<'a> StoredSurface<'a> {
 
     /// Of a slab that can be told from others: the fingerprint of what it was made from, and its number there.
     pub fn origin(&self) -> Option<([u64; 2], u32)> {
-        let whole = |i: usize| self.number(i).iter().sum::<f64>() as u32;
-        let origin = (self.kind == SurfaceKind::Slab).then(|| whole(5))?.checked_sub(1)?;
-        Some((*self.surfaces.origins.get(origin as usize)?, whole(6)))
+        self.surfaces.identity(self.id)
     }
 }

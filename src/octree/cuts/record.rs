@@ -69,6 +69,12 @@ impl Head {
         }
     }
 
+    /// The table of the same surfaces of which one is negated.
+    pub(crate) fn negated(table: u8, surface: usize) -> u8 {
+        let (holds, shift) = (Head::HOLDS[surface], 1 << surface);
+        (table & holds) >> shift | (table & !holds) << shift
+    }
+
     /// Whether a table depends on a surface.
     pub(crate) fn needs(table: u8, surface: usize) -> bool {
         Head::depends_on(table, surface)

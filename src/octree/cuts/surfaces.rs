@@ -1,9 +1,12 @@
 //! The table of surfaces: each is the boundary of the points where a function is positive, given in numbers that are exact.
 
-use crate::error::Damage;
+use crate::error::{Damage, Error};
 use crate::lattice::{Affine, valid};
+use crate::memory;
 use alloc::vec::Vec;
 use bytemuck::{Pod, Zeroable};
+use core::cmp::Ordering;
+use hashbrown::HashMap;
 
 /// What kind of function a [`StoredSurface`](super::StoredSurface) has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -31,6 +34,14 @@ impl SurfaceKind {
             SurfaceKind::Plane | SurfaceKind::Torus => 4,
             SurfaceKind::Slab => 7,
             SurfaceKind::Quadric | SurfaceKind::Powers => 10,
+        }
+    }
+
+    /// Numbers that say where a surface is, and not which of all it is.
+    pub(crate) const fn figures(self) -> u32 {
+        match self {
+            SurfaceKind::Slab => 5,
+            _ => self.numbers(),
         }
     }
 
@@ -114,6 +125,77 @@ impl Surfaces {
     }
 }
 
+/// Puts surfaces into a table one after the other; maps and origins that several share stand once.
+#[derive(Default)]
+pub(crate) struct SurfaceWriter {
+    all: Surfaces,
+    places: HashMap<(u64, [[u64; 4]; 3]), u64>,
+    origins: HashMap<Origin, u32>,
+}
+
+impl SurfaceWriter {
+    /// A surface, whose placements are those maps in the order in which they are applied, last one first.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if a number is the sum of more than seven doubles, if there are more than 64 maps, or too many doubles;
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn put<'n>(
+        &mut self,
+        kind: SurfaceKind,
+        numbers: impl Iterator<Item = &'n [f64]>,
+        identity: Option<(Origin, u32)>,
+        placements: impl Iterator<Item = &'n [[f64; 4]; 3]>,
+    ) -> Result<(), Error> {
+        let mut outer = 0;
+        for (rows, count) in placements.zip(1..) {
+            if count > MOST_MAPS {
+                let what = "placements of a surface within each other";
+                return Err(Error::Limit { what, limit: MOST_MAPS as u64 });
+            }
+            self.places.try_reserve(1)?;
+            let next = self.all.placements.len() as u64 + 1;
+            let place = *self.places.entry((outer, rows.map(|row| row.map(f64::to_bits)))).or_insert(next);
+            if place == next {
+                memory::push(&mut self.all.placements, Placement { rows: *rows, outer })?;
+            }
+            outer = place;
+        }
+        let too_many = |_| Error::Limit { what: "doubles of all surfaces", limit: u32::MAX.into() };
+        let (first, mut terms) = (u32::try_from(self.all.doubles.len()).map_err(too_many)?, 0);
+        let mut number = |i: u32, own: &[f64]| {
+            if own.len() > MOST_TERMS {
+                let what = "doubles for an exact number of a surface";
+                return Err(Error::Limit { what, limit: MOST_TERMS as u64 });
+            }
+            terms |= (own.len() as u32) << (3 * i);
+            self.all.doubles.try_reserve(own.len())?;
+            self.all.doubles.extend_from_slice(own);
+            Ok(())
+        };
+        for (i, own) in (0..kind.figures()).zip(numbers) {
+            number(i, own)?;
+        }
+        if let Some((origin, which)) = identity {
+            self.origins.try_reserve(1)?;
+            let next = self.all.origins.len() as u32 + 1;
+            let place = *self.origins.entry(origin).or_insert(next);
+            if place == next {
+                memory::push(&mut self.all.origins, origin)?;
+            }
+            for (i, whole) in (kind.figures()..).zip([place, which]) {
+                let double = [f64::from(whole)];
+                number(i, if whole == 0 { &[] } else { &double })?;
+            }
+        }
+        let record = SurfaceRecord { kind: kind as u32, terms, first, placement: outer as u32 };
+        memory::push(&mut self.all.records, record)
+    }
+
+    pub(crate) fn finish(self) -> Surfaces {
+        self.all
+    }
+}
+
 impl PartialEq for SurfacesRef<'_> {
     fn eq(&self, other: &Self) -> bool {
         // (Doubles that nobody has verified may be no numbers.)
@@ -128,12 +210,18 @@ impl PartialEq for SurfacesRef<'_> {
 }
 
 impl<'a> SurfacesRef<'a> {
+    pub(crate) const NONE: SurfacesRef<'static> =
+        SurfacesRef { records: &[], doubles: &[], placements: &[], origins: &[] };
+
     pub(crate) fn len(&self) -> usize {
         self.records.len()
     }
 
     /// The kind of a surface, and its numbers, each as the doubles whose sum it is; `None` where the table is damaged.
-    pub(crate) fn get(&self, id: usize) -> Option<(SurfaceKind, impl Iterator<Item = &'a [f64]> + use<'a>)> {
+    pub(crate) fn get(
+        &self,
+        id: usize,
+    ) -> Option<(SurfaceKind, impl Iterator<Item = &'a [f64]> + Clone + use<'a>)> {
         let record = *self.records.get(id)?;
         let kind = SurfaceKind::of(record.kind)?;
         let first = record.first as usize;
@@ -146,8 +234,37 @@ impl<'a> SurfacesRef<'a> {
         Some((kind, numbers))
     }
 
+    /// Which of all slabs a slab is, if that is known: its origin, and its number there.
+    pub(crate) fn identity(&self, id: usize) -> Option<(Origin, u32)> {
+        let (kind, numbers) = self.get(id)?;
+        let mut whole = numbers.skip(5).map(|number| number.iter().sum::<f64>() as u32);
+        let origin = (kind == SurfaceKind::Slab).then(|| whole.next())??.checked_sub(1)?;
+        Some((*self.origins.get(origin as usize)?, whole.next()?))
+    }
+
+    /// What surfaces are ordered by, and records that tell of one surface: the number of words that they take; the kind, of how
+    /// many doubles each number is the sum, the doubles, and the maps; and, of slabs, which they are.
+    fn words(&self, id: usize) -> (usize, impl Iterator<Item = u64> + use<'a>) {
+        let (kind, numbers) = self.get(id).unzip();
+        let figures = kind.map_or(0, SurfaceKind::figures) as usize;
+        let doubles = numbers.into_iter().flatten().take(figures).flatten();
+        let maps = self.placements(id).flat_map(|rows| rows.as_flattened());
+        let count = 2 + doubles.clone().count() + maps.clone().count();
+        let terms = self.records.get(id).map_or(0, |record| record.terms & ((1 << (3 * figures)) - 1));
+        let (origin, number) = self.identity(id).unwrap_or_default();
+        let which = origin.into_iter().chain([number.into()]);
+        let bits = doubles.chain(maps).map(|c| c.to_bits());
+        (count, [kind.map_or(0, |kind| kind as u64), terms.into()].into_iter().chain(bits).chain(which))
+    }
+
+    /// Compares a surface with another one, of the same table or not, by their words.
+    pub(crate) fn order(&self, id: usize, others: &SurfacesRef<'_>, other: usize) -> Ordering {
+        let ((count, words), (others_count, others)) = (self.words(id), others.words(other));
+        count.cmp(&others_count).then_with(|| words.cmp(others))
+    }
+
     /// The maps that a surface is placed by, in the order in which they are applied; at most one more than is legal.
-    pub(crate) fn placements(&self, id: usize) -> impl Iterator<Item = &'a [[f64; 4]; 3]> + use<'a> {
+    pub(crate) fn placements(&self, id: usize) -> impl Iterator<Item = &'a [[f64; 4]; 3]> + Clone + use<'a> {
         let placements = self.placements;
         let mut next = self.records.get(id).map_or(0, |record| u64::from(record.placement));
         core::iter::from_fn(move || {

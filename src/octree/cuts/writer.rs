@@ -1,18 +1,20 @@
 //! How cuts are gathered while a tree is written, and put in order when it is done.
 
-use super::{BLOCK, Block, Cuts, Head, OwnedIds, Surfaces};
-use crate::error::Error;
+use super::{BLOCK, Block, Cuts, CutsRef, Head, OwnedIds, Surfaces, records};
+use crate::error::{Damage, Error};
 use crate::memory;
+use crate::octree::word::Planes;
 use alloc::boxed::Box;
-use alloc::collections::VecDeque;
 use alloc::vec::Vec;
+use core::cmp::Ordering;
+use core::ops::Range;
 
 /// What is known of a PARTIAL cell, while the tree is written.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Cut {
     /// Nothing.
     None,
-    /// Surfaces, in ascending order of their ids, and the function of them; the table depends on each.
+    /// Surfaces, and the function of them; the table depends on each.
     Table { ids: [u32; 3], table: u8 },
     /// What is known of the children.
     Split(Box<[Cut; 8]>),
@@ -46,19 +48,57 @@ impl Cut {
     }
 }
 
+/// Records one after the other, and the numbers that their surfaces have so far.
+#[derive(Default)]
+struct Records {
+    heads: Vec<u8>,
+    ids: Vec<u32>,
+}
+
+/// Cuts of one level of elements: first the records of its cells, then those of their parts, then those of the parts of these.
+#[derive(Default)]
+struct Level {
+    generations: Vec<Records>,
+    /// How many records each element has.
+    counts: Vec<u32>,
+}
+
+impl Level {
+    fn generation(&mut self, g: usize) -> Result<&mut Records, Error> {
+        if g == self.generations.len() {
+            memory::push(&mut self.generations, Records::default())?;
+        }
+        Ok(&mut self.generations[g])
+    }
+
+    fn push(&mut self, g: usize, cut: &Cut) -> Result<(), Error> {
+        let records = self.generation(g)?;
+        let head = cut.head();
+        memory::push(&mut records.heads, head.0)?;
+        match cut {
+            Cut::None => {}
+            Cut::Table { ids, .. } => {
+                records.ids.try_reserve(head.surfaces())?;
+                records.ids.extend_from_slice(&ids[..head.surfaces()]);
+            }
+            Cut::Split(children) => {
+                for child in &**children {
+                    self.push(g + 1, child)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Cuts of a tree that is being written: level by level, as its elements.
 #[derive(Default)]
 pub(crate) struct CutWriter {
     levels: Vec<Level>,
 }
 
-/// Cuts of one level of elements.
-#[derive(Default)]
-struct Level {
-    cuts: Vec<Cut>,
-    /// How many each element has.
-    counts: Vec<u32>,
-}
+/// What the surfaces of copied records are called: for each its number so far, and whether it is negated there.
+pub(crate) type Names<'n> = &'n [(u32, bool)];
 
 impl CutWriter {
     pub(crate) fn new(levels: usize) -> Result<CutWriter, Error> {
@@ -67,106 +107,230 @@ impl CutWriter {
         Ok(CutWriter { levels: own })
     }
 
-    /// Hands over the cuts of an element of level `e`, which has been stored.
-    pub(crate) fn put(&mut self, e: usize, cuts: impl IntoIterator<Item = Cut>) -> Result<(), Error> {
+    /// Hands over the cuts of an element of level `e`, which has been stored; returns how many there are.
+    pub(crate) fn put<'c>(&mut self, e: usize, cuts: impl Iterator<Item = &'c Cut>) -> Result<usize, Error> {
         let level = &mut self.levels[e];
-        let before = level.cuts.len();
+        let mut count = 0;
         for cut in cuts {
-            memory::push(&mut level.cuts, cut)?;
+            level.push(0, cut)?;
+            count += 1;
         }
-        memory::push(&mut level.counts, (level.cuts.len() - before) as u32)
+        memory::push(&mut level.counts, count)?;
+        Ok(count as usize)
+    }
+
+    /// Copies the records of the elements `run`, which follow each other on level `e`, or (`flip`) those of the complement;
+    /// returns how many bytes they take.
+    pub(crate) fn copy(
+        &mut self,
+        e: usize,
+        cuts: &CutsRef<'_>,
+        run: Range<usize>,
+        names: Names<'_>,
+        flip: bool,
+    ) -> Result<usize, Error> {
+        let level = &mut self.levels[e];
+        let wrong = |element: usize| Damage::CutCount { index: element as u64 };
+        let counts = cuts.first.get(run.start..run.end + 1).ok_or(wrong(run.end))?;
+        level.counts.try_reserve(run.len())?;
+        for (n, pair) in counts.windows(2).enumerate() {
+            level.counts.push(pair[1].checked_sub(pair[0]).ok_or(wrong(run.start + n))?);
+        }
+        let (mut records, mut g, mut bytes) = (counts[0] as usize..counts[run.len()] as usize, 0, 0);
+        while !records.is_empty() {
+            let own = level.generation(g)?;
+            let before = (own.heads.len(), own.ids.len());
+            own.copy(cuts, records.clone(), names, flip)?;
+            bytes += own.heads.len() - before.0 + size_of::<u32>() * (own.ids.len() - before.1);
+            records = cuts.parts(records);
+            g += 1;
+        }
+        Ok(bytes)
+    }
+
+    /// The same of elements whose cells keep nothing, and are `planes`.
+    pub(crate) fn copy_plain(
+        &mut self,
+        e: usize,
+        planes: impl Iterator<Item = Planes>,
+    ) -> Result<usize, Error> {
+        let level = &mut self.levels[e];
+        let mut all = 0;
+        for planes in planes {
+            let count = records(planes);
+            memory::push(&mut level.counts, count)?;
+            all += count as usize;
+        }
+        let heads = &mut level.generation(0)?.heads;
+        heads.try_reserve(all)?;
+        heads.resize(heads.len() + all, Head::NONE.0);
+        Ok(all)
     }
 
     /// Takes over what a sibling wrote, which comes after all that this one wrote so far; ids from `first` on become greater by
     /// `more`.
     pub(crate) fn append(&mut self, other: CutWriter, first: u32, more: u32) -> Result<(), Error> {
         for (level, mut theirs) in self.levels.iter_mut().zip(other.levels) {
-            theirs.cuts.iter_mut().for_each(|cut| cut.renumber(first, more));
-            level.cuts.try_reserve(theirs.cuts.len())?;
             level.counts.try_reserve(theirs.counts.len())?;
-            level.cuts.append(&mut theirs.cuts);
             level.counts.append(&mut theirs.counts);
+            for (g, mut theirs) in theirs.generations.into_iter().enumerate() {
+                let own = level.generation(g)?;
+                theirs.ids.iter_mut().filter(|id| **id >= first).for_each(|id| *id += more);
+                own.heads.try_reserve(theirs.heads.len())?;
+                own.ids.try_reserve(theirs.ids.len())?;
+                own.heads.append(&mut theirs.heads);
+                own.ids.append(&mut theirs.ids);
+            }
         }
         Ok(())
     }
 
-    /// Puts all in order: records, what is counted before them, and of the surfaces, which `surfaces` tells by their ids so far,
-    /// those that are used, in the order of their first use. Nothing comes of a tree without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL cell.
+    /// Puts all in order: records, and what is counted before them. With the numbers so far of those surfaces that are used, in the
+    /// order of their first use; of those that a record is the first to use, in the `order` that is given of their numbers. The table
+    /// of surfaces is left empty. Nothing comes of a tree of whose cells nothing is known. `root` is the cut of a universe that is one PARTIAL
+    /// cell.
     ///
     /// # Errors
-    /// [`Error::Limit`] if there are 2^32 records or ids, [`Error::OutOfMemory`], and what `surfaces` refuses.
+    /// [`Error::Limit`] if there are 2^32 records or ids, and [`Error::OutOfMemory`].
     pub(crate) fn finish(
-        self,
+        mut self,
         root: Option<Cut>,
-        surfaces: impl FnOnce(&[u32]) -> Result<Surfaces, Error>,
-    ) -> Result<Option<Cuts>, Error> {
-        let mut first =
-            memory::with_capacity(self.levels.iter().map(|level| level.counts.len()).sum::<usize>() + 1)?;
-        let mut queue = VecDeque::new();
-        let mut next = 0u64;
-        for level in self.levels {
-            for count in level.counts {
-                first.push(next as u32);
-                next += u64::from(count);
-            }
-            queue.try_reserve(level.cuts.len())?;
-            queue.extend(level.cuts);
+        order: impl Fn(u32, u32) -> Ordering,
+    ) -> Result<Option<(Cuts, Vec<u32>)>, Error> {
+        if let Some(root) = root {
+            // (There is no element then.)
+            self.levels[0].push(0, &root)?;
         }
-        queue.try_reserve(1)?;
-        next += u64::from(root.is_some());
-        queue.extend(root);
-        first.push(next as u32);
-        let limit = |count: u64| {
-            let what = "records of cuts, or surfaces in them";
-            if count > u64::from(u32::MAX) {
-                Err(Error::Limit { what, limit: u32::MAX.into() })
-            } else {
-                Ok(())
+        let limit = |count: usize| match u32::try_from(count) {
+            Ok(count) => Ok(count),
+            Err(_) => {
+                Err(Error::Limit { what: "records of cuts, or surfaces in them", limit: u32::MAX.into() })
             }
         };
-        limit(next)?;
-        let (mut heads, mut ids, mut blocks) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut splits, mut used, mut names) = (0u32, Vec::new(), hashbrown::HashMap::new());
-        while let Some(cut) = queue.pop_front() {
-            if heads.len() % BLOCK == 0 {
-                memory::push(&mut blocks, Block { ids: ids.len() as u32, splits })?;
-            }
-            let mut head = cut.head();
-            match cut {
-                Cut::None => {}
-                Cut::Table { ids: own, table } => {
-                    let own = &own[..head.surfaces()];
-                    names.try_reserve(own.len())?;
-                    used.try_reserve(own.len())?;
-                    let mut named = [(0, 0); 3];
-                    for (i, &id) in own.iter().enumerate() {
-                        let name = *names.entry(id).or_insert_with(|| {
-                            used.push(id);
-                            used.len() as u32 - 1
-                        });
-                        named[i] = (name, i);
-                    }
-                    let named = &mut named[..own.len()];
-                    named.sort_unstable();
-                    head = Head(permuted(table, named.iter().map(|&(_, i)| i)));
-                    ids.try_reserve(own.len())?;
-                    ids.extend(named.iter().map(|&(name, _)| name));
-                }
-                Cut::Split(children) => {
-                    splits += 1;
-                    queue.try_reserve(8)?;
-                    queue.extend(*children);
-                }
-            }
-            memory::push(&mut heads, head.0)?;
-            limit(heads.len() as u64 + queue.len() as u64)?;
-            limit(ids.len() as u64)?;
-        }
-        if heads.is_empty() {
+        let all = || self.levels.iter().flat_map(|level| &level.generations);
+        if all().all(|records| records.ids.is_empty()) {
             return Ok(None);
         }
-        let ids = OwnedIds::narrowed(ids, used.len())?;
-        Ok(Some(Cuts { heads, ids, blocks, first, surfaces: surfaces(&used)? }))
+        let count = limit(all().map(|records| records.heads.len()).sum())?;
+        limit(all().map(|records| records.ids.len()).sum())?;
+        let mut first =
+            memory::with_capacity(self.levels.iter().map(|level| level.counts.len()).sum::<usize>() + 1)?;
+        let mut next = 0u32;
+        for count in self.levels.iter().flat_map(|level| &level.counts) {
+            first.push(next);
+            next += count;
+        }
+        first.push(next + u32::from(first.is_empty()));
+        let mut heads: Vec<u8> = memory::with_capacity(count as usize)?;
+        let mut ids: Vec<u32> = memory::with_capacity(all().map(|records| records.ids.len()).sum())?;
+        let mut blocks = memory::with_capacity((count as usize).div_ceil(BLOCK))?;
+        let (mut splits, mut names) = (0u32, Renaming::default());
+        let generations = self.levels.iter().map(|level| level.generations.len()).max().unwrap_or(0);
+        for records in (0..generations)
+            .flat_map(|g| self.levels.iter().filter_map(move |level| level.generations.get(g)))
+        {
+            let mut rest = &*records.ids;
+            for &head in &records.heads {
+                if heads.len().is_multiple_of(BLOCK) {
+                    blocks.push(Block { ids: ids.len() as u32, splits });
+                }
+                let mut head = Head(head);
+                splits += u32::from(head.is_split());
+                let (own, others) = rest.split_at(head.surfaces());
+                rest = others;
+                match own {
+                    [] => {}
+                    [one] => ids.push(names.of(*one)?),
+                    several => head.0 = names.record(several, head.0, &order, &mut ids)?,
+                }
+                heads.push(head.0);
+            }
+        }
+        let ids = OwnedIds::narrowed(ids, names.used.len())?;
+        Ok(Some((Cuts { heads, ids, blocks, first, surfaces: Surfaces::default() }, names.used)))
+    }
+}
+
+impl Records {
+    /// Copies records that follow each other.
+    fn copy(
+        &mut self,
+        cuts: &CutsRef<'_>,
+        run: Range<usize>,
+        names: Names<'_>,
+        flip: bool,
+    ) -> Result<(), Error> {
+        let wrong = |record: usize| Damage::CutRecord { record: record as u64 };
+        let heads = cuts.heads.get(run.clone()).ok_or(wrong(run.end))?;
+        let (mut id, _) = cuts.before(run.start).ok_or(wrong(run.start))?;
+        self.heads.try_reserve(heads.len())?;
+        for (record, &head) in run.zip(heads) {
+            let count = Head(head).surfaces();
+            let mut table = if flip && count > 0 { !head } else { head };
+            self.ids.try_reserve(count)?;
+            for i in 0..count {
+                let known = cuts.ids.get(id + i).and_then(|id| names.get(id as usize));
+                let &(name, negated) = known.ok_or(wrong(record))?;
+                if negated {
+                    table = Head::negated(table, i);
+                }
+                self.ids.push(name);
+            }
+            id += count;
+            self.heads.push(table);
+        }
+        Ok(())
+    }
+}
+
+/// The numbers of surfaces in the order of their first use.
+#[derive(Default)]
+struct Renaming {
+    /// For each number so far the new one; all bits are set of those that are not used.
+    names: Vec<u32>,
+    used: Vec<u32>,
+}
+
+impl Renaming {
+    const UNUSED: u32 = u32::MAX;
+
+    fn known(&self, id: u32) -> Option<u32> {
+        self.names.get(id as usize).copied().filter(|&name| name != Renaming::UNUSED)
+    }
+
+    fn of(&mut self, id: u32) -> Result<u32, Error> {
+        if let Some(name) = self.known(id) {
+            return Ok(name);
+        }
+        let missing = (id as usize + 1).saturating_sub(self.names.len());
+        self.names.try_reserve(missing)?;
+        self.names.resize(self.names.len() + missing, Renaming::UNUSED);
+        let name = self.used.len() as u32;
+        self.names[id as usize] = name;
+        memory::push(&mut self.used, id)?;
+        Ok(name)
+    }
+
+    /// The surfaces of a record, whose new numbers ascend; returns the table of them.
+    fn record(
+        &mut self,
+        own: &[u32],
+        table: u8,
+        order: impl Fn(u32, u32) -> Ordering,
+        ids: &mut Vec<u32>,
+    ) -> Result<u8, Error> {
+        let mut places = [0, 1, 2];
+        let places = &mut places[..own.len()];
+        places.sort_unstable_by(|&a, &b| match [own[a], own[b]].map(|id| self.known(id)) {
+            [Some(a), Some(b)] => a.cmp(&b),
+            [Some(_), None] => Ordering::Less,
+            [None, Some(_)] => Ordering::Greater,
+            [None, None] => order(own[a], own[b]),
+        });
+        for &place in &*places {
+            ids.push(self.of(own[place])?);
+        }
+        Ok(permuted(table, places.iter().copied()))
     }
 }
 

@@ -15,6 +15,7 @@ pub(crate) mod possible;
 pub(crate) mod power;
 pub(crate) mod quadric;
 pub(crate) mod record;
+pub(crate) mod residue;
 mod slab;
 pub(crate) mod sweep;
 pub(crate) mod table;

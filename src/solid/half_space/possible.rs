@@ -63,27 +63,20 @@ fn exclude(a: &Tangent, negative_a: bool, b: &Tangent, negative_b: bool) -> bool
 }
 
 impl Table {
-    /// The function on the combinations that are possible, of as few half-spaces as the following rule finds. In the order of
-    /// their numbers, a half-space is left out if the values do not depend on it where both of its signs are possible. A
-    /// combination that is not possible has the value of the possible one that comes first in this order: by the number of the
-    /// last half-space whose sign differs, then by that of the one before, and so on.
+    /// The function on the combinations that are possible, of as few half-spaces as can be; of several choices of so many that is
+    /// taken in which the last half-spaces have the least numbers. A combination that is not possible has the value of the possible
+    /// one that comes first in this order: by the number of the last half-space whose sign differs, then by that of the one before,
+    /// and so on.
     ///
     /// So the result depends on the values at possible combinations alone, and the complement of the function has the complement
     /// of the result.
     pub(crate) fn simplified(self, possible: Table) -> Table {
-        let (mut table, mut possible) = (self.0, possible.0);
-        // Values and possibilities of both signs, at the places of the negative one.
-        let signs =
-            |bits: u64, i: usize| ((bits & Table::of(i, false).0) >> (1 << i), bits & Table::of(i, true).0);
-        for i in 0..MOST {
-            let ((on, off), (can_on, can_off)) = (signs(table, i), signs(possible, i));
-            if (on ^ off) & can_on & can_off != 0 {
-                continue;
-            }
-            let (value, can) = (on & can_on | off & can_off, can_on | can_off);
-            table = value | value << (1 << i);
-            possible = can | can << (1 << i);
-        }
+        let counts = |i: usize| self.depends_on(i) || possible.depends_on(i);
+        let all = (0..MOST).filter(|&i| counts(i)).fold(0u8, |all, i| all | 1 << i);
+        let fewest = (BY_SIZE.iter().filter(|&&kept| kept & !all == 0))
+            .find_map(|&kept| self.without(possible, all & !kept));
+        // (All half-spaces are a choice.)
+        let (Table(mut table), Table(mut possible)) = fewest.unwrap_or((self, possible));
         for i in 0..MOST {
             let ((on, off), (can_on, can_off)) = (signs(table, i), signs(possible, i));
             let (on, off) = (on & can_on | off & !can_on, off & can_off | on & !can_off);
@@ -93,7 +86,45 @@ impl Table {
         }
         Table(table)
     }
+
+    /// The function without some half-spaces, and which combinations of the others are possible; `None` if it depends on them.
+    fn without(self, possible: Table, half_spaces: u8) -> Option<(Table, Table)> {
+        let (mut table, mut possible) = (self.0, possible.0);
+        for i in (0..MOST).filter(|&i| half_spaces >> i & 1 != 0) {
+            let ((on, off), (can_on, can_off)) = (signs(table, i), signs(possible, i));
+            if (on ^ off) & can_on & can_off != 0 {
+                return None;
+            }
+            let (value, can) = (on & can_on | off & can_off, can_on | can_off);
+            table = value | value << (1 << i);
+            possible = can | can << (1 << i);
+        }
+        Some((Table(table), Table(possible)))
+    }
 }
+
+/// Values, or possibilities, of both signs of half-space `i`, at the places of the negative one.
+fn signs(bits: u64, i: usize) -> (u64, u64) {
+    ((bits & Table::of(i, false).0) >> (1 << i), bits & Table::of(i, true).0)
+}
+
+/// All choices of half-spaces, those of few first.
+const BY_SIZE: [u8; 1 << MOST] = {
+    let mut all = [0; 1 << MOST];
+    let (mut size, mut next) = (0, 0);
+    while size <= MOST as u32 {
+        let mut choice = 0u8;
+        while choice < 1 << MOST {
+            if choice.count_ones() == size {
+                all[next] = choice;
+                next += 1;
+            }
+            choice += 1;
+        }
+        size += 1;
+    }
+    all
+};
 
 #[cfg(test)]
 mod tests {
@@ -109,6 +140,10 @@ mod tests {
         assert_eq!(Table(!a | b).simplified(within), Table::FULL);
         assert_eq!(Table(a & !b).simplified(within), Table::EMPTY);
         assert_eq!(Table(a & b & c).simplified(within), Table(a & c));
+        // No order of leaving out half-spaces one by one finds this: either of a and c alone would do for b.
+        let either = Table(a & !b & c | !a & b & !c | !a & !b & !c);
+        let simple = Table(a & !b & c).simplified(either);
+        assert_eq!((0..6).filter(|&i| simple.depends_on(i)).count(), 1);
         // What is possible is said as before, whatever it is.
         for bits in 0..=255u64 {
             for can in 1..=255u64 {

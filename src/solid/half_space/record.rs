@@ -10,9 +10,7 @@ use crate::error::Error;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Affine, Frame};
 use crate::memory;
-use crate::octree::cuts::{
-    MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceKind, SurfaceRecord, Surfaces, SurfacesRef,
-};
+use crate::octree::cuts::{MOST_MAPS, MOST_TERMS, Origin, SurfaceKind, SurfaceWriter, Surfaces, SurfacesRef};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
@@ -38,6 +36,16 @@ impl PlacedHalfSpace {
     /// The exact map from another space into that of the half-space.
     pub(crate) fn map(&self, from: ExactMap) -> Result<ExactMap, Error> {
         self.placements.iter().try_fold(from, |map, placement| map.of_placed(placement))
+    }
+
+    /// Whether two surfaces are one, and if so, whether the function of the one is positive where that of the other is negative.
+    pub(crate) fn same(&self, other: &PlacedHalfSpace) -> Result<Option<bool>, Error> {
+        Ok(match (self.identity()?, other.identity()?) {
+            (Some((own, turned)), Some((others, other_turned))) if own == others => {
+                Some(turned != other_turned)
+            }
+            _ => None,
+        })
     }
 
     /// What the surface is known by, and whether the function is negative where that of the identity is positive. `None` of what
@@ -231,16 +239,18 @@ impl Pool {
 }
 
 impl PlacedHalfSpace {
-    /// What surfaces are ordered by, and records that tell of one surface: the number of doubles, the kind, and the doubles
-    /// themselves.
-    fn size(&self) -> (usize, Vec<u64>) {
+    /// What surfaces are ordered by, and records that tell of one surface, as [`SurfacesRef::order`] does of those that are stored:
+    /// the number of doubles, the kind, and the doubles themselves.
+    pub(crate) fn size(&self) -> (usize, Vec<u64>) {
         let (mut bits, mut doubles) = (Vec::new(), Vec::new());
         if let Some((kind, numbers)) = self.half_space.numbers() {
-            bits.push(kind as u64);
             let terms = numbers.iter().map(|number| number.expansion(MOST_TERMS)).collect::<Option<Vec<_>>>();
-            doubles = terms.unwrap_or_default().iter().flat_map(|terms| terms.iter().copied()).collect();
+            let terms = terms.unwrap_or_default();
+            let counts = (0..).zip(&terms).fold(0, |all, (i, own)| all | (own.len() as u64) << (3 * i));
+            bits.extend([kind as u64, counts]);
+            doubles = terms.iter().flat_map(|own| own.iter().copied()).collect();
         }
-        let maps = self.placements.iter().flat_map(|map| map.rows().as_flattened().iter().copied());
+        let maps = self.placements.iter().rev().flat_map(|map| map.rows().as_flattened().iter().copied());
         bits.extend(doubles.into_iter().chain(maps).map(f64::to_bits));
         (bits.len(), bits)
     }
@@ -253,56 +263,24 @@ impl PlacedHalfSpace {
     pub(crate) fn write<'s>(
         surfaces: impl ExactSizeIterator<Item = &'s PlacedHalfSpace>,
     ) -> Result<Surfaces, Error> {
-        let mut all = Surfaces { records: memory::with_capacity(surfaces.len())?, ..Surfaces::default() };
-        let mut places: HashMap<(u64, [[u64; 4]; 3]), u64> = HashMap::new();
-        let mut origins: HashMap<Origin, u32> = HashMap::new();
+        let mut all = SurfaceWriter::default();
         for surface in surfaces {
-            if surface.placements.len() > MOST_MAPS {
-                let what = "placements of a surface within each other";
-                return Err(Error::Limit { what, limit: MOST_MAPS as u64 });
-            }
-            let mut outer = 0;
-            for placement in &*surface.placements {
-                let rows = placement.rows();
-                places.try_reserve(1)?;
-                let next = all.placements.len() as u64 + 1;
-                let place = *places.entry((outer, rows.map(|row| row.map(f64::to_bits)))).or_insert(next);
-                if place == next {
-                    memory::push(&mut all.placements, Placement { rows: *rows, outer })?;
-                }
-                outer = place;
-            }
             let too_long = || Error::Limit {
                 what: "doubles for an exact number of a surface",
                 limit: MOST_TERMS as u64,
             };
-            let (kind, mut numbers) = surface.half_space.numbers().ok_or_else(too_long)?;
-            if let Surface::Slab(slab) = &*surface.half_space.0 {
-                numbers.try_reserve(2)?;
-                numbers.extend(match slab.identity {
-                    Some(SlabIdentity { origin, number }) => {
-                        origins.try_reserve(1)?;
-                        let next = all.origins.len() as u32 + 1;
-                        let place = *origins.entry(origin).or_insert(next);
-                        if place == next {
-                            memory::push(&mut all.origins, origin)?;
-                        }
-                        [place, number].map(|number| Dyadic::new(f64::from(number)))
-                    }
-                    None => [Dyadic::zero(), Dyadic::zero()],
-                });
-            }
-            let too_many = |_| Error::Limit { what: "doubles of all surfaces", limit: u32::MAX.into() };
-            let (first, mut terms) = (u32::try_from(all.doubles.len()).map_err(too_many)?, 0);
-            for (i, number) in numbers.iter().enumerate() {
-                let own = number.expansion(MOST_TERMS).ok_or_else(too_long)?;
-                terms |= (own.len() as u32) << (3 * i);
-                all.doubles.try_reserve(own.len())?;
-                all.doubles.extend_from_slice(&own);
-            }
-            all.records.push(SurfaceRecord { kind: kind as u32, terms, first, placement: outer as u32 });
+            let (kind, numbers) = surface.half_space.numbers().ok_or_else(too_long)?;
+            let numbers =
+                numbers.iter().map(|number| number.expansion(MOST_TERMS)).collect::<Option<Vec<_>>>();
+            let numbers = numbers.ok_or_else(too_long)?;
+            let identity = match &*surface.half_space.0 {
+                Surface::Slab(ThickPlane { identity, .. }) => identity.as_ref().map(|i| (i.origin, i.number)),
+                _ => None,
+            };
+            let placements = surface.placements.iter().map(Affine::rows);
+            all.put(kind, numbers.iter().map(|number| &**number), identity, placements)?;
         }
-        Ok(all)
+        Ok(all.finish())
     }
 
     /// A stored surface; `None` if it is damaged.

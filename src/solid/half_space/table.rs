@@ -42,6 +42,13 @@ impl Table {
         })
     }
 
+    /// The function with the complement of half-space `i` in its place.
+    #[inline(always)]
+    pub(crate) fn negated(self, i: usize) -> Table {
+        let shift = 1 << i;
+        Table((self.0 & HOLDS[i]) >> shift | (self.0 & !HOLDS[i]) << shift)
+    }
+
     /// Whether the function depends on half-space `i`.
     #[inline(always)]
     pub(crate) fn depends_on(self, i: usize) -> bool {

@@ -13,14 +13,14 @@ use leafless::{
     dexelize, file, measure,
 };
 
-fn extended(csg: &Csg, frame: &Frame) -> Octree {
+pub(super) fn extended(csg: &Csg, frame: &Frame) -> Octree {
     let tree = build_extended(csg, frame, &SurfaceOptions::default(), &alone()).unwrap();
     tree.view().check().unwrap();
     through_a_file(&tree)
 }
 
 /// What is written is read again, and written again as it was. The tree that was read.
-fn through_a_file(tree: &Octree) -> Octree {
+pub(super) fn through_a_file(tree: &Octree) -> Octree {
     let bytes = file::to_bytes(tree).unwrap();
     let read = file::from_bytes(&bytes).unwrap();
     assert_eq!(read, *tree);
@@ -30,13 +30,18 @@ fn through_a_file(tree: &Octree) -> Octree {
 }
 
 /// Which side of a model a point of doubles is on.
-fn sign(model: &Model, p: [f64; 3]) -> i32 {
+pub(super) fn sign(model: &Model, p: [f64; 3]) -> i32 {
     let [x, y, z] = p.map(Exact::from);
     model.sign(&[x, y, z, Exact::from(1.0)])
 }
 
 /// Points anywhere, and ever closer to the surface between two that are on different sides of it; with their sides.
-fn points(model: &Model, frame: &Frame, count: usize, random: &mut Random) -> Vec<([f64; 3], i32)> {
+pub(super) fn points(
+    model: &Model,
+    frame: &Frame,
+    count: usize,
+    random: &mut Random,
+) -> Vec<([f64; 3], i32)> {
     let mut found = Vec::new();
     let mut last: [Option<[f64; 3]>; 2] = [None; 2];
     while found.len() < count {
@@ -66,7 +71,7 @@ fn points(model: &Model, frame: &Frame, count: usize, random: &mut Random) -> Ve
 }
 
 /// Whether a point lies in a cell of which nothing is known, or outside of the universe.
-fn is_given_up(tree: &Octree, p: [f64; 3]) -> bool {
+pub(super) fn is_given_up(tree: &Octree, p: [f64; 3]) -> bool {
     let frame = tree.view().frame();
     let Some(at) = frame.cell_of(p) else { return true };
     let mut worker = tree.on(frame, &alone()).unwrap().worker().unwrap();
@@ -183,7 +188,7 @@ fn a_million_points_of_extended_trees() {
     });
 }
 
-fn plate() -> Csg {
+pub(super) fn plate() -> Csg {
     let bores = (0..20).map(|k| {
         let to = [8.0 + 16.0 * f64::from(k % 5), 7.5 + 15.0 * f64::from(k / 5), 0.0];
         Csg::cylinder(2.5, -1.0, 11.0).unwrap().placed(&Affine::translation(to).unwrap()).unwrap()

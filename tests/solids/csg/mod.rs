@@ -1,5 +1,6 @@
 //! Constructive solid geometry.
 
+mod combined;
 mod costs;
 mod equals;
 mod exactness;

@@ -1,0 +1,564 @@
+//! The set algebra of stored trees of which one at least keeps surfaces.
+//!
+//! All operands are walked at once. A cell that all but one of them decide is copied from that one: whole subtrees as runs of
+//! their arrays, with their cuts. Where several operands end with functions of surfaces, these become one function, and the cell
+//! ends as soon as that takes no more than three surfaces. Elsewhere the cell is split.
+
+use super::element::{Family, Fate, Output, Source, element};
+use super::function::{Done, Function, Known};
+use super::joint::JointSurfaces;
+use crate::control::{Control, Job, WHOLE};
+use crate::error::{Damage, Error};
+use crate::lattice::{Cell, Frame};
+use crate::memory;
+use crate::octree::cuts::{CellCut, Cut, Cuts, CutsRef, Head, SurfacesRef};
+use crate::octree::links::Windows;
+use crate::octree::view::{OctreeRef, starts_half_way};
+use crate::octree::writer::{Subtrees, Writer};
+use crate::octree::{Octree, Planes, Proof, Tag};
+use crate::parallel::each;
+use crate::solid::OCTANTS;
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// What is meant of any number of trees.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::op) enum Combination {
+    /// The points that lie in all of them; with `flip` all others.
+    All { flip: bool },
+    /// The points that lie in an odd number of them.
+    Odd,
+}
+
+/// Entries of all operands from which threads pay.
+const WORTH_THREADS: u64 = 1 << 13;
+
+/// Combines trees on one frame; of those with `true` the complement is meant.
+pub(in crate::op) fn combine(
+    operands: &[(OctreeRef<'_>, bool)],
+    combination: Combination,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    let Some((first, _)) = operands.first() else {
+        return Err(Error::Argument { name: "trees", problem: "at least one is needed" });
+    };
+    let (frame, job) = (*first.frame(), Job::new(control));
+    job.check()?;
+    if let Some((other, _)) = operands.iter().find(|(tree, _)| *tree.frame() != frame) {
+        return Err(frame.mismatch(other.frame()));
+    }
+    let (mut entries, mut tables) = (0, memory::with_capacity(operands.len())?);
+    for (tree, _) in operands {
+        tree.ensure_cuts()?;
+        tables.push(tree.cuts.map_or(SurfacesRef::NONE, |cuts| cuts.surfaces));
+        let records = tree.cuts.map_or(0, |cuts| cuts.heads.len());
+        entries += tree.element_count() + tree.brick_count() + records as u64;
+    }
+    let surfaces = JointSurfaces::new(&frame, tables)?;
+    let (is_odd, flip) = match combination {
+        Combination::All { flip } => (false, flip),
+        Combination::Odd => (true, false),
+    };
+    let walk = Walk { frame, operands, is_odd, flip, surfaces };
+    control.run(entries > WORTH_THREADS, |parallel| {
+        let walk = Threads { walk: &walk, parallel };
+        let mut hand = Hand {
+            windows: memory::collected(operands.iter().map(|(tree, _)| Windows::new(tree)))?,
+            out: Output::new(Writer::new(&job, frame.depth(), false), &frame)?,
+        };
+        let (tag, cut) = match walk.root(&mut hand)? {
+            Fate::Settled(tag) => (tag, Cut::None),
+            Fate::Ends(cut) => (Tag::Partial, cut),
+            Fate::Goes(Part::Copy(copy)) => {
+                let mut done = walk.elements(
+                    0,
+                    memory::collected([(Cell::ROOT, Part::Copy(copy))].into_iter())?,
+                    &mut hand,
+                )?;
+                done.pop().unwrap_or((Tag::Partial, Cut::None))
+            }
+            Fate::Goes(part) => element(&walk, 0, Cell::ROOT, &part, &mut hand)?,
+        };
+        let Output { writer, cuts } = hand.out;
+        let surfaces = &walk.walk.surfaces;
+        let cuts = match cuts.finish((tag == Tag::Partial).then_some(cut), |a, b| surfaces.order(a, b))? {
+            Some((cuts, used)) => Some(Cuts { surfaces: surfaces.written(&used)?, ..cuts }),
+            None => None,
+        };
+        job.advance(WHOLE);
+        let exterior = walk.walk.exterior();
+        Ok(writer.finish_with(&frame, tag, exterior, cuts)?.with_proof(walk.walk.proof()))
+    })
+}
+
+/// What an operand has in a cell in which it is not decided.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    /// Nothing is known.
+    Unknown,
+    /// A function of surfaces, of the operand's complement if that is meant; whether it is that of a larger cell.
+    Function { ids: [u32; 3], table: u8, is_wide: bool },
+    /// The first of eight records.
+    Records(usize),
+    /// An octant of an element.
+    Octant { index: usize, octant: u8 },
+    /// All of an element.
+    Element { parent: usize, index: usize },
+}
+
+/// What an operand has in a cell.
+enum Met {
+    Empty,
+    Full,
+    Open(Side),
+}
+
+/// A subtree that is copied.
+#[derive(Debug, Clone, Copy)]
+struct Copied {
+    of: u32,
+    parent: usize,
+    index: usize,
+    flip: bool,
+}
+
+/// What is known of a cell that is to be split.
+enum Part {
+    /// One operand is left, and the cell has an element there.
+    Copy(Copied),
+    /// Operands that are not decided; whether the complement of what comes of them is meant.
+    Open(Vec<(u32, Side)>, bool),
+    /// A function of surfaces.
+    Function(Function),
+}
+
+/// What one thread needs, and what it has made.
+struct Hand<'j> {
+    /// What of each operand has been passed.
+    windows: Vec<Windows>,
+    out: Output<'j>,
+}
+
+impl<'j> AsMut<Output<'j>> for Hand<'j> {
+    fn as_mut(&mut self) -> &mut Output<'j> {
+        &mut self.out
+    }
+}
+
+struct Walk<'a> {
+    frame: Frame,
+    operands: &'a [(OctreeRef<'a>, bool)],
+    /// Whether the points are meant that lie in an odd number of the operands, not those that lie in all.
+    is_odd: bool,
+    /// Whether the complement of the result is meant.
+    flip: bool,
+    surfaces: JointSurfaces<'a>,
+}
+
+impl Walk<'_> {
+    /// What is known outside of the universe.
+    fn exterior(&self) -> Tag {
+        let all =
+            self.operands.iter().map(|(tree, flip)| Planes::uniform(tree.exterior()).complement_if(*flip));
+        let one = all.reduce(|a, b| match self.is_odd {
+            false => a.intersection(b),
+            true if [a, b].iter().any(|planes| planes.tag(0) == Tag::Partial) => {
+                Planes::uniform(Tag::Partial)
+            }
+            true => a.xor(b),
+        });
+        one.unwrap_or(Planes::uniform(Tag::Partial)).complement_if(self.flip).tag(0)
+    }
+
+    /// What the cells of the result prove.
+    fn proof(&self) -> Proof {
+        let proof = |(tree, flip): &(OctreeRef<'_>, bool)| {
+            if *flip { tree.proof().complement() } else { tree.proof() }
+        };
+        let one =
+            self.operands.iter().map(proof).reduce(|a, b| if self.is_odd { a.xor(b) } else { a.and(b) });
+        let one = one.unwrap_or(Proof::CERTIFIED);
+        if self.flip { one.complement() } else { one }
+    }
+
+    fn operand(&self, of: u32) -> (&OctreeRef<'_>, bool) {
+        let (tree, flip) = &self.operands[of as usize];
+        (tree, *flip)
+    }
+
+    /// A decided cell of an operand.
+    fn settled(is_full: bool) -> Met {
+        if is_full { Met::Full } else { Met::Empty }
+    }
+
+    /// What a record of an operand says.
+    fn record(&self, of: u32, record: usize) -> Side {
+        let (tree, flip) = self.operand(of);
+        match tree.cuts.as_ref().map_or(CellCut::None, |cuts| cuts.at(record)) {
+            CellCut::None => Side::Unknown,
+            CellCut::Split(first) => Side::Records(first),
+            CellCut::Table { ids: own, table } => {
+                let names = self.surfaces.names(of as usize);
+                let (mut ids, mut table) = ([0; 3], if flip { !table } else { table });
+                for (i, &id) in own.iter().enumerate() {
+                    let Some(&(name, negated)) = names.get(id as usize) else { return Side::Unknown };
+                    if negated {
+                        table = Head::negated(table, i);
+                    }
+                    ids[i] = name;
+                }
+                Side::Function { ids, table, is_wide: false }
+            }
+        }
+    }
+
+    /// What a record of an operand comes to where the others leave the cell to it.
+    fn taken(&self, of: u32, record: usize, flip: bool) -> Cut {
+        match self.record(of, record) {
+            Side::Function { ids, table, .. } => Cut::Table { ids, table: if flip { !table } else { table } },
+            Side::Records(first) => {
+                Cut::Split(Box::new(core::array::from_fn(|k| self.taken(of, first + k, flip))))
+            }
+            _ => Cut::None,
+        }
+    }
+
+    /// What becomes of a cell in which these operands are not decided, and all others do not matter.
+    fn fate(&self, cell: Cell, open: Vec<(u32, Side)>, flip: bool) -> Result<Fate<Part>, Error> {
+        let is_last = cell.level == self.frame.depth();
+        match *open {
+            [] => {
+                // All hold, or none of an odd number.
+                let is_full = self.is_odd == flip;
+                return Ok(Fate::Settled(if is_full { Tag::Full } else { Tag::Empty }));
+            }
+            [(of, Side::Element { parent, index })] => {
+                let flip = flip ^ self.operand(of).1;
+                return Ok(Fate::Goes(Part::Copy(Copied { of, parent, index, flip })));
+            }
+            [(of, Side::Records(first))] => {
+                let eight = core::array::from_fn(|k| self.taken(of, first + k, flip));
+                return Ok(Fate::Ends(Cut::Split(Box::new(eight))));
+            }
+            [(_, Side::Function { ids, table, is_wide: false })] => {
+                return Ok(Fate::Ends(Cut::Table { ids, table: if flip { !table } else { table } }));
+            }
+            _ => {}
+        }
+        let is_unknown = |(_, side): &(u32, Side)| matches!(side, Side::Unknown);
+        let ends = |(_, side): &(u32, Side)| matches!(side, Side::Unknown | Side::Function { .. });
+        if open.iter().any(is_unknown) && (self.is_odd || open.iter().all(ends)) {
+            return Ok(Fate::Ends(Cut::None));
+        }
+        if open.iter().all(ends)
+            && let Some(function) = self.function(&open, flip)
+        {
+            let function = function.simplified(cell, &self.surfaces)?;
+            return Ok(match function.end() {
+                Some(done) => done.into(),
+                None if is_last => Fate::Ends(Cut::None),
+                None => Fate::Goes(Part::Function(function)),
+            });
+        }
+        Ok(if is_last { Fate::Ends(Cut::None) } else { Fate::Goes(Part::Open(open, flip)) })
+    }
+
+    /// The function that operands come to which are functions; `None` if it takes more than six surfaces.
+    fn function(&self, open: &[(u32, Side)], flip: bool) -> Option<Function> {
+        let mut all: Option<Function> = None;
+        for (_, side) in open {
+            let Side::Function { ids, table, .. } = side else { return None };
+            let own = Function::of_record(*ids, *table);
+            all = Some(match all {
+                None => own,
+                Some(all) if self.is_odd => all.with(&own, |a, b| a ^ b)?,
+                Some(all) => all.with(&own, |a, b| a & b)?,
+            });
+        }
+        all.map(|all| all.complement_if(flip))
+    }
+
+    /// What an operand has in the children of a cell.
+    fn below(
+        &self,
+        of: u32,
+        side: &Side,
+        cell: Cell,
+        e: usize,
+        windows: &mut Windows,
+    ) -> Result<[Met; 8], Error> {
+        let (tree, flip) = self.operand(of);
+        let entry = |index: usize| {
+            let brick = index.saturating_sub(tree.planes.len()) as u64;
+            tree.entry(index).ok_or(Damage::Dictionary { brick })
+        };
+        let mut met = OCTANTS.map(|_| Met::Open(Side::Unknown));
+        let partial = |index: usize, planes: Planes, c: u32| {
+            let record = tree.cuts.as_ref().map(|cuts| cuts.record(index, planes, c));
+            Met::Open(record.map_or(Side::Unknown, |record| self.record(of, record)))
+        };
+        match *side {
+            Side::Unknown => {}
+            Side::Function { ids, table, .. } => {
+                let children = Function::of_record(ids, table).below(cell, &self.surfaces)?;
+                for (met, child) in met.iter_mut().zip(children) {
+                    *met = match child.end() {
+                        Some((Tag::Partial, Cut::Table { ids, table })) => {
+                            Met::Open(Side::Function { ids, table, is_wide: true })
+                        }
+                        Some((tag, _)) => Walk::settled(tag == Tag::Full),
+                        None => Met::Open(Side::Unknown),
+                    };
+                }
+            }
+            Side::Records(first) => {
+                for (k, met) in met.iter_mut().enumerate() {
+                    *met = Met::Open(self.record(of, first + k));
+                }
+            }
+            Side::Element { index, .. } => {
+                let planes = entry(index)?;
+                for (k, met) in OCTANTS.into_iter().zip(&mut met) {
+                    *met = match planes.octant(k.into()) {
+                        Tag::Branch => Met::Open(Side::Octant { index, octant: k }),
+                        Tag::Partial => partial(index, planes, 8 * u32::from(k)),
+                        tag => Walk::settled((tag == Tag::Full) != flip),
+                    };
+                }
+            }
+            Side::Octant { index, octant } => {
+                let planes = entry(index)?;
+                for (k, met) in OCTANTS.into_iter().zip(&mut met) {
+                    let c = 8 * u32::from(octant) + u32::from(k);
+                    *met = match planes.tag(c) {
+                        Tag::Branch if e + 1 == tree.levels() => {
+                            let brick = index.saturating_sub(tree.planes.len()) as u64;
+                            return Err(Damage::BrickBranch { brick }.into());
+                        }
+                        Tag::Branch => Met::Open(Side::Element {
+                            parent: index,
+                            index: windows.child(tree, index, planes.branch(), c, e + 1)?,
+                        }),
+                        Tag::Partial => partial(index, planes, c),
+                        tag => Walk::settled((tag == Tag::Full) != flip),
+                    };
+                }
+            }
+        }
+        Ok(met)
+    }
+
+    /// Copies neighbouring subtrees whose elements `run` of level `e` have been admitted.
+    fn copy(&self, copied: &Copied, e: usize, run: Range<usize>, hand: &mut Hand<'_>) -> Result<(), Error> {
+        let Copied { of, parent, flip, .. } = *copied;
+        let (tree, _) = self.operand(of);
+        let Hand { windows, out: Output { writer, cuts } } = hand;
+        let names = self.surfaces.names(of as usize);
+        let mut bytes = 0;
+        let run = Subtrees { parent, range: run, e, flip };
+        writer.copy(tree, &mut windows[of as usize], run, |level, run| {
+            bytes += match &tree.cuts {
+                Some(own) => cuts.copy(level, own, run, names, flip)?,
+                None => cuts.copy_plain(level, run.filter_map(|index| tree.entry(index)))?,
+            };
+            Ok(())
+        })?;
+        writer.job().spend(0, bytes)
+    }
+}
+
+/// A walk, by several threads perhaps.
+struct Threads<'w, 'a> {
+    walk: &'w Walk<'a>,
+    parallel: bool,
+}
+
+impl Threads<'_, '_> {
+    fn root(&self, hand: &mut Hand<'_>) -> Result<Fate<Part>, Error> {
+        let half = starts_half_way(self.walk.frame.depth());
+        let mut met = memory::with_capacity(self.walk.operands.len())?;
+        for ((of, (tree, flip)), windows) in (0..).zip(self.walk.operands).zip(&mut hand.windows) {
+            met.push((
+                of,
+                match tree.root_tag() {
+                    Tag::Branch => {
+                        windows.admit(0, 0, 0, 1)?;
+                        Met::Open(match half {
+                            true => Side::Octant { index: 0, octant: 0 },
+                            false => Side::Element { parent: 0, index: 0 },
+                        })
+                    }
+                    Tag::Partial => Met::Open(match tree.cuts {
+                        Some(_) => self.walk.record(of, CutsRef::ROOT),
+                        None => Side::Unknown,
+                    }),
+                    tag => Walk::settled((tag == Tag::Full) != *flip),
+                },
+            ));
+        }
+        self.gathered(Cell::ROOT, met.into_iter(), self.walk.flip)
+    }
+
+    /// What becomes of a cell in which the operands are these.
+    fn gathered(
+        &self,
+        cell: Cell,
+        met: impl ExactSizeIterator<Item = (u32, Met)>,
+        mut flip: bool,
+    ) -> Result<Fate<Part>, Error> {
+        let mut open = Vec::new();
+        for (of, met) in met {
+            match met {
+                Met::Empty if !self.walk.is_odd => {
+                    return Ok(Fate::Settled(if flip { Tag::Full } else { Tag::Empty }));
+                }
+                Met::Full => flip ^= self.walk.is_odd,
+                Met::Empty => {}
+                Met::Open(side) => memory::push(&mut open, (of, side))?,
+            }
+        }
+        self.walk.fate(cell, open, flip)
+    }
+
+    /// The element level of the element in which the children of a cell lie.
+    fn element_level(&self, cell: Cell) -> usize {
+        let half = u8::from(starts_half_way(self.walk.frame.depth()));
+        usize::from((cell.level + half) / 2)
+    }
+
+    /// Elements of level `e` as independent tasks, whose outputs are put together in order.
+    fn elements_in_parallel<'j>(
+        &self,
+        e: usize,
+        open: Vec<(Cell, Part)>,
+        hand: &mut Hand<'j>,
+    ) -> Result<Vec<Done>, Error> {
+        let mut tasks = memory::with_capacity(open.len())?;
+        for (cell, part) in open {
+            let mut windows = memory::collected(hand.windows.iter().cloned())?;
+            let mut cut_off = |of: u32, index: usize| {
+                let of = of as usize;
+                let (tree, _) = self.walk.operand(of as u32);
+                windows[of] = hand.windows[of].below(tree, e, index..index + 1)?;
+                Ok::<(), Error>(())
+            };
+            match &part {
+                Part::Copy(copied) => cut_off(copied.of, copied.index)?,
+                Part::Open(sides, _) => {
+                    for (of, side) in sides {
+                        if let Side::Element { index, .. } = side {
+                            cut_off(*of, *index)?;
+                        }
+                    }
+                }
+                Part::Function(_) => {}
+            }
+            tasks.push((cell, part, windows));
+        }
+        let share = WHOLE / tasks.len().max(1);
+        let out = &hand.out;
+        let done = each(true, tasks.into_iter(), |(cell, part, windows)| {
+            let mut own = Hand { windows, out: out.sibling(&self.walk.frame)? };
+            let done = self.one(e, cell, &part, &mut own)?;
+            if e == 1 {
+                own.out.writer.job().advance(share);
+            }
+            Ok((done, own.out))
+        })?;
+        let mut all = memory::with_capacity(done.len())?;
+        for (done, out) in done {
+            hand.out.writer.append(out.writer)?;
+            hand.out.cuts.append(out.cuts, u32::MAX, 0)?;
+            all.push(done);
+        }
+        Ok(all)
+    }
+
+    fn one(&self, e: usize, cell: Cell, part: &Part, hand: &mut Hand<'_>) -> Result<Done, Error> {
+        match part {
+            Part::Copy(copied) => {
+                self.walk.copy(copied, e, copied.index..copied.index + 1, hand)?;
+                Ok((Tag::Branch, Cut::None))
+            }
+            part => element(self, e, cell, part, hand),
+        }
+    }
+}
+
+impl<'j> Source<'j> for Threads<'_, '_> {
+    type Part = Part;
+    type Hand = Hand<'j>;
+
+    fn frame(&self) -> &Frame {
+        &self.walk.frame
+    }
+
+    fn surfaces(&self) -> &impl Known {
+        &self.walk.surfaces
+    }
+
+    fn children(&self, cell: Cell, part: &Part, hand: &mut Hand<'j>) -> Result<Family<Part>, Error> {
+        let mut family = OCTANTS.map(|_| Fate::Ends(Cut::None));
+        match part {
+            Part::Copy(_) => {}
+            Part::Function(function) => {
+                let is_last = cell.level + 1 == self.walk.frame.depth();
+                let children = function.below(cell, &self.walk.surfaces)?;
+                for ((k, fate), child) in OCTANTS.into_iter().zip(&mut family).zip(children) {
+                    let child = child.simplified(cell.child(k), &self.walk.surfaces)?;
+                    *fate = match child.end() {
+                        Some(done) => done.into(),
+                        None if is_last => Fate::Ends(Cut::None),
+                        None => Fate::Goes(Part::Function(child)),
+                    };
+                }
+            }
+            Part::Open(sides, flip) => {
+                let e = self.element_level(cell);
+                let mut below = memory::with_capacity(sides.len())?;
+                for (of, side) in sides {
+                    let windows = &mut hand.windows[*of as usize];
+                    below.push((*of, self.walk.below(*of, side, cell, e, windows)?.map(Some)));
+                }
+                for (k, fate) in OCTANTS.into_iter().zip(&mut family) {
+                    let met = below.iter_mut().map(|(of, met)| {
+                        (*of, met[usize::from(k)].take().unwrap_or(Met::Open(Side::Unknown)))
+                    });
+                    *fate = self.gathered(cell.child(k), met, *flip)?;
+                }
+            }
+        }
+        Ok(family)
+    }
+
+    fn elements(&self, e: usize, open: Vec<(Cell, Part)>, hand: &mut Hand<'j>) -> Result<Vec<Done>, Error> {
+        if self.parallel && (1..3).contains(&e) && open.len() > 1 {
+            return self.elements_in_parallel(e, open, hand);
+        }
+        let mut done = memory::with_capacity(open.len())?;
+        let (share, mut next) = (WHOLE / open.len().max(1), 0);
+        while let Some((cell, part)) = open.get(next) {
+            // Neighbours are copied together.
+            let mut run = 1;
+            if let Part::Copy(first) = part {
+                let follows = |(run, (_, part)): &(usize, &(Cell, Part))| {
+                    let next = |own: &Copied| {
+                        (own.of, own.index, own.flip) == (first.of, first.index + run, first.flip)
+                    };
+                    matches!(part, Part::Copy(own) if next(own))
+                };
+                run += (1..).zip(&open[next + 1..]).take_while(follows).count();
+                self.walk.copy(first, e, first.index..first.index + run, hand)?;
+                done.extend((0..run).map(|_| (Tag::Branch, Cut::None)));
+            } else {
+                done.push(element(self, e, *cell, part, hand)?);
+            }
+            next += run;
+            if e == 1 {
+                hand.out.writer.job().advance(share * run);
+            }
+        }
+        Ok(done)
+    }
+}

@@ -1,0 +1,244 @@
+//! Functions of few surfaces.
+
+use crate::error::Error;
+use crate::lattice::Cell;
+use crate::octree::Tag;
+use crate::octree::cuts::{Cut, Head};
+use crate::solid::OCTANTS;
+use crate::solid::half_space::Placed;
+use crate::solid::half_space::bounds::{Octants, Sides};
+use crate::solid::half_space::possible::possible;
+use crate::solid::half_space::table::{MOST, Table};
+use core::cmp::Ordering;
+
+/// Most surfaces that a cell keeps.
+pub(super) const MOST_KEPT: usize = 3;
+
+/// The surfaces of a tree that is being made, by the numbers that they have so far.
+pub(super) trait Known {
+    /// The surface on the universe.
+    fn placed(&self, id: u32) -> Result<&Placed, Error>;
+
+    /// Compares surfaces, whatever their numbers.
+    fn order(&self, a: u32, b: u32) -> Ordering;
+
+    /// Whether cells may become one that have it in common.
+    fn joins(&self, id: u32) -> bool;
+}
+
+/// A cell that is done: its tag, and its cut if that is PARTIAL.
+pub(super) type Done = (Tag, Cut);
+
+/// A function of the signs of up to six surfaces.
+#[derive(Clone, Copy)]
+pub(super) struct Function {
+    ids: [u32; MOST],
+    count: usize,
+    table: Table,
+}
+
+impl Function {
+    pub(super) fn constant(inside: bool) -> Function {
+        Function { ids: [0; MOST], count: 0, table: if inside { Table::FULL } else { Table::EMPTY } }
+    }
+
+    /// The function of a record, whose table tells how many of the surfaces count.
+    pub(super) fn of_record(ids: [u32; MOST_KEPT], table: u8) -> Function {
+        let (mut own, count) = (Function::constant(false), Head(table).surfaces());
+        own.ids[..count].copy_from_slice(&ids[..count]);
+        Function { count, table: widened(table), ..own }
+    }
+
+    /// A function of surfaces with these numbers, some of which may be the same: `table` is that of six that differ.
+    pub(super) fn of_numbers(ids: &[u32], table: Table) -> Function {
+        let (mut own, mut places) = (Function::constant(false), [0; MOST]);
+        for (place, &id) in places.iter_mut().zip(ids) {
+            *place = own.ids().iter().position(|&known| known == id).unwrap_or(own.count);
+            if *place == own.count {
+                (own.ids[own.count], own.count) = (id, own.count + 1);
+            }
+        }
+        Function { table: spread(table, &places[..ids.len()]), ..own }
+    }
+
+    pub(super) fn ids(&self) -> &[u32] {
+        &self.ids[..self.count]
+    }
+
+    #[must_use]
+    pub(super) fn complement_if(self, flip: bool) -> Function {
+        Function { table: if flip { Table(!self.table.0) } else { self.table }, ..self }
+    }
+
+    /// A function of this one's value and that of another; `None` if they have more than six surfaces.
+    pub(super) fn with(&self, other: &Function, combine: impl Fn(u64, u64) -> u64) -> Option<Function> {
+        let mut all = *self;
+        let mut places = [0; MOST];
+        for (place, &id) in places.iter_mut().zip(other.ids()) {
+            *place = match all.ids().iter().position(|&known| known == id) {
+                Some(known) => known,
+                None => {
+                    *all.ids.get_mut(all.count)? = id;
+                    all.count += 1;
+                    all.count - 1
+                }
+            };
+        }
+        all.table.0 = combine(self.table.0, spread(other.table, &places[..other.count]).0);
+        Some(all)
+    }
+
+    /// The same function, whose surfaces are in their order.
+    fn ordered(&self, surfaces: &impl Known) -> Function {
+        if self.ids().windows(2).all(|pair| surfaces.order(pair[0], pair[1]).is_lt()) {
+            return *self;
+        }
+        let mut order = [0, 1, 2, 3, 4, 5];
+        order[..self.count].sort_unstable_by(|&a, &b| surfaces.order(self.ids[a], self.ids[b]));
+        self.chosen(&order[..self.count])
+    }
+
+    /// The function of some of the surfaces, on which alone it depends, in another order.
+    fn chosen(&self, order: &[usize]) -> Function {
+        let mut own = Function { count: order.len(), ..Function::constant(false) };
+        let mut places = [0; MOST];
+        for (to, &from) in order.iter().enumerate() {
+            own.ids[to] = self.ids[from];
+            places[from] = to;
+        }
+        Function { table: spread(self.table, &places[..self.count]), ..own }
+    }
+
+    /// The function on the combinations that are possible in a cell, of as few surfaces as that takes, in their order.
+    pub(super) fn simplified(&self, cell: Cell, surfaces: &impl Known) -> Result<Function, Error> {
+        let own = self.ordered(surfaces);
+        let possible = own.possible(cell, surfaces)?;
+        Ok(own.reduced(possible))
+    }
+
+    fn possible(&self, cell: Cell, surfaces: &impl Known) -> Result<Table, Error> {
+        let mut placed = [None; MOST];
+        for (placed, &id) in placed.iter_mut().zip(self.ids()) {
+            *placed = Some(surfaces.placed(id)?);
+        }
+        Ok(possible(placed.into_iter().flatten(), cell))
+    }
+
+    fn reduced(&self, possible: Table) -> Function {
+        let own = Function { table: self.table.simplified(possible), ..*self };
+        let (mut needed, mut count) = ([0; MOST], 0);
+        for i in (0..own.count).filter(|&i| own.table.depends_on(i)) {
+            (needed[count], count) = (i, count + 1);
+        }
+        own.chosen(&needed[..count])
+    }
+
+    /// What a cell is that has this function, if that can be kept.
+    pub(super) fn end(&self) -> Option<Done> {
+        let mut ids = [0; MOST_KEPT];
+        match self.count {
+            0 => Some((if self.table == Table::FULL { Tag::Full } else { Tag::Empty }, Cut::None)),
+            1..=MOST_KEPT => {
+                ids[..self.count].copy_from_slice(self.ids());
+                Some((Tag::Partial, Cut::Table { ids, table: self.table.0 as u8 }))
+            }
+            _ => None,
+        }
+    }
+
+    /// The function in each child of a cell, by the surfaces whose sign is known there.
+    pub(super) fn below(&self, cell: Cell, surfaces: &impl Known) -> Result<[Function; 8], Error> {
+        let at = Octants::of(cell);
+        let mut children = [*self; 8];
+        for (i, &id) in self.ids().iter().enumerate() {
+            let sides = surfaces.placed(id)?.sides(&at, 0xFF, &mut 0)?;
+            for (k, child) in (0..).zip(&mut children) {
+                child.table = child.table.known(i, sides, k);
+            }
+        }
+        Ok(children.map(|child| child.reduced(Table::FULL)))
+    }
+
+    /// The function of a cell whose eight children are done, if one of up to three surfaces has the value of each child for all
+    /// combinations of signs that are possible there.
+    pub(super) fn joined<'d>(
+        cell: Cell,
+        children: impl Iterator<Item = &'d Done> + Clone,
+        surfaces: &impl Known,
+    ) -> Result<Option<Function>, Error> {
+        let mut all = Function::constant(false);
+        for child in children.clone() {
+            let own = match child {
+                (Tag::Partial, Cut::Table { ids, table }) => &ids[..Head(*table).surfaces()],
+                (Tag::Empty | Tag::Full, _) => &[],
+                _ => return Ok(None),
+            };
+            for &id in own {
+                if !all.ids().contains(&id) {
+                    if all.count == MOST_KEPT || !surfaces.joins(id) {
+                        return Ok(None);
+                    }
+                    (all.ids[all.count], all.count) = (id, all.count + 1);
+                }
+            }
+        }
+        if all.count == 0 {
+            return Ok(None);
+        }
+        let mut all = all.ordered(surfaces);
+        // What is possible in a child: bounds of pairs tell more than signs, and exact signs tell what bounds do not.
+        let at = Octants::of(cell);
+        let mut sides = [Sides { inside: 0, outside: 0 }; MOST_KEPT];
+        for (sides, &id) in sides.iter_mut().zip(all.ids()) {
+            *sides = surfaces.placed(id)?.sides(&at, 0xFF, &mut 0)?;
+        }
+        let (mut holds, mut fails) = (0, 0);
+        for (k, child) in OCTANTS.into_iter().zip(children) {
+            let value = match child {
+                (Tag::Partial, Cut::Table { ids, table }) => {
+                    let mut places = [0; MOST_KEPT];
+                    let own = &ids[..Head(*table).surfaces()];
+                    for (place, id) in places.iter_mut().zip(own) {
+                        *place = all.ids().iter().position(|known| known == id).unwrap_or(0);
+                    }
+                    spread(widened(*table), &places[..own.len()])
+                }
+                (Tag::Full, _) => Table::FULL,
+                _ => Table::EMPTY,
+            };
+            let mut possible = all.possible(cell.child(k), surfaces)?.0;
+            for (i, sides) in sides.iter().enumerate() {
+                let [inside, outside] = [sides.inside, sides.outside].map(|sides| sides >> k & 1 != 0);
+                if inside != outside {
+                    possible &= Table::of(i, outside).0;
+                }
+            }
+            (holds, fails) = (holds | value.0 & possible, fails | !value.0 & possible);
+            if holds & fails != 0 {
+                return Ok(None);
+            }
+        }
+        all.table = Table(holds);
+        Ok(Some(all.reduced(Table(holds | fails))))
+    }
+}
+
+/// The table of a record, as a function of six surfaces.
+fn widened(table: u8) -> Table {
+    Table(u64::from(table) * 0x0101_0101_0101_0101)
+}
+
+/// A table whose surface i is number `places[i]` of another one. It depends on no others than these.
+fn spread(table: Table, places: &[usize]) -> Table {
+    if places.iter().enumerate().all(|(from, &to)| from == to) {
+        return table;
+    }
+    // For each combination of signs of the surfaces the places where it holds.
+    (0..1u64 << places.len()).filter(|signs| table.0 >> signs & 1 != 0).fold(Table::EMPTY, |all, signs| {
+        let here = places
+            .iter()
+            .enumerate()
+            .fold(!0, |here, (from, &to)| here & Table::of(to, signs >> from & 1 == 0).0);
+        Table(all.0 | here)
+    })
+}

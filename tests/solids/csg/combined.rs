@@ -1,0 +1,350 @@
+//! Set operations of extended octrees against exact arithmetic.
+
+use super::extended::{extended, is_given_up, plate, points, through_a_file};
+use super::model::Model;
+use super::oracle::frames;
+use crate::common::{Random, alone};
+use crate::random::Maker;
+use leafless::op::{difference_of, intersection_of, union_of, xor_of};
+use leafless::{
+    Affine, Control, Csg, Frame, Membership, Octree, Rule, Solid, SurfaceOptions, Tag, build, build_extended,
+    complement, contains, difference, intersection, measure, union, xor,
+};
+
+/// A solid twice: as a model, and as an octree.
+#[derive(Clone)]
+struct Pair {
+    model: Model,
+    tree: Octree,
+}
+
+impl Pair {
+    fn view(&self) -> &leafless::OctreeRef<'_> {
+        self.tree.view()
+    }
+}
+
+/// Solids that have something to do with each other: some are parts of others, or touch them.
+fn pool(maker: &mut Maker<'_>, count: usize) -> Vec<Pair> {
+    let frame = maker.frame;
+    let mut pool: Vec<Pair> = Vec::new();
+    while pool.len() < count {
+        let model = match maker.below(4) {
+            0 => maker.half_space(),
+            1 | 2 => maker.primitive(),
+            _ => maker.expression(2),
+        };
+        let Ok(csg) = model.csg(&frame) else { continue };
+        // Some take part as certified octrees.
+        let tree = if maker.below(6) == 0 {
+            build(&csg, &frame, Rule::Certified, &alone()).unwrap()
+        } else {
+            match build_extended(&csg, &frame, &SurfaceOptions::default(), &alone()) {
+                Ok(tree) => tree,
+                Err(leafless::Error::Limit { .. }) => continue,
+                Err(error) => panic!("{error}"),
+            }
+        };
+        pool.push(Pair { model, tree });
+    }
+    pool
+}
+
+/// A random operation of some solids of the pool.
+fn operation(pool: &[Pair], random: &mut Random, threads: usize) -> Pair {
+    let mut pick = |_| pool[random.below(pool.len() as u64) as usize].clone();
+    let [a, b] = [0, 1].map(&mut pick);
+    let many: Vec<Pair> = (0..5).map(&mut pick).collect();
+    let many = &many[..1 + random.below(5) as usize];
+    let views: Vec<_> = many.iter().map(|pair| *pair.view()).collect();
+    let models = || many.iter().map(|pair| pair.model.clone()).collect::<Vec<_>>();
+    let control = Control::threads(threads);
+    let (model, tree) = match random.below(9) {
+        0 => (Model::Union(vec![a.model.clone(), b.model.clone()]), union(a.view(), b.view(), &control)),
+        1 => (
+            Model::Intersection(vec![a.model.clone(), b.model.clone()]),
+            intersection(a.view(), b.view(), &control),
+        ),
+        2 => (
+            Model::Difference(Box::new([a.model.clone(), b.model.clone()])),
+            difference(a.view(), b.view(), &control),
+        ),
+        3 => (Model::Xor(vec![a.model.clone(), b.model.clone()]), xor(a.view(), b.view(), &control)),
+        4 => (Model::Complement(Box::new(a.model.clone())), complement(a.view(), &control)),
+        5 => (Model::Union(models()), union_of(&views, &control)),
+        6 => (Model::Intersection(models()), intersection_of(&views, &control)),
+        7 => (Model::Xor(models()), xor_of(&views, &control)),
+        _ => {
+            let rest = Model::Union(models()[1..].to_vec());
+            (Model::Difference(Box::new([models()[0].clone(), rest])), difference_of(&views, &control))
+        }
+    };
+    Pair { model, tree: tree.unwrap() }
+}
+
+/// Whether a tree, or one that it was made of, gave up somewhere.
+fn gave_up(tree: &Octree) -> bool {
+    match tree.view().cuts() {
+        Some(cuts) => cuts.given_up > 0,
+        None => !tree.view().is_binary(),
+    }
+}
+
+fn no_lies(rounds: u64, height: usize, count: usize) {
+    let (mut decided, mut undecided, mut cells, mut given_up, mut empty) = (0u64, 0u64, 0, 0, 0);
+    for seed in 0..rounds {
+        let mut random = Random(seed ^ 0xB001);
+        let frame = frames(2 + random.below(6) as u8)[random.below(5) as usize];
+        let aligned = random.below(2) == 0;
+        let mut maker = Maker { random: &mut random, frame, aligned, others: false };
+        let mut pool = pool(&mut maker, 4);
+        for _ in 0..height {
+            let own = operation(&pool, &mut random, 1 + (seed % 2) as usize * 2);
+            own.view().check().unwrap();
+            pool.push(own);
+        }
+        let Pair { model, tree } = pool.pop().unwrap();
+        let tree = through_a_file(&tree);
+        let cuts = tree.view().cuts().unwrap_or_default();
+        (cells, given_up) = (cells + cuts.cells, given_up + cuts.given_up);
+        empty += u64::from(tree.view().root_tag() != Tag::Branch);
+        // (A model that is empty, or everything, has no points on two sides.)
+        let asked = if tree.view().root_tag() == Tag::Branch {
+            points(&model, &frame, count, &mut random)
+        } else {
+            let point = |_| frame.origin().map(|origin| origin + frame.edge() * random.unit());
+            (0..20).map(point).map(|p| (p, super::extended::sign(&model, p))).collect()
+        };
+        let places: Vec<[f64; 3]> = asked.iter().map(|&(p, _)| p).collect();
+        let mut answers = vec![Membership::Undecided; places.len()];
+        contains(&tree, &frame, &places, &mut answers, &alone()).unwrap();
+        let mut blunt = answers.clone();
+        contains(&tree.without_cuts(), &frame, &places, &mut blunt, &alone()).unwrap();
+        for ((&(p, sign), answer), blunt) in asked.iter().zip(answers).zip(blunt) {
+            for answer in [answer, blunt] {
+                match answer {
+                    Membership::Inside => assert!(sign >= 0, "{p:?} is outside\n{frame:?}\n{model:#?}"),
+                    Membership::Outside => assert!(sign <= 0, "{p:?} is inside\n{frame:?}\n{model:#?}"),
+                    Membership::Undecided => {}
+                }
+            }
+            if answer == Membership::Undecided {
+                assert!(is_given_up(&tree, p), "{p:?}\n{frame:?}\n{model:#?}");
+                undecided += 1;
+            } else {
+                decided += 1;
+            }
+        }
+    }
+    println!(
+        "{decided} points decided, {undecided} not; {cells} cells, {given_up} given up, {empty} of {rounds} trees of one tag"
+    );
+    assert!(decided > 3 * undecided && cells > rounds);
+}
+
+#[test]
+fn combined_trees_do_not_lie() {
+    no_lies(150, 1, 60);
+    no_lies(150, 3, 60);
+    no_lies(150, 6, 60);
+}
+
+#[test]
+#[ignore = "some minutes"]
+fn a_million_points_of_combined_trees() {
+    no_lies(3000, 1, 120);
+    no_lies(3000, 3, 120);
+    no_lies(3000, 6, 120);
+}
+
+/// Equal bytes: whatever is stored.
+fn assert_same(a: &Octree, b: &Octree, what: &str) {
+    assert_eq!(a.view().cuts(), b.view().cuts(), "{what}");
+    assert_eq!((a, Solid::fingerprint(a)), (b, Solid::fingerprint(b)), "{what}");
+    assert_eq!(a.proof(), b.proof(), "{what}");
+}
+
+/// The laws of sets; those that hold byte for byte, and those that hold where nothing was given up.
+#[test]
+fn laws_of_sets() {
+    let (mut whole, mut cells, mut compared) = (0, 0, 0);
+    for seed in 0..150 {
+        let mut random = Random(seed ^ 0x1A35);
+        let frame = frames(3 + random.below(5) as u8)[random.below(5) as usize];
+        let mut maker = Maker { random: &mut random, frame, aligned: seed % 2 == 0, others: false };
+        let mut pool = pool(&mut maker, 3);
+        if seed % 3 == 0 {
+            let own = operation(&pool, &mut random, 1);
+            pool[0] = own;
+        }
+        let [a, b, c] = [0, 1, 2].map(|i| pool[i].view());
+        let control = alone();
+        let what = format!("{seed}: {:#?}\n{:#?}", pool[0].model, pool[1].model);
+        let not = |a: &leafless::OctreeRef<'_>| complement(a, &control).unwrap();
+        let [or, and, but, either] = [union, intersection, difference, xor].map(|op| {
+            move |a: &leafless::OctreeRef<'_>, b: &leafless::OctreeRef<'_>| op(a, b, &alone()).unwrap()
+        });
+        cells += a.cuts().unwrap_or_default().cells;
+        // Byte for byte.
+        let same_bytes =
+            |law: &str, own: &Octree, other: &Octree| assert_same(own, other, &format!("{law}, {what}"));
+        same_bytes("A ∪ B is B ∪ A", &or(a, b), &or(b, a));
+        same_bytes("A ∩ B is B ∩ A", &and(a, b), &and(b, a));
+        same_bytes("A xor B is B xor A", &either(a, b), &either(b, a));
+        same_bytes("A ∪ A is A", &or(a, a), &pool[0].tree);
+        same_bytes("A ∩ A is A", &and(a, a), &pool[0].tree);
+        same_bytes("¬¬A is A", &not(not(a).view()), &pool[0].tree);
+        same_bytes(
+            "the union of A, A and A is A",
+            &union_of(&[*a, *a, *a], &control).unwrap(),
+            &pool[0].tree,
+        );
+        same_bytes("the union of A is A", &union_of(&[*a], &control).unwrap(), &pool[0].tree);
+        same_bytes("de Morgan", &not(or(not(a).view(), not(b).view()).view()), &and(a, b));
+        same_bytes("A ∖ B is A ∩ ¬B", &and(a, not(b).view()), &but(a, b));
+        for (n_ary, pairs) in [
+            (union_of(&[*a, *b], &control), or(a, b)),
+            (intersection_of(&[*a, *b], &control), and(a, b)),
+            (difference_of(&[*a, *b], &control), but(a, b)),
+            (xor_of(&[*a, *b], &control), either(a, b)),
+        ] {
+            same_bytes("two are a pair", &n_ary.unwrap(), &pairs);
+        }
+        for (order, other) in [([*a, *b, *c], [*c, *a, *b]), ([*a, *c, *b], [*b, *c, *a])] {
+            for op in [union_of, intersection_of, xor_of] {
+                same_bytes(
+                    "the order does not count",
+                    &op(&order, &control).unwrap(),
+                    &op(&other, &control).unwrap(),
+                );
+            }
+        }
+        let everything = [Tag::Empty, Tag::Full].map(|tag| Octree::uniform(frame, tag, tag).unwrap());
+        for (own, other) in [
+            (or(a, everything[0].view()), &pool[0].tree),
+            (and(a, everything[1].view()), &pool[0].tree),
+            (and(a, everything[0].view()), &everything[0]),
+            (or(everything[1].view(), a), &everything[1]),
+        ] {
+            same_bytes("nothing and everything", &own, other);
+        }
+        // As sets, where nothing was given up.
+        if gave_up(&pool[0].tree) {
+            continue;
+        }
+        whole += 1;
+        for (own, tag) in [
+            (but(a, a), Tag::Empty),
+            (either(a, a), Tag::Empty),
+            (and(a, not(a).view()), Tag::Empty),
+            (or(a, not(a).view()), Tag::Full),
+            (either(a, not(a).view()), Tag::Full),
+        ] {
+            assert_eq!(own.view().root_tag(), tag, "{what}");
+            assert!(own.view().cuts().is_none());
+        }
+        // Absorption, distribution and association leave no point that lies in one and not in the other.
+        let mut same = |law: &str, a: Octree, b: Octree| {
+            if !gave_up(&a) && !gave_up(&b) {
+                let odd = xor(a.view(), b.view(), &alone()).unwrap();
+                // Cells may be left in which the functions differ for combinations of signs that do not occur there, which shows in
+                // smaller ones.
+                let control = Control { max_splits: Some(4000), ..alone() };
+                let volume = measure(&odd, &frame, 0.0, &control).map(|m| m.volume);
+                let size = frame.edge().powi(3);
+                if let Ok(volume) = volume
+                    && !gave_up(&odd)
+                {
+                    compared += 1;
+                    assert!(
+                        volume.lower <= 1e-12 * size && volume.upper < 0.01 * size,
+                        "{law}: {volume:?}\n{what}"
+                    );
+                }
+            }
+        };
+        same("or absorbs", or(a, and(a, b).view()), pool[0].tree.clone());
+        same("and absorbs", and(a, or(a, b).view()), pool[0].tree.clone());
+        same("or associates", or(or(a, b).view(), c), or(a, or(b, c).view()));
+        same("and associates", and(and(a, b).view(), c), and(a, and(b, c).view()));
+        same("xor associates", either(either(a, b).view(), c), either(a, either(b, c).view()));
+        same("and distributes", and(a, or(b, c).view()), or(and(a, b).view(), and(a, c).view()));
+        same("union of three", union_of(&[*a, *b, *c], &control).unwrap(), or(or(a, b).view(), c));
+        same(
+            "difference of three",
+            difference_of(&[*a, *b, *c], &control).unwrap(),
+            but(but(a, b).view(), c),
+        );
+    }
+    assert!(whole > 30 && cells > 500 && compared > 100, "{whole} {cells} {compared}");
+}
+
+/// Any number of threads makes the same tree.
+#[test]
+fn threads_do_not_show() {
+    let frame = Frame::new([0.0; 3], 64.0, 12).unwrap();
+    let mut random = Random(0x7EAD);
+    let mut ball = || {
+        let centre = [0; 3].map(|_| random.between(8.0, 56.0));
+        extended(&Csg::ball(centre, random.between(2.0, 6.0)).unwrap(), &frame)
+    };
+    let balls: Vec<Octree> = (0..400).map(|_| ball()).collect();
+    let views: Vec<_> = balls.iter().map(|ball| *ball.view()).collect();
+    let of = |threads: usize| {
+        let control = Control::threads(threads);
+        let some = union_of(&views[..250], &control).unwrap();
+        let others = xor_of(&views[200..], &control).unwrap();
+        let both = difference(some.view(), others.view(), &control).unwrap();
+        (some, others, both)
+    };
+    let one = of(1);
+    // So many that threads are worth it.
+    assert!(one.2.view().cuts().unwrap().cells > 8192, "{:?}", one.2.view().cuts());
+    for threads in [2, 3] {
+        assert!(of(threads) == one);
+    }
+}
+
+/// Cuts that are made and filled again leave nothing behind.
+#[test]
+fn memory_does_not_grow_with_history() {
+    let frame = Frame::around([0.0; 3], [80.0, 60.0, 10.0], 20).unwrap();
+    let fresh = extended(&plate(), &frame);
+    let mut part = fresh.clone();
+    let mut random = Random(0x4157);
+    let blank = extended(&Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap(), &frame);
+    for round in 0..1000 {
+        let to = Affine::translation([random.between(0.0, 80.0), random.between(0.0, 60.0), 0.0]).unwrap();
+        let bore = Csg::cylinder(random.between(0.5, 4.0), -1.0, 11.0).unwrap().placed(&to).unwrap();
+        let bore = extended(&bore, &frame);
+        part = difference(part.view(), bore.view(), &alone()).unwrap();
+        part = union(part.view(), fresh.view(), &alone()).unwrap();
+        assert_same(&part, &fresh, &format!("round {round}"));
+    }
+    // The same all at once.
+    let whole = union(part.view(), blank.view(), &alone()).unwrap();
+    assert_same(&whole, &blank, "all bores are filled");
+}
+
+/// The example of the documentation: a plate, and twenty bores one by one.
+#[test]
+fn twenty_bores_one_by_one() {
+    let frame = Frame::around([0.0; 3], [80.0, 60.0, 10.0], 20).unwrap();
+    let mut part = extended(&Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap(), &frame);
+    let tool = Csg::cylinder(2.5, -1.0, 11.0).unwrap();
+    let mut bores = Vec::new();
+    for k in 0..20 {
+        let to = [8.0 + 16.0 * f64::from(k % 5), 7.5 + 15.0 * f64::from(k / 5), 0.0];
+        let bore = extended(&tool.clone().placed(&Affine::translation(to).unwrap()).unwrap(), &frame);
+        part = difference(part.view(), bore.view(), &alone()).unwrap();
+        bores.push(bore);
+    }
+    let fresh = extended(&plate(), &frame);
+    assert_same(&part, &fresh, "one by one");
+    let blank = extended(&Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap(), &frame);
+    let views: Vec<_> = [&blank].into_iter().chain(&bores).map(|tree| *tree.view()).collect();
+    assert_same(&difference_of(&views, &alone()).unwrap(), &fresh, "at once");
+    let truth = 48_000.0 - 20.0 * core::f64::consts::PI * 6.25 * 10.0;
+    let volume = measure(&part, &frame, 1e-6, &alone()).unwrap().volume;
+    assert!(volume.contains(truth) && volume.width() < 1.01e-6 * truth);
+}
