@@ -14,6 +14,7 @@ mod search;
 mod solid;
 #[cfg(feature = "render")]
 mod touch;
+mod trace;
 mod way;
 
 pub use solid::{Sight, cast_rays, line_of_sight, ray_spans};

@@ -6,6 +6,7 @@ use super::cut::CutLine;
 use super::line::Line;
 use super::march::March;
 use super::search::{Cells, First, Stays};
+use super::trace::Trace;
 use super::way::Way;
 use super::{Obstacle, Ray, RayHit, RaySpans};
 use crate::dispatch::{Hot, with_vectors};
@@ -23,7 +24,10 @@ impl OctreeRef<'_> {
     /// the tree was made from; `None` if nothing stops it. What lies outside of the universe does not count. At most 3 · 2^depth cells are
     /// looked at, about a dozen as a rule, whatever the bytes.
     pub fn cast_ray(&self, ray: &Ray, on: Obstacle) -> Option<RayHit> {
-        cast_one(self, ray, on)
+        match &self.cuts {
+            None => cast_one(self, ray, on),
+            Some(cuts) => cast_by_cuts(self, ray, ByCuts { cuts, on }),
+        }
     }
 
     /// Casts many rays, `hits[i]` for `rays[i]`; the same answers as [`cast_ray`](Self::cast_ray), faster. One thread.
@@ -45,7 +49,10 @@ impl OctreeRef<'_> {
     /// # Ok::<(), leafless::Error>(())
     /// ```
     pub fn cast_rays(&self, rays: &[Ray], on: Obstacle, hits: &mut [Option<RayHit>]) -> Result<(), Error> {
-        cast_all(self, rays, on, hits)
+        match &self.cuts {
+            None => cast_all(self, rays, on, hits),
+            Some(cuts) => cast_all_by_cuts(self, rays, ByCuts { cuts, on }, hits),
+        }
     }
 
     /// Where a ray is in the octree's cells, whatever they prove of the solid that the tree was made from. What
@@ -54,7 +61,14 @@ impl OctreeRef<'_> {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub fn ray_spans(&self, ray: &Ray) -> Result<RaySpans, Error> {
-        Stays::search(&mut Stored(self), &Line::new(&self.frame, *ray))
+        let line = Line::new(&self.frame, *ray);
+        if let Some(cuts) = &self.cuts {
+            let mut stays = Stays::default();
+            if with_vectors(FindStays { tree: self, cuts, line: &line, stays: &mut stays })? {
+                return stays.spans(&line);
+            }
+        }
+        exact_spans(self, &line)
     }
 }
 
@@ -62,34 +76,61 @@ impl OctreeRef<'_> {
 pub(super) trait Question: Copy {
     type Answer;
 
-    /// Whether the first FULL cell is needed, too.
-    const TO_FULL: bool;
-
-    /// Whether PARTIAL cells are looked into.
-    const BY_CUTS: bool;
-
-    /// The answer, given what was met.
-    fn answer(self, march: &March, tree: &OctreeRef<'_>, ray: &Ray) -> Option<Self::Answer>;
-
-    /// The answer by the slow way, for rays on which rounding errors tell.
-    fn exactly(self, tree: &OctreeRef<'_>, ray: &Ray) -> Option<Self::Answer>;
+    /// The answer for a ray that nothing stops where it is `clear`.
+    fn cast(self, way: &mut Way<'_, '_>, ray: &Ray, course: &Course, clear: Clear) -> Option<Self::Answer>;
 }
 
+/// The question of a tree whose PARTIAL cells keep nothing.
 impl Question for Obstacle {
     type Answer = RayHit;
-    const TO_FULL: bool = true;
-    const BY_CUTS: bool = true;
 
-    #[inline(never)]
-    fn answer(self, march: &March, tree: &OctreeRef<'_>, ray: &Ray) -> Option<RayHit> {
-        let outer = march.outer.map(|(met, _)| met);
-        First::of(&Line::new(&tree.frame, *ray), outer, march.inner).hit(self)
+    #[inline(always)]
+    fn cast(self, way: &mut Way<'_, '_>, ray: &Ray, course: &Course, clear: Clear) -> Option<RayHit> {
+        match March::run(way, ray, course, clear, true) {
+            Some(March { outer: None, .. }) => None,
+            Some(march) => of_march(self, &march, way.tree, ray),
+            None => exactly(self, way.tree, ray),
+        }
     }
+}
 
-    #[cold]
-    fn exactly(self, tree: &OctreeRef<'_>, ray: &Ray) -> Option<RayHit> {
-        // A stored tree's cells are split without fail.
-        First::search(&mut Stored(tree), &Line::new(&tree.frame, *ray)).ok()?.hit(self)
+#[inline(never)]
+fn of_march(on: Obstacle, march: &March, tree: &OctreeRef<'_>, ray: &Ray) -> Option<RayHit> {
+    let outer = march.outer.map(|(met, _)| met);
+    First::of(&Line::new(&tree.frame, *ray), outer, march.inner).hit(on)
+}
+
+/// The answer by the slow way, for rays on which rounding errors tell.
+#[cold]
+pub(super) fn exactly(on: Obstacle, tree: &OctreeRef<'_>, ray: &Ray) -> Option<RayHit> {
+    // A stored tree's cells are split without fail.
+    First::search(&mut Stored(tree), &Line::new(&tree.frame, *ray)).ok()?.hit(on)
+}
+
+/// The spans by the slow way.
+pub(super) fn exact_spans(tree: &OctreeRef<'_>, line: &Line<'_>) -> Result<RaySpans, Error> {
+    Stays::search(&mut Stored(tree), line)
+}
+
+/// The question of a tree with cuts.
+#[derive(Clone, Copy)]
+struct ByCuts<'t, 'a> {
+    cuts: &'t CutsRef<'a>,
+    on: Obstacle,
+}
+
+impl Question for ByCuts<'_, '_> {
+    type Answer = RayHit;
+
+    #[inline(always)]
+    fn cast(self, way: &mut Way<'_, '_>, ray: &Ray, course: &Course, clear: Clear) -> Option<RayHit> {
+        let ByCuts { cuts, on } = self;
+        let tree = way.tree;
+        let (line, mut first) = (Line::new(&tree.frame, *ray), First::default());
+        match (Trace { cuts, line: &line, course, clear }).show(way, &mut first) {
+            Ok(true) => first.hit(on),
+            _ => exactly(on, tree, ray),
+        }
     }
 }
 
@@ -103,32 +144,49 @@ pub(super) fn cast_all<Q: Question>(
     if rays.len() != answers.len() {
         return Err(Error::Argument { name: "hits", problem: "must be as long as rays" });
     }
-    if Q::BY_CUTS && tree.cuts.is_some() {
-        cast_by_cuts(tree, rays, question, answers);
-    } else {
-        with_vectors(CastAll { tree, rays, question, answers });
-    }
+    with_vectors(CastAll { tree, rays, question, answers });
     Ok(())
-}
-
-/// The same of a tree with cuts.
-#[cold]
-#[inline(never)]
-fn cast_by_cuts<Q: Question>(
-    tree: &OctreeRef<'_>,
-    rays: &[Ray],
-    question: Q,
-    answers: &mut [Option<Q::Answer>],
-) {
-    rays.iter().zip(answers).for_each(|(ray, answer)| *answer = question.exactly(tree, ray));
 }
 
 /// Answers a question about a ray.
 pub(super) fn cast_one<Q: Question>(tree: &OctreeRef<'_>, ray: &Ray, question: Q) -> Option<Q::Answer> {
-    if Q::BY_CUTS && tree.cuts.is_some() {
-        question.exactly(tree, ray)
-    } else {
-        with_vectors(Cast { tree, ray, question })
+    with_vectors(Cast { tree, ray, question })
+}
+
+/// The same of a tree with cuts, apart from what plain trees run.
+#[cold]
+#[inline(never)]
+fn cast_by_cuts(tree: &OctreeRef<'_>, ray: &Ray, question: ByCuts<'_, '_>) -> Option<RayHit> {
+    cast_one(tree, ray, question)
+}
+
+#[cold]
+#[inline(never)]
+fn cast_all_by_cuts(
+    tree: &OctreeRef<'_>,
+    rays: &[Ray],
+    question: ByCuts<'_, '_>,
+    hits: &mut [Option<RayHit>],
+) -> Result<(), Error> {
+    cast_all(tree, rays, question, hits)
+}
+
+/// Finds where a ray is in a tree with cuts; `false` if rounding errors may change that.
+struct FindStays<'s, 't, 'a> {
+    tree: &'t OctreeRef<'a>,
+    cuts: &'t CutsRef<'a>,
+    line: &'s Line<'t>,
+    stays: &'s mut Stays,
+}
+
+impl Hot for FindStays<'_, '_, '_> {
+    type Output = Result<bool, Error>;
+
+    #[inline(always)]
+    fn run(self) -> Result<bool, Error> {
+        let FindStays { tree, cuts, line, stays } = self;
+        let course = Course::new(&tree.frame, &line.ray);
+        Trace { cuts, line, course: &course, clear: Clear::UNKNOWN }.show(&mut Way::new(tree), stays)
     }
 }
 
@@ -144,7 +202,7 @@ impl<Q: Question> Hot for Cast<'_, '_, Q> {
     #[inline(always)]
     fn run(self) -> Option<Q::Answer> {
         let course = Course::new(self.tree.frame(), self.ray);
-        cast(&mut Way::new(self.tree), self.ray, &course, Clear::UNKNOWN, self.question)
+        self.question.cast(&mut Way::new(self.tree), self.ray, &course, Clear::UNKNOWN)
     }
 }
 
@@ -171,24 +229,9 @@ impl<Q: Question> Hot for CastAll<'_, '_, Q> {
                 continue;
             }
             for ((ray, course), answer) in rays.iter().zip(&courses).zip(answers) {
-                *answer = cast(&mut way, ray, course, clear, self.question);
+                *answer = self.question.cast(&mut way, ray, course, clear);
             }
         }
-    }
-}
-
-#[inline(always)]
-fn cast<Q: Question>(
-    way: &mut Way<'_, '_>,
-    ray: &Ray,
-    course: &Course,
-    clear: Clear,
-    question: Q,
-) -> Option<Q::Answer> {
-    match March::run(way, ray, course, clear, Q::TO_FULL) {
-        Some(March { outer: None, .. }) => None,
-        Some(march) => question.answer(&march, way.tree, ray),
-        None => question.exactly(way.tree, ray),
     }
 }
 

@@ -37,9 +37,12 @@ pub(super) trait Cells {
 }
 
 /// What a search makes of the cells that it meets.
-trait Visitor {
+pub(super) trait Visitor {
     /// Whether a cell may be left out.
     fn skips(&self, passage: &Passage) -> bool;
+
+    /// Whether the cells behind a cell that was met may be left out.
+    fn ends(&self, passage: &Passage) -> bool;
 
     /// A cell that is not EMPTY and not split further.
     fn meet(&mut self, line: &Line<'_>, cell: Cell, passage: &Passage, known: Known<'_>)
@@ -47,7 +50,7 @@ trait Visitor {
 }
 
 /// What is known of a cell.
-enum Known<'a> {
+pub(super) enum Known<'a> {
     Full,
     /// PARTIAL, perhaps with slabs.
     Partial(Option<Enclosure>),
@@ -160,6 +163,10 @@ fn keep(kept: &mut Option<(f64, Cell, [f64; 3])>, t: f64, cell: Cell, normal: [f
 impl Visitor for First {
     fn skips(&self, passage: &Passage) -> bool {
         self.inner.is_some_and(|(t, ..)| passage.entry.t.lower >= t)
+    }
+
+    fn ends(&self, passage: &Passage) -> bool {
+        self.inner.is_some_and(|(t, ..)| passage.exit.t.lower >= t)
     }
 
     fn meet(
@@ -371,14 +378,23 @@ impl Stays {
         let mut stays = Stays::default();
         let root = cells.root()?;
         walk(cells, line, Cell::ROOT, root, &mut stays)?;
+        stays.spans(line)
+    }
+
+    /// The union of all stays that were met.
+    pub(super) fn spans(self, line: &Line<'_>) -> Result<RaySpans, Error> {
         let inner = |[entry, exit]: [Moment; 2]| Interval::new(entry.t.upper, exit.t.lower);
         let outer = |[entry, exit]: [Moment; 2]| Interval::new(entry.t.lower, exit.t.upper);
-        Ok(RaySpans { inner: united(line, stays.inner, inner)?, outer: united(line, stays.outer, outer)? })
+        Ok(RaySpans { inner: united(line, self.inner, inner)?, outer: united(line, self.outer, outer)? })
     }
 }
 
 impl Visitor for Stays {
     fn skips(&self, _: &Passage) -> bool {
+        false
+    }
+
+    fn ends(&self, _: &Passage) -> bool {
         false
     }
 

@@ -1,7 +1,9 @@
 //! The first cells along rays for pictures, which need no bounds of the time at which they are met.
 
+use super::course::{Clear, Course};
 use super::march::March;
-use super::octree::{Question, cast_all, cast_one};
+use super::octree::{self, Question, cast_all, cast_one};
+use super::way::Way;
 use super::{Obstacle, Ray};
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -34,23 +36,25 @@ struct FirstCell;
 
 impl Question for FirstCell {
     type Answer = TouchedCell;
-    const TO_FULL: bool = false;
-    const BY_CUTS: bool = false;
 
     #[inline(always)]
-    fn answer(self, march: &March, _: &OctreeRef<'_>, ray: &Ray) -> Option<TouchedCell> {
-        let ((cell, by), t) = march.outer?;
+    fn cast(self, way: &mut Way<'_, '_>, ray: &Ray, course: &Course, clear: Clear) -> Option<TouchedCell> {
+        let Some(March { outer, .. }) = March::run(way, ray, course, clear, false) else {
+            return exactly(way.tree, ray);
+        };
+        let ((cell, by), t) = outer?;
         let mut normal = [0.0; 3];
         if let Some((axis, _)) = by {
             normal[axis] = if ray.direction[axis][0] > 0.0 { -1.0 } else { 1.0 };
         }
         Some(TouchedCell { t, cell, normal })
     }
+}
 
-    fn exactly(self, tree: &OctreeRef<'_>, ray: &Ray) -> Option<TouchedCell> {
-        let hit = Obstacle::Upper.exactly(&tree.without_cuts(), ray)?;
-        Some(TouchedCell { t: hit.t.lower.max(0.0), cell: hit.cell, normal: hit.normal })
-    }
+#[cold]
+fn exactly(tree: &OctreeRef<'_>, ray: &Ray) -> Option<TouchedCell> {
+    let hit = octree::exactly(Obstacle::Upper, &tree.without_cuts(), ray)?;
+    Some(TouchedCell { t: hit.t.lower.max(0.0), cell: hit.cell, normal: hit.normal })
 }
 
 #[cfg(test)]

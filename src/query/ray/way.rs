@@ -25,6 +25,12 @@ impl<'t, 'a> Way<'t, 'a> {
         Way { tree, place: [0; 4], last: 0, elements: [0; MAX_ELEMENT_LEVELS], planes }
     }
 
+    /// The last element.
+    #[inline(always)]
+    pub(super) fn element(&self) -> usize {
+        self.elements[self.last]
+    }
+
     /// Goes down to the cell that holds a finest one: its tag, its edge as a power of two, and its place in the last element.
     #[inline(always)]
     pub(super) fn to(&mut self, place: [u32; 4]) -> (Tag, u32, u32) {
