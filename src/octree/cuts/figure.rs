@@ -3,6 +3,7 @@
 //! What is next to a surface stays open; [exact signs](crate::solid) are for those who put the tree on a frame.
 
 use super::surfaces::{MOST_MAPS, SurfaceKind, SurfacesRef};
+use crate::lattice::exact::sqrt;
 use crate::lattice::{Ball, axes};
 
 /// A surface in its own space.
@@ -250,7 +251,8 @@ impl FigureLine<'_> {
                 let rise = b.plus(bent);
                 let value = c.plus(rise.times(t));
                 let slope = rise.plus(bent).magnitude();
-                figure.of_value(value.widened(bounded(slope * half + a.magnitude() * half * half)))
+                let range = value.widened(bounded(slope * half + a.magnitude() * half * half));
+                figure.of_value(range).or_else(|| self.side_by_ends(low, high))
             }
             FigureLine::Other { figure, at, direction } => {
                 let reach = |axis: usize| bounded(direction[axis].magnitude() * half);
@@ -258,6 +260,98 @@ impl FigureLine<'_> {
                 figure.natural(axes(point)).is_positive()
             }
         }
+    }
+}
+
+/// Where a piece of a line is best divided that does not lie on one side.
+pub(crate) enum Division {
+    At(f64),
+    /// Nothing is known of where the line crosses the surface.
+    InHalves,
+    /// No part of the piece lies surely on a side.
+    Nowhere,
+}
+
+/// Least distance from a crossing at which a line is divided. It is above the rounding errors of times from 0 to 1, and of
+/// [`FigureLine::side`] on the pieces.
+const BESIDE: f64 = 1.0 / (1u64 << 44) as f64;
+
+impl FigureLine<'_> {
+    /// The value of a polynomial at a time.
+    #[inline(always)]
+    fn value([c, b, a]: &[Ball; 3], t: f64) -> Ball {
+        let t = Ball::exactly(t);
+        c.plus(b.plus(a.times(t)).times(t))
+    }
+
+    /// The side of all points of a quadric by those of the ends. If the ends lie on one side, all points do where the parabola bends
+    /// away from zero, where it does not turn, and where it has no root.
+    fn side_by_ends(&self, low: f64, high: f64) -> Option<bool> {
+        let FigureLine::Polynomial { figure, coefficients } = self else { return None };
+        if figure.kind != SurfaceKind::Quadric {
+            return None;
+        }
+        let side = Self::value(coefficients, low).is_positive()?;
+        if Self::value(coefficients, high).is_positive() != Some(side) {
+            return None;
+        }
+        let &[c, b, a] = coefficients;
+        let slope = |t: f64| b.plus(a.times(Ball::exactly(2.0 * t))).is_positive();
+        let bends_away = || a.is_positive() == Some(!side);
+        let does_not_turn = || slope(low).is_some_and(|rises| slope(high) == Some(rises));
+        let has_no_root =
+            || b.times(b).minus(Ball::exactly(4.0).times(a.times(c))).is_positive() == Some(false);
+        (bends_away() || does_not_turn() || has_no_root()).then_some(side)
+    }
+
+    /// Where to divide the piece from t = `low` to `high`, whose side is not known: next to a crossing.
+    pub(crate) fn division(&self, low: f64, high: f64) -> Division {
+        let FigureLine::Polynomial { figure, coefficients } = self else { return Division::InHalves };
+        let [c, b, a] = coefficients;
+        let (levels, is_linear) = match figure.kind {
+            SurfaceKind::Slab => (&figure.numbers[3..5], true),
+            kind => (&[Ball::ZERO][..], kind != SurfaceKind::Quadric),
+        };
+        let (mut least, mut is_crossing) = (high, false);
+        for level in levels {
+            let own = [c.minus(*level), *b, *a];
+            for t in crossings(own.map(|number| number.value)).into_iter().filter(|t| t.is_finite()) {
+                // Values that are less than this may have either sign.
+                let value = Self::value(&own, t);
+                let unsure = value.error + value.value.abs();
+                let steep = 4.0 * unsure / (b.value + 2.0 * a.value * t).abs();
+                let flat = 2.0 * sqrt(unsure / a.value.abs());
+                // (The minimum is the other one where one is no number.)
+                let doubt = BESIDE + steep.min(flat);
+                let ends = [t - doubt, t + doubt];
+                for end in ends.into_iter().filter(|&end| end > low) {
+                    least = least.min(end);
+                }
+                is_crossing |= ends[0] <= low && high <= ends[1];
+            }
+        }
+        let is_open = |t: f64| figure.of_value(Self::value(coefficients, t)).is_none();
+        if least < high {
+            Division::At(least)
+        } else if is_crossing || is_linear && is_open(low) && is_open(high) {
+            Division::Nowhere
+        } else {
+            Division::InHalves
+        }
+    }
+}
+
+/// About where c + b t + a t² is zero; where it turns if it has no root; what is not finite if there is nothing.
+fn crossings([c, b, a]: [f64; 3]) -> [f64; 2] {
+    if a == 0.0 {
+        return [-c / b, f64::INFINITY];
+    }
+    let square = b * b - 4.0 * a * c;
+    if square > 0.0 {
+        let sum = -0.5 * (b + sqrt(square).copysign(b));
+        [sum / a, c / sum]
+    } else {
+        [-0.5 * b / a, f64::INFINITY]
     }
 }
 

@@ -18,7 +18,7 @@ mod record;
 mod surfaces;
 mod writer;
 
-pub(crate) use figure::{Figure, FigureLine};
+pub(crate) use figure::{Division, Figure, FigureLine};
 pub(crate) use ids::{CellIds, Ids, OwnedIds, width};
 pub use read::{CellFunction, StoredSurface};
 pub(crate) use record::Head;

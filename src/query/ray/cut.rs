@@ -2,7 +2,7 @@
 
 use super::line::Line;
 use crate::lattice::{Ball, axes};
-use crate::octree::cuts::{CellIds, Figure, FigureLine, Head, SurfacesRef};
+use crate::octree::cuts::{CellIds, Division, Figure, FigureLine, Head, SurfacesRef};
 
 /// The table of a cell, and its surfaces along a ray between two times.
 pub(super) struct CutLine<'a> {
@@ -29,8 +29,8 @@ const MOST_PIECES: u32 = 1024;
 /// Pieces are halved down to this part of the ray's stay in the cell.
 const FINEST: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// Pieces that wait: one for each halving.
-const MOST_WAITING: usize = 48;
+/// Pieces that wait: one for each halving, and for each side of each crossing.
+const MOST_WAITING: usize = 56;
 
 impl<'a> CutLine<'a> {
     pub(super) fn new(
@@ -72,23 +72,39 @@ impl<'a> CutLine<'a> {
                     None => surface = surface.or(Some(i as u8)),
                 }
             }
+            let may_divide = left > 0 && high - low > FINEST && count + 2 <= MOST_WAITING;
             let is_inside = match Head(table) {
                 Head::NOWHERE => Some(false),
                 Head::EVERYWHERE => Some(true),
-                _ if left > 0 && high - low > FINEST && count + 2 <= MOST_WAITING => {
-                    // (Halves of halves of 1 are exact.)
-                    let middle = 0.5 * (low + high);
-                    waiting[count] = (middle, high, table);
-                    waiting[count + 1] = (low, middle, table);
-                    count += 2;
-                    continue;
-                }
-                _ => None,
+                _ => match self.division(table, low, high).filter(|_| may_divide) {
+                    Some(middle) => {
+                        waiting[count] = (middle, high, table);
+                        waiting[count + 1] = (low, middle, table);
+                        count += 2;
+                        continue;
+                    }
+                    None => None,
+                },
             };
             if !visit(Piece { low, high, is_inside, surface }) {
                 return;
             }
         }
+    }
+
+    /// Where to divide a piece whose table is not decided; `None` if no part of it would be. Next to crossings that are known about, the
+    /// pieces that they leave are decided at once, and halving takes three dozen steps to each.
+    fn division(&self, table: u8, low: f64, high: f64) -> Option<f64> {
+        let (mut least, mut middle) = (high, None);
+        let lines = self.surfaces.iter().enumerate().filter(|&(i, _)| Head::needs(table, i));
+        for line in lines.filter_map(|(_, line)| line.as_ref()) {
+            match line.division(low, high) {
+                Division::At(t) => least = least.min(t),
+                Division::InHalves => middle = Some(0.5 * low + 0.5 * high),
+                Division::Nowhere => {}
+            }
+        }
+        if least < high { Some(least) } else { middle }
     }
 
     /// The times of a piece, rounded outward. The ends of the stay are met exactly.
