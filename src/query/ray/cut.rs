@@ -13,7 +13,7 @@ pub(super) struct CutLine<'a> {
 }
 
 /// A piece of a ray, from one part of its stay in the cell to another, 0 to 1.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Piece {
     pub low: f64,
     pub high: f64,

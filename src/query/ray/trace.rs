@@ -272,31 +272,54 @@ mod tests {
         ray.ok()?.until(last).ok()
     }
 
-    /// Whether rounding errors leave no doubt which cells a ray meets.
-    fn traced(tree: &Octree, ray: &Ray) -> bool {
-        struct Nothing;
-        impl Visitor for Nothing {
-            fn skips(&self, _: &Passage) -> bool {
-                false
-            }
-            fn ends(&self, _: &Passage) -> bool {
-                false
-            }
-            fn meet(&mut self, _: &Line<'_>, _: Cell, _: &Passage, _: Known<'_>) -> Result<(), Error> {
-                Ok(())
-            }
+    /// What a trace shows.
+    #[derive(Default)]
+    struct Shown {
+        tables: u32,
+        pieces: u32,
+        /// Tables with a piece that is not known and longer than a crossing is.
+        open: u32,
+    }
+
+    impl Visitor for Shown {
+        fn skips(&self, _: &Passage) -> bool {
+            false
         }
+
+        fn ends(&self, _: &Passage) -> bool {
+            false
+        }
+
+        fn meet(&mut self, _: &Line<'_>, _: Cell, _: &Passage, known: Known<'_>) -> Result<(), Error> {
+            let Known::Table(table) = known else { return Ok(()) };
+            let (mut end, mut is_open) = (0.0, false);
+            table.walk(|piece| {
+                assert!(piece.low == end && piece.low < piece.high, "{piece:?}");
+                end = piece.high;
+                is_open |= piece.is_inside.is_none() && piece.high - piece.low > 1e-9;
+                self.pieces += 1;
+                true
+            });
+            assert_eq!(end, 1.0);
+            self.tables += 1;
+            self.open += u32::from(is_open);
+            Ok(())
+        }
+    }
+
+    /// Shows a ray; whether rounding errors leave no doubt which cells it meets.
+    fn trace(tree: &Octree, ray: &Ray, shown: &mut Shown) -> bool {
         let view = tree.view();
         let (line, course) = (Line::new(view.frame(), *ray), Course::new(view.frame(), ray));
         let cuts = view.cuts.as_ref().unwrap();
         let trace = Trace { cuts, line: &line, course: &course, clear: Clear::UNKNOWN };
-        trace.show(&mut Way::new(view), &mut Nothing).unwrap()
+        trace.show(&mut Way::new(view), shown).unwrap()
     }
 
     #[test]
     fn traces_are_the_exact_search() {
         let (mut random, mut counts) = (Random(0x7ACE), [0u32; 4]);
-        let (mut trees, mut splits) = (0, 0);
+        let (mut trees, mut splits, mut shown) = (0, 0, Shown::default());
         while trees < 300 {
             let Some(tree) = tree(&mut random) else { continue };
             trees += 1;
@@ -321,13 +344,17 @@ mod tests {
                     tree.frame()
                 );
                 counts[2] += spans.inner.len() as u32;
-                counts[3] += u32::from(traced(&tree, ray));
+                counts[3] += u32::from(trace(&tree, ray, &mut shown));
             }
         }
         let [full, upper, spans, traced] = counts;
         std::println!(
             "{full} and {upper} hits, {spans} spans, {traced} of 18000 rays traced; {splits} splits"
         );
+        let Shown { tables, pieces, open } = shown;
+        std::println!("{tables} tables, {pieces} pieces, {open} tables with long pieces that are not known");
+        // A crossing makes two pieces more.
+        assert!(pieces < 4 * tables && 50 * open < tables);
         assert!(full > 500 && upper > 1000 && spans > 500 && traced > 5000 && splits > 100);
     }
 }
