@@ -239,8 +239,9 @@ pub unsafe extern "C" fn leafless_solid_measure(
 /// The area of a solid's boundary in the universe of a frame, as leafless_solid_measure finds the volume: `relative` and
 /// `absolute_model` (square model units) say how wide the interval may be, and without `max_splits` of the options it ends
 /// after 2^23 splits. With N splits the width goes down with 1/N on curved surfaces; plane faces are exact. Where faces
-/// lie in planes of the frame's lattice, and the solid ends inside of the universe, another lattice is taken. Of an octree,
-/// of a host program's functions, and of what is clipped there and has such faces nothing is known.
+/// lie in planes of the frame's lattice, and the solid ends inside of the universe, another lattice is taken. Of an
+/// octree that keeps surfaces, of one without undecided cells, and of an expression that is clipped, faces between cells are
+/// counted as they are. Nothing is known of other octrees, of a host program's functions, and of a clipped mesh with such faces.
 ///
 /// - Buffers: as leafless_solid_measure; `surface`, one struct.
 /// - Result: `*surface`.

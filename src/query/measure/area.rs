@@ -1,5 +1,6 @@
 //! Certified area of any solid's boundary.
 
+use super::faces::WithFaces;
 use super::quantity::{self, Quantity};
 use super::walk::walk;
 use super::{StopReason, Tolerance};
@@ -41,8 +42,14 @@ const FRAMES: u8 = 8;
 /// whose triangles do not intersect is not split.
 ///
 /// What lies between two cells belongs to neither of them. If the boundary has pieces in planes of the lattice, the area
-/// of a solid that ends inside of the universe is found on another lattice, whose planes are elsewhere. Of a stored
-/// octree, of a host program's functions and of what is clipped there and has such pieces nothing is known.
+/// of a solid that ends inside of the universe is found on another lattice, whose planes are elsewhere. Three solids stay on
+/// their own lattice: an extended octree ([`build_extended`](crate::build_extended)), an octree without PARTIAL cells, and an
+/// expression that is clipped. Their cells count the pieces that lie in faces between cells, where the solid differs on the two
+/// sides. An extended octree so has the area of its source, as sharp after as many splits. A cell that keeps slabs has no upper
+/// bound, and neither has a cell that is given up.
+///
+/// Nothing is known of an octree with PARTIAL cells that keep no surfaces, of a host program's functions, and of a clipped mesh
+/// with faces in planes of the lattice.
 ///
 /// # Errors
 /// As [`measure`](crate::measure).
@@ -64,7 +71,7 @@ pub fn surface_area<S: Solid>(
     let tolerance = tolerance.into();
     valid::tolerance("tolerance", tolerance.relative)?;
     valid::tolerance("tolerance", tolerance.absolute)?;
-    let mut classifier = Proven(solid.on(frame, control)?);
+    let classifier = Proven(solid.on(frame, control)?);
     let clipped = !matches!(classifier.exterior(), Tag::Empty | Tag::Full);
     // Without any splits.
     let told = |area: Interval| {
@@ -76,24 +83,43 @@ pub fn surface_area<S: Solid>(
     if !clipped && let Some(area) = classifier.area(control)? {
         return Ok(told(area));
     }
-    if !classifier.is_off_lattice() {
-        let other = match clipped || solid.home().is_some() || classifier.proof() != Proof::CERTIFIED {
-            true => None,
-            false => off_lattice(solid, frame, control)?,
-        };
-        let Some(other) = other else { return Ok(told(Area::NOTHING)) };
-        classifier = other;
+    let search = Search { tolerance, clipped, control };
+    if classifier.is_off_lattice() {
+        return search.run(&classifier);
     }
-    let budget = control.max_splits.unwrap_or(AREA_SPLITS);
-    let walked = walk::<Area, _>(&classifier, tolerance, budget, control)?;
-    let Found { lower, upper, unbounded } = walked.found;
-    // A half edge of the universe is 2^(BITS / 2) units.
-    let edge = Interval::exactly(classifier.frame().edge());
-    let unit = edge.square().times(Interval::exactly(0.25 / (1u128 << BITS) as f64));
-    let most = if unbounded > 0 { f64::INFINITY } else { Interval::of_integer(upper).times(unit).upper };
-    let area = Interval::between(Interval::of_integer(lower).times(unit).lower, most);
-    let (stop_reason, level, splits) = (walked.stop_reason, walked.level, walked.splits);
-    Ok(SurfaceArea { area, clipped, stop_reason, level, splits })
+    if !clipped
+        && solid.home().is_none()
+        && classifier.proof() == Proof::CERTIFIED
+        && let Some(other) = off_lattice(solid, frame, control)?
+    {
+        return search.run(&other);
+    }
+    match WithFaces::new(classifier, control)? {
+        Some(with_faces) => search.run(&with_faces),
+        None => Ok(told(Area::NOTHING)),
+    }
+}
+
+struct Search<'a, 'c> {
+    tolerance: Tolerance,
+    clipped: bool,
+    control: &'a Control<'c>,
+}
+
+impl Search<'_, '_> {
+    /// Splits cells that know all of the boundary.
+    fn run<C: Classifier>(&self, classifier: &C) -> Result<SurfaceArea, Error> {
+        let budget = self.control.max_splits.unwrap_or(AREA_SPLITS);
+        let walked = walk::<Area, _>(classifier, self.tolerance, budget, self.control)?;
+        let Found { lower, upper, unbounded } = walked.found;
+        // A half edge of the universe is 2^(BITS / 2) units.
+        let edge = Interval::exactly(classifier.frame().edge());
+        let unit = edge.square().times(Interval::exactly(0.25 / (1u128 << BITS) as f64));
+        let most = if unbounded > 0 { f64::INFINITY } else { Interval::of_integer(upper).times(unit).upper };
+        let area = Interval::between(Interval::of_integer(lower).times(unit).lower, most);
+        let (stop_reason, level, splits) = (walked.stop_reason, walked.level, walked.splits);
+        Ok(SurfaceArea { area, clipped: self.clipped, stop_reason, level, splits })
+    }
 }
 
 /// The solid on a larger frame no plane of whose lattice holds a piece of the boundary, if one is found.

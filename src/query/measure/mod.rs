@@ -2,6 +2,7 @@
 
 mod area;
 mod bounds;
+mod faces;
 mod moments;
 mod quantity;
 mod volume;

@@ -353,6 +353,12 @@ impl Placed {
         }
     }
 
+    /// Whether a piece of the surface may lie in a face of a cell that the surface crosses. (Planes that do so cross no cell
+    /// beside the face.)
+    pub(crate) fn may_hold_face(&self) -> bool {
+        !matches!(self, Placed::Plane(_)) && self.may_hold_lattice_plane(0)
+    }
+
     /// In which of the eight cells the centre is surely inside, and in which surely outside, where that is
     /// had at once.
     #[inline(always)]

@@ -179,8 +179,13 @@ impl<T: Tree> Classifier for StoredOnFrame<T> {
     }
 
     fn answer_whole(&self, question: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
-        if let (WholeQuestion::Surfaces(known), Some(cuts)) = (question, &self.cuts) {
-            *known = Some(memory::collected(cuts.surfaces().iter().cloned())?);
+        if let WholeQuestion::Surfaces(known) = question {
+            match &self.cuts {
+                Some(cuts) => *known = Some(memory::collected(cuts.surfaces().iter().cloned())?),
+                // No cell is crossed by any.
+                None if self.tree.tree().is_binary() => *known = Some(Vec::new()),
+                None => {}
+            }
         }
         Ok(())
     }
