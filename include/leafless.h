@@ -5515,11 +5515,14 @@ typedef struct leafless_look {
 } leafless_look;
 
 /// The surface of an octree: along each line of sight the first cell that is not EMPTY. Its normals are those
-/// of the surface that the cells seem to stand for.
+/// of the surface that the cells seem to stand for. An octree that keeps surfaces is shown as
+/// leafless_layer_from_solid shows a solid, unless the look asks for faces of cells: these are its own, so
+/// leafless_octree_plain makes smaller ones first.
 ///
 /// - Buffers: `look`, one struct or NULL; `layer`, one pointer.
 /// - Result: `*layer`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be.
+/// - Errors: LEAFLESS_E_ARGUMENT if the look is not as it must be. Of an octree that keeps surfaces, taking a
+///   picture also returns what leafless_octree_build does.
 /// - Ownership: the layer shares the octree and the attribute, which may be freed; give `*layer` back with
 ///   leafless_layer_free.
 /// - Untrusted input: any octree.

@@ -9,9 +9,11 @@ use super::occupancy::Occupancy;
 use super::place_cache::Places;
 use super::plane::{Fitting, Plane};
 use crate::error::Error;
+use crate::lattice::Frame;
 use crate::lattice::axes;
 use crate::lattice::morton;
 use crate::octree::view::OctreeRef;
+use crate::query::TouchedCell;
 use glam::{DVec3, Vec3A, Vec4};
 
 /// Normals of a stored octree. What was found out before is kept: most samples lie in the block of the one before.
@@ -176,6 +178,24 @@ impl About {
         }
         (sum, total)
     }
+}
+
+/// The normal at a point of the surface that lies on a cell.
+pub fn normal_of_cells(
+    normals: &mut Normals<'_>,
+    frame: &Frame,
+    point: DVec3,
+    hit: &TouchedCell,
+) -> Result<DVec3, Error> {
+    let scaled = DVec3::from(axes(|axis| frame.scaled(axis, point[axis])));
+    let shift = frame.depth() - hit.cell.level;
+    let at = axes(|axis| {
+        let (low, high) = (hit.cell.at[axis] << shift, ((hit.cell.at[axis] + 1) << shift) - 1);
+        // (A cast saturates.)
+        (scaled[axis] as u32).clamp(low, high)
+    });
+    let low = DVec3::from(at.map(f64::from));
+    normals.at(scaled.clamp(low, low + 1.0), at)
 }
 
 #[cfg(test)]

@@ -1,21 +1,23 @@
 //! Surfaces of stored octrees, by rays.
 
-use super::normals::Normals;
+use super::normals::{Normals, normal_of_cells};
 use super::sight::Finish;
+use super::solid::{DEEPEST, painter};
 use super::stage::{Colouring, Draw, Painter, Stage};
 use super::surface::{Seen, Skin, paint};
 use super::tile::Tile;
 use crate::attribute::Attribute;
 use crate::error::Error;
-use crate::lattice::Frame;
-use crate::lattice::axes;
 use crate::memory;
 use crate::octree::OctreeRef;
-use crate::query::TouchedCell;
 use alloc::boxed::Box;
 use glam::DVec3;
 
 /// The surface of a stored octree: the first cells that are not EMPTY along each line of sight.
+///
+/// An extended octree ([`build_extended`](crate::build_extended)) is shown as the solid that its cuts describe, like a
+/// [`SolidLayer`](crate::render::SolidLayer). With [`faces`](Finish::faces) its own cells are shown; take the tree of
+/// [`plain`](crate::op::plain) for smaller ones.
 ///
 /// Normals are those of planes fitted to the surface in windows of 24³ cells, or of 12³ where it is not plane; where it is not
 /// plane there either, the gradient of the occupancy over 5³ cells, in which PARTIAL cells count half. What is cut open by a
@@ -51,6 +53,9 @@ impl<'a> OctreeLayer<'a> {
 impl Draw for OctreeLayer<'_> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         self.skin.check()?;
+        if self.tree.cuts().is_some() && !self.skin.finish.faces {
+            return painter(&self.tree, self.tree.frame(), DEEPEST, &self.skin, stage);
+        }
         Ok(memory::boxed(OctreePainter { layer: self, stage: *stage })?)
     }
 }
@@ -83,21 +88,3 @@ impl Painter for OctreePainter<'_> {
 
 /// Cells over which normals turn at an edge.
 const BLUR: f64 = 6.0;
-
-/// The normal at a point of the surface that lies on a cell.
-pub fn normal_of_cells(
-    normals: &mut Normals<'_>,
-    frame: &Frame,
-    point: DVec3,
-    hit: &TouchedCell,
-) -> Result<DVec3, Error> {
-    let scaled = DVec3::from(axes(|axis| frame.scaled(axis, point[axis])));
-    let shift = frame.depth() - hit.cell.level;
-    let at = axes(|axis| {
-        let (low, high) = (hit.cell.at[axis] << shift, ((hit.cell.at[axis] + 1) << shift) - 1);
-        // (A cast saturates.)
-        (scaled[axis] as u32).clamp(low, high)
-    });
-    let low = DVec3::from(at.map(f64::from));
-    normals.at(scaled.clamp(low, low + 1.0), at)
-}

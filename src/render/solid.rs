@@ -1,7 +1,6 @@
 //! Surfaces of any solids, by rays.
 
-use super::normals::Normals;
-use super::octree::normal_of_cells;
+use super::normals::{Normals, normal_of_cells};
 use super::place_cache::Places;
 use super::sight::{Finish, SightLine};
 use super::stage::{Colouring, Draw, Painter, Stage};
@@ -15,7 +14,7 @@ use crate::memory;
 use crate::octree::{Octree, Tag};
 use crate::op::{Rule, build};
 use crate::query::TouchedCell;
-use crate::solid::{Classifier, Enclosure, Segment, SlabJoin, Solid, Verdict, WorkerOf};
+use crate::solid::{Classifier, Enclosure, Segment, SlabJoin, Solid, Verdict, Worker};
 use crate::walk::Trail;
 use alloc::boxed::Box;
 use glam::DVec3;
@@ -36,7 +35,7 @@ pub struct SolidLayer<'a, S> {
 }
 
 /// Levels to which a solid is split at most.
-const DEEPEST: u8 = 11;
+pub const DEEPEST: u8 = 11;
 
 /// Radians by which a boundary may turn in a cell whose slab gives the normal.
 const CONE: f64 = 0.08 * core::f64::consts::PI / 180.0;
@@ -60,38 +59,51 @@ impl<'a, S: Solid> SolidLayer<'a, S> {
     pub fn at_most(self, depth: u8) -> SolidLayer<'a, S> {
         SolidLayer { deepest: depth.clamp(1, DEEPEST), ..self }
     }
+}
 
-    /// The frame whose cells are as large as a pixel where the universe is nearest.
-    fn pixelled(&self, stage: &Stage<'_>) -> Result<Frame, Error> {
-        let (view, frame) = (stage.view, &self.frame);
-        let pixel = view.pixel_at(view.nearest(frame));
-        let fine = (1..self.deepest).find(|&depth| frame.edge() / f64::from(1u32 << depth) <= pixel);
-        frame.with_depth(fine.unwrap_or(self.deepest))
-    }
+/// The frame whose cells are as large as a pixel where the universe is nearest, of no more levels than `deepest`.
+fn pixelled(frame: &Frame, deepest: u8, stage: &Stage<'_>) -> Result<Frame, Error> {
+    let pixel = stage.view.pixel_at(stage.view.nearest(frame));
+    let fine = (1..deepest).find(|&depth| frame.edge() / f64::from(1u32 << depth) <= pixel);
+    frame.with_depth(fine.unwrap_or(deepest))
+}
+
+/// What draws a solid within the universe of a frame, split to no more levels than `deepest`.
+pub fn painter<'a, S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    deepest: u8,
+    skin: &'a Skin<'a>,
+    stage: &Stage<'a>,
+) -> Result<Box<dyn Painter + 'a>, Error>
+where
+    S::Classifier: 'a,
+{
+    let frame = pixelled(frame, deepest, stage)?;
+    let control = Control { progress: None, ..*stage.job.control() };
+    let octree = build(solid, &frame, Rule::Certified, &control)?;
+    let classifier = solid.on(&frame.with_depth(MAX_DEPTH)?, &control)?;
+    Ok(memory::boxed(SolidPainter { skin, stage: *stage, octree, classifier })?)
 }
 
 impl<S: Solid> Draw for SolidLayer<'_, S> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         self.skin.check()?;
-        let frame = self.pixelled(stage)?;
-        let control = Control { progress: None, ..*stage.job.control() };
-        let octree = build(self.solid, &frame, Rule::Certified, &control)?;
-        let classifier = self.solid.on(&frame.with_depth(MAX_DEPTH)?, &control)?;
-        Ok(memory::boxed(SolidPainter::<S> { skin: &self.skin, stage: *stage, octree, classifier })?)
+        painter(self.solid, &self.frame, self.deepest, &self.skin, stage)
     }
 }
 
-struct SolidPainter<'a, S: Solid> {
+struct SolidPainter<'a, C> {
     skin: &'a Skin<'a>,
     stage: Stage<'a>,
     octree: Octree,
     /// On the finest lattice.
-    classifier: S::Classifier,
+    classifier: C,
 }
 
-impl<S: Solid> Painter for SolidPainter<'_, S> {
+impl<C: Classifier> Painter for SolidPainter<'_, C> {
     fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
-        let mut hand = Hand::<S> {
+        let mut hand = Hand {
             trail: Trail::new(self.classifier.worker()?)?,
             normals: Normals::new(self.octree.view()),
             enclosures: Places::new(),
@@ -105,8 +117,8 @@ impl<S: Solid> Painter for SolidPainter<'_, S> {
 }
 
 /// What a tile needs.
-struct Hand<'t, S: Solid> {
-    trail: Trail<WorkerOf<S>>,
+struct Hand<'t, W: Worker> {
+    trail: Trail<W>,
     normals: Normals<'t>,
     enclosures: Places<Option<Enclosure>>,
 }
@@ -121,12 +133,12 @@ enum Met {
     Unknown,
 }
 
-impl<S: Solid> SolidPainter<'_, S> {
+impl<C: Classifier> SolidPainter<'_, C> {
     /// Where a line of sight meets the surface whose cells it first meets so, and the outward normal there; `None` for the
     /// normal if it begins inside.
     fn sees(
         &self,
-        hand: &mut Hand<'_, S>,
+        hand: &mut Hand<'_, C::Worker>,
         sight: &SightLine,
         mut hit: TouchedCell,
     ) -> Result<Option<(f64, Option<DVec3>)>, Error> {
@@ -171,7 +183,7 @@ impl<S: Solid> SolidPainter<'_, S> {
     /// Where a line of sight meets the surface in a cell that it crosses between two times.
     fn met(
         &self,
-        hand: &mut Hand<'_, S>,
+        hand: &mut Hand<'_, C::Worker>,
         cell: Cell,
         sight: &SightLine,
         [enters, leaves]: [f64; 2],
@@ -200,7 +212,11 @@ impl<S: Solid> SolidPainter<'_, S> {
     }
 
     /// What is known of the boundary in a cell.
-    fn enclosure<'h>(&self, hand: &'h mut Hand<'_, S>, cell: Cell) -> Result<Option<&'h Enclosure>, Error> {
+    fn enclosure<'h>(
+        &self,
+        hand: &'h mut Hand<'_, C::Worker>,
+        cell: Cell,
+    ) -> Result<Option<&'h Enclosure>, Error> {
         if let Some(found) = hand.enclosures.find(cell) {
             return Ok(hand.enclosures.item(found).as_ref());
         }
@@ -217,7 +233,7 @@ impl<S: Solid> SolidPainter<'_, S> {
     /// turns less; `None` if nothing is known of that.
     fn closer(
         &self,
-        hand: &mut Hand<'_, S>,
+        hand: &mut Hand<'_, C::Worker>,
         cell: Cell,
         cone: f64,
         sight: &SightLine,
@@ -338,14 +354,14 @@ mod tests {
         let (control, clip) = (Control::threads(1), Clip::new());
         let job = Job::new(&control);
         let stage = Stage { view: &view, clip: &clip, job: &job };
-        let painter = SolidPainter::<Csg> {
+        let painter = SolidPainter {
             skin: &Skin { finish: Finish::default(), values: None },
             stage,
             octree: build(&ball, &frame, Rule::Certified, &control).unwrap(),
             classifier: ball.on(&frame.with_depth(MAX_DEPTH).unwrap(), &control).unwrap(),
         };
         let octree = painter.octree.view();
-        let mut hand = Hand::<Csg> {
+        let mut hand = Hand {
             trail: Trail::new(painter.classifier.worker().unwrap()).unwrap(),
             normals: Normals::new(octree),
             enclosures: Places::new(),

@@ -7,7 +7,9 @@ use leafless::render::{
     Camera, Clip, ClippedLayer, Finish, Layer, Lens, MeshLayer, OctreeLayer, Outline, Picture, Shot,
     SolidLayer, render,
 };
-use leafless::{Bounds, Control, Csg, Error, Frame, Rule, TriangleMesh, build};
+use leafless::{
+    Affine, Bounds, Control, Csg, Error, Frame, Rule, SurfaceOptions, TriangleMesh, build, build_extended,
+};
 
 const SIZE: [u32; 2] = [120, 90];
 
@@ -515,4 +517,39 @@ fn what_is_no_picture_is_refused() {
     let cancel = std::sync::atomic::AtomicBool::new(true);
     let control = Control { cancel: Some(&cancel), ..alone() };
     assert!(matches!(render(&Shot::new(camera, [8, 8]), &[], &control), Err(Error::Cancelled)));
+}
+
+/// A plate with bores, whose extended tree has large cells: it is shown as the plate, and with faces as its cells.
+#[test]
+fn an_extended_tree_is_shown_as_its_source() {
+    let bores = (0..6).map(|k| {
+        let to = [8.0 + 16.0 * f64::from(k % 3), 7.5 + 15.0 * f64::from(k / 3), 0.0];
+        Csg::cylinder(2.5, -1.0, 11.0).unwrap().placed(&Affine::translation(to).unwrap()).unwrap()
+    });
+    let plate = Csg::cuboid([0.0; 3], [48.0, 30.0, 10.0]).unwrap();
+    let plate = plate.difference(&Csg::union_of(bores).unwrap()).unwrap();
+    let frame = Frame::around([0.0; 3], [48.0, 30.0, 10.0], 20).unwrap();
+    let tree = build_extended(&plate, &frame, &SurfaceOptions::default(), &alone()).unwrap();
+    let lens = Lens::Perspective(30.0);
+    let camera = Camera::new([70.0, -60.0, 60.0], [24.0, 15.0, 5.0], [0.0, 0.0, 1.0], lens).unwrap();
+    let shot = Shot::new(camera, [200, 150]);
+    let shown = |layer: &dyn Layer| render(&shot, &[layer], &alone()).unwrap();
+    let edges = Finish { edges: Some(Outline::default()), ..Finish::default() };
+    for finish in [Finish::default(), edges] {
+        let own = shown(&OctreeLayer::new(tree.view(), finish));
+        let source = shown(&SolidLayer::new(&plate, &frame, finish));
+        let differ = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2);
+        let others = own.colours().iter().zip(source.colours()).filter(differ).count();
+        assert!(others < 30, "{others}");
+        // Something is seen of it, and through the bores.
+        let covered = own.colours().iter().filter(|&&colour| colour != shot.background).count();
+        assert!((5_000..20_000).contains(&covered), "{covered}");
+    }
+    // Its own cells are those of the tree without cuts.
+    let faces = Finish { faces: true, ..Finish::default() };
+    let blunt = tree.without_cuts();
+    assert_eq!(
+        shown(&OctreeLayer::new(tree.view(), faces)).colours(),
+        shown(&OctreeLayer::new(blunt.view(), faces)).colours()
+    );
 }

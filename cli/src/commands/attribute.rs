@@ -62,7 +62,7 @@ pub struct Arguments {
     /// Type in which numbers are stored. Without it: f32, or that of the channel that is copied or changed
     #[arg(long, value_parser = scalars(), value_name = "TYPE")]
     store: Option<ScalarType>,
-    /// Levels of the channel's cells, 1 to 20. Without it: those of the solid
+    /// Levels of the channel's cells, 1 to 20. Without it: those of the solid, or 8 if its cells keep surfaces
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// Edge that no cell may exceed where the solid is. Without it: no limit
@@ -132,6 +132,9 @@ struct Report {
     seconds: f64,
 }
 
+/// Depth of a new channel of a solid whose cells keep surfaces, if none is asked for.
+const DEPTH: u8 = 8;
+
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let input = Input::from(&*arguments.file);
@@ -169,9 +172,14 @@ fn made(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<Channel
     };
     let values = values(arguments, octree)?;
     let kind = arguments.store.or(values.kind);
+    let own_depth = match octree.view().cuts() {
+        // Its own cells end at any size, and the frame is as deep as can be.
+        Some(_) => DEPTH.min(octree.frame().depth()),
+        None => octree.frame().depth(),
+    };
     let (kind, depth) = match old {
         Some(old) => (old.value_type().scalar(), arguments.depth.unwrap_or(old.frame().depth())),
-        None => (kind.unwrap_or(ScalarType::F32), arguments.depth.unwrap_or(octree.frame().depth())),
+        None => (kind.unwrap_or(ScalarType::F32), arguments.depth.unwrap_or(own_depth)),
     };
     let frame = octree.frame().with_depth(depth).of(input)?;
     let value_type = ValueType::new(kind, values.attribute.components() as u8).of(input)?;

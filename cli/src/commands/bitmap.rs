@@ -9,8 +9,9 @@ use crate::words::{count, number};
 use clap::{Args, ValueEnum};
 use leafless::exchange::{NrrdEncoding, read_volume, write_nrrd, write_raw_volume};
 use leafless::lattice::MAX_DEPTH;
+use leafless::op::plain;
 use leafless::solid::{Samples, VoxelGrid};
-use leafless::{Control, Error, Octree, Tag};
+use leafless::{Control, Error, Octree, Rule, Tag};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::path::Path;
@@ -33,7 +34,7 @@ pub struct Arguments {
     /// What undecided cells count as, and cells of the level that are cut further
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
-    /// Level of the cells, 0 to the solid's depth. Without it: the finest one
+    /// Level of the cells, 0 to the solid's depth. Without it: the finest one, or 8 if the cells keep surfaces
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
     level: Option<u8>,
     /// Threads to use; 0: as many as there are processors. The result is the same
@@ -49,6 +50,9 @@ enum WriteName {
     Nrrd,
     Raw,
 }
+
+/// Level of the cells of a solid whose cells keep surfaces, if none is asked for.
+const LEVEL: u8 = 8;
 
 #[derive(Serialize)]
 struct Report {
@@ -73,13 +77,27 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let (octree, _) = input.octree(true)?;
+    let keeps_surfaces = octree.view().cuts().is_some();
     let frame = *octree.frame();
-    let level = arguments.level.unwrap_or(frame.depth());
+    let level =
+        arguments.level.unwrap_or(if keeps_surfaces { LEVEL.min(frame.depth()) } else { frame.depth() });
     if level > frame.depth() {
         let problem = format!("--level {level} is beyond the depth of {input}, which is {}", frame.depth());
         return Err(Failure::Usage(problem));
     }
-    if arguments.resolve.is_none() && (level < frame.depth() || !octree.view().is_binary()) {
+    // Its own cells are large, and say little: the surfaces decide smaller ones.
+    let octree = match keeps_surfaces {
+        true => watched("bitmap", arguments.threads, |control| {
+            plain(&octree, level.max(1), Rule::Certified, control)
+        })
+        .of(&input)?,
+        false => octree,
+    };
+    if arguments.level.is_none() && level < frame.depth() {
+        let warning = "warning: its cells keep surfaces, which decide cells of level";
+        complain(&format!("{input}: {warning} {level}; --level chooses another"));
+    }
+    if arguments.resolve.is_none() && (level < octree.frame().depth() || !octree.view().is_binary()) {
         let problem = "has undecided cells, or cells that are cut further, which are neither inside nor outside: \
                        choose --resolve inner or --resolve outer";
         return Err(Failure::of(&input, problem));

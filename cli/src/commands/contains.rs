@@ -5,7 +5,8 @@ use crate::rows::{Questions, serve};
 use crate::sink::print;
 use crate::source::input::Input;
 use clap::Args;
-use leafless::{Membership, OctreeRef};
+use leafless::solid::Prepared;
+use leafless::{AnySolid, Control, Membership, OctreeRef, contains};
 use std::ffi::OsString;
 
 /// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
@@ -24,12 +25,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::file(&arguments.file, "points")?;
     // Proven answers need a file that is what its maker wrote.
     let (octree, _) = input.octree(true)?;
-    serve(&mut Batch { tree: octree.view(), points: Vec::new(), answers: Vec::new(), text: Vec::new() })
+    let tree = octree.view();
+    let solid = tree.cuts().map(|_| Prepared::new(AnySolid::new(octree.clone())));
+    serve(&mut Batch { tree, solid, points: Vec::new(), answers: Vec::new(), text: Vec::new() })
 }
 
 /// Points that are answered together.
 struct Batch<'t, 'a> {
     tree: &'t OctreeRef<'a>,
+    /// The same if its cells keep surfaces.
+    solid: Option<Prepared>,
     points: Vec<[f64; 3]>,
     answers: Vec<Membership>,
     text: Vec<u8>,
@@ -46,7 +51,13 @@ impl Questions<3> for Batch<'_, '_> {
             return Ok(());
         }
         self.answers.resize(self.points.len(), Membership::Undecided);
-        let answered = self.tree.contains_many(&self.points, &mut self.answers);
+        let answered = match &self.solid {
+            // Exact signs decide points next to surfaces too.
+            Some(solid) => {
+                contains(solid, self.tree.frame(), &self.points, &mut self.answers, &Control::default())
+            }
+            None => self.tree.contains_many(&self.points, &mut self.answers),
+        };
         answered.map_err(|error| Failure::Failed(error.to_string()))?;
         self.text.clear();
         for answer in &self.answers {

@@ -5,7 +5,7 @@ use crate::making::dexels::{self, Storing};
 use crate::making::job::Job;
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
 use crate::making::surface::{self, Wanted};
-use crate::making::{octree_from_dexels, octree_of_mesh};
+use crate::making::{octree_from_dexels, octree_of_mesh, plain};
 use crate::options::{ResolveName, bounds, resolution, threads};
 use crate::sink::Output;
 use crate::source::content::Content;
@@ -22,7 +22,8 @@ use std::time::Instant;
 ///
 /// Of a tri-dexel model an octree has the cells whose centres lie inside. Of an octree a tri-dexel model has just
 /// the cells, exactly; undecided ones count as --resolve says. An octree of a mesh or a scene is certified, and its
-/// undecided cells stay so without --resolve.
+/// undecided cells stay so without --resolve. Of an octree whose cells keep surfaces, an octree without them has the cells that the
+/// surfaces decide.
 #[derive(Args)]
 // Of meshes, `--to` says the unit everywhere else.
 #[command(mut_arg("to", |unit| unit.long("to-unit")))]
@@ -122,8 +123,21 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
     }
     if input.begins_as_solid() {
         // A damaged file is told to be damaged.
-        let Stored::Dexels(model) = Stored::read(input, true)?.0 else {
-            return Err(Failure::of(input, "is an octree already"));
+        let model = match Stored::read(input, true)?.0 {
+            Stored::Dexels(model) => model,
+            Stored::Octree(octree) if octree.view().cuts().is_some() => {
+                output.check()?;
+                output.check_spares(input, "input")?;
+                taking.refuse(input, "an octree")?;
+                if job.bounds.is_some() {
+                    return Err(Failure::Usage(format!(
+                        "--bounds is not for {input}: an octree has its own"
+                    )));
+                }
+                let rule = resolve.map_or(Rule::Certified, Rule::from);
+                return plain::make(job, &octree, job.depth.unwrap_or(DEPTH), rule);
+            }
+            Stored::Octree(_) => return Err(Failure::of(input, "is an octree already")),
         };
         output.check()?;
         taking.refuse(input, "a tri-dexel model")?;

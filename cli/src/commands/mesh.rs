@@ -19,6 +19,8 @@ use std::time::Instant;
 /// The surface separates samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
 /// cells, and vertices lie where the edges between corners cross the surface. Samples of a volume are its voxels, and of
 /// a solid from a file (.lfl) its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
+/// A solid from a file whose cells keep surfaces is split to --depth; with --method mc and dual, vertices lie where rays through
+/// cell centres cross these surfaces.
 /// Samples of a tri-dexel model are the centres of its cells, and vertices lie where its rays leave the solid.
 #[derive(Args)]
 pub struct Arguments {
@@ -54,7 +56,7 @@ pub struct Arguments {
     /// makes them, and not the corners
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
-    /// Level of the cells of a mesh or scene, 1 to 19. Without it: 8, and of a volume the voxels. Of a solid from a file
+    /// Level of the cells of a mesh, a scene, or a solid whose cells keep surfaces, 1 to 19. Without it: 8, and of a volume the voxels. Of a solid from a file
     /// its own or a coarser one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..MAX_DEPTH as i64))]
     depth: Option<u8>,

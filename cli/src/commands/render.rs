@@ -21,8 +21,8 @@ use std::time::Instant;
 
 /// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model, or shows one on the terminal.
 ///
-/// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A mesh, a scene or
-/// a volume is shown itself, without an octree.
+/// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A mesh, a scene, a
+/// volume, or a solid from a file whose cells keep surfaces is shown itself, without an octree.
 #[derive(Args)]
 // Of arrays without a header, `--samples` says the extents everywhere else.
 #[command(mut_arg("extents", |extents| extents.long("array-samples")))]
@@ -76,7 +76,8 @@ pub struct Arguments {
     /// Channel of the solid whose values are shown. Without it: the only one, if there is one
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
-    /// Level of the cells that a mesh, a scene or a volume is split to for a slice or a volume, 1 to 20
+    /// Level of the cells that a mesh, a scene, a volume, or a solid from a file whose cells keep surfaces is split to for a slice, a
+    /// volume or --faces, 1 to 20
     #[arg(long, value_name = "N", default_value_t = DEPTH, value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: u8,
     /// Colour of what is seen where nothing is, as in #ffffff, or `none`
@@ -139,8 +140,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let size = arguments.size.or(shown_size).unwrap_or(SIZE);
     let shape = Shape::read(&input, &arguments.taking)?.0;
     let subject = Subject::of(shape, &input, &arguments.looks, arguments.depth, arguments.threads)?;
-    let channel = match &subject {
-        Subject::Octree(octree, _) if arguments.channel.is_some() || octree.channels().len() == 1 => {
+    let channel = match subject.octree() {
+        Some(octree) if arguments.channel.is_some() || octree.channels().len() == 1 => {
             Some(find(octree, &input, arguments.channel.as_deref())?)
         }
         _ if arguments.channel.is_some() => {
@@ -150,10 +151,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let looks = &arguments.looks;
     let (shot, picture) = watched("render", arguments.threads, |control| {
-        let values = match (&subject, channel) {
-            (Subject::Octree(octree, _), Some(channel)) => {
-                Some(Values::new(looks, octree, channel, control)?)
-            }
+        let values = match (subject.octree(), channel) {
+            (Some(octree), Some(channel)) => Some(Values::new(looks, octree, channel, control)?),
             _ => None,
         };
         let legend = legend_box(looks, values.as_ref(), size)?;

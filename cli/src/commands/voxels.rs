@@ -7,6 +7,7 @@ use crate::sink::Output;
 use crate::sink::csv;
 use crate::sink::records::{npz, records};
 use crate::source::input::Input;
+use crate::source::solid::cells_of;
 use crate::source::target::{Looking, Target};
 use crate::source::values::find;
 use crate::words::count;
@@ -16,7 +17,7 @@ use leafless::lattice::MAX_DEPTH;
 use leafless::voxel::{
     VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelTriangles,
 };
-use leafless::{Octree, Rule, Tag, TriangleMesh, build, exchange};
+use leafless::{Octree, Tag, TriangleMesh, exchange};
 use serde::Serialize;
 use std::ffi::OsString;
 use std::path::Path;
@@ -173,7 +174,8 @@ fn list(arguments: &Arguments, input: &Input, output: &Output) -> Result<(), Fai
     let octree = match target {
         Target::Cells(octree) => *octree,
         Target::Solid(target) => watched("voxelize", looking.threads, |control| {
-            build(&target.0, &target.1, Rule::Certified, control)
+            let (solid, frame) = &*target;
+            cells_of(solid, solid.solid().get::<Octree>(), frame, control)
         })
         .of(input)?,
     };

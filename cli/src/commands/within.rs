@@ -138,7 +138,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let frame = source.frame_to(&input, arguments.bounds.as_ref(), arguments.depth, DEPTH)?;
     let (region, name) = region(arguments, &frame)?;
     let subject = match source {
-        Source::Octree(octree) if arguments.depth.is_none() => Subject::Octree(octree),
+        Source::Octree(octree) if arguments.depth.is_none() && octree.view().cuts().is_none() => {
+            Subject::Octree(octree)
+        }
         source => Subject::Solid(source.placed(&input, &Affine::IDENTITY, &frame)?),
     };
     let found = watched("within", 1, |control| {

@@ -78,7 +78,7 @@ pub fn make(job: &Job, taking: &Taking, rule: Rule, mut storing: Storing) -> Res
 fn frame(job: &Job, source: &Source) -> Result<Frame, Failure> {
     let input = &job.input;
     match source {
-        Source::Octree(octree) => {
+        Source::Octree(octree) if source.is_of_cells() => {
             let cells = octree.frame().cells();
             if job.bounds.is_some() {
                 return Err(Failure::Usage(format!("--bounds is not for {input}: an octree has its own")));
@@ -107,8 +107,9 @@ fn made(
     storing: &Storing,
 ) -> Result<(TriDexel, [u64; 3]), Failure> {
     let input = &job.input;
+    let is_of_cells = source.is_of_cells();
     match source {
-        Source::Octree(octree) => {
+        Source::Octree(octree) if is_of_cells => {
             // Cells that are cut further than the lattice goes are undecided there.
             let is_coarser = frame.depth() < octree.frame().depth();
             if rule == Rule::Sampled && (is_coarser || !octree.view().is_binary()) {

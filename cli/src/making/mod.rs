@@ -14,4 +14,5 @@ pub mod octree_of_volume;
 pub mod operands;
 pub mod part;
 pub mod picture;
+pub mod plain;
 pub mod surface;

@@ -5,23 +5,23 @@ use crate::making::dexel_surface;
 use crate::options;
 use crate::progress::watched;
 use crate::source::input::Input;
-use crate::source::solid::{Shape, Source};
+use crate::source::solid::{Shape, Source, cells_of};
 use clap::{Args, ValueEnum};
 use leafless::attribute::{Attribute, Channel, Criterion, Detail};
 use leafless::error::MeshError;
 use leafless::lattice::Cube;
 use leafless::octree::CellFilter;
-use leafless::op::octree_from_dexels;
+use leafless::op::{DexelOptions, octree_from_dexels};
 use leafless::render::{
     Clip, ClippedLayer, ColourMap, Compositing, Finish, Layer, LegendBox, LegendSide, MeshEdges, MeshLayer,
     OctreeLayer, Outline, Picture, Shot, SliceLayer, SlicePlane, SolidLayer, TAG_COLOURS, Transfer,
     VolumeLayer, draw_colour_bar, draw_names, render,
 };
-use leafless::surface::{Resolve, VertexPlacement, marching_cubes_solid};
+use leafless::surface::{Resolve, VertexPlacement, marching_cubes_dexels, marching_cubes_solid};
 use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{
     Affine, AnySolid, Bounds, Control, Error, Frame, Octree, Rule, Tag, TriangleMesh, bounding_box, build,
-    marching_cubes,
+    dexelize, marching_cubes,
 };
 use serde::Serialize;
 
@@ -155,7 +155,9 @@ impl Subject {
             Shape::Dexels(model) => {
                 Ok(Subject::Mesh(Box::new(dexel_surface::cubes(&model, input, threads)?.0)))
             }
-            Shape::Source(Source::Octree(octree)) => Ok(Subject::Octree(octree, None)),
+            Shape::Source(Source::Octree(octree)) if octree.view().cuts().is_none() => {
+                Ok(Subject::Octree(octree, None))
+            }
             Shape::Source(Source::Mesh(mesh, ..)) if !of_cells && !looks.faces => {
                 Ok(Subject::Mesh(Box::new(mesh)))
             }
@@ -165,10 +167,20 @@ impl Subject {
                 if !of_cells && !looks.faces {
                     return Ok(Subject::Solid(Box::new(solid), frame));
                 }
-                let octree =
-                    watched("render", threads, |control| build(&solid, &frame, Rule::Certified, control));
+                let octree = watched("render", threads, |control| {
+                    cells_of(&solid, solid.get::<Octree>(), &frame, control)
+                });
                 Ok(Subject::Octree(Box::new(octree.of(input)?), Some(Box::new(solid))))
             }
+        }
+    }
+
+    /// The octree from a file whose channels may be shown.
+    pub fn octree(&self) -> Option<&Octree> {
+        match self {
+            Subject::Octree(octree, _) => Some(octree),
+            Subject::Solid(solid, _) => solid.get::<Octree>(),
+            Subject::Mesh(_) => None,
         }
     }
 
@@ -309,7 +321,11 @@ fn surface(
             let Some(values) = values else { return render(shot, &[&layer], control) };
             render(shot, &[&layer.values(values.channel, &values.colour())], control)
         }
-        Subject::Solid(solid, frame) => render(shot, &[&SolidLayer::new(&**solid, frame, finish)], control),
+        Subject::Solid(solid, frame) => {
+            let layer = SolidLayer::new(&**solid, frame, finish);
+            let Some(values) = values else { return render(shot, &[&layer], control) };
+            render(shot, &[&layer.values(values.channel, &values.colour())], control)
+        }
         Subject::Mesh(mesh) => {
             let (edges, width) = match looks.edges {
                 None => (MeshEdges::None, 1.0),
@@ -433,6 +449,11 @@ fn skin_mesh(
     loop {
         let frame = octree.frame().with_depth(depth)?;
         let mesh = match source {
+            // A tree is known on its own lattice alone: rays through the cells' centres find its surfaces.
+            Some(source) if source.get::<Octree>().is_some() => {
+                dexelize(source, &frame, &DexelOptions::default(), &limited)
+                    .and_then(|model| Ok(marching_cubes_dexels(model.view(), &limited)?.0))
+            }
             Some(source) => marching_cubes_solid(source, &frame, VertexPlacement::Crossing, &limited),
             None if depth == octree.frame().depth() => {
                 marching_cubes(octree.view(), Some(Resolve::Outer), &limited)

@@ -29,7 +29,7 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The depth of meshes and scenes, if none is asked for.
+/// The depth of meshes, scenes, and octrees whose cells keep surfaces, if none is asked for.
 const DEPTH: u8 = 8;
 
 /// How a surface is made and written.
@@ -117,9 +117,9 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
             let (mesh, followed) = of_dexels(&model, job, wanted)?;
             (unit, mesh, Some(followed))
         }
-        Shape::Source(source) if wanted.method == Method::Dual => {
+        Shape::Source(source) if asks_rays(&source, wanted) => {
             let unit = source.unit();
-            let (mesh, followed) = dual(source, job, wanted)?;
+            let (mesh, followed) = by_rays(source, job, wanted)?;
             (unit, mesh, Some(followed))
         }
         Shape::Source(source) => (source.unit(), extract(source, job, wanted)?, None),
@@ -201,10 +201,17 @@ fn of_dexels(model: &TriDexel, job: &Job, wanted: &Wanted) -> Result<(TriangleMe
     }
 }
 
-/// The surface of anything else by dual contouring: of a tri-dexel model that is made for it.
-fn dual(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Followed), Failure> {
+/// Whether the surface follows rays: by dual contouring, and of octrees whose cells keep surfaces, whose lattice is their own.
+fn asks_rays(source: &Source, wanted: &Wanted) -> bool {
+    let keeps_surfaces = matches!(source, Source::Octree(_)) && !source.is_of_cells();
+    let is_sharp = wanted.method == Method::Mc && wanted.vertices == At::Crossing && wanted.resolve.is_none();
+    wanted.method == Method::Dual || keeps_surfaces && is_sharp
+}
+
+/// The surface of anything else that follows rays: of a tri-dexel model that is made for it.
+fn by_rays(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Followed), Failure> {
     let input = &job.input;
-    if let Source::Octree(_) = source {
+    if source.is_of_cells() {
         let problem = "is an octree, whose cells know no normals, which dual contouring needs: make a tri-dexel model \
                        of what it was made of, by `leafless dexelize --normals 32`";
         return Err(Failure::of(input, problem));
@@ -217,7 +224,11 @@ fn dual(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Fol
     let format = DexelFormat { normals: DexelNormals::Bits32, ..Default::default() };
     let options = DexelOptions { format, ..Default::default() };
     let model = watched("dexelize", job.threads, |control| dexelize(&solid, &frame, &options, control));
-    dexel_surface::dual(&model.of(input)?, input, job.threads)
+    let model = model.of(input)?;
+    match wanted.method {
+        Method::Dual => dexel_surface::dual(&model, input, job.threads),
+        _ => dexel_surface::cubes(&model, input, job.threads),
+    }
 }
 
 fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, Failure> {
@@ -226,18 +237,20 @@ fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, F
         (None, _) => None,
         (Some(ResolveName::Inner), _) => Some(Resolve::Inner),
         (Some(ResolveName::Outer), _) => Some(Resolve::Outer),
-        (Some(ResolveName::Source), Source::Octree(_)) => {
+        (Some(ResolveName::Source), source) if source.is_of_cells() => {
             let problem =
                 "a solid from a file has no source: undecided cells can be resolved as inner or outer";
             return Err(Failure::of(input, problem));
         }
         (Some(ResolveName::Source), _) => None,
     };
-    if let Source::Octree(octree) = source {
+    if let Source::Octree(octree) = &source
+        && source.is_of_cells()
+    {
         if job.bounds.is_some() {
             return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
         }
-        let octree = coarser(*octree, job)?;
+        let octree = coarser(octree, job)?;
         if resolve.is_none() && !octree.view().is_binary() {
             let problem = "has undecided cells, which are neither inside nor outside: choose --resolve inner or \
                            --resolve outer, or make it anew from its source with --rule sampled";
@@ -253,8 +266,9 @@ fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, F
     {
         return of_volume(voxels, job);
     }
-    // A volume has its own samples, if its voxels are cubes.
-    let has_own = source.own_frame().is_some() && job.depth.is_none();
+    // A volume has its own samples, if its voxels are cubes; an octree has those of its lattice at any depth.
+    let has_own =
+        source.own_frame().is_some() && (job.depth.is_none() || matches!(source, Source::Octree(_)));
     let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?;
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
     watched("mesh", job.threads, |control| match wanted.resolve {
@@ -279,11 +293,11 @@ fn of_volume(voxels: &Voxels, job: &Job) -> Result<TriangleMesh, Failure> {
 }
 
 /// The octree with cells no smaller than --depth says; those that are cut further are undecided.
-fn coarser(octree: Octree, job: &Job) -> Result<Octree, Failure> {
+fn coarser(octree: &Octree, job: &Job) -> Result<Octree, Failure> {
     let input = &job.input;
     let own = octree.frame().depth();
     match job.depth {
-        None => Ok(octree),
+        None => Ok(octree.clone()),
         Some(depth) if depth > own => {
             Err(Failure::Usage(format!("--depth {depth} is beyond the depth of {input}, which is {own}")))
         }

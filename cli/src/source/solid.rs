@@ -12,7 +12,8 @@ use leafless::lattice::MAX_DEPTH;
 use leafless::scene::Scene;
 use leafless::solid::Transform;
 use leafless::{
-    Affine, AnySolid, Csg, FillRule, Frame, MeshSolid, Octree, Proof, Solid, TriDexel, TriangleMesh,
+    Affine, AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Proof, Rule, Solid, TriDexel,
+    TriangleMesh, build,
 };
 
 /// What a file of a solid is called.
@@ -104,6 +105,12 @@ impl Source {
         }
     }
 
+    /// The octree of a solid from a file that is no more than its cells. An octree whose cells keep surfaces is asked as scenes and
+    /// meshes are: its own cells are large, and say little.
+    pub fn is_of_cells(&self) -> bool {
+        matches!(self, Source::Octree(octree) if octree.view().cuts().is_none())
+    }
+
     /// The unit of its coordinates, if it is known.
     pub fn unit(&self) -> Option<LengthUnit> {
         match self {
@@ -157,7 +164,8 @@ impl Source {
         }
     }
 
-    /// The same where the user need not say how deep: what has no frame of its own is then split to `deepest`.
+    /// The same where the user need not say how deep: what has no cells of its own, or whose cells keep surfaces, is then split to
+    /// `deepest`.
     pub fn frame_to(
         &self,
         input: &Input,
@@ -165,7 +173,11 @@ impl Source {
         depth: Option<u8>,
         deepest: u8,
     ) -> Result<Frame, Failure> {
-        self.frame_in(input, bounds, depth.or(self.own_frame().is_none().then_some(deepest)))
+        let has_size = match self {
+            Source::Octree(_) => self.is_of_cells(),
+            source => source.own_frame().is_some(),
+        };
+        self.frame_in(input, bounds, depth.or((!has_size).then_some(deepest)))
     }
 
     /// Whether nothing of it lies beyond its bounds.
@@ -206,6 +218,20 @@ impl Source {
         };
         solid.placed(placement).of(input)
     }
+}
+
+/// The cells of a solid on a frame. If it is an octree whose cells keep surfaces, these decide, and its channels come along.
+pub fn cells_of<S: Solid>(
+    solid: &S,
+    octree: Option<&Octree>,
+    frame: &Frame,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    let cells = build(solid, frame, Rule::Certified, control)?;
+    Ok(match octree.filter(|octree| octree.view().cuts().is_some()) {
+        Some(octree) => cells.with_metadata_from(octree).with_channels_from(octree),
+        None => cells,
+    })
 }
 
 /// Half-spaces that were evaluated for a solid.

@@ -27,7 +27,8 @@ pub struct Looking {
 }
 
 impl Looking {
-    /// Reads a solid. `depth` is the one that the user gave; without it a mesh or a scene is split to `deepest`.
+    /// Reads a solid. `depth` is the one that the user gave; without it a mesh, a scene, or an octree whose cells keep surfaces is
+    /// split to `deepest`.
     pub fn target(&self, input: &Input, depth: Option<u8>, deepest: u8) -> Result<Target, Failure> {
         Ok(self.target_and_proof(input, depth, deepest)?.0)
     }
@@ -48,7 +49,7 @@ impl Looking {
 
 /// What is asked.
 pub enum Target {
-    /// A stored octree whose cells prove what they say: it is asked where it lies.
+    /// A stored octree whose cells prove what they say, and keep no surfaces: it is asked where it lies.
     Cells(Box<Octree>),
     /// Anything else, on a frame.
     Solid(Box<(Prepared, Frame)>),
@@ -64,7 +65,10 @@ impl Target {
     ) -> Result<Target, Failure> {
         match source {
             Source::Octree(octree)
-                if octree.view().proof().is_certified() && depth.is_none() && bounds.is_none() =>
+                if octree.view().proof().is_certified()
+                    && octree.view().cuts().is_none()
+                    && depth.is_none()
+                    && bounds.is_none() =>
             {
                 Ok(Target::Cells(octree))
             }

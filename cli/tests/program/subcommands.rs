@@ -401,6 +401,59 @@ fn adaptive_octrees_of_scenes_are_coarse() {
     assert!(place.run(line).good().json()["splits"].is_null());
 }
 
+/// A solid whose cells keep surfaces is asked, shown and meshed as its scene is, and gives cells of any level.
+#[test]
+fn octrees_that_keep_surfaces_are_taken_as_solids() {
+    let place = Place::new();
+    let to = "multmatrix([[1, 0, 0, 10], [0, 1, 0, 10], [0, 0, 1, -1], [0, 0, 0, 1]])";
+    let part = format!("difference() {{ cube([30, 20, 10]); {to} cylinder(h = 12, r = 4, $fn = 0); }}");
+    place.write("part.csg", &part);
+    place.run("csg part.csg -o part.lfl --surfaces").good();
+    let pi = std::f64::consts::PI;
+    let (truth, area) = (6000.0 - pi * 160.0, 2.0 * (600.0 + 300.0 + 200.0) + 80.0 * pi - 32.0 * pi);
+    let close = |found: f64, truth: f64, share: f64| (found - truth).abs() < share * truth;
+    let number = |report: &Value, name: &str| report[name].as_f64().unwrap();
+    // Surfaces: that of marching cubes and of dual contouring are closed, and near; of cells they have steps.
+    for (line, share) in [
+        ("", 0.01),
+        ("--method dual", 0.002),
+        ("--method dual --depth 6", 0.01),
+        ("--vertices midpoint", 0.02),
+        ("--method shrink --depth 7", 0.1),
+        ("--resolve outer --depth 8", 0.1),
+    ] {
+        let report = place.run(&format!("mesh part.lfl -o part.stl --lossy {line} --json")).good().json();
+        assert!(close(number(&report, "volume"), truth, share), "{line}: {report}");
+        assert_eq!(report["closed"], true, "{line}");
+    }
+    let measured = place.run("measure part.lfl --tolerance 1e-4 --json").good().json();
+    let (least, most) = (&measured["area"]["lower"], &measured["area"]["upper"]);
+    let (least, most) = (least.as_f64().unwrap(), most.as_f64().unwrap());
+    assert!(least < area && area < most && most - least < 1e-2 * area, "{measured}");
+    // Pictures cover as much as those of the scene.
+    for view in ["", "--view slice", "--view volume", "--view hybrid", "--faces"] {
+        let [own, source] = ["lfl", "csg"].map(|kind| {
+            let line = format!("render part.{kind} -o part.png --size 160x120 --samples 1 {view} --json");
+            number(&place.run(&line).good().json(), "covered")
+        });
+        assert!(source > 1000.0 && close(own, source, 0.02), "{view}: {own} {source}");
+    }
+    let dexels = place.run("dexelize part.lfl -o dexels.lfl --json").good().json();
+    assert!(close(number(&dexels, "volume"), truth, 1e-3) && dexels["resolution"] == 256, "{dexels}");
+    // Cells, of the level that is asked for.
+    let plain = place.run("convert part.lfl -o plain.lfl --to octree --resolution 64 --json").good().json();
+    assert_eq!((&plain["depth"], &plain["cuts"]), (&Value::from(6), &Value::Null));
+    place.run("convert plain.lfl -o other.lfl --to octree").bad(1, &["is an octree already"]);
+    let told = place.run("bitmap part.lfl -o part.nrrd --resolve inner");
+    assert!(told.code == Some(0) && told.errors.contains("--level"), "{told:?}");
+    place.run("bitmap part.lfl -o part.nrrd --resolve inner --level 5").good();
+    place.run("voxels part.lfl -o part.csv").good();
+    let answers = place.run_with("distance part.lfl", b"35 10 5\n10 10 5\n").good();
+    let first: Vec<f64> = answers.text().split_whitespace().map(|word| word.parse().unwrap()).collect();
+    assert!(first[0] <= 5.0 && first[1] >= 5.0 && first[1] - first[0] < 1e-3, "{first:?}");
+    assert!(first[2] <= 4.0 && first[3] >= 4.0 && first[3] - first[2] < 1e-3, "{first:?}");
+}
+
 /// Undecided cells keep the surfaces that cross them: a small file, which knows the volume and the points as the scene does.
 #[test]
 fn octrees_of_scenes_keep_their_surfaces() {
