@@ -15,6 +15,7 @@ mod columns;
 mod content;
 mod distance;
 mod distance_field;
+mod extended;
 mod extent;
 mod interference;
 mod measure;
