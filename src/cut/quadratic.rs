@@ -38,7 +38,7 @@ impl Quadratic {
     }
 
     /// The sum of the greatest magnitudes of all terms.
-    pub(super) fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         self.gradient.map(f64::abs).iter().chain(&self.seconds()).sum::<f64>() + self.value.abs()
     }
 

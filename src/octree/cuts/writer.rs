@@ -187,7 +187,7 @@ impl CutWriter {
 
     /// Puts all in order: records, and what is counted before them. With the numbers so far of those surfaces that are used, in the
     /// order of their first use; of those that a record is the first to use, in the `order` that is given of their numbers. The table
-    /// of surfaces is left empty. Nothing comes of a tree of whose cells nothing is known. `root` is the cut of a universe that is one PARTIAL
+    /// of surfaces is left empty. Nothing comes of a tree without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL
     /// cell.
     ///
     /// # Errors
@@ -208,10 +208,10 @@ impl CutWriter {
             }
         };
         let all = || self.levels.iter().flat_map(|level| &level.generations);
-        if all().all(|records| records.ids.is_empty()) {
+        let count = limit(all().map(|records| records.heads.len()).sum())?;
+        if count == 0 {
             return Ok(None);
         }
-        let count = limit(all().map(|records| records.heads.len()).sum())?;
         limit(all().map(|records| records.ids.len()).sum())?;
         let mut first =
             memory::with_capacity(self.levels.iter().map(|level| level.counts.len()).sum::<usize>() + 1)?;

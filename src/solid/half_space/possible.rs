@@ -4,15 +4,20 @@ use super::Placed;
 use super::bounds::{centre, half_edge};
 use super::table::{MOST, Table};
 use super::tangent::Tangent;
+use crate::cut::Quadratic;
 use crate::lattice::{Cell, axes};
 
 /// The combinations of signs that functions may have in a cell: bit m is for those that are positive whose bits are set in m. A
 /// combination is left out if a function is proven to have its sign nowhere, or two functions are proven not to have theirs at one
-/// point: a positive multiple of the one, added to the other, would be positive there, and is nowhere so.
+/// point: a positive multiple of the one, added to the other, would be positive there, and is nowhere so. (For one quadric and one
+/// plane, or two quadrics, in all of space there is such a multiple whenever no point has both signs: the S-lemma of Yakubovich,
+/// 1971.)
 pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Table {
-    let mut tangents = [None; MOST];
-    for (tangent, half_space) in tangents.iter_mut().zip(half_spaces) {
-        *tangent = half_space.tangent(centre(cell), half_edge(cell));
+    let (mut tangents, mut closely) = ([None; MOST], [None; MOST]);
+    let (centre, half) = (centre(cell), half_edge(cell));
+    for ((tangent, close), half_space) in tangents.iter_mut().zip(&mut closely).zip(half_spaces) {
+        *tangent = half_space.tangent(centre, half);
+        *close = half_space.taylor(centre, half).map(|taylor| Close::new(taylor.f));
     }
     let mut possible = !0;
     for (i, a) in tangents.iter().enumerate() {
@@ -24,13 +29,100 @@ pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: 
         for (j, b) in tangents.iter().enumerate().skip(i + 1) {
             let (Some(a), Some(b)) = (a, b) else { continue };
             for (negative_a, negative_b) in [(false, false), (true, false), (false, true), (true, true)] {
-                if exclude(a, negative_a, b, negative_b) {
-                    possible &= !(Table::of(i, negative_a).0 & Table::of(j, negative_b).0);
+                let both = Table::of(i, negative_a).0 & Table::of(j, negative_b).0;
+                if possible & both == 0 {
+                    continue;
+                }
+                let is_excluded = || match (&closely[i], &closely[j]) {
+                    (Some(a), Some(b)) => a.excludes(negative_a, b, negative_b),
+                    _ => false,
+                };
+                if exclude(a, negative_a, b, negative_b) || is_excluded() {
+                    possible &= !both;
                 }
             }
         }
     }
     Table(possible)
+}
+
+/// A function to second order, and at which of the 27 vertices, middles of edges and faces, and the centre of the cell it surely is
+/// positive, and negative.
+#[derive(Clone, Copy)]
+struct Close {
+    f: Quadratic,
+    positive: u32,
+    negative: u32,
+}
+
+impl Close {
+    fn new(f: Quadratic) -> Close {
+        let slack = f.error + 16.0 * f64::EPSILON * f.size();
+        let (mut positive, mut negative) = (0, 0);
+        let at = |i: u32| [i % 3, i / 3 % 3, i / 9].map(|k| f64::from(k) - 1.0);
+        for i in 0..27 {
+            let [x, y, z] = at(i);
+            let ([a, b, c], [xx, yy, zz, xy, xz, yz]) = (f.gradient, f.squares);
+            let value = f.value
+                + x * (a + x * xx + 2.0 * (y * xy + z * xz))
+                + y * (b + y * yy + 2.0 * z * yz)
+                + z * (c + z * zz);
+            positive |= u32::from(value > slack) << i;
+            negative |= u32::from(value < -slack) << i;
+        }
+        Close { f, positive, negative }
+    }
+
+    /// Whether no point of the cell has both functions positive, or, if so said, negative.
+    fn excludes(&self, negative_self: bool, other: &Close, negative_other: bool) -> bool {
+        let at = |close: &Close, negative: bool| if negative { close.negative } else { close.positive };
+        if at(self, negative_self) & at(other, negative_other) != 0 {
+            return false;
+        }
+        let signed = |f: &Quadratic, negative: bool| if negative { f.complement() } else { *f };
+        let (a, b) = (signed(&self.f, negative_self), signed(&other.f, negative_other));
+        // The greatest value of the sum is a convex function of the share, so that it has one valley.
+        let scale = libm::log2(a.size() / b.size());
+        let (mut low, mut high) = (scale - 8.0, scale + 8.0);
+        let most = |share: f64| greatest(&a, &b, libm::exp2(share));
+        let golden = 0.618_033_988_749_894_9;
+        let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
+        let (mut at_left, mut at_right) = (most(left), most(right));
+        for _ in 0..16 {
+            if at_left <= 0.0 || at_right <= 0.0 {
+                return true;
+            }
+            if at_left < at_right {
+                (high, right, at_right) = (right, left, at_left);
+                left = high - golden * (high - low);
+                at_left = most(left);
+            } else {
+                (low, left, at_left) = (left, right, at_right);
+                right = low + golden * (high - low);
+                at_right = most(right);
+            }
+        }
+        false
+    }
+}
+
+/// No less than the greatest value of a function and a multiple of another in the cell.
+fn greatest(a: &Quadratic, b: &Quadratic, share: f64) -> f64 {
+    let sum = |a: f64, b: f64| a + share * b;
+    let (value, error) = (sum(a.value, b.value), sum(a.error, b.error));
+    let mut most = value;
+    for axis in 0..3 {
+        let slope = sum(a.gradient[axis], b.gradient[axis]).abs();
+        let bend = sum(a.squares[axis], b.squares[axis]);
+        // A hill has its top inside, or at the end as all others.
+        let is_hill = bend < 0.0 && slope < -2.0 * bend;
+        most += if is_hill { 0.25 * slope * slope / -bend } else { slope + bend };
+    }
+    for mixed in 3..6 {
+        most += 2.0 * sum(a.squares[mixed], b.squares[mixed]).abs();
+    }
+    // Each term is rounded some ten times.
+    most + error + 32.0 * f64::EPSILON * sum(a.size(), b.size())
 }
 
 /// A linear function above a function, or, if so said, above its negative: factors and constant.
