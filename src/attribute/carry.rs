@@ -8,6 +8,7 @@ use crate::lattice::Cell;
 use crate::memory;
 use crate::octree::channel::{Bits, Spot};
 use crate::octree::{Channel, ChannelRef, Octree, OctreeRef, ValueType};
+use crate::op::{Rule, build};
 use crate::solid::Verdict;
 use crate::solid::stored::StoredPart;
 use alloc::string::String;
@@ -40,8 +41,9 @@ pub struct ChannelOperand<'a> {
 /// each point the values of those operands count that are not EMPTY there, by `rule`. Where `result` is
 /// EMPTY, the channel says whatever takes the least memory.
 ///
-/// It is as deep as the deepest of the operands' solids and channels. The same bits for any number of
-/// threads. Visits the cells at which solids or channels change.
+/// It is as deep as the deepest of the operands' solids and channels, where solids that keep surfaces do not count: of these the
+/// cells to that depth are meant ([`plain`](crate::op::plain)). The same bits for any number of threads. Visits the cells at
+/// which solids or channels change.
 ///
 /// # Errors
 /// [`Error::Argument`] if there is no operand, or values are not of one type; [`Error::FrameMismatch`] unless
@@ -65,12 +67,30 @@ pub fn carry_channel(
             if !frame.same_universe(result.frame()) {
                 return Err(result.frame().mismatch(frame));
             }
-            depth = depth.max(frame.depth());
+        }
+        depth = depth.max(channel.frame().depth());
+        if solid.cuts.is_none() {
+            depth = depth.max(solid.frame().depth());
         }
         solid.check_links()?;
     }
     let frame = result.frame().with_depth(depth)?;
-    fill(&Carried { result, operands, rule, value_type }, &frame, value_type, control)
+    // Cells that keep surfaces are larger than what they describe.
+    let plain = |tree: &OctreeRef<'_>| match tree.cuts {
+        Some(_) => build(tree, &frame, Rule::Certified, control).map(Some),
+        None => Ok(None),
+    };
+    let plain_result = plain(result)?;
+    let mut solids = memory::with_capacity(operands.len())?;
+    for operand in operands {
+        solids.push(plain(operand.solid)?);
+    }
+    let mut meant = memory::with_capacity(operands.len())?;
+    for (operand, plain) in operands.iter().zip(&solids) {
+        meant.push(ChannelOperand { solid: plain.as_ref().map_or(operand.solid, Octree::view), ..*operand });
+    }
+    let result = plain_result.as_ref().map_or(result, Octree::view);
+    fill(&Carried { result, operands: &meant, rule, value_type }, &frame, value_type, control)
 }
 
 /// `result`, an octree that was made of `operands`, with their channels. Channels of one name become one, by

@@ -214,6 +214,21 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         contains(&tree, &frame(), &[[15.0; 3], [9.1, 8.2, 7.3]], &mut answers, &CONTROL)?;
         measure(&tree, &frame(), 1e-2, &CONTROL)
     });
+    let extended = |x: f64| {
+        let ball = Csg::ball([x, 15.0, 15.0], 8.0)?;
+        build_extended(&ball, &frame(), &SurfaceOptions::default(), &CONTROL)
+    };
+    let tools: Result<Vec<Octree>, Error> = [9.0, 14.0, 18.5, 21.0].into_iter().map(extended).collect();
+    let tools = tools.unwrap();
+    operation!(
+        "union of extended",
+        [tools],
+        union_of(&tools.iter().map(|tree| *tree.view()).collect::<Vec<_>>(), &CONTROL)
+    );
+    operation!("difference of extended", [tools, a], {
+        let both = difference(tools[0].view(), tools[2].view(), &CONTROL)?;
+        difference(a.view(), both.view(), &CONTROL)
+    });
     operation!("build extended mesh", [closed], {
         let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
         let options = SurfaceOptions { tolerance: Some(0.75) };

@@ -20,8 +20,8 @@ use leafless::surface::{
 use leafless::voxel::{Symmetry, Viewpoint, VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
     Affine, Bounds, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership, MeshSolid, Octree, Ray,
-    Rule, Tag, TriDexel, Volume, bounding_box, build, cast_rays, clearance, complement, contains, dexelize,
-    difference, intersection, marching_cubes, measure, union, xor,
+    Rule, SurfaceOptions, Tag, TriDexel, Volume, bounding_box, build, build_extended, cast_rays, clearance,
+    complement, contains, dexelize, difference, intersection, marching_cubes, measure, union, xor,
 };
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -74,6 +74,7 @@ const SEARCHES: &[&str] = &["bounding box", "clearance", "interference", "sectio
 /// Operations that are one step of which only the end is told, or nothing.
 const ONE_STEP: &[&str] = &[
     "build of a mesh",
+    "complement of extended",
     "octree of dexels",
     "rays of a mesh",
     "records in order",
@@ -111,6 +112,20 @@ fn all_operations(depth: u8) -> Vec<Told> {
     heard.of("intersection of many", |control| intersection_of(&views, control));
     heard.of("difference of many", |control| difference_of(&views, control));
     heard.of("xor of many", |control| xor_of(&views, control));
+
+    // Octrees that keep surfaces.
+    let extended: Vec<Octree> = (0..40)
+        .map(|i| {
+            let angle = 0.5 * f64::from(i);
+            let ball = Csg::ball([0.5 * angle.cos(), 0.5 * angle.sin(), 0.02 * f64::from(i) - 0.4], 0.35);
+            build_extended(&ball.unwrap(), &frame, &SurfaceOptions::default(), &CONTROL).unwrap()
+        })
+        .collect();
+    let sharp: Vec<_> = extended.iter().map(|tree| *tree.view()).collect();
+    let halves = [&sharp[..20], &sharp[20..]].map(|half| union_of(half, &CONTROL).unwrap());
+    heard.of("union of extended", |control| union(halves[0].view(), halves[1].view(), control));
+    heard.of("union of many extended", |control| union_of(&sharp, control));
+    heard.of("complement of extended", |control| complement(halves[0].view(), control));
 
     // Meshes.
     let mesh = heard.of("marching cubes", |control| marching_cubes(sampled.view(), None, control));

@@ -67,18 +67,15 @@ pub(in crate::op) fn combine(
             windows: memory::collected(operands.iter().map(|(tree, _)| Windows::new(tree)))?,
             out: Output::new(Writer::new(&job, frame.depth(), false), &frame)?,
         };
-        let (tag, cut) = match walk.root(&mut hand)? {
+        let root = walk.root(&mut hand)?;
+        // Elsewhere progress is counted in the elements below the root's.
+        if !matches!(root, Fate::Goes(Part::Open(..) | Part::Function(_))) {
+            job.advance(WHOLE);
+        }
+        let (tag, cut) = match root {
+            Fate::Goes(part) => walk.one(0, Cell::ROOT, &part, &mut hand)?,
             Fate::Settled(tag) => (tag, Cut::None),
             Fate::Ends(cut) => (Tag::Partial, cut),
-            Fate::Goes(Part::Copy(copy)) => {
-                let mut done = walk.elements(
-                    0,
-                    memory::collected([(Cell::ROOT, Part::Copy(copy))].into_iter())?,
-                    &mut hand,
-                )?;
-                done.pop().unwrap_or((Tag::Partial, Cut::None))
-            }
-            Fate::Goes(part) => element(&walk, 0, Cell::ROOT, &part, &mut hand)?,
         };
         let Output { writer, cuts } = hand.out;
         let surfaces = &walk.walk.surfaces;
@@ -86,7 +83,6 @@ pub(in crate::op) fn combine(
             Some((cuts, used)) => Some(Cuts { surfaces: surfaces.written(&used)?, ..cuts }),
             None => None,
         };
-        job.advance(WHOLE);
         let exterior = walk.walk.exterior();
         Ok(writer.finish_with(&frame, tag, exterior, cuts)?.with_proof(walk.walk.proof()))
     })
@@ -456,14 +452,12 @@ impl Threads<'_, '_> {
             }
             tasks.push((cell, part, windows));
         }
-        let share = WHOLE / tasks.len().max(1);
+        let share = self.share(e, tasks.len(), &hand.out);
         let out = &hand.out;
         let done = each(true, tasks.into_iter(), |(cell, part, windows)| {
             let mut own = Hand { windows, out: out.sibling(&self.walk.frame)? };
             let done = self.one(e, cell, &part, &mut own)?;
-            if e == 1 {
-                own.out.writer.job().advance(share);
-            }
+            own.out.writer.job().advance(share);
             Ok((done, own.out))
         })?;
         let mut all = memory::with_capacity(done.len())?;
@@ -473,6 +467,16 @@ impl Threads<'_, '_> {
             all.push(done);
         }
         Ok(all)
+    }
+
+    /// The progress that each of so many elements of level `e` is; what does not divide evenly is reported.
+    fn share(&self, e: usize, elements: usize, out: &Output<'_>) -> usize {
+        if e != 1 {
+            return 0;
+        }
+        let share = WHOLE.checked_div(elements).unwrap_or(0);
+        out.writer.job().advance(WHOLE - share * elements);
+        share
     }
 
     fn one(&self, e: usize, cell: Cell, part: &Part, hand: &mut Hand<'_>) -> Result<Done, Error> {
@@ -537,7 +541,7 @@ impl<'j> Source<'j> for Threads<'_, '_> {
             return self.elements_in_parallel(e, open, hand);
         }
         let mut done = memory::with_capacity(open.len())?;
-        let (share, mut next) = (WHOLE / open.len().max(1), 0);
+        let (share, mut next) = (self.share(e, open.len(), &hand.out), 0);
         while let Some((cell, part)) = open.get(next) {
             // Neighbours are copied together.
             let mut run = 1;
@@ -555,9 +559,7 @@ impl<'j> Source<'j> for Threads<'_, '_> {
                 done.push(element(self, e, *cell, part, hand)?);
             }
             next += run;
-            if e == 1 {
-                hand.out.writer.job().advance(share * run);
-            }
+            hand.out.writer.job().advance(share * run);
         }
         Ok(done)
     }

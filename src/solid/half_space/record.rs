@@ -69,8 +69,13 @@ impl PlacedHalfSpace {
                 (Identity::Figure(kind, numbers, map()?.primitive()), false)
             }
             Surface::Slab(slab) => {
-                let Some(identity) = &slab.identity else { return Ok(None) };
-                (Identity::Figure(SurfaceKind::Slab, identity.numbers().collect(), map()?.primitive()), false)
+                let (Some(identity), Some((kind, mut numbers))) = (&slab.identity, self.half_space.numbers())
+                else {
+                    return Ok(None);
+                };
+                // (A file may say of two slabs that they are the same, which are not.)
+                numbers.extend(identity.numbers());
+                (Identity::Figure(kind, numbers, map()?.primitive()), false)
             }
             Surface::Host(_) => return Ok(None),
         }))

@@ -140,7 +140,8 @@ pub(crate) fn residue(surfaces: &SurfacesRef<'_>, id: usize) -> Option<u64> {
         }
         SurfaceKind::Slab => {
             let ([low, high], number) = surfaces.identity(id)?;
-            projective(mixed(seed, [low, high, number.into()].into_iter()), map.into_iter().flatten())
+            let own = numbers.take(5).map(|number| number.0).chain([low, high, number.into()]);
+            projective(mixed(seed, own), map.into_iter().flatten())
         }
     })
 }

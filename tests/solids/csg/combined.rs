@@ -7,8 +7,9 @@ use crate::common::{Random, alone};
 use crate::random::Maker;
 use leafless::op::{difference_of, intersection_of, union_of, xor_of};
 use leafless::{
-    Affine, Control, Csg, Frame, Membership, Octree, Rule, Solid, SurfaceOptions, Tag, build, build_extended,
-    complement, contains, difference, intersection, measure, union, xor,
+    Affine, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid, SurfaceOptions,
+    Tag, TriangleMesh, build, build_extended, complement, contains, difference, intersection, measure, union,
+    xor,
 };
 
 /// A solid twice: as a model, and as an octree.
@@ -350,4 +351,197 @@ fn twenty_bores_one_by_one() {
     let truth = 48_000.0 - 20.0 * core::f64::consts::PI * 6.25 * 10.0;
     let volume = measure(&part, &frame, 1e-6, &alone()).unwrap().volume;
     assert!(volume.contains(truth) && volume.width() < 1.01e-6 * truth);
+}
+
+/// Forty balls out of a block, one of which touches it and another cuts nothing.
+fn cut_block() -> (Frame, Vec<Octree>) {
+    let frame = Frame::new([-1.0; 3], 2.0, 9).unwrap();
+    let block = extended(&Csg::cuboid([-0.75; 3], [0.75; 3]).unwrap(), &frame);
+    let balls = (0..40).map(|k| {
+        let turn = 0.5 * f64::from(k);
+        let centre = [0.6 * turn.cos(), 0.6 * turn.sin(), 0.04 * f64::from(k) - 0.8];
+        extended(&Csg::ball(centre, 0.27).unwrap(), &frame)
+    });
+    let others = [([0.0, 0.0, 1.0], 0.25), ([0.9, 0.9, 0.9], 0.05)];
+    let others = others.map(|(centre, radius)| extended(&Csg::ball(centre, radius).unwrap(), &frame));
+    (frame, [block].into_iter().chain(balls).chain(others).collect())
+}
+
+/// Limits and a cancel end the work with an error, at any point, and what is made afterwards is the same as before.
+#[test]
+fn limits_and_cancels_are_errors() {
+    use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+    let (_, trees) = cut_block();
+    let views: Vec<_> = trees.iter().map(|tree| *tree.view()).collect();
+    let whole = difference_of(&views, &alone()).unwrap();
+    let nodes = whole.statistics().nodes();
+    assert!(nodes > 50, "{nodes}");
+    for threads in [1, 2] {
+        for max_nodes in [0, 1, nodes / 2, nodes - 1] {
+            let control = Control { max_nodes: Some(max_nodes), ..Control::threads(threads) };
+            let refused = difference_of(&views, &control);
+            assert!(matches!(refused, Err(Error::Limit { what: "nodes", .. })), "{max_nodes}: {refused:?}");
+        }
+        let enough = Control { max_nodes: Some(nodes), ..Control::threads(threads) };
+        assert_eq!(difference_of(&views, &enough).unwrap(), whole);
+        for max_bytes in [0, 1000] {
+            let control = Control { max_bytes: Some(max_bytes), ..Control::threads(threads) };
+            assert!(matches!(difference_of(&views, &control), Err(Error::Limit { .. })));
+        }
+        let mut ended = 0;
+        for after in 0..20 {
+            let (cancel, left) = (AtomicBool::new(false), AtomicUsize::new(after));
+            let progress = |_: f64| {
+                let is_last = left.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1)).is_err();
+                cancel.fetch_or(is_last, Relaxed);
+            };
+            let control =
+                Control { cancel: Some(&cancel), progress: Some(&progress), ..Control::threads(threads) };
+            match difference_of(&views, &control) {
+                Ok(tree) => assert_eq!(tree, whole),
+                Err(Error::Cancelled) => ended += 1,
+                Err(error) => panic!("{error}"),
+            }
+        }
+        assert!(ended > 3, "{ended}");
+        assert_eq!(difference_of(&views, &Control::threads(threads)).unwrap(), whole);
+    }
+    // Surfaces that nearly coincide, and cross more than three at a time all along a circle, are no way around the limit.
+    let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
+    let lens = |off: f64| {
+        let [one, other] = [-0.3, 0.3].map(|x| Csg::ball([x + off, 0.0, 0.0], 0.6).unwrap());
+        extended(&Csg::intersection_of([one, other]).unwrap(), &frame)
+    };
+    let [a, b] = [lens(0.0), lens(1e-7)];
+    let control = Control { max_bytes: Some(1 << 16), ..alone() };
+    let refused = difference(a.view(), b.view(), &control);
+    assert!(
+        matches!(refused, Err(Error::Limit { what: "bytes", .. })),
+        "{:?}",
+        refused.map(|tree| tree.view().cuts())
+    );
+}
+
+/// Whatever takes a tree with surfaces and gives one keeps them, or says that it does not.
+#[test]
+fn nothing_drops_surfaces_in_silence() {
+    use leafless::attribute::{
+        CarryRule, ConstantAttribute, FillOptions, ScalarType, ValueType, carry_channels, fill_channel,
+    };
+    use leafless::solid::Transform;
+    use leafless::{AnySolid, Metadata, Proof, compact, file, op};
+    let (frame, trees) = cut_block();
+    let views: Vec<_> = trees.iter().map(|tree| *tree.view()).collect();
+    let (part, control) = (difference_of(&views, &alone()).unwrap(), alone());
+    let [nothing, everything] = [Tag::Empty, Tag::Full].map(|tag| Octree::uniform(frame, tag, tag).unwrap());
+    // A large plain tree and a small one that keeps surfaces: of the one runs are copied, of the other cells.
+    let far = Csg::ball([0.0, 0.0, -0.2], 0.7).unwrap();
+    let plain = build(&far, &frame, Rule::Certified, &control).unwrap();
+    let folder = std::env::temp_dir().join(format!("leafless-combined-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("part.lfl");
+    file::save(&part, &path).unwrap();
+    // SAFETY: nobody changes the file.
+    let mapped = unsafe { file::map(&path) }.unwrap();
+    let options = SurfaceOptions::default();
+    let solid = |solid: &dyn Fn() -> Csg| build_extended(&solid(), &frame, &options, &control).unwrap();
+    let with_channel = {
+        let value_type = ValueType::new(ScalarType::U8, 1).unwrap();
+        let options =
+            FillOptions { value_type, frame: frame.with_depth(4).unwrap(), solid: None, detail: None };
+        let channel = fill_channel(&ConstantAttribute::new(&[3.0]).unwrap(), &options, &control).unwrap();
+        part.with_channel(channel.with_name("value")).unwrap()
+    };
+    let other = with_channel.with_metadata(Metadata::default());
+    let same: Vec<(&str, Octree)> = vec![
+        ("clone", part.clone()),
+        ("proof", part.with_proof(Proof::new(false, false)).with_proof(part.proof())),
+        ("metadata", part.with_metadata(Metadata::default())),
+        ("channel", with_channel.clone()),
+        ("without channels", with_channel.without_channels()),
+        (
+            "carried channels",
+            carry_channels(&part, &[&with_channel, &other], |_| CarryRule::Left, &control).unwrap(),
+        ),
+        ("compact", compact(part.view()).unwrap()),
+        ("file", through_a_file(&part)),
+        ("mapped", mapped.clone()),
+        ("union with itself, mapped", union(mapped.view(), part.view(), &control).unwrap()),
+        ("union with nothing", union(part.view(), nothing.view(), &control).unwrap()),
+        ("intersection with everything", intersection(everything.view(), part.view(), &control).unwrap()),
+        ("complement", complement(complement(part.view(), &control).unwrap().view(), &control).unwrap()),
+        ("difference from everything", {
+            let rest = difference(everything.view(), part.view(), &control).unwrap();
+            xor(rest.view(), everything.view(), &control).unwrap()
+        }),
+        ("union of one", union_of(&[*part.view()], &control).unwrap()),
+        ("built of it", build_extended(&part, &frame, &options, &control).unwrap()),
+        ("built of an expression", solid(&|| Csg::solid(AnySolid::new(part.clone())))),
+        (
+            "built of a complement",
+            solid(&|| Csg::solid(AnySolid::new(part.clone())).complement().complement()),
+        ),
+        ("built of a transform", {
+            let identity = Affine::translation([0.0; 3]).unwrap();
+            let moved = Transform::new(part.clone(), &frame, &identity);
+            build_extended(&moved, &frame, &options, &control).unwrap()
+        }),
+    ];
+    let volume = |tree: &Octree| measure(tree, &frame, 1e-4, &control).unwrap().volume;
+    let truth = volume(&part);
+    for (name, tree) in &same {
+        tree.view().check().unwrap();
+        let cuts = tree.view().cuts().unwrap_or_default();
+        assert_eq!(cuts.surfaces, part.view().cuts().unwrap().surfaces, "{name}");
+        let own = volume(tree);
+        assert!(
+            own.lower <= truth.upper && own.upper >= truth.lower && own.width() < 2e-4,
+            "{name}: {own:?}"
+        );
+    }
+    // Copied runs of one tree beside surfaces of another.
+    let both = union(plain.view(), part.view(), &control).unwrap();
+    let rest = difference(both.view(), plain.view(), &control).unwrap();
+    assert!(both.view().cuts().unwrap().surfaces > 20 && rest.view().cuts().unwrap().surfaces > 20);
+    both.view().check().unwrap();
+    rest.view().check().unwrap();
+    for rule in [Rule::Inner, Rule::Outer, Rule::Certified, Rule::Sampled] {
+        assert!(matches!(op::resolve(part.view(), rule, &control), Err(Error::Argument { .. })));
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Slabs are one only where they have the same origin: what lies in the width of two is not known to be the same.
+#[test]
+fn meshes_that_differ_within_a_slab() {
+    let frame = Frame::new([-1.013, -1.017, -1.009], 2.0, 7).unwrap();
+    let pyramid = |height: f64| {
+        let vertices =
+            vec![[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [-0.5, 0.5, 0.0], [0.0, 0.0, height]];
+        let triangles = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 2, 1], [0, 3, 2]];
+        let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+        let options = SurfaceOptions { tolerance: Some(0.05) };
+        build_extended(&MeshSolid::new(mesh, FillRule::NonZero).unwrap(), &frame, &options, &alone()).unwrap()
+    };
+    let [a, same, b] = [pyramid(0.7), pyramid(0.7), pyramid(0.7000001)];
+    assert!(a.view().cuts().unwrap().surfaces > 50);
+    let rest = |a: &Octree, b: &Octree| difference(a.view(), b.view(), &alone()).unwrap();
+    let none = rest(&a, &same);
+    let given_up = |tree: &Octree| tree.view().cuts().map_or(0, |cuts| cuts.given_up);
+    // Of the same origin all but the cells that were given up is gone.
+    assert!(none.view().cuts().is_none_or(|cuts| cuts.cells == 0) && given_up(&none) <= given_up(&a));
+    // Between the two tips nothing is known.
+    let tip = [0.0, 0.0, 0.70000005];
+    for (a, b, truth) in [(&a, &b, Membership::Outside), (&b, &a, Membership::Inside)] {
+        let rest = rest(a, b);
+        rest.view().check().unwrap();
+        assert!(rest.view().root_tag() != Tag::Empty && rest.view().cuts().unwrap().cells > 0);
+        let mut answers = [Membership::Outside; 2];
+        contains(&rest, &frame, &[tip, [0.1, 0.05, 0.56]], &mut answers, &alone()).unwrap();
+        assert!(answers[0] == truth || answers[0] == Membership::Undecided, "{answers:?}");
+        assert_eq!(answers[1], Membership::Undecided);
+    }
+    // Trees of one table share its slabs, even of solids that cannot be told from others.
+    let itself = union(a.view(), a.view(), &alone()).unwrap();
+    assert_same(&itself, &a, "A ∪ A is A");
 }
