@@ -31,7 +31,7 @@ pub fn set_algebra(data: &[u8]) {
 }
 
 /// Surfaces may cross so many cells that no memory would do.
-const BUDGET: Control<'static> = Control { max_bytes: Some(1 << 22), ..CONTROL };
+const BUDGET: Control<'static> = Control { max_bytes: Some(1 << 19), ..CONTROL };
 
 /// What holds of every result where an operand keeps surfaces; nothing if there is none.
 fn sharp(result: Result<Octree, Error>, sure: bool) -> Option<Octree> {
