@@ -148,17 +148,6 @@ impl<T: Copy + Send + Sync> Chunks<T> {
     }
 }
 
-/// Neighbouring subtrees that are copied.
-pub(crate) struct Subtrees {
-    /// The element that they are parts of.
-    pub parent: usize,
-    /// Their first elements, which lie on level `e`, and have been admitted.
-    pub range: Range<usize>,
-    pub e: usize,
-    /// Whether their complement is meant.
-    pub flip: bool,
-}
-
 enum BrickChunks {
     One(Chunks<u64>),
     Two(Chunks<Planes>),
@@ -172,6 +161,8 @@ pub(crate) struct Writer<'j> {
     bricks: BrickChunks,
     /// Whether parts were appended.
     joined: bool,
+    /// Runs of elements that were copied, with their levels, since somebody last asked; nothing if nobody asks.
+    runs: Option<Vec<(usize, Range<usize>)>>,
     // Written since the job was last told.
     nodes: usize,
     bytes: usize,
@@ -190,6 +181,7 @@ impl<'j> Writer<'j> {
             levels: (1..element_levels(depth)).map(|_| Chunks::new()).collect(),
             bricks: if binary { BrickChunks::One(Chunks::new()) } else { BrickChunks::Two(Chunks::new()) },
             joined: false,
+            runs: None,
             nodes: 0,
             bytes: 0,
             untold: 0,
@@ -198,7 +190,18 @@ impl<'j> Writer<'j> {
 
     /// An empty writer for a part of the same tree, to be [appended](Self::append) later.
     pub(crate) fn sibling(&self) -> Writer<'j> {
-        Writer::new(self.job, self.depth, matches!(self.bricks, BrickChunks::One(_)))
+        let runs = self.runs.as_ref().map(|_| Vec::new());
+        Writer { runs, ..Writer::new(self.job, self.depth, matches!(self.bricks, BrickChunks::One(_))) }
+    }
+
+    /// From now on runs that are copied are noted.
+    pub(crate) fn note_runs(&mut self) {
+        self.runs = Some(Vec::new());
+    }
+
+    /// The runs of elements that were copied since the last time, with their levels.
+    pub(crate) fn noted_runs(&mut self) -> Vec<(usize, Range<usize>)> {
+        self.runs.replace(Vec::new()).unwrap_or_default()
     }
 
     pub(crate) fn job(&self) -> &'j Job<'j> {
@@ -265,26 +268,26 @@ impl<'j> Writer<'j> {
         self.job.spend(core::mem::take(&mut self.nodes), core::mem::take(&mut self.bytes))
     }
 
-    /// Copies a run of subtrees: one run of elements per level. They must be admissible by `windows`, which they pass. `copied` hears
-    /// of each run of elements.
-    #[inline(always)]
+    /// Copies the subtrees below the elements `range` of level `e`, complemented if `flip`: one run per
+    /// level. They must be admissible by `windows`, which they pass.
     pub(crate) fn copy(
         &mut self,
         tree: &OctreeRef<'_>,
         windows: &mut Windows,
-        run: Subtrees,
-        mut copied: impl FnMut(usize, Range<usize>) -> Result<(), Error>,
+        parent: usize,
+        e: usize,
+        mut range: Range<usize>,
+        flip: bool,
     ) -> Result<(), Error> {
-        let Subtrees { parent, e, mut range, flip } = run;
         let last = self.levels.len();
         for level in e..=last {
-            if level > e {
-                windows.admit(parent, level, range.start, range.end)?;
-            }
+            windows.admit(parent, level, range.start, range.end)?;
             if range.is_empty() {
                 return Ok(());
             }
-            copied(level, range.clone())?;
+            if let Some(runs) = &mut self.runs {
+                memory::push(runs, (level, range.clone()))?;
+            }
             let count = range.len();
             let reported = u32::try_from(count).unwrap_or(u32::MAX);
             if level == last {

@@ -18,7 +18,7 @@ use crate::error::{Damage, Error};
 use crate::memory;
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
-use crate::octree::writer::{Subtrees, Writer};
+use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Proof, Tag};
 use crate::parallel::each;
 use core::ops::Range;
@@ -425,9 +425,7 @@ impl Kernel<'_> {
         match step {
             Step::Copy { of, flip, parent, range } => {
                 let windows = &mut walk.windows[of];
-                windows.admit(parent, e, range.start, range.end)?;
-                let run = Subtrees { parent, range, e, flip };
-                walk.writer.copy(&self.operands[of].tree, windows, run, |_, _| Ok(()))?;
+                walk.writer.copy(&self.operands[of].tree, windows, parent, e, range, flip)?;
                 Ok(None)
             }
             Step::Visit(c, sources) if e + 1 == self.operands[0].tree.levels() => {

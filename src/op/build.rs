@@ -8,7 +8,7 @@ use crate::memory;
 use crate::octree::block::BLOCK_LEVELS;
 use crate::octree::links::Windows;
 use crate::octree::view::{OctreeRef, element_levels, starts_half_way};
-use crate::octree::writer::{Subtrees, Writer};
+use crate::octree::writer::Writer;
 use crate::octree::{Block, Octree, Planes, Tag};
 use crate::parallel::{self, each_with};
 use crate::solid::{Ask, Batch, Classifier, Parts, Solid, Subtree, Verdict, Worker};
@@ -390,7 +390,5 @@ struct Run {
 /// on the frame.
 fn copy(first: &Subtree<'_>, count: usize, writer: &mut Writer<'_>) -> Result<(), Error> {
     let &Subtree { tree, level, index, flip } = first;
-    let (mut windows, range) = (Windows::new(tree), index..index + count);
-    windows.admit(index, level, range.start, range.end)?;
-    writer.copy(tree, &mut windows, Subtrees { parent: index, range, e: level, flip }, |_, _| Ok(()))
+    writer.copy(tree, &mut Windows::new(tree), index, level, index..index + count, flip)
 }

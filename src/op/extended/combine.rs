@@ -14,7 +14,7 @@ use crate::memory;
 use crate::octree::cuts::{CellCut, Cut, Cuts, CutsRef, Head, SurfacesRef};
 use crate::octree::links::Windows;
 use crate::octree::view::{OctreeRef, starts_half_way};
-use crate::octree::writer::{Subtrees, Writer};
+use crate::octree::writer::Writer;
 use crate::octree::{Octree, Planes, Proof, Tag};
 use crate::parallel::each;
 use crate::solid::OCTANTS;
@@ -63,9 +63,11 @@ pub(in crate::op) fn combine(
     let walk = Walk { frame, operands, is_odd, flip, surfaces };
     control.run(entries > WORTH_THREADS, |parallel| {
         let walk = Threads { walk: &walk, parallel };
+        let mut writer = Writer::new(&job, frame.depth(), false);
+        writer.note_runs();
         let mut hand = Hand {
             windows: memory::collected(operands.iter().map(|(tree, _)| Windows::new(tree)))?,
-            out: Output::new(Writer::new(&job, frame.depth(), false), &frame)?,
+            out: Output::new(writer, &frame)?,
         };
         let root = walk.root(&mut hand)?;
         // Elsewhere progress is counted in the elements below the root's.
@@ -351,15 +353,16 @@ impl Walk<'_> {
         let (tree, _) = self.operand(of);
         let Hand { windows, out: Output { writer, cuts } } = hand;
         let names = self.surfaces.names(of as usize);
+        let windows = &mut windows[of as usize];
+        windows.put_back(e, run.start);
+        writer.copy(tree, windows, parent, e, run, flip)?;
         let mut bytes = 0;
-        let run = Subtrees { parent, range: run, e, flip };
-        writer.copy(tree, &mut windows[of as usize], run, |level, run| {
+        for (level, run) in writer.noted_runs() {
             bytes += match &tree.cuts {
                 Some(own) => cuts.copy(level, own, run, names, flip)?,
                 None => cuts.copy_plain(level, run.filter_map(|index| tree.entry(index)))?,
             };
-            Ok(())
-        })?;
+        }
         writer.job().spend(0, bytes)
     }
 }
