@@ -2308,13 +2308,14 @@ leafless_status leafless_octree_build(const leafless_solid *solid, const leafles
     leafless_rule rule, const leafless_options *options, leafless_octree **octree);
 
 /// The octree with its PARTIAL cells resolved: EMPTY under LEAFLESS_RULE_INNER, FULL under
-/// LEAFLESS_RULE_OUTER.
+/// LEAFLESS_RULE_OUTER. An octree that keeps surfaces is refused, because its cells are few and large:
+/// leafless_octree_plain resolves it at a depth.
 ///
 /// - Buffers: `options`, one struct or NULL; `resolved`, one pointer. `rule` is a leafless_rule.
 /// - Result: `*resolved`, with the octree's facts "name" and "units" and no others, and with its channels.
 /// - Errors: LEAFLESS_E_NOT_SAMPLED under LEAFLESS_RULE_SAMPLED if a cell is PARTIAL, because a stored octree
-///   knows no more about it; LEAFLESS_E_DAMAGED; LEAFLESS_E_ARGUMENT; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED;
-///   LEAFLESS_E_NO_MEMORY.
+///   knows no more about it; LEAFLESS_E_ARGUMENT, also if the octree keeps surfaces; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `octree` stays as it is; give `*resolved` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octree.
@@ -2332,24 +2333,33 @@ leafless_status leafless_octree_resolve(const leafless_octree *octree, leafless_
 leafless_status leafless_octree_compact(const leafless_octree *octree, leafless_octree **compacted);
 
 /// What a set operation makes of octrees, at least one. Exact, and the same bit for bit for any number of
-/// threads; never larger than all operands together. Operands are joined two by two: limits of `options`
-/// concern each of these steps. The result has no channels: leafless_octree_carry_channels gives it those of
-/// the operands.
+/// threads. The result has no channels: leafless_octree_carry_channels gives it those of the operands.
+///
+/// Octrees without surfaces are joined two by two: limits of `options` concern each of these steps, and the
+/// result is never larger than all operands together. If an octree keeps surfaces
+/// (leafless_octree_build_extended), the result keeps surfaces. Then all operands are walked at once, and no
+/// intermediate result is copied: pass the stock and all tools in one call, not one call a tool. A cell ends
+/// as soon as three surfaces are left in it. A cell that more surfaces cross at the frame's depth is given
+/// up, and nothing is known of it. An octree without surfaces takes part as a certified octree. Surfaces that
+/// are one in two octrees are one: A less A is LEAFLESS_TAG_EMPTY where nothing was given up. The result may
+/// be larger than the operands. Curved surfaces that nearly coincide may need very many cells: set
+/// `max_bytes` of `options`.
 ///
 /// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer. `operation`
 ///   is a leafless_operation.
 /// - Result: `*result`, with those of the facts "name" and "units" that all operands have with one value, and
 ///   no other metadata.
 /// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT,
-///   also if `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+///   also if `count` is 0; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT, also if the exact map of a surface's
+///   placements is too long; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the operands stay as they are; give `*result` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
-///   PARTIAL.
+///   PARTIAL. Set `max_bytes` if an octree keeps surfaces and is not your own choice.
 leafless_status leafless_octree_combine(leafless_operation operation, const leafless_octree *const *octrees,
     uint64_t count, const leafless_options *options, leafless_octree **result);
 
-/// Everything but `octree`, inside of its universe and out.
+/// Everything but `octree`, inside of its universe and out. Surfaces are kept.
 ///
 /// - Buffers: `options`, one struct or NULL; `result`, one pointer.
 /// - Result: as leafless_octree_combine.
@@ -2425,8 +2435,9 @@ typedef struct leafless_cell_function {
 ///
 /// Points, rays and boxes of an octree (leafless_octree_contains, leafless_octree_cast_rays,
 /// leafless_octree_classify_box) are decided by the surfaces where they lie; next to a surface they may stay
-/// undecided. As a solid (leafless_solid_from_octree) it answers as its source would. Functions that mean
-/// cells see the cells alone: leafless_octree_plain makes them.
+/// undecided. As a solid (leafless_solid_from_octree) it answers as its source would. Set operations
+/// (leafless_octree_combine, leafless_octree_complement) keep the surfaces. Functions that mean cells see the
+/// cells alone: leafless_octree_plain makes them.
 ///
 /// - Buffers: `frame`, one struct; `cuts`, one struct or NULL; `options`, one struct or NULL; `octree`, one
 ///   pointer.

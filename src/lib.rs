@@ -68,7 +68,7 @@
 //! | … the sign of a polynomial decided exactly? | `lattice/exact/` |
 //! | … the winding number of an open mesh? | `solid/mesh/winding.rs` |
 //! | … a hole in a mesh found, a crack closed? | `mesh/defects.rs`, `mesh/sew.rs` |
-//! | … the union of two stored octrees? | `op/boolean.rs` |
+//! | … the union of two stored octrees? | `op/boolean.rs`; of ones that keep surfaces `op/extended/combine.rs` |
 //! | … a child of an element found? | `octree/links.rs` |
 //! | … the cell beside a cell, all cells of a tag, the faces between them? | `octree/neighbour.rs`, `cells.rs`, `faces.rs` |
 //! | … what cells prove? | `octree/proof.rs` |

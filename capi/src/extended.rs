@@ -109,7 +109,8 @@ pub struct leafless_cell_function {
 ///
 /// Points, rays and boxes of an octree (leafless_octree_contains, leafless_octree_cast_rays, leafless_octree_classify_box) are
 /// decided by the surfaces where they lie; next to a surface they may stay undecided. As a solid (leafless_solid_from_octree) it
-/// answers as its source would. Functions that mean cells see the cells alone: leafless_octree_plain makes them.
+/// answers as its source would. Set operations (leafless_octree_combine, leafless_octree_complement) keep the surfaces. Functions
+/// that mean cells see the cells alone: leafless_octree_plain makes them.
 ///
 /// - Buffers: `frame`, one struct; `cuts`, one struct or NULL; `options`, one struct or NULL; `octree`, one pointer.
 /// - Result: `*octree`.

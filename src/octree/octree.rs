@@ -48,13 +48,40 @@ use yoke::erased::ErasedArcCart;
 /// *Normal form.* A function depends on each of its surfaces; surfaces of a cut ascend; nothing is stored for cells that are decided,
 /// surfaces that no cell uses are not kept. Equality and fingerprints include cuts, and the bytes are the same for any number of threads.
 ///
-/// What takes octrees sees cuts in one of three ways:
+/// What takes octrees sees cuts in one of four ways:
 ///
 /// | | functions | |
 /// |---|---|---|
 /// | in place | [`contains`](OctreeRef::contains), [`contains_many`](OctreeRef::contains_many), [`PointCursor`](crate::query::PointCursor), [`PointTable`](crate::query::PointTable), [`cast_ray`](OctreeRef::cast_ray), [`cast_rays`](OctreeRef::cast_rays), [`ray_spans`](OctreeRef::ray_spans), [`classify_box`](OctreeRef::classify_box) | without a worker and without memory; next to a surface rounding leaves points undecided |
 /// | as a solid | whatever takes a [`Solid`](crate::Solid): [`build`](crate::build), [`build_extended`](crate::build_extended), [`contains`](crate::contains), [`cast_rays`](crate::cast_rays), [`measure`](crate::measure), [`surface_area`](crate::query::surface_area), [`section_area`](crate::query::section_area), [`bounding_box`](crate::query::bounding_box), [`distances`](crate::query::distances), [`interference`](crate::interference), [`clearance`](crate::clearance), [`Adaptive`](crate::solid::Adaptive), [`LazyOctree`], [`dexelize`](crate::dexelize), dual contouring of solids, and pictures, also those of trees | what the source would give; cells split below the tree's depth |
-/// | of cells | [`tag_at`](OctreeRef::tag_at), [`statistics`](Octree::statistics), [`Cursor`](crate::octree::Cursor), [`cells`](OctreeRef::cells), [`BoundaryFaces`](crate::octree::BoundaryFaces), [`bitmap`](OctreeRef::bitmap), [`columns`](OctreeRef::columns), [`heights`](OctreeRef::heights), [`cells_in_box`](OctreeRef::cells_in_box), [`volume_in_box`](OctreeRef::volume_in_box), [`cells_in`](OctreeRef::cells_in), [`volume_in`](OctreeRef::volume_in), [`distance`](OctreeRef::distance), [`nearest_cells`](OctreeRef::nearest_cells), set operations of stored trees, [`resolve`](crate::op::resolve), voxels, components, slices, surfaces of trees, and pictures of the faces of cells | cuts are not seen. What they say is true, and blunt: take the tree of [`plain`](crate::op::plain) |
+/// | set operations | [`union`](crate::union), [`intersection`](crate::intersection), [`difference`](crate::difference), [`xor`](crate::xor), [`complement`](crate::complement), [`union_of`](crate::op::union_of), [`intersection_of`](crate::op::intersection_of), [`difference_of`](crate::op::difference_of), [`xor_of`](crate::op::xor_of) | the result keeps the operands' surfaces |
+/// | of cells | [`tag_at`](OctreeRef::tag_at), [`statistics`](Octree::statistics), [`Cursor`](crate::octree::Cursor), [`cells`](OctreeRef::cells), [`BoundaryFaces`](crate::octree::BoundaryFaces), [`bitmap`](OctreeRef::bitmap), [`columns`](OctreeRef::columns), [`heights`](OctreeRef::heights), [`cells_in_box`](OctreeRef::cells_in_box), [`volume_in_box`](OctreeRef::volume_in_box), [`cells_in`](OctreeRef::cells_in), [`volume_in`](OctreeRef::volume_in), [`distance`](OctreeRef::distance), [`nearest_cells`](OctreeRef::nearest_cells), voxels, components, slices, surfaces of trees, and pictures of the faces of cells | cuts are not seen. What they say is true, and blunt: take the tree of [`plain`](crate::op::plain) |
+///
+/// [`resolve`](crate::op::resolve) refuses trees with cuts: the cells that they have are few and large. [`compact`](crate::compact)
+/// keeps the cuts.
+///
+/// ## Set operations
+///
+/// Set operations keep surfaces, if one operand does. A tree without cuts takes part as a certified octree: nothing is known in its
+/// PARTIAL cells, and nothing is known in those of the result that depend on them.
+///
+/// *How cells end.* All operands are walked at once. Subtrees that only one operand cuts are copied as runs of its arrays, with their
+/// cuts. Where several operands end with functions, these become one function, and the cell ends as soon as three surfaces are left in
+/// it. The cell is split otherwise, down to the frame's depth, where it is given up. A cell that an operand has given up is
+/// given up in the result, unless another operand decides it.
+///
+/// *Identity.* Surfaces that are one are one: a pin fits into a bore of its own radius, and the two touch. `A ∖ A` is EMPTY where
+/// nothing was given up in `A`. Slabs are one only if they have the same origin and number. `A ∪ A` is `A`, `A ∪ B` is
+/// `B ∪ A`, and `¬¬A` is `A`, byte for byte. Associativity and distributivity hold as sets, but for cells that are given up.
+///
+/// *Planes and functions.* Eight cells that one function describes become one cell. So the planes of a result may be blunter than
+/// Kleene's logic of the operands' planes. What those cells decide then stands in the function.
+///
+/// *Cutting a batch.* An operation on two trees copies the larger one. [`difference_of`](crate::op::difference_of) walks the stock and
+/// all tools at once, and copies nothing but the result. It is the way to cut a part by many tools.
+///
+/// *Cost.* Time and memory are linear in the cells where operands meet. Curved surfaces that nearly coincide, and are not one, may meet
+/// in very many cells of a great depth: set [`Control::max_bytes`](crate::Control::max_bytes) where operands are not your own choice.
 ///
 /// Marching cubes and coplanar shrink of solids sample the corners of cells, on a lattice that no stored tree is known on: they refuse
 /// extended trees, too. Instead take [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) of [`dexelize`](crate::dexelize),

@@ -10,6 +10,8 @@
 //!
 //! PARTIAL cells follow Kleene's logic, so the bounds stay bounds. Operands may be mapped files with
 //! dictionaries; they are read where they lie.
+//!
+//! Trees of which one keeps surfaces are combined in `extended`, and the result keeps surfaces.
 
 use super::extended::{self, Combination};
 use crate::control::{Control, Job, WHOLE};
@@ -26,12 +28,15 @@ use core::ops::Range;
 /// The points that lie in `a`, in `b`, or in both.
 ///
 /// The operands must lie on the same frame. Time is linear in the cells where both are cut, plus the memory
-/// traffic of what is copied from one of them; the result is never larger than both together. It has no
-/// metadata; [`Metadata::common`](crate::Metadata::common) tells which of the operands' hold of it.
+/// traffic of what is copied from one of them; the result of two trees without cuts is never larger than both together.
+/// The result has no metadata; [`Metadata::common`](crate::Metadata::common) tells which of the operands' hold of it.
+///
+/// If an operand keeps surfaces, the result keeps surfaces: see [*Set operations*](Octree#set-operations), which also says
+/// why `max_bytes` should be set. More than two operands are combined fastest by [`union_of`].
 ///
 /// # Errors
-/// [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified operand turns out damaged; and what
-/// `control` asks for.
+/// [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified operand turns out damaged; [`Error::Limit`] if the exact
+/// map of a surface's placements is too long; and what `control` asks for.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build, difference, union};
@@ -41,6 +46,21 @@ use core::ops::Range;
 /// let both = union(a.view(), b.view(), &control)?;
 /// assert_eq!(both.statistics().volume_cells(), (64 + 64 - 8, 64 + 64 - 8));
 /// assert_eq!(difference(both.view(), b.view(), &control)?.statistics().volume_cells().0, 64 - 8);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+///
+/// Two balls that keep their surfaces:
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, Membership, SurfaceOptions, Tag, build_extended, difference, union};
+/// let (frame, control) = (Frame::new([-2.0; 3], 4.0, 20)?, Control::default());
+/// let ball = |x| build_extended(&Csg::ball([x, 0.0, 0.0], 1.0)?, &frame, &SurfaceOptions::default(), &control);
+/// let (a, b) = (ball(-0.5)?, ball(0.5)?);
+/// let both = union(a.view(), b.view(), &control)?;
+/// // Next to the circle in which the balls meet.
+/// assert_eq!(both.view().contains([0.0, 0.866025, 0.0]), Membership::Inside);
+/// assert_eq!(both.view().contains([0.0, 0.866026, 0.0]), Membership::Outside);
+/// assert_eq!(difference(a.view(), both.view(), &control)?.view().root_tag(), Tag::Empty);
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn union(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Error> {
@@ -71,7 +91,8 @@ pub fn xor(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Resul
     combine(Kernel { operands: [Operand::of(a), Operand::of(b)], op: Op::Xor, flip: false }, control)
 }
 
-/// Everything but `a`, inside of its universe and out. One pass over the arrays.
+/// Everything but `a`, inside of its universe and out. One pass over the arrays. A tree that keeps surfaces keeps them
+/// all. The complement of the complement is the tree, byte for byte.
 ///
 /// # Errors
 /// As [`union`].
@@ -83,8 +104,12 @@ pub fn complement(a: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Er
     combine(Kernel { operands: [Operand::of(a), Operand::of(all.view())], op: Op::And, flip: true }, control)
 }
 
-/// The union of any number of trees, at least one. Combined two by two, which gives the same result as any
-/// other order; limits of `control` concern each of these steps.
+/// The union of any number of trees, at least one. The order of the trees does not show in the result.
+///
+/// Trees without cuts are combined two by two; limits of `control` concern each of these steps. If a tree keeps surfaces, all
+/// trees are walked at once: nothing is copied that another tree changes, and no intermediate result exists. So a batch of tools
+/// costs what the tools cost, where one operation a tool copies the part once a tool. A cell may be split more
+/// often on one way than on the other, so that a batch and single operations agree as sets, and not always byte for byte.
 ///
 /// # Errors
 /// [`Error::Argument`] if there is no tree; else as [`union`].
@@ -108,8 +133,28 @@ pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result
 
 /// The points of the first of the trees, at least one, that lie in none of the others. Like [`union_of`] in all else.
 ///
+/// This is the way to cut a part by many tools.
+///
 /// # Errors
 /// As [`union_of`].
+///
+/// ```
+/// use leafless::op::difference_of;
+/// use leafless::{Affine, Control, Csg, Frame, SurfaceOptions, build_extended, measure};
+/// let (low, high, control) = ([0.0; 3], [80.0, 60.0, 10.0], Control::default());
+/// let frame = Frame::around(low, high, 20)?;
+/// let extended = |csg: &Csg| build_extended(csg, &frame, &SurfaceOptions::default(), &control);
+/// let mut trees = vec![extended(&Csg::cuboid(low, high)?)?];
+/// for k in 0..20u8 {
+///     let to = [8.0 + 16.0 * f64::from(k % 5), 7.5 + 15.0 * f64::from(k / 5), 0.0];
+///     trees.push(extended(&Csg::cylinder(2.5, -1.0, 11.0)?.placed(&Affine::translation(to)?)?)?);
+/// }
+/// let views: Vec<_> = trees.iter().map(|tree| *tree.view()).collect();
+/// let part = difference_of(&views, &control)?;
+/// let volume = measure(&part, &frame, 1e-4, &control)?.volume;
+/// assert!(volume.contains(48_000.0 - 20.0 * std::f64::consts::PI * 2.5 * 2.5 * 10.0));
+/// # Ok::<(), leafless::Error>(())
+/// ```
 pub fn difference_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
     if keep_surfaces(trees) {
         return with_surfaces(trees, |i| i > 0, Combination::All { flip: false }, control);

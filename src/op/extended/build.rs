@@ -70,8 +70,9 @@ impl SurfaceOptions {
 /// The half-spaces of expressions are kept exactly, under any placements, and those of extended octrees within them. The result is
 /// the same bit for bit for any number of threads. Time and memory are linear in the cells that are visited.
 ///
-/// Whatever takes a [`Solid`] takes the surfaces into account. What reads the cells of an octree in place, set operations of stored
-/// octrees among it, sees the cells alone, which are those of a certified octree.
+/// Whatever takes a [`Solid`] takes the surfaces into account, and so do points, rays and boxes in place. Set operations of stored
+/// octrees keep the surfaces. What means cells sees the cells alone, which are those of a certified octree. [`Octree`] has the
+/// table.
 ///
 /// The method is that of Brunet and Navazo, *Solid representation and operation using extended octrees*, ACM Transactions on
 /// Graphics 9 (2), 1990, for curved surfaces and with exact signs.
