@@ -1,4 +1,5 @@
-/* Octrees that keep surfaces: a bored block, built, saved, mapped, asked where it lies and as a solid, and read. */
+/* Octrees that keep surfaces: a bored block, built, saved, mapped, asked where it lies and as a solid, and read; a plate that is
+ * bored twenty times by set operations. */
 #include "check.h"
 
 #include <math.h>
@@ -81,6 +82,152 @@ static void cuts(const leafless_octree *octree) {
     CHECK(found > 0);
 }
 
+static leafless_octree *kept(leafless_solid *solid, const leafless_frame *frame) {
+    leafless_octree *octree = NULL;
+    OK(leafless_octree_build_extended(solid, frame, NULL, NULL, &octree));
+    leafless_solid_free(solid);
+    return octree;
+}
+
+static leafless_octree *combined(leafless_operation operation, const leafless_octree *a, const leafless_octree *b) {
+    const leafless_octree *both[2];
+    leafless_octree *result = NULL;
+    both[0] = a, both[1] = b;
+    OK(leafless_octree_combine(operation, both, 2, NULL, &result));
+    OK(leafless_octree_check(result));
+    return result;
+}
+
+static leafless_tag root(const leafless_octree *octree) {
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
+    OK(leafless_octree_describe(octree, &info));
+    return info.root;
+}
+
+/* Set operations keep surfaces: twenty bores one by one and at once. */
+static void set_operations(void) {
+    enum { BORES = 20 };
+    const double low[3] = {0, 0, 0}, high[3] = {80, 60, 10}, truth = 48000 - BORES * PI * 2.5 * 2.5 * 10;
+    const leafless_sink to = leafless_to_file("plate.lfl");
+    const leafless_source in = leafless_from_file("plate.lfl", LEAFLESS_ACCESS_MAP);
+    const leafless_octree *operands[1 + BORES];
+    leafless_options options = LEAFLESS_INIT(leafless_options);
+    leafless_octree *trees[1 + BORES], *part, *next, *at_once = NULL, *mapped = NULL, *plain = NULL, *other = NULL;
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+    leafless_cut_counts counts = LEAFLESS_INIT(leafless_cut_counts);
+    leafless_octree_info info = LEAFLESS_INIT(leafless_octree_info);
+    leafless_solid *solid = NULL;
+    leafless_membership where;
+    leafless_frame frame, coarse;
+    double point[3] = {0, 7.5, 5};
+    int k;
+    OK(leafless_frame_around(low, high, 20, &frame));
+    OK(leafless_solid_new_box(low, high, &solid));
+    trees[0] = kept(solid, &frame);
+    for (k = 0; k < BORES; k++) {
+        double from[3] = {0, 0, -1}, end[3] = {0, 0, 11};
+        from[0] = end[0] = 8 + 16 * (k % 5);
+        from[1] = end[1] = 7.5 + 15 * (k / 5);
+        OK(leafless_solid_new_cylinder(from, end, 2.5, &solid));
+        trees[1 + k] = kept(solid, &frame);
+    }
+    part = combined(LEAFLESS_OPERATION_UNION, trees[0], trees[0]);
+    CHECK(check_same(part, trees[0]));
+    for (k = 0; k < BORES; k++) {
+        next = combined(LEAFLESS_OPERATION_DIFFERENCE, part, trees[1 + k]);
+        leafless_octree_free(part);
+        part = next;
+    }
+    for (k = 0; k <= BORES; k++) operands[k] = trees[k];
+    OK(leafless_octree_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 1 + BORES, NULL, &at_once));
+    CHECK(check_same(part, at_once));
+
+    /* Saved, mapped, measured. */
+    OK(leafless_octree_write(part, &to));
+    OK(leafless_octree_read(&in, &mapped));
+    CHECK(check_same(part, mapped));
+    OK(leafless_octree_describe(mapped, &info));
+    OK(leafless_octree_count_cuts(mapped, &counts));
+    CHECK(info.bytes < 6000 && counts.surfaces == 6 + BORES && counts.given_up == 0);
+    OK(leafless_solid_from_octree(mapped, &solid));
+    OK(leafless_solid_measure(solid, &frame, 1e-6, 0.0, NULL, &measures));
+    CHECK(measures.volume_model.lower <= truth && truth <= measures.volume_model.upper);
+    CHECK(measures.volume_model.upper - measures.volume_model.lower < 1.01e-6 * truth);
+    leafless_solid_free(solid);
+    point[0] = 8 + 2.5 + 1e-9;
+    OK(leafless_octree_contains(mapped, point, &where));
+    CHECK(where == LEAFLESS_MEMBERSHIP_INSIDE);
+    point[0] = 8 + 2.5 - 1e-9;
+    OK(leafless_octree_contains(mapped, point, &where));
+    CHECK(where == LEAFLESS_MEMBERSHIP_OUTSIDE);
+
+    /* Surfaces that are one are one. */
+    next = combined(LEAFLESS_OPERATION_DIFFERENCE, mapped, at_once);
+    CHECK(root(next) == LEAFLESS_TAG_EMPTY);
+    leafless_octree_free(next);
+    next = combined(LEAFLESS_OPERATION_XOR, part, mapped);
+    CHECK(root(next) == LEAFLESS_TAG_EMPTY);
+    leafless_octree_free(next);
+    next = combined(LEAFLESS_OPERATION_INTERSECTION, part, trees[1]);
+    CHECK(root(next) == LEAFLESS_TAG_EMPTY);
+    leafless_octree_free(next);
+    OK(leafless_octree_complement(mapped, NULL, &next));
+    OK(leafless_octree_complement(next, NULL, &other));
+    CHECK(check_same(other, part) && !check_same(next, part));
+    leafless_octree_free(other);
+    leafless_octree_free(next);
+
+    /* What is filled again is as it was. */
+    operands[0] = part;
+    OK(leafless_octree_combine(LEAFLESS_OPERATION_UNION, operands, 1 + BORES, NULL, &next));
+    other = combined(LEAFLESS_OPERATION_INTERSECTION, next, trees[0]);
+    CHECK(check_same(other, trees[0]));
+    leafless_octree_free(other);
+    leafless_octree_free(next);
+
+    /* Without surfaces an octree takes part as a certified one. */
+    OK(leafless_octree_plain(trees[1], 6, LEAFLESS_RULE_CERTIFIED, NULL, &plain));
+    other = NULL;
+    operands[0] = part, operands[1] = plain;
+    FAILS(LEAFLESS_E_FRAME, leafless_octree_combine(LEAFLESS_OPERATION_UNION, operands, 2, NULL, &other));
+    leafless_octree_free(plain);
+    coarse = frame, coarse.depth = 6;
+    plain = NULL, next = NULL;
+    OK(leafless_solid_from_octree(part, &solid));
+    OK(leafless_octree_build_extended(solid, &coarse, NULL, NULL, &next));
+    leafless_solid_free(solid);
+    OK(leafless_solid_from_octree(trees[1], &solid));
+    OK(leafless_octree_build(solid, &coarse, LEAFLESS_RULE_CERTIFIED, NULL, &plain));
+    leafless_solid_free(solid);
+    other = combined(LEAFLESS_OPERATION_UNION, next, plain);
+    OK(leafless_octree_count_cuts(other, &counts));
+    CHECK(counts.cells > 0 && counts.given_up > 0);
+    point[0] = 8;
+    OK(leafless_octree_contains(other, point, &where));
+    CHECK(where == LEAFLESS_MEMBERSHIP_INSIDE);
+    point[0] = 8 + 2.5;
+    OK(leafless_octree_contains(other, point, &where));
+    CHECK(where == LEAFLESS_MEMBERSHIP_UNDECIDED);
+    leafless_octree_free(other);
+    leafless_octree_free(next);
+    leafless_octree_free(plain);
+
+    /* What is refused. */
+    other = NULL;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_resolve(mapped, LEAFLESS_RULE_INNER, NULL, &other));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_resolve(mapped, LEAFLESS_RULE_CERTIFIED, NULL, &other));
+    operands[0] = mapped, operands[1] = trees[1];
+    options.max_bytes = 64;
+    FAILS(LEAFLESS_E_LIMIT, leafless_octree_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 2, &options, &other));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_octree_combine(LEAFLESS_OPERATION_DIFFERENCE, operands, 0, NULL, &other));
+    CHECK(other == NULL);
+
+    leafless_octree_free(mapped);
+    leafless_octree_free(at_once);
+    leafless_octree_free(part);
+    for (k = 0; k <= BORES; k++) leafless_octree_free(trees[k]);
+}
+
 int main(void) {
     const leafless_frame frame = {{-2.5, -2.5, -2.5}, 5, 20};
     const double volume = 4 * 4 * 2 - PI * 0.75 * 0.75 * 2, from[3] = {-2.4, 0.1, 0.2}, along[3] = {1, 0, 0};
@@ -127,5 +274,6 @@ int main(void) {
     leafless_octree_free(mapped);
     leafless_octree_free(octree);
     leafless_solid_free(solid);
+    set_operations();
     return 0;
 }

@@ -456,6 +456,7 @@ fn examples() {
         ("c/attributes.c", C99),
         ("c/dexel_cuts.c", C99),
         ("c/pictures.c", C99),
+        ("c/drilled_plate.c", C99),
         ("cpp/cut_stock.cpp", CPP17),
         ("cpp/part.cpp", CPP17),
     ];

@@ -2230,8 +2230,8 @@ leafless_status leafless_octree_levels(const leafless_octree *octree, leafless_s
 /// - Untrusted input: any octree.
 leafless_status leafless_octree_check(const leafless_octree *octree);
 
-/// Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count, nor
-/// do channels. O(n).
+/// Whether two octrees have the same cells with the same tags, and the same surfaces in them, on the same
+/// frame. Metadata does not count, nor do channels. O(n).
 ///
 /// - Buffers: `equal`, one truth value.
 /// - Result: `*equal`.

@@ -340,8 +340,8 @@ pub unsafe extern "C" fn leafless_octree_check(octree: *const leafless_octree) -
     guard(|| unsafe { Ok(shared(octree, "octree")?.octree.view().check()?) })
 }
 
-/// Whether two octrees have the same cells with the same tags on the same frame. Metadata does not count, nor
-/// do channels.
+/// Whether two octrees have the same cells with the same tags, and the same surfaces in them, on the same frame. Metadata does
+/// not count, nor do channels.
 /// O(n).
 ///
 /// - Buffers: `equal`, one truth value.

@@ -295,3 +295,17 @@ fn every_consumer_of_an_extended_tree_gives_what_the_source_gives() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+#[cfg(feature = "mmap")]
+#[path = "../../examples/drilled_plate.rs"]
+#[allow(dead_code)]
+mod drilled_plate;
+
+#[cfg(feature = "mmap")]
+#[test]
+fn a_drilled_plate_is_known_to_a_millionth() {
+    let made = drilled_plate::drill().unwrap();
+    let truth = drilled_plate::true_volume();
+    assert!(made.volume.contains(truth) && made.volume.width() < 1.01e-6 * truth, "{:?}", made.volume);
+    assert!(made.bytes < 6000 && made.part.view().cuts().unwrap().given_up == 0);
+}
