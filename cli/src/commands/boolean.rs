@@ -12,6 +12,9 @@ use std::ffi::OsString;
 
 /// The solids must lie on one frame: voxelize them with the same --bounds and --depth. The result may replace
 /// one of them. Tri-dexel models can be combined with each other, made with the same --bounds and --resolution.
+///
+/// If a solid keeps surfaces (`leafless csg --surfaces`), the result keeps them, too, and is as exact. Give all tools in one
+/// command: they are cut at once, and what is larger than they are is copied once. A solid without surfaces takes part with its cells.
 #[derive(Args)]
 pub struct Arguments {
     /// Solids or tri-dexel models (.lfl) or volumes (NRRD, MetaImage), two or more; one of them may be `-` for standard input
@@ -45,12 +48,16 @@ struct Common {
     /// the mean. Without it: that of the first
     #[arg(long, value_name = "NAME=left|right|max|mean", value_parser = carry)]
     carry: Vec<(String, CarryRule)>,
+    /// Drop the surfaces that undecided cells of the result keep, so that the cells are left alone, which may be few and large. With a
+    /// level, 1 to 20, the surfaces first decide the cells of that level
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
+    plain: Option<Option<u8>>,
 }
 
 impl Common {
     fn combine(&self, operation: Operation, inputs: &[Input]) -> Result<(), Failure> {
-        let Common { threads, sampling, carry, .. } = self;
-        let combining = Combining { operation, sampling, carry, threads: *threads };
+        let Common { threads, sampling, carry, plain, .. } = self;
+        let combining = Combining { operation, sampling, carry, plain: *plain, threads: *threads };
         combine(&combining, inputs, &Output::from(&*self.output))
     }
 }

@@ -14,7 +14,8 @@ use leafless::lattice::Cube;
 use leafless::query::{Overlap, StopReason};
 use leafless::solid::Prepared;
 use leafless::{
-    Affine, Clearance, Control, Error, Frame, Interference, Interval, Proof, clearance, interference,
+    Affine, Clearance, Control, Csg, Error, Frame, Interference, Interval, Proof, SurfaceOptions, Tag,
+    build_extended, clearance, interference,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -22,7 +23,7 @@ use std::ffi::OsString;
 /// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided`
 /// comes with the reason: the depth or the number of splits does not decide it, the cells of a file do not
 /// prove enough, or both solids go on outside of the bounds. Solids that touch are disjoint, and their
-/// clearance is 0.
+/// clearance is 0. Of scenes and of solids that keep surfaces this is proven also where the surfaces on which they touch are one.
 ///
 /// The volume that the solids have in common and the clearance, the least distance between them, are
 /// intervals that hold the true ones. An upper bound of the clearance needs cells that are proven to be
@@ -179,12 +180,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             common_frame(first.own_frame(), both, &placement, arguments.depth, around).of(a)?
         }
     };
+    let is_exact =
+        first.has_exact_surfaces(&Affine::IDENTITY, &frame) && second.has_exact_surfaces(&placement, &frame);
     let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
     let second = Prepared::new(second.placed(b, &placement, &frame)?);
     let max_bytes = Some(memory::affordable());
     let control = Control { max_splits: Some(arguments.splits), max_bytes, ..Control::default() };
     let (found, near, evaluations) =
-        ask(&first, &second, &frame, &control).map_err(|error| Failure::of(a, error))?;
+        ask([&first, &second], is_exact, &frame, &control).map_err(|error| Failure::of(a, error))?;
     let report = Report::new(&inputs, &frame, &found, &near, evaluations, arguments.splits);
     print_told(arguments.json, &report, |report| {
         text(&found, report, reason(&found, arguments.splits).map(|reason| reason.1))
@@ -227,14 +230,32 @@ fn common_frame(
     Ok(frame)
 }
 
+/// Most memory to find out whether solids touch on common surfaces, which takes little if they do.
+const TOUCHING: u64 = 1 << 24;
+
+/// Whether nothing is common to two solids, by the surfaces that they have in common.
+fn touch([a, b]: [&Prepared; 2], frame: &Frame, control: &Control<'_>) -> Result<bool, Error> {
+    let max_bytes = control.max_bytes.map(|most| most.min(TOUCHING));
+    let both = Csg::intersection_of([a, b].map(|own| Csg::solid(own.solid().clone())))?;
+    let control = Control { max_splits: None, max_bytes, ..*control };
+    match build_extended(&both, frame, &SurfaceOptions::default(), &control) {
+        Ok(common) => Ok([common.view().root_tag(), common.view().exterior()] == [Tag::Empty; 2]),
+        Err(Error::Limit { .. } | Error::TooLarge { .. }) => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
 /// The verdict; then how much, or how far; and the evaluations of half-spaces for the verdict.
 fn ask(
-    a: &Prepared,
-    b: &Prepared,
+    [a, b]: [&Prepared; 2],
+    is_exact: bool,
     frame: &Frame,
     control: &Control<'_>,
 ) -> Result<(Interference, Clearance, u64), Error> {
     let mut found = interference(a, b, frame, f64::INFINITY, control)?;
+    if found.verdict == Overlap::Undecided && is_exact && !found.clipped && touch([a, b], frame, control)? {
+        (found.verdict, found.volume) = (Overlap::Disjoint, Interval::exactly(0.0));
+    }
     let evaluated = evaluations(a.solid()) + evaluations(b.solid());
     if found.verdict == Overlap::Overlapping {
         found.volume = interference(a, b, frame, 0.0, control)?.volume;

@@ -12,7 +12,7 @@ use crate::source::volume::Sampling;
 use crate::words::{count, counted, seconds, short};
 use leafless::attribute::{CarryRule, carry_channels};
 use leafless::exchange::VolumeFormat;
-use leafless::{Control, Error, Octree, OctreeRef, TriDexel};
+use leafless::{Control, Error, Octree, OctreeRef, Rule, TriDexel};
 use std::time::Instant;
 
 /// What is made of solids.
@@ -22,6 +22,8 @@ pub struct Combining<'a> {
     pub sampling: &'a Sampling,
     /// Rules for channels by their names.
     pub carry: &'a [(String, CarryRule)],
+    /// Whether the result has no surfaces, and the level of its cells if that is asked for.
+    pub plain: Option<Option<u8>>,
     pub threads: usize,
 }
 
@@ -40,17 +42,22 @@ pub fn combine(combining: &Combining, inputs: &[Input], output: &Output) -> Resu
     };
     check_places(inputs, &places, depth)?;
     let (name, threads, number) = (operation.name(), combining.threads, inputs.len() as u64);
-    let (solids, result, bytes) = match &operands {
+    let (solids, result, bytes, time) = match &operands {
         Operands::Octrees(octrees) => {
             let trees: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.view()).collect();
-            let result = watched(name, threads, |control| of(operation, &trees[0], &trees, control));
-            let result = carried(result.of(name)?, octrees, combining).of(name)?;
+            let result = watched(name, threads, |control| of(operation, &trees, control));
+            let result = plain(result.of(name)?, combining).of(name)?;
+            let result = carried(result, octrees, combining).of(name)?;
             let result = result.with_metadata(facts(&places)?);
             warn_of_units(inputs, &places);
             let bytes = output.save(&result)?;
+            // What is told of the result may take longer than to make it.
+            let time = start.elapsed();
             let info = octree::Info::new(&result, bytes);
-            let told = format!("volume {}, {} nodes", info.volume_text(), count(info.nodes));
-            (counted(number, "solid", "solids"), told, bytes)
+            let kept = info.kept_text().map_or(String::new(), |kept| format!(", {kept}"));
+            let nodes = counted(info.nodes, "node", "nodes");
+            let told = format!("volume {}, {nodes}{kept}", info.volume_text());
+            (counted(number, "solid", "solids"), told, bytes, time)
         }
         Operands::Dexels(models) => {
             check_directions(inputs, models)?;
@@ -61,11 +68,22 @@ pub fn combine(combining: &Combining, inputs: &[Input], output: &Output) -> Resu
             let info = dexels::Info::new(&result, bytes);
             let intervals = counted(info.intervals, "interval", "intervals");
             let told = format!("volume about {}, {intervals}", short(info.mean_volume()));
-            (counted(number, "tri-dexel model", "tri-dexel models"), told, bytes)
+            (counted(number, "tri-dexel model", "tri-dexel models"), told, bytes, start.elapsed())
         }
     };
-    let (bytes, time) = (count(bytes), seconds(start.elapsed().as_secs_f64()));
+    let (bytes, time) = (count(bytes), seconds(time.as_secs_f64()));
     output.report(&format!("{output}: {name} of {solids}, {result}, {bytes} bytes, in {time}\n"))
+}
+
+/// The result without surfaces, if that is asked for.
+fn plain(result: Octree, combining: &Combining) -> Result<Octree, String> {
+    match combining.plain {
+        None => Ok(result),
+        Some(None) => Ok(result.without_cuts()),
+        Some(Some(depth)) => watched("cells", combining.threads, |control| {
+            leafless::op::plain(&result, depth, Rule::Certified, control)
+        }),
+    }
 }
 
 /// Refuses tri-dexel models whose rays run along different axes.
@@ -122,6 +140,9 @@ fn operands(inputs: &[Input], combining: &Combining) -> Result<Operands, Failure
     if !combining.carry.is_empty() {
         return Err(Failure::Usage("--carry is for octrees: tri-dexel models have no channels".into()));
     }
+    if combining.plain.is_some() {
+        return Err(Failure::Usage("--plain is for octrees: tri-dexel models keep no surfaces".into()));
+    }
     Ok(Operands::Dexels(models))
 }
 
@@ -138,22 +159,13 @@ fn operand(input: &Input, combining: &Combining) -> Result<Stored, Failure> {
     Stored::of_bytes(input, &bytes)
 }
 
-fn of(
-    operation: Operation,
-    first: &OctreeRef<'_>,
-    trees: &[OctreeRef<'_>],
-    control: &Control<'_>,
-) -> Result<Octree, Error> {
-    match (operation, trees) {
-        (Operation::Union, _) => leafless::op::union_of(trees, control),
-        (Operation::Intersection, _) => leafless::op::intersection_of(trees, control),
-        (Operation::Xor, _) => leafless::op::xor_of(trees, control),
-        (Operation::Difference, [_, tool]) => leafless::difference(first, tool, control),
-        (Operation::Difference, _) => {
-            let tools = leafless::op::union_of(&trees[1..], control)?;
-            leafless::difference(first, tools.view(), control)
-        }
-        (Operation::Complement, _) => leafless::complement(first, control),
+fn of(operation: Operation, trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
+    match operation {
+        Operation::Union => leafless::op::union_of(trees, control),
+        Operation::Intersection => leafless::op::intersection_of(trees, control),
+        Operation::Xor => leafless::op::xor_of(trees, control),
+        Operation::Difference => leafless::op::difference_of(trees, control),
+        Operation::Complement => leafless::complement(&trees[0], control),
     }
 }
 

@@ -1,6 +1,6 @@
 //! What is told of the surfaces that cells of an octree keep.
 
-use crate::words::count;
+use crate::words::{count, counted};
 use leafless::octree::SurfaceKind;
 use leafless::{Control, Interval, Octree, measure};
 use serde::Serialize;
@@ -55,6 +55,18 @@ impl Cuts {
         let finest = octree.frame().with_depth(leafless::lattice::MAX_DEPTH).ok()?;
         let control = Control { max_splits: Some(MOST_SPLITS), ..Control::default() };
         Some(measure(octree, &finest, 1e-9, &control).ok()?.volume)
+    }
+
+    /// For people, in a few words.
+    pub fn short_text(&self) -> String {
+        let Surfaces { planes, quadrics, powers, tori, slabs } = self.surfaces;
+        let surfaces = counted(planes + quadrics + powers + tori + slabs, "surface", "surfaces");
+        let cells = counted(self.cells, "cell", "cells");
+        let given_up = match self.given_up {
+            0 => String::new(),
+            some => format!(", {} given up", count(some)),
+        };
+        format!("{surfaces} in {cells}{given_up}")
     }
 
     /// For people.

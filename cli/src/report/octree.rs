@@ -160,6 +160,11 @@ impl Info {
         self.cuts.as_ref().map(Cuts::text)
     }
 
+    /// The same in a few words.
+    pub fn kept_text(&self) -> Option<String> {
+        self.cuts.as_ref().map(Cuts::short_text)
+    }
+
     /// What the volume is the volume of.
     pub fn volume_note(&self) -> &'static str {
         match (self.proof.is_certified(), self.clipped) {

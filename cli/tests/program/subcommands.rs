@@ -1227,6 +1227,91 @@ fn booleans_are_those_of_the_library() {
     );
 }
 
+/// A plate, a bore and a pin of the bore's own radius, whose cells keep surfaces: what comes of them is as sharp.
+#[test]
+fn set_operations_keep_surfaces() {
+    let place = Place::new();
+    let moved = |x: f64, z: f64, body: &str| {
+        format!("multmatrix([[1,0,0,{x}],[0,1,0,10],[0,0,1,{z}],[0,0,0,1]]) {body}\n")
+    };
+    place.write("plate.csg", "cube([30, 20, 10]);");
+    place.write("bore.csg", moved(10.0, -1.0, "cylinder(h = 12, r = 4, $fn = 0);"));
+    place.write("slot.csg", moved(20.0, 5.0, "cube([4, 4, 6]);"));
+    place.write("pin.csg", moved(10.0, -5.0, "cylinder(h = 20, r = 4, $fn = 0);"));
+    for name in ["plate", "bore", "slot", "pin"] {
+        place.run(&format!("csg {name}.csg -o {name}.lfl --surfaces --bounds -1,-6,-11,32")).good();
+    }
+    let made = place.run("difference plate.lfl bore.lfl slot.lfl -o part.lfl").good();
+    assert!(made.text().contains("surfaces in") && made.text().lines().count() == 1, "{made:?}");
+    place.run("verify part.lfl").good();
+    let truth = 6000.0 - 160.0 * std::f64::consts::PI - 80.0;
+    let measured = place.run("measure part.lfl --tolerance 1e-6 --json").good().json();
+    let (lower, upper) = volume(&measured);
+    assert!(lower <= truth && truth <= upper && upper - lower < 1.01e-6 * truth, "{lower} {upper}");
+    // One after the other is the same solid, and what is filled again is the plate.
+    place.run("difference plate.lfl bore.lfl -o one.lfl").good();
+    place.run("difference one.lfl slot.lfl -o one.lfl").good();
+    let told = place.run("xor one.lfl part.lfl -o none.lfl").good();
+    assert!(told.text().contains("volume 0, 0 nodes"), "{told:?}");
+    place.run("union part.lfl bore.lfl slot.lfl -o filled.lfl").good();
+    place.run("intersection filled.lfl plate.lfl -o filled.lfl").good();
+    let [own, other] = ["filled.lfl", "plate.lfl"].map(|name| file::open(place.path(name)).unwrap());
+    assert_eq!(own, other);
+    place.run("complement part.lfl -o other.lfl").good();
+    place.run("complement other.lfl -o other.lfl").good();
+    let [own, other] = ["part.lfl", "other.lfl"].map(|name| file::open(place.path(name)).unwrap());
+    assert!(own == other && own.view().cuts().unwrap().given_up == 0);
+    // The pin touches the bore all around, and shares nothing with the part; of the scenes that is proven likewise.
+    let told = place.run("intersection part.lfl pin.lfl -o common.lfl").good();
+    assert!(told.text().contains("volume 0, 0 nodes"), "{told:?}");
+    let bored = moved(10.0, -1.0, "cylinder(h = 12, r = 4, $fn = 0);");
+    place.write("bored.csg", format!("difference() {{ cube([30, 20, 10]); {bored} }}"));
+    for line in ["part.lfl pin.lfl", "pin.lfl part.lfl", "bored.csg pin.csg"] {
+        let found = place.run(&format!("interfere {line} --json")).good().json();
+        let overlap = (&found["overlap"]["lower"], &found["overlap"]["upper"]);
+        assert_eq!((&found["verdict"], overlap), (&"disjoint".into(), (&0.0.into(), &0.0.into())), "{line}");
+    }
+    // Together the two have no gap.
+    place.run("union one.lfl pin.lfl -o both.lfl").good();
+    let points = b"5.9999999 10 5\n6.0000001 10 5\n6 10 5\n10 10 12\n22 12 9\n-0.5 1 1\n";
+    for (name, expected) in [
+        ("one", ["inside", "outside", "undecided", "outside", "outside", "outside"]),
+        ("both", ["inside", "inside", "inside", "inside", "outside", "outside"]),
+    ] {
+        let answers = place.run_with(&format!("contains {name}.lfl"), points).good();
+        let answers: Vec<String> = answers.text().lines().map(str::to_owned).collect();
+        for (answer, expected) in answers.iter().zip(expected) {
+            assert!(expected == "undecided" || answer.contains(expected), "{name}: {answers:?}");
+        }
+    }
+    let hits = place.run_with("ray one.lfl", b"10 10 5  1 0 0\n").good();
+    let hit: f64 = hits.text().split_whitespace().find_map(|word| word.parse().ok()).unwrap();
+    assert!((hit - 4.0).abs() < 1e-6, "{hits:?}");
+    // Meshes and pictures.
+    let mesh = place.run("mesh part.lfl -o part.stl --lossy --json").good().json();
+    assert!(
+        (mesh["volume"].as_f64().unwrap() / truth - 1.0).abs() < 0.01 && mesh["closed"] == true,
+        "{mesh}"
+    );
+    let [own, source] = ["part", "both"].map(|name| {
+        let line = format!("render {name}.lfl -o part.png --size 160x120 --samples 1 --json");
+        place.run(&line).good().json()["covered"].as_f64().unwrap()
+    });
+    assert!(own > 1000.0 && source > own, "{own} {source}");
+    // Without surfaces: the cells that there are, or those of a level.
+    place.run("difference plate.lfl bore.lfl slot.lfl -o cells.lfl --plain").good();
+    let cells = file::open(place.path("cells.lfl")).unwrap();
+    assert!(cells.view().cuts().is_none() && cells.frame().depth() == 20);
+    place.run("difference plate.lfl bore.lfl slot.lfl -o cells.lfl --plain=7").good();
+    let cells = file::open(place.path("cells.lfl")).unwrap();
+    let volume = cells.statistics().volume();
+    assert!(cells.view().cuts().is_none() && cells.frame().depth() == 7);
+    assert!(volume.contains(truth) && volume.width() < 0.2 * truth, "{volume:?}");
+    place.run("union plate.lfl bore.lfl -o cells.lfl --plain=21").bad(2, &["--plain"]);
+    place.run("dexelize part.lfl -o dexels.lfl --resolution 16").good();
+    place.run("complement dexels.lfl -o cells.lfl --plain").bad(2, &["--plain is for octrees"]);
+}
+
 #[test]
 fn booleans_need_one_frame_and_sound_operands() {
     let place = solids();
