@@ -82,6 +82,47 @@ fn the_part_of_the_demo() {
     }
 }
 
+/// A plate with twenty bores by its cells, and by the cells of which some keep surfaces; and what the documentation says of both.
+#[test]
+fn a_plate_with_twenty_bores() {
+    let place = Place::new();
+    let extended = |name: &str, text: &str| {
+        place.write(&format!("{name}.csg"), text);
+        let bounds = "--bounds -2.5,-12.5,-37.5,85";
+        place.run(&format!("csg {name}.csg -o {name}.lfl --surfaces {bounds}")).good();
+    };
+    extended("plate", "cube([80, 60, 10]);");
+    let mut bores = String::new();
+    for k in 0..20 {
+        let to = format!(
+            "[1, 0, 0, {}], [0, 1, 0, {}], [0, 0, 1, -1]",
+            8 + 16 * (k % 5),
+            7.5 + 15.0 * f64::from(k / 5)
+        );
+        let bore = format!("multmatrix([{to}, [0, 0, 0, 1]]) cylinder(h = 12, r = 2.5, $fn = 0);");
+        extended(&format!("bore{k}"), &bore);
+        bores += &format!("bore{k}.lfl ");
+    }
+    let told = place.run(&format!("difference plate.lfl {bores} -o part.lfl")).good();
+    let page = std::fs::read_to_string(folder().join("../extended.md")).unwrap();
+    for words in ["44072.93 ± 0.43", "49 nodes", "4,200 bytes"] {
+        assert!(told.text().contains(words), "{words}: {told:?}");
+    }
+    let told = place.run("convert part.lfl -o plain.lfl --to octree --resolution 1024").good();
+    for words in ["44240 ± 650", "757,937", "456,648"] {
+        assert!(told.text().contains(words) && page.contains(words), "{words}: {told:?}");
+    }
+    assert!(page.contains("44072.93 ± 0.43") && page.contains("| 49 |") && page.contains("| 4,200 |"));
+    place.run(&format!("difference plate.lfl {bores} -o extended.lfl --plain")).good();
+    place.run("render part.lfl -o plate.png --size 420x320 --from 35,35").good();
+    check("plate.png", &place.bytes("plate.png"));
+    for name in ["plain", "extended"] {
+        let view = "--view slice --plane 0,0,1,-5 --no-legend --size 420x320";
+        place.run(&format!("render {name}.lfl -o {name}.png {view}")).good();
+        check(&format!("plate-{name}.png"), &place.bytes(&format!("{name}.png")));
+    }
+}
+
 #[test]
 fn the_inside_of_the_gear() {
     let control = Control::default();
