@@ -34,6 +34,9 @@ pub(in crate::op) enum Combination {
 /// Entries of all operands from which threads pay.
 const WORTH_THREADS: u64 = 1 << 13;
 
+/// Operands up to which there are threads: each task remembers where it stands in all of them.
+const MOST_IN_PARALLEL: usize = 1 << 12;
+
 /// Combines trees on one frame; of those with `true` the complement is meant.
 pub(in crate::op) fn combine(
     operands: &[(OctreeRef<'_>, bool)],
@@ -62,6 +65,7 @@ pub(in crate::op) fn combine(
     };
     let walk = Walk { frame, operands, is_odd, flip, surfaces };
     control.run(entries > WORTH_THREADS, |parallel| {
+        let parallel = parallel && operands.len() <= MOST_IN_PARALLEL;
         let walk = Threads { walk: &walk, parallel };
         let mut writer = Writer::new(&job, frame.depth(), false);
         writer.note_runs();

@@ -353,8 +353,8 @@ mod tests {
         );
         let Shown { tables, pieces, open } = shown;
         std::println!("{tables} tables, {pieces} pieces, {open} tables with long pieces that are not known");
-        // A crossing makes two pieces more.
-        assert!(pieces < 4 * tables && 50 * open < tables);
-        assert!(full > 500 && upper > 1000 && spans > 500 && traced > 5000 && splits > 100);
+        // A crossing makes two pieces more, and of three surfaces there are up to six.
+        assert!(pieces < 5 * tables && 50 * open < tables);
+        assert!(full > 500 && upper > 1000 && spans > 500 && traced > 5000 && splits > 60);
     }
 }
