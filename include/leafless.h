@@ -2913,6 +2913,9 @@ typedef struct leafless_ray_hit {
     double normal[3];
     uint32_t cell[3];  ///< The place of the first cell that stops the ray among those of its level, per axis.
     uint32_t level;  ///< The cell's level; 0 is the universe.
+    /// The number of the surface that stops the ray, if the solid answers rays itself: of a closed mesh, the
+    /// triangle's. Else UINT32_MAX.
+    uint32_t surface;
     bool is_hit;  ///< Whether something stops the ray.
 } leafless_ray_hit;
 
@@ -3369,7 +3372,15 @@ typedef struct leafless_point_distance {
     /// and the lower one if it is proven that nothing is.
     leafless_interval distance_model;
     uint64_t splits;  ///< How many times a cell was split.
+    /// The nearest point of the boundary, but for rounding, if `has_nearest`; else zeros.
+    double nearest_model[3];
+    /// The number of the surface that it lies on: of a closed mesh, the triangle's. UINT32_MAX if there is
+    /// none.
+    uint32_t surface;
     leafless_stop_reason measured;  ///< Why the search ended.
+    /// Whether the solid answered itself and told the nearest point: a closed mesh within the universe does,
+    /// unless the nearest triangle intersects another one.
+    bool has_nearest;
 } leafless_point_distance;
 
 /// A cell near a point.

@@ -72,6 +72,20 @@ pub(crate) fn each_with<S: Send, T: Send, R: Send>(
     Ok(done)
 }
 
+/// Does two things, at the same time if `parallel`: on the threads of [`run`].
+pub(crate) fn both<A: Send, B: Send>(
+    parallel: bool,
+    one: impl FnOnce() -> A + Send,
+    other: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    #[cfg(feature = "parallel")]
+    if parallel {
+        return rayon::join(one, other);
+    }
+    let _ = parallel;
+    (one(), other())
+}
+
 /// Appends what `make` makes of each number. For items of a few instructions; `list` has room for them. `own` is made
 /// for every share of neighbours.
 pub(crate) fn extend<S, T: Send>(

@@ -41,8 +41,15 @@ pub struct leafless_point_distance {
     pub distance_model: leafless_interval,
     /// How many times a cell was split.
     pub splits: u64,
+    /// The nearest point of the boundary, but for rounding, if `has_nearest`; else zeros.
+    pub nearest_model: [f64; 3],
+    /// The number of the surface that it lies on: of a closed mesh, the triangle's. UINT32_MAX if there is none.
+    pub surface: u32,
     /// Why the search ended.
     pub measured: leafless_stop_reason,
+    /// Whether the solid answered itself and told the nearest point: a closed mesh within the universe does, unless the
+    /// nearest triangle intersects another one.
+    pub has_nearest: bool,
 }
 
 impl From<&PointDistance> for leafless_point_distance {
@@ -50,7 +57,10 @@ impl From<&PointDistance> for leafless_point_distance {
         leafless_point_distance {
             distance_model: found.distance.into(),
             splits: found.splits,
+            nearest_model: found.nearest.map_or([0.0; 3], |near| near.point),
+            surface: found.nearest.and_then(|near| near.surface).unwrap_or(u32::MAX),
             measured: found.stop_reason.into(),
+            has_nearest: found.nearest.is_some(),
         }
     }
 }

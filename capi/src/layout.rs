@@ -142,11 +142,11 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_extent { struct_size,
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
         }
-        leafless_point_distance { distance_model, splits, measured }
+        leafless_point_distance { distance_model, splits, nearest_model, surface, measured, has_nearest }
         leafless_near_cell { point_model, distance_model, found }
         leafless_cursor_info { struct_size, cell, level, tag, children }
         leafless_ray { origin_model, direction_model, t_last }
-        leafless_ray_hit { t, normal, cell, level, is_hit }
+        leafless_ray_hit { t, normal, cell, level, surface, is_hit }
         leafless_run { start, length }
         leafless_cell { cell, level, tag }
         leafless_boundary_face { inner, outer, axis, is_upper, has_outer }

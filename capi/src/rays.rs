@@ -49,6 +49,9 @@ pub struct leafless_ray_hit {
     pub cell: [u32; 3],
     /// The cell's level; 0 is the universe.
     pub level: u32,
+    /// The number of the surface that stops the ray, if the solid answers rays itself: of a closed mesh, the triangle's. Else
+    /// UINT32_MAX.
+    pub surface: u32,
     /// Whether something stops the ray.
     pub is_hit: bool,
 }
@@ -56,11 +59,12 @@ pub struct leafless_ray_hit {
 impl From<Option<RayHit>> for leafless_ray_hit {
     fn from(hit: Option<RayHit>) -> leafless_ray_hit {
         match hit {
-            Some(RayHit { t, cell, normal }) => leafless_ray_hit {
+            Some(RayHit { t, cell, normal, surface }) => leafless_ray_hit {
                 t: t.into(),
                 normal,
                 cell: cell.at,
                 level: cell.level.into(),
+                surface: surface.unwrap_or(u32::MAX),
                 is_hit: true,
             },
             None => leafless_ray_hit {
@@ -68,6 +72,7 @@ impl From<Option<RayHit>> for leafless_ray_hit {
                 normal: [0.0; 3],
                 cell: [0; 3],
                 level: 0,
+                surface: u32::MAX,
                 is_hit: false,
             },
         }

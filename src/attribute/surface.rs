@@ -4,10 +4,11 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 use super::{Attribute, ValueRange};
+use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Bounds, Interval};
 use crate::memory;
-use crate::mesh::{MeshAttribute, NearVisitor, NearestPoint, TriangleMesh, TriangleTree};
+use crate::mesh::{MeshAttribute, NearVisitor, NearestPoint, TriangleMesh};
 
 /// The attribute whose value at a point is that of a mesh at the point of its surface that is nearest.
 ///
@@ -35,15 +36,10 @@ use crate::mesh::{MeshAttribute, NearVisitor, NearestPoint, TriangleMesh, Triang
 /// ```
 #[derive(Clone)]
 pub struct SurfaceAttribute {
-    surface: Arc<Surface>,
+    mesh: Arc<TriangleMesh>,
     source: Source,
     /// What is known of the values in each node of the tree.
     summaries: Arc<Vec<Summary>>,
-}
-
-struct Surface {
-    mesh: Arc<TriangleMesh>,
-    tree: TriangleTree,
 }
 
 /// Where the values are.
@@ -57,7 +53,7 @@ enum Source {
 impl SurfaceAttribute {
     /// What `attribute` says of the triangles of a mesh, which is shared (an `Arc`) or taken over.
     ///
-    /// O(t log t); 46 bytes a triangle for the tree and up to 40 for ranges.
+    /// O(t log t) unless the mesh has a tree of its triangles already; 36 bytes a triangle for that and up to 24 for ranges.
     ///
     /// # Errors
     /// [`Error::Argument`] unless the attribute has as many triangles as the mesh; [`Error::OutOfMemory`].
@@ -65,7 +61,7 @@ impl SurfaceAttribute {
         mesh: impl Into<Arc<TriangleMesh>>,
         attribute: MeshAttribute,
     ) -> Result<SurfaceAttribute, Error> {
-        Self::on(Arc::new(Surface::of(mesh.into())?), Source::Given(Arc::new(attribute)))
+        Self::on(mesh.into(), Source::Given(Arc::new(attribute)))
     }
 
     /// What the attribute of this name says, which [belongs to the mesh](TriangleMesh::attributes).
@@ -77,7 +73,7 @@ impl SurfaceAttribute {
     pub fn of_mesh(mesh: impl Into<Arc<TriangleMesh>>, name: &str) -> Result<SurfaceAttribute, Error> {
         let mesh = mesh.into();
         let place = place(&mesh, name)?;
-        Self::on(Arc::new(Surface::of(mesh)?), Source::OfMesh(place))
+        Self::on(mesh, Source::OfMesh(place))
     }
 
     /// Another attribute of the same mesh, which shares the tree of its triangles. O(t).
@@ -85,7 +81,7 @@ impl SurfaceAttribute {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with(&self, attribute: MeshAttribute) -> Result<SurfaceAttribute, Error> {
-        Self::on(self.surface.clone(), Source::Given(Arc::new(attribute)))
+        Self::on(self.mesh.clone(), Source::Given(Arc::new(attribute)))
     }
 
     /// Another attribute that belongs to the same mesh, which shares the tree of its triangles. O(t).
@@ -93,35 +89,30 @@ impl SurfaceAttribute {
     /// # Errors
     /// As [`of_mesh`](Self::of_mesh).
     pub fn with_name(&self, name: &str) -> Result<SurfaceAttribute, Error> {
-        let place = place(&self.surface.mesh, name)?;
-        Self::on(self.surface.clone(), Source::OfMesh(place))
+        let place = place(&self.mesh, name)?;
+        Self::on(self.mesh.clone(), Source::OfMesh(place))
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Arc<TriangleMesh> {
-        &self.surface.mesh
+        &self.mesh
     }
 
     /// The values on the mesh.
     pub fn attribute(&self) -> &MeshAttribute {
-        self.source.attribute(&self.surface.mesh)
+        self.source.attribute(&self.mesh)
     }
 
-    fn on(surface: Arc<Surface>, source: Source) -> Result<SurfaceAttribute, Error> {
-        let attribute = source.attribute(&surface.mesh);
-        if attribute.len() != surface.mesh.triangles().len() {
+    fn on(mesh: Arc<TriangleMesh>, source: Source) -> Result<SurfaceAttribute, Error> {
+        let attribute = source.attribute(&mesh);
+        if attribute.len() != mesh.triangles().len() {
             let problem = "must have as many triangles as the mesh";
             return Err(Error::Argument { name: "attribute", problem });
         }
         let of = |triangle: u32| Summary::of(attribute, triangle);
-        let summaries = surface.tree.summaries(Summary::NOTHING, &of, &Summary::join)?;
-        Ok(SurfaceAttribute { summaries: Arc::new(summaries), surface, source })
-    }
-}
-
-impl Surface {
-    fn of(mesh: Arc<TriangleMesh>) -> Result<Surface, Error> {
-        Ok(Surface { tree: TriangleTree::new(&mesh)?, mesh })
+        let tree = mesh.triangle_tree(&Control::threads(1))?;
+        let summaries = tree.summaries(Summary::NOTHING, &of, &Summary::join)?;
+        Ok(SurfaceAttribute { summaries: Arc::new(summaries), mesh, source })
     }
 }
 
@@ -224,14 +215,11 @@ impl NearVisitor for Joined<'_> {
 impl Attribute for SurfaceAttribute {
     /// The mesh, the tree over its triangles, and the values.
     fn kept_bytes(&self) -> u64 {
-        let Surface { mesh, tree } = &*self.surface;
         let given = match &self.source {
             Source::OfMesh(_) => 0,
             Source::Given(attribute) => size_of_val(&**attribute) as u64 + attribute.bytes(),
         };
-        mesh.bytes()
-            + (size_of::<Surface>() + tree.bytes() + memory::bytes_of(&self.summaries)) as u64
-            + given
+        self.mesh.bytes() + memory::bytes_of(&self.summaries) as u64 + given
     }
 
     fn components(&self) -> usize {
@@ -239,11 +227,11 @@ impl Attribute for SurfaceAttribute {
     }
 
     fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {
-        let (attribute, Surface { mesh, tree }) = (self.attribute(), &*self.surface);
+        let (attribute, tree) = (self.attribute(), self.mesh.triangle_tree(&Control::threads(1))?);
         // The triangle of one point is often that of the next.
         let mut last = None;
         for (value, point) in values.iter_mut().zip(points) {
-            let nearest = tree.nearest(mesh, point, last);
+            let nearest = tree.nearest(point, last);
             last = nearest.map(|nearest| nearest.triangle).or(last);
             *value = nearest.and_then(|nearest| interpolated(attribute, &nearest));
         }
@@ -251,9 +239,9 @@ impl Attribute for SurfaceAttribute {
     }
 
     fn range(&self, bounds: &Bounds) -> Result<ValueRange, Error> {
-        let (attribute, Surface { mesh, tree }) = (self.attribute(), &*self.surface);
+        let (attribute, tree) = (self.attribute(), self.mesh.triangle_tree(&Control::threads(1))?);
         let mut joined = Joined { attribute, summaries: &self.summaries, sum: Summary::NOTHING };
-        let is_known = tree.visit_near(mesh, bounds, &mut joined);
+        let is_known = tree.visit_near(bounds, &mut joined);
         Ok(if is_known { joined.sum.range() } else { ValueRange::Unknown })
     }
 }

@@ -31,6 +31,7 @@ mod interval;
 mod inverse;
 mod moments;
 pub(crate) mod morton;
+mod ray;
 pub(crate) mod valid;
 mod window;
 
@@ -47,6 +48,7 @@ pub use frame::Frame;
 pub use interval::{Interval, IntervalEnds};
 pub(crate) use inverse::Inverse;
 pub use moments::VolumeMoments;
+pub use ray::Ray;
 pub(crate) use valid::{LARGEST, SMALLEST};
 pub(crate) use window::Window;
 

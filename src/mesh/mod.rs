@@ -20,6 +20,7 @@ mod moments;
 mod nearest;
 mod normals;
 mod overlap;
+mod pierce;
 mod placement;
 #[cfg(feature = "std")]
 mod polygon;
@@ -45,6 +46,7 @@ pub use faces::PolyhedronPart;
 pub use intersections::{IntersectingPair, IntersectingPairs};
 pub use moments::MeshMoments;
 pub(crate) use nearest::{NearVisitor, NearestPoint, TriangleTree};
+pub(crate) use pierce::{Hit, Shift, Wanted};
 #[cfg(feature = "std")]
 pub(crate) use polygon::flatness;
 #[cfg(feature = "std")]

@@ -18,7 +18,7 @@
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
 use super::signs::Point;
-use super::tree::{Grid, Search, Tree};
+use super::tree::{Grid, Search};
 use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::control::Control;
 use crate::error::{Error, MeshError};
@@ -51,7 +51,7 @@ impl TriangleMesh {
     /// If vertices were moved ([`displacement`](Self::displacement)), the intervals contain the moments of each
     /// solid whose surface lies within that distance along each axis.
     ///
-    /// O(t log t) time for triangles that lie apart, and 46 bytes a triangle of scratch memory. Work is limited as
+    /// O(t log t) time for triangles that lie apart, and the mesh keeps a tree of 36 bytes a triangle. Work is limited as
     /// in [`intersecting_pairs`](Self::intersecting_pairs).
     ///
     /// # Errors
@@ -73,9 +73,8 @@ impl TriangleMesh {
             }
             Err(error) => return Err(error),
         }
-        let tree = Tree::new(self, |t| !self.is_flat(&self.triangles()[t as usize]))?;
         let mut pair = [0; 2];
-        let search = intersections(self, &tree, control, &mut |a, b| {
+        let search = intersections(self, control, &mut |a, b| {
             pair = [a, b];
             Ok(false)
         })?;
@@ -84,8 +83,8 @@ impl TriangleMesh {
             Search::Ended => return Ok(MeshMoments::Intersecting(pair)),
             Search::Exhausted => return Ok(MeshMoments::Undecided),
         }
-        let sheets = sheets(self, &tree, rule, |_| false)?;
-        let grid = Grid::of(self);
+        let sheets = sheets(self, self.tree(control)?, rule, |_| false)?;
+        let grid = Grid::around(self.bounds());
         let mut sums = Sums::default();
         for (triangle, &sheet) in (0..).zip(&sheets.of_triangles) {
             match sheets.senses[sheet as usize] {
@@ -96,7 +95,7 @@ impl TriangleMesh {
                 Sense::Unknown => return Ok(MeshMoments::Undecided),
             }
         }
-        Ok(MeshMoments::Known(sums.finish(&grid, grid.bits(self), self.tube(&grid))))
+        Ok(MeshMoments::Known(sums.finish(&grid, grid.bits(self.vertices()), self.tube(&grid))))
     }
 
     /// The volume within the displacement of the surface, and that distance, in units of the grid: upper bounds.

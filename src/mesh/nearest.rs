@@ -23,11 +23,12 @@ use core::array::from_fn as array;
 use alloc::vec::Vec;
 
 use super::signs::Point;
-use super::tree::{Box3, Part, Tree};
+use super::tree::{Box3, LATER, Node, Place, Tree, WIDTH};
 use super::triangle_mesh::TriangleMesh;
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::Bounds;
 use crate::lattice::exact::sqrt;
+use crate::lattice::{Bounds, Interval};
 use crate::memory;
 
 /// How far a coordinate of a box in the tree may be off, and twice that: coordinates have 24 bits.
@@ -40,8 +41,12 @@ const ROUNDING: f64 = 1.0 / (1_u64 << 42) as f64;
 /// Squares of areas that may have lost digits by underflow: of edges below 2^-240.
 const LOST: f64 = 1e-290;
 
-/// A tree of all triangles of a mesh.
-pub(crate) struct TriangleTree(Tree);
+/// A mesh with the tree of its triangles.
+#[derive(Clone, Copy)]
+pub(crate) struct TriangleTree<'m> {
+    pub(super) mesh: &'m TriangleMesh,
+    pub(super) tree: &'m Tree,
+}
 
 /// The point of a surface that is nearest to another one.
 #[derive(Debug, Clone, Copy)]
@@ -49,8 +54,10 @@ pub(crate) struct NearestPoint {
     pub triangle: u32,
     /// Of the triangle's corners; none is negative.
     pub weights: [f64; 3],
-    /// The square of the distance, in the scale of the tree.
+    /// The square of the computed distance, in the scale of the tree.
     square: f64,
+    /// No triangle is nearer than that, in the scale of the tree.
+    lower: f64,
 }
 
 /// Whoever looks at the triangles that may be nearest.
@@ -66,17 +73,22 @@ pub(crate) trait NearVisitor {
     fn visit(&mut self, triangle: u32);
 }
 
-impl TriangleTree {
-    /// Bytes that the lists take.
-    pub(crate) fn bytes(&self) -> usize {
-        memory::bytes_of(&self.0.items) + memory::bytes_of(&self.0.nodes)
+impl TriangleMesh {
+    /// The mesh with the tree of its triangles, which is made if it is not there yet: O(t log t).
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
+    pub(crate) fn triangle_tree(&self, control: &Control<'_>) -> Result<TriangleTree<'_>, Error> {
+        Ok(TriangleTree { mesh: self, tree: self.tree(control)? })
     }
 
-    /// O(t log t); 46 bytes a triangle.
-    pub(crate) fn new(mesh: &TriangleMesh) -> Result<TriangleTree, Error> {
-        Ok(TriangleTree(Tree::new(mesh, |_| true)?))
+    /// The same, if the tree is there.
+    pub(crate) fn known_triangle_tree(&self) -> Option<TriangleTree<'_>> {
+        Some(TriangleTree { mesh: self, tree: self.known_tree()? })
     }
+}
 
+impl TriangleTree<'_> {
     /// For each node what is known of all its triangles: `none` of no triangle, `of` one, `join` of both parts.
     pub(crate) fn summaries<T: Copy>(
         &self,
@@ -84,74 +96,117 @@ impl TriangleTree {
         of: &impl Fn(u32) -> T,
         join: &impl Fn(T, T) -> T,
     ) -> Result<Vec<T>, Error> {
-        let mut summaries = memory::filled(self.0.nodes.len(), none)?;
-        self.summarise(self.0.root(), &mut summaries, of, join);
+        let tree = self.tree;
+        let mut summaries = memory::filled(tree.count(), none)?;
+        if let Some(root) = tree.root() {
+            self.summarise(root, &mut summaries, of, join);
+        }
         Ok(summaries)
     }
 
+    /// Sums up a node. The recursion is as deep as the tree.
     fn summarise<T: Copy>(
         &self,
-        part: Part,
+        place: Place,
         summaries: &mut [T],
         of: &impl Fn(u32) -> T,
         join: &impl Fn(T, T) -> T,
     ) {
-        let (node, first, end) = part;
-        let none = summaries[node];
-        summaries[node] = if self.0.is_leaf(node) {
-            self.0.items[first..end].iter().fold(none, |sum, item| join(sum, of(item.triangle)))
-        } else {
-            self.0.halves(part).into_iter().fold(none, |sum, half| {
-                self.summarise(half, summaries, of, join);
-                join(sum, summaries[half.0])
-            })
-        };
+        let index = self.tree.index(place);
+        for k in 0..self.tree.parts(place) {
+            let part = if place.level > 0 {
+                self.summarise(place.child(k), summaries, of, join);
+                Some(summaries[self.tree.index(place.child(k))])
+            } else {
+                self.tree.triangle(place, k).map(of)
+            };
+            if let Some(part) = part {
+                summaries[index] = join(summaries[index], part);
+            }
+        }
     }
 
     /// The nearest point of the mesh that the tree was made of; `None` if the mesh has no triangle, or the
     /// point is not finite. `hint` is a triangle that may be near, which saves time. O(log t) as a rule.
-    pub(crate) fn nearest(
+    pub(crate) fn nearest(&self, point: &Point, hint: Option<u32>) -> Option<NearestPoint> {
+        self.search(point, hint, |_| true, false)
+    }
+
+    /// The nearest point of triangles that are `wanted`, and certified bounds of its distance in model units. `None` as
+    /// [`nearest`](Self::nearest), of points further away than 2^99 times the mesh's extent, and if no triangle is wanted.
+    pub(crate) fn nearest_of(
         &self,
-        mesh: &TriangleMesh,
+        point: &Point,
+        wanted: impl Fn(u32) -> bool,
+    ) -> Option<(NearestPoint, Interval)> {
+        let grid = &self.tree.grid;
+        let scaled = grid.scaled(point);
+        if !scaled.iter().all(|x| x.abs() < FAR / 2.0) {
+            return None;
+        }
+        let found = self.search(point, None, wanted, true)?;
+        let corners = Corners::of(self.mesh, found.triangle, grid.scale());
+        let distance = sqrt(found.square);
+        // The computed point of the triangle is that near.
+        let upper = distance + corners.excess(distance);
+        let exactly = Interval::exactly;
+        let bounds = Interval::new(found.lower.max(0.0).min(distance), upper.max(distance))?;
+        Some((found, bounds.over(exactly(grid.scale()))))
+    }
+
+    /// The point of a triangle with such weights, but for rounding.
+    pub(crate) fn point_of(&self, near: &NearestPoint) -> Point {
+        let corners = self.mesh.triangles()[near.triangle as usize].map(|v| self.mesh.vertices()[v as usize]);
+        array(|axis| (0..3).map(|k| near.weights[k] * corners[k][axis]).sum())
+    }
+
+    fn search(
+        &self,
         point: &Point,
         hint: Option<u32>,
+        wanted: impl Fn(u32) -> bool,
+        is_certified: bool,
     ) -> Option<NearestPoint> {
+        let &TriangleTree { mesh, tree } = self;
         if !point.iter().all(|x| x.is_finite()) {
             return None;
         }
-        let limit = FAR / self.0.grid.scale();
+        let limit = FAR / tree.grid.scale();
         let point = array(|axis| {
-            let centre = self.0.grid.centre[axis];
+            let centre = tree.grid.centre[axis];
             point[axis].clamp(centre - limit, centre + limit)
         });
         let hint = hint.filter(|&triangle| (triangle as usize) < mesh.triangles().len());
-        let mut search =
-            Search { tree: &self.0, mesh, point, scaled: self.0.grid.scaled(&point), best: None };
+        let mut search = Search {
+            tree,
+            mesh,
+            point,
+            scaled: tree.grid.scaled(&point),
+            wanted,
+            is_certified,
+            best: None,
+            lower: f64::INFINITY,
+        };
         if let Some(triangle) = hint {
             search.look_at(triangle);
         }
-        search.descend(self.0.root());
-        search.best
+        search.run();
+        let lower = search.lower;
+        search.best.map(|best| NearestPoint { lower: lower.min(sqrt(best.square)), ..best })
     }
 
     /// Visits every triangle that [`nearest`](Self::nearest) can answer for a point of a closed box, and some
     /// others; `false` if the box is so large, or so far away, that nothing is known.
-    pub(crate) fn visit_near(
-        &self,
-        mesh: &TriangleMesh,
-        bounds: &Bounds,
-        visitor: &mut impl NearVisitor,
-    ) -> bool {
-        if mesh.triangles().is_empty() {
-            return true;
-        }
-        let grid = &self.0.grid;
+    pub(crate) fn visit_near(&self, bounds: &Bounds, visitor: &mut impl NearVisitor) -> bool {
+        let &TriangleTree { mesh, tree } = self;
+        let Some(root) = tree.root() else { return true };
+        let grid = &tree.grid;
         let [low, high] = [&bounds.min, &bounds.max].map(|corner| grid.scaled(corner));
         if !low.iter().chain(&high).all(|x| x.abs() <= FAR / 1024.0) {
             return false;
         }
         let centre: Point = array(|axis| bounds.min[axis].midpoint(bounds.max[axis]));
-        let Some(NearestPoint { triangle, .. }) = self.nearest(mesh, &centre, None) else { return true };
+        let Some(NearestPoint { triangle, .. }) = self.nearest(&centre, None) else { return true };
         let shape = Corners::of(mesh, triangle, grid.scale());
         let corner =
             |k: usize| array(|axis| if k >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] });
@@ -163,33 +218,49 @@ impl TriangleTree {
             half * grid.scale()
         });
         let small = half[0].max(half[1]).max(half[2]) / 4.0;
-        Near { tree: &self.0, mesh, low, high, centre, half, reach, small }.descend(self.0.root(), visitor);
+        if visitor.enter(tree.index(root), false) {
+            Near { tree, mesh, low, high, centre, half, reach, small }.descend(root, visitor);
+        }
         true
     }
 }
 
+/// The larger of two, in one instruction.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// A search for the nearest triangle.
-struct Search<'a> {
+struct Search<'a, W> {
     tree: &'a Tree,
     mesh: &'a TriangleMesh,
     point: Point,
     /// The point in the scale of the tree, about the grid's centre.
     scaled: Point,
+    wanted: W,
+    /// Whether bounds of true distances are asked for.
+    is_certified: bool,
     best: Option<NearestPoint>,
+    /// No triangle that was looked at is nearer; those that were left out are not nearer than the best.
+    lower: f64,
 }
 
-impl Search<'_> {
-    /// Less than the square of a computed distance to anything in a box.
+impl<W: Fn(u32) -> bool> Search<'_, W> {
+    /// Less than the squares of computed distances to anything in the boxes of a node.
     #[inline(always)]
-    fn bound(&self, around: &Box3) -> f64 {
-        let square = (0..3).fold(0.0, |sum, axis| {
-            let (low, high) = (f64::from(around.low[axis]), f64::from(around.high[axis]));
-            let gap = (low - self.scaled[axis]).max(self.scaled[axis] - high) - BOX;
-            let gap = gap.max(0.0);
-            sum + gap * gap
-        });
+    fn bounds(&self, node: &Node) -> [f64; WIDTH] {
+        let mut squares = [0.0; WIDTH];
+        for axis in 0..3 {
+            let ([low, high], at) = (&node.planes[axis], self.scaled[axis]);
+            for k in 0..WIDTH {
+                let gap = larger(f64::from(low[k]) - at, at - f64::from(high[k])) - BOX;
+                let gap = larger(gap, 0.0);
+                squares[k] += gap * gap;
+            }
+        }
         // Where the point is far away, its own rounding is a part of the distance.
-        square * (1.0 - 1.0 / (1 << 20) as f64)
+        squares.map(|square| square * (1.0 - 1.0 / (1 << 20) as f64))
     }
 
     #[inline(always)]
@@ -197,29 +268,52 @@ impl Search<'_> {
         self.best.is_none_or(|best| bound <= best.square)
     }
 
-    fn descend(&mut self, part: Part) {
-        let (node, first, end) = part;
-        if self.tree.is_leaf(node) {
-            for k in first..end {
-                let item = self.tree.items[k];
-                if self.may_hold_better(self.bound(&item.around)) {
-                    self.look_at(item.triangle);
+    /// Looks at nearer parts first.
+    fn run(&mut self) {
+        let mut later = [(0.0, Place { level: 0, number: 0 }); LATER];
+        let mut count = 0;
+        let mut next = self.tree.root();
+        while let Some(place) = next {
+            let bounds = self.bounds(self.tree.node(place));
+            let mut order = [0, 1, 2, 3];
+            for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+                if bounds[order[j]] < bounds[order[i]] {
+                    order.swap(i, j);
                 }
             }
-            return;
-        }
-        let halves = self.tree.halves(part);
-        let bounds = halves.map(|half| self.bound(&self.tree.nodes[half.0]));
-        let near = usize::from(bounds[1] < bounds[0]);
-        for k in [near, 1 - near] {
-            if self.may_hold_better(bounds[k]) {
-                self.descend(halves[k]);
+            if place.level == 0 {
+                for k in order {
+                    if self.may_hold_better(bounds[k])
+                        && let Some(triangle) = self.tree.triangle(place, k)
+                    {
+                        self.look_at(triangle);
+                    }
+                }
+            } else {
+                for k in order.into_iter().rev() {
+                    // (There is nothing at an infinite distance.)
+                    if bounds[k] < f64::INFINITY && self.may_hold_better(bounds[k]) {
+                        later[count] = (bounds[k], place.child(k));
+                        count += 1;
+                    }
+                }
             }
+            next = loop {
+                let Some(last) = count.checked_sub(1) else { return };
+                count = last;
+                let (bound, place) = later[last];
+                if self.may_hold_better(bound) {
+                    break Some(place);
+                }
+            };
         }
     }
 
     #[inline]
     fn look_at(&mut self, triangle: u32) {
+        if !(self.wanted)(triangle) {
+            return;
+        }
         let corners = Corners::of(self.mesh, triangle, self.tree.grid.scale());
         let from = corners.from(&self.point);
         if self.best.is_some_and(|best| is_beyond(&from, best.square)) {
@@ -228,7 +322,11 @@ impl Search<'_> {
         let (square, weights) = corners.nearest_to(&from);
         let is_better = |best: &NearestPoint| (square, triangle) < (best.square, best.triangle);
         if self.best.as_ref().is_none_or(is_better) {
-            self.best = Some(NearestPoint { triangle, weights, square });
+            self.best = Some(NearestPoint { triangle, weights, square, lower: 0.0 });
+        }
+        if self.is_certified {
+            let distance = sqrt(square);
+            self.lower = self.lower.min(distance - corners.error(distance));
         }
     }
 }
@@ -296,6 +394,12 @@ impl Corners {
         let foot = rounding * length / height;
         // Neither NaN nor infinity, of heights that are lost, counts in a minimum.
         rounding + if is_plump(area, square) { foot } else { foot.min((2.0 * height).max(0.0)) }
+    }
+
+    /// How much less than the true distance to the triangle the computed one may be.
+    fn excess(&self, distance: f64) -> f64 {
+        let longest = self.edges().iter().fold(0.0, |most: f64, edge| most.max(edge.square));
+        ROUNDING * (distance + 3.0 * sqrt(longest))
     }
 
     /// The square of the distance of the point to which these ways lead from the corners, and the weights of the
@@ -405,25 +509,26 @@ struct Near<'a> {
 }
 
 impl Near<'_> {
-    fn descend(&self, part: Part, visitor: &mut impl NearVisitor) {
-        let (node, first, end) = part;
-        let around = &self.tree.nodes[node];
-        let (nearest, furthest) = self.distances(around);
-        if first == end || nearest > self.reach {
-            return;
-        }
-        let is_small = (0..3).all(|axis| f64::from(around.high[axis] - around.low[axis]) <= self.small);
-        if !visitor.enter(node, is_small || furthest <= self.reach) {
-            return;
-        }
-        if !self.tree.is_leaf(node) {
-            self.tree.halves(part).into_iter().for_each(|half| self.descend(half, visitor));
-            return;
-        }
-        for item in &self.tree.items[first..end] {
-            let triangle = item.triangle;
-            let may_be = self.distances(&item.around).0 <= self.reach;
-            if may_be && visitor.wants(triangle) && self.may_reach(triangle) {
+    /// Visits what may be nearest in a node that was entered. The recursion is as deep as the tree.
+    fn descend(&self, place: Place, visitor: &mut impl NearVisitor) {
+        let node = self.tree.node(place);
+        for k in 0..self.tree.parts(place) {
+            let around = node.part(k);
+            let (nearest, furthest) = self.distances(&around);
+            if nearest > self.reach {
+                continue;
+            }
+            if place.level > 0 {
+                let child = place.child(k);
+                let is_small =
+                    (0..3).all(|axis| f64::from(around.high[axis] - around.low[axis]) <= self.small);
+                if visitor.enter(self.tree.index(child), is_small || furthest <= self.reach) {
+                    self.descend(child, visitor);
+                }
+            } else if let Some(triangle) = self.tree.triangle(place, k)
+                && visitor.wants(triangle)
+                && self.may_reach(triangle)
+            {
                 visitor.visit(triangle);
             }
         }
@@ -537,14 +642,14 @@ mod tests {
         TriangleMesh::new(vertices, triangles).unwrap()
     }
 
-    fn square(tree: &TriangleTree, mesh: &TriangleMesh, triangle: u32, point: &Point) -> f64 {
-        let corners = Corners::of(mesh, triangle, tree.0.grid.scale());
+    fn square(tree: &TriangleTree<'_>, triangle: u32, point: &Point) -> f64 {
+        let corners = Corners::of(tree.mesh, triangle, tree.tree.grid.scale());
         corners.nearest_to(&corners.from(point)).0
     }
 
-    fn slow(tree: &TriangleTree, mesh: &TriangleMesh, point: &Point) -> (f64, u32) {
-        let of = |t: u32| (square(tree, mesh, t, point), t);
-        (0..mesh.triangles().len() as u32).map(of).min_by(|a, b| a.partial_cmp(b).unwrap()).unwrap()
+    fn slow(tree: &TriangleTree<'_>, point: &Point) -> (f64, u32) {
+        let of = |t: u32| (square(tree, t, point), t);
+        (0..tree.mesh.triangles().len() as u32).map(of).min_by(|a, b| a.partial_cmp(b).unwrap()).unwrap()
     }
 
     #[test]
@@ -553,7 +658,7 @@ mod tests {
         for scale in [1.0, 1e-70, 3e60] {
             for count in [1, 2, 9, 60, 500] {
                 let mesh = soup(&mut random, count, scale);
-                let tree = TriangleTree::new(&mesh).unwrap();
+                let tree = mesh.triangle_tree(&Control::default()).unwrap();
                 let mut hint = None;
                 for k in 0..200 {
                     let mut point = random.point([1.0, 3.0, 1e9][k % 3]).map(|x| x * scale);
@@ -563,8 +668,8 @@ mod tests {
                         let [a, b] = [a, b].map(|v| mesh.vertices()[v as usize]);
                         point = if k % 2 == 0 { a } else { array(|axis| a[axis].midpoint(b[axis])) };
                     }
-                    let found = tree.nearest(&mesh, &point, hint).unwrap();
-                    assert_eq!((found.square, found.triangle), slow(&tree, &mesh, &point), "{point:?}");
+                    let found = tree.nearest(&point, hint).unwrap();
+                    assert_eq!((found.square, found.triangle), slow(&tree, &point), "{point:?}");
                     assert!(found.weights.iter().all(|&w| w >= 0.0));
                     assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
                     hint = Some(found.triangle);
@@ -582,12 +687,12 @@ mod tests {
         let fan = (1..40).map(|k| [0, k, k + 1]);
         let mesh =
             TriangleMesh::new(vertices, fan.clone().chain(fan.map(|[a, b, c]| [b, c, a])).collect()).unwrap();
-        let tree = TriangleTree::new(&mesh).unwrap();
+        let tree = mesh.triangle_tree(&Control::default()).unwrap();
         for _ in 0..1000 {
             let point = random.point(8.0);
-            let found = tree.nearest(&mesh, &point, None).unwrap();
+            let found = tree.nearest(&point, None).unwrap();
             assert!(found.triangle < 39, "a later one is nearest");
-            let square = |t: u32| square(&tree, &mesh, t, &point);
+            let square = |t: u32| square(&tree, t, &point);
             assert_eq!(square(found.triangle), square(found.triangle + 39));
             let zeros = found.weights.iter().filter(|&&w| w == 0.0).count();
             if zeros > 0 {
@@ -609,17 +714,17 @@ mod tests {
         };
         for scale in [1.0, 1e77, 1e-77] {
             let mesh = triangle(scale);
-            let tree = TriangleTree::new(&mesh).unwrap();
+            let tree = mesh.triangle_tree(&Control::default()).unwrap();
             for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-                assert!(tree.nearest(&mesh, &[0.0, x, 0.0], None).is_none());
+                assert!(tree.nearest(&[0.0, x, 0.0], None).is_none());
             }
             for x in [f64::MAX, f64::MIN, f64::MIN_POSITIVE, 0.0] {
-                let found = tree.nearest(&mesh, &[x, -x, x], Some(9)).unwrap();
+                let found = tree.nearest(&[x, -x, x], Some(9)).unwrap();
                 assert!(found.weights.iter().all(|w| (0.0..=1.0).contains(w)), "{found:?}");
             }
         }
         let empty = TriangleMesh::new(vec![], vec![]).unwrap();
-        assert!(TriangleTree::new(&empty).unwrap().nearest(&empty, &[0.0; 3], None).is_none());
+        assert!(empty.triangle_tree(&Control::default()).unwrap().nearest(&[0.0; 3], None).is_none());
     }
 
     #[test]
@@ -640,7 +745,7 @@ mod tests {
         for scale in [1.0, 1e-70, 3e60] {
             for round in 0..60 {
                 let mesh = soup(&mut random, [3, 30, 300][round % 3], scale);
-                let tree = TriangleTree::new(&mesh).unwrap();
+                let tree = mesh.triangle_tree(&Control::default()).unwrap();
                 for k in 0..20 {
                     let size = [2.0, 0.3, 1e-2, 1e-5, 0.0][k % 5];
                     let mut centre = random.point([1.0, 2.0, 1e6][k % 3]);
@@ -652,7 +757,7 @@ mod tests {
                     let min = array(|axis| (centre[axis] - half[axis]) * scale);
                     let max = array(|axis| (centre[axis] + half[axis]) * scale);
                     let mut seen = Seen(vec![false; mesh.triangles().len()]);
-                    assert!(tree.visit_near(&mesh, &Bounds { min, max }, &mut seen));
+                    assert!(tree.visit_near(&Bounds { min, max }, &mut seen));
                     for sample in 0..100 {
                         let point = array(|axis| {
                             let at = random.next();
@@ -660,7 +765,7 @@ mod tests {
                             let on = [min[axis], max[axis], inside][random.below(3)];
                             (if sample % 2 == 0 { inside } else { on }).clamp(min[axis], max[axis])
                         });
-                        let found = tree.nearest(&mesh, &point, None).unwrap();
+                        let found = tree.nearest(&point, None).unwrap();
                         assert!(seen.0[found.triangle as usize], "{point:?} in {min:?} {max:?}");
                     }
                 }

@@ -34,7 +34,7 @@ pub(super) enum Sense {
     Unknown,
 }
 
-/// Finds the sheets of a mesh that is closed under `rule`; `tree` has the triangles with area. `meets` tells of each
+/// Finds the sheets of a mesh that is closed under `rule`; `tree` is that of its triangles. `meets` tells of each
 /// triangle whether it intersects others.
 ///
 /// O(t), and O(log t) a sheet if few triangles lie above each other.

@@ -2,7 +2,7 @@
 
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
-use super::tree::{Search, Tree};
+use super::tree::Search;
 use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::control::Control;
 use crate::error::Error;
@@ -52,9 +52,8 @@ impl TriangleMesh {
     ///
     /// O(t log t) for triangles that lie apart. Memory as [`moments`](Self::moments), and 1 byte a triangle.
     pub(crate) fn sides(&self, rule: FillRule, control: &Control<'_>) -> Result<Option<Sides>, Error> {
-        let tree = Tree::new(self, |t| !self.is_flat(&self.triangles()[t as usize]))?;
         let mut pairs = Vec::new();
-        let search = intersections(self, &tree, control, &mut |a, b| {
+        let search = intersections(self, control, &mut |a, b| {
             memory::push(&mut pairs, [a, b])?;
             memory::push(&mut pairs, [b, a])?;
             Ok(true)
@@ -67,7 +66,8 @@ impl TriangleMesh {
         pairs.iter().for_each(|&[a, _]| senses[a as usize] = Sides::UNKNOWN);
         match self.check_closed(rule) {
             Ok(()) => {
-                let sheets = sheets(self, &tree, rule, |t| senses[t as usize] == Sides::UNKNOWN)?;
+                let sheets =
+                    sheets(self, self.tree(control)?, rule, |t| senses[t as usize] == Sides::UNKNOWN)?;
                 for (sense, &sheet) in senses.iter_mut().zip(&sheets.of_triangles) {
                     *sense = match sheets.senses[sheet as usize] {
                         Sense::Known(sense) => sense,

@@ -1,33 +1,80 @@
-//! A tree of boxes around triangles: which pairs of them may meet, and which ones a line may meet.
+//! A tree of boxes around triangles: which ones a line may meet, which may be near a point, and which pairs of them may meet.
 //!
-//! Corners are rounded to 24 bits about the centre of the mesh. Rounding keeps the order of numbers, so that boxes
-//! that meet still meet, and no pair is missed.
+//! Each node has up to four parts, whose boxes lie coordinate by coordinate, so that a processor looks at four of them at once.
+//! All nodes but the last of a level are full, and lie in the order of their parents: a node is found by its level and its
+//! number, and nothing points to it.
+//!
+//! Corners are rounded to 24 bits about the centre of the mesh. Rounding keeps the order of numbers, so that boxes that meet
+//! still meet, and no pair is missed.
 
 use super::signs::Point;
-use super::triangle_mesh::TriangleMesh;
+use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::{floor, two_diff};
 use crate::memory;
+use crate::parallel;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
 
-/// At most twice as many triangles are not divided further.
-const FEW: usize = 4;
+/// Parts of a node.
+pub(super) const WIDTH: usize = 4;
 
-/// A balanced binary tree: each node has one half of its parent's triangles. 46 bytes a triangle.
-pub(super) struct Tree {
+/// Levels of a tree of 2^32 triangles.
+pub(super) const LEVELS: usize = 16;
+
+/// Places that a search keeps for later: three a level, and four of the first.
+pub(super) const LATER: usize = (WIDTH - 1) * LEVELS + 1;
+
+/// Fewer triangles are not shared out to threads.
+const MANY: usize = 1 << 13;
+
+/// Four boxes.
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+pub(super) struct Node {
+    /// For each axis the lower coordinates of all boxes, and the upper ones.
+    pub(super) planes: [[[f32; WIDTH]; 2]; 3],
+}
+
+/// A node: its level, counted from those whose parts are triangles, and its number there.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub(super) level: u8,
+    pub(super) number: u32,
+}
+
+impl Place {
+    /// The number, among the parts of the whole level, of a part.
+    #[inline(always)]
+    pub(super) fn part(self, k: usize) -> usize {
+        self.number as usize * WIDTH + k
+    }
+
+    /// The node that part k is. (Above the lowest level.)
+    #[inline(always)]
+    pub(super) fn child(self, k: usize) -> Place {
+        Place { level: self.level - 1, number: self.part(k) as u32 }
+    }
+}
+
+/// A tree of all triangles of a mesh. 36 bytes a triangle.
+#[derive(Clone)]
+pub(crate) struct Tree {
     pub(super) grid: Grid,
-    pub(super) items: Vec<Item>,
-    /// The root is node 1, the children of node k are 2k and 2k + 1. All leaves are at one level.
-    pub(super) nodes: Vec<Box3>,
-    levels: u32,
+    /// The triangles in the order of the tree. Placed copies of the mesh share it.
+    order: Arc<Vec<u32>>,
+    nodes: Vec<Node>,
+    /// Where the nodes of each level begin; behind the last one, the end.
+    starts: [u32; LEVELS + 1],
+    levels: u8,
 }
 
 /// A triangle with the box around it.
 #[derive(Clone, Copy)]
-pub(super) struct Item {
-    pub(super) around: Box3,
-    pub(super) triangle: u32,
+struct Item {
+    around: Box3,
+    triangle: u32,
 }
 
 #[derive(Clone, Copy)]
@@ -46,17 +93,48 @@ impl Box3 {
         }
     }
 
-    /// Whether the closed boxes meet.
+    /// Twice the middle.
     #[inline(always)]
-    fn touches(&self, other: &Box3) -> bool {
-        // Without branches: as a rule nobody can foretell them.
-        (0..3).fold(true, |touches, axis| {
-            touches & (self.low[axis] <= other.high[axis]) & (other.low[axis] <= self.high[axis])
+    fn middle(&self, axis: usize) -> f32 {
+        self.low[axis] + self.high[axis]
+    }
+}
+
+impl Node {
+    const NONE: Node = Node { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3] };
+
+    /// The box of a part.
+    #[inline(always)]
+    pub(super) fn part(&self, k: usize) -> Box3 {
+        Box3 { low: array(|axis| self.planes[axis][0][k]), high: array(|axis| self.planes[axis][1][k]) }
+    }
+
+    fn set(&mut self, k: usize, part: &Box3) {
+        for axis in 0..3 {
+            self.planes[axis][0][k] = part.low[axis];
+            self.planes[axis][1][k] = part.high[axis];
+        }
+    }
+
+    fn around(&self) -> Box3 {
+        (0..WIDTH).fold(Box3::NONE, |mut around, k| {
+            around.include(&self.part(k));
+            around
         })
     }
 
-    fn middle(&self, axis: usize) -> f32 {
-        self.low[axis] + self.high[axis]
+    /// Which parts a closed box meets: bit k for part k.
+    #[inline(always)]
+    pub(super) fn touches(&self, other: &Box3) -> u32 {
+        let mut touches = [true; WIDTH];
+        for axis in 0..3 {
+            let [low, high] = &self.planes[axis];
+            for k in 0..WIDTH {
+                // Without branches: as a rule nobody can foretell them.
+                touches[k] &= (low[k] <= other.high[axis]) & (other.low[axis] <= high[k]);
+            }
+        }
+        (0..WIDTH).fold(0, |bits, k| bits | u32::from(touches[k]) << k)
     }
 }
 
@@ -70,8 +148,8 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    pub(super) fn of(mesh: &TriangleMesh) -> Grid {
-        let (low, high) = mesh.bounds();
+    /// That of a mesh with these bounds.
+    pub(super) fn around((low, high): (Point, Point)) -> Grid {
         let centre: Point = array(|axis| low[axis].midpoint(high[axis]));
         let reach = (0..3)
             .fold(0.0, |reach: f64, axis| reach.max(high[axis] - centre[axis]).max(centre[axis] - low[axis]));
@@ -103,11 +181,11 @@ impl Grid {
 
     /// The bits behind the point that the scaled coordinates of all vertices have, if they are exact and not more
     /// than 15.
-    pub(super) fn bits(&self, mesh: &TriangleMesh) -> Option<i32> {
+    pub(super) fn bits(&self, vertices: &[Point]) -> Option<i32> {
         const MOST: i32 = 15;
         let scale = self.scale();
         let mut bits = 0;
-        for p in mesh.vertices() {
+        for p in vertices {
             for (&x, &centre) in p.iter().zip(&self.centre) {
                 let (offset, lost) = two_diff(x, centre);
                 let is_whole = |bits: i32| {
@@ -132,9 +210,19 @@ impl Grid {
     fn rounded(&self, p: &Point) -> [f32; 3] {
         self.scaled(p).map(|x| x as f32)
     }
+
+    /// The box around a triangle.
+    #[inline(always)]
+    fn box_of(&self, vertices: &[Point], corners: [u32; 3]) -> Box3 {
+        corners.into_iter().fold(Box3::NONE, |mut around, vertex| {
+            let at = self.rounded(&vertices[vertex as usize]);
+            around.include(&Box3 { low: at, high: at });
+            around
+        })
+    }
 }
 
-/// Steps that a search may take. One step looks at two boxes.
+/// Steps that a search may take. One step looks at a box beside another one.
 pub(super) struct Steps(pub(super) u64);
 
 impl Steps {
@@ -158,61 +246,125 @@ pub(super) enum Search {
 }
 
 impl Tree {
-    /// A tree of the triangles that are `wanted`. O(t log t).
-    pub(super) fn new(mesh: &TriangleMesh, wanted: impl Fn(u32) -> bool) -> Result<Tree, Error> {
-        let grid = Grid::of(mesh);
-        let mut items = memory::with_capacity(mesh.triangles().len())?;
-        for (corners, triangle) in mesh.triangles().iter().zip(0..) {
-            if wanted(triangle) {
-                let mut around = Box3::NONE;
-                for &vertex in corners {
-                    let at = grid.rounded(&mesh.vertices()[vertex as usize]);
-                    around.include(&Box3 { low: at, high: at });
-                }
-                items.push(Item { around, triangle });
+    /// The tree of a mesh, which depends on the mesh alone: by halves along the longest extent, down to four triangles.
+    /// O(t log t), on the threads of `control`; 28 bytes a triangle of scratch memory.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
+    pub(super) fn new(
+        grid: Grid,
+        vertices: &[Point],
+        triangles: &[[u32; 3]],
+        control: &Control<'_>,
+    ) -> Result<Tree, Error> {
+        control.check()?;
+        let count = triangles.len();
+        let mut items = memory::with_capacity(count)?;
+        items.extend(
+            triangles
+                .iter()
+                .zip(0..)
+                .map(|(&corners, triangle)| Item { around: grid.box_of(vertices, corners), triangle }),
+        );
+        let unit = (0..LEVELS as u32).map(|level| 1 << (2 * level)).find(|unit| unit * WIDTH >= count);
+        control.run(count > MANY, |parallel| arrange(&mut items, unit.unwrap_or(1), parallel, control))?;
+        let mut order = memory::with_capacity(count)?;
+        order.extend(items.iter().map(|item| item.triangle));
+        Tree::of_boxes(grid, Arc::new(order), items.iter().map(|item| item.around))
+    }
+
+    /// The tree of a mesh whose triangles are those of another one, moved: in the other one's order. O(t).
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(super) fn in_order(
+        grid: Grid,
+        vertices: &[Point],
+        triangles: &[[u32; 3]],
+        order: &Arc<Vec<u32>>,
+    ) -> Result<Tree, Error> {
+        let box_of = |&triangle: &u32| grid.box_of(vertices, triangles[triangle as usize]);
+        Tree::of_boxes(grid, order.clone(), order.iter().map(box_of))
+    }
+
+    fn of_boxes(
+        grid: Grid,
+        order: Arc<Vec<u32>>,
+        boxes: impl ExactSizeIterator<Item = Box3>,
+    ) -> Result<Tree, Error> {
+        let mut starts = [0; LEVELS + 1];
+        let (mut levels, mut parts) = (0, boxes.len());
+        let mut count = 0;
+        while levels == 0 || parts > 1 {
+            parts = parts.div_ceil(WIDTH);
+            count += parts;
+            levels += 1;
+            starts[levels] = count as u32;
+        }
+        let mut nodes: Vec<Node> = memory::filled(count, Node::NONE)?;
+        for (k, around) in boxes.enumerate() {
+            nodes[k / WIDTH].set(k % WIDTH, &around);
+        }
+        for level in 1..levels {
+            let [start, end] = [starts[level - 1] as usize, starts[level] as usize];
+            for k in 0..end - start {
+                let around = nodes[start + k].around();
+                nodes[end + k / WIDTH].set(k % WIDTH, &around);
             }
         }
-        let mut levels = 0;
-        while items.len() >> levels > FEW {
-            levels += 1;
-        }
-        let nodes = memory::filled(2 << levels, Box3::NONE)?;
-        let mut tree = Tree { grid, items, nodes, levels };
-        tree.arrange(1, 0, tree.items.len());
-        Ok(tree)
+        Ok(Tree { grid, order, nodes, starts, levels: levels as u8 })
     }
 
-    /// Sorts the items of a node by halves, and finds the boxes. The recursion is as deep as the tree.
-    fn arrange(&mut self, node: usize, first: usize, end: usize) {
-        let is_leaf = self.is_leaf(node);
-        let items = &mut self.items[first..end];
-        let mut around = Box3::NONE;
-        items.iter().for_each(|item| around.include(&item.around));
-        self.nodes[node] = around;
-        if is_leaf {
-            return;
-        }
-        let axis = (1..3).fold(0, |most, axis| {
-            let extent = |axis: usize| around.high[axis] - around.low[axis];
-            if extent(axis) > extent(most) { axis } else { most }
-        });
-        let half = items.len() / 2;
-        if half < items.len() {
-            items.select_nth_unstable_by(half, |a, b| {
-                a.around.middle(axis).total_cmp(&b.around.middle(axis)).then(a.triangle.cmp(&b.triangle))
-            });
-        }
-        self.arrange(2 * node, first, first + half);
-        self.arrange(2 * node + 1, first + half, end);
+    /// Bytes that the lists take.
+    pub(super) fn bytes(&self) -> usize {
+        memory::bytes_of(&self.order) + memory::bytes_of(&self.nodes)
     }
 
-    /// The root, with all items.
-    pub(super) fn root(&self) -> Part {
-        (1, 0, self.items.len())
+    /// The order of the triangles, for copies of the mesh.
+    pub(super) fn order(&self) -> &Arc<Vec<u32>> {
+        &self.order
     }
 
-    pub(super) fn is_leaf(&self, node: usize) -> bool {
-        node >> self.levels != 0
+    /// How many nodes there are.
+    pub(super) fn count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The node above all others; none of a mesh without triangles.
+    #[inline(always)]
+    pub(super) fn root(&self) -> Option<Place> {
+        (!self.nodes.is_empty()).then_some(Place { level: self.levels - 1, number: 0 })
+    }
+
+    /// The box around all triangles.
+    pub(super) fn around(&self) -> Option<Box3> {
+        Some(self.node(self.root()?).around())
+    }
+
+    /// The number of a node among all.
+    #[inline(always)]
+    pub(super) fn index(&self, place: Place) -> usize {
+        (self.starts[place.level as usize] + place.number) as usize
+    }
+
+    #[inline(always)]
+    pub(super) fn node(&self, place: Place) -> &Node {
+        &self.nodes[self.index(place)]
+    }
+
+    /// The triangle that part k of a lowest node is; none if the node is not full.
+    #[inline(always)]
+    pub(super) fn triangle(&self, place: Place, k: usize) -> Option<u32> {
+        self.order.get(place.part(k)).copied()
+    }
+
+    /// How many parts a node has.
+    pub(super) fn parts(&self, place: Place) -> usize {
+        let all = match place.level.checked_sub(1) {
+            None => self.order.len(),
+            Some(below) => (self.starts[below as usize + 1] - self.starts[below as usize]) as usize,
+        };
+        (all - place.part(0)).min(WIDTH)
     }
 
     /// Calls `visit` with each pair of triangles whose boxes meet, until it returns `false`. What it returns
@@ -222,118 +374,155 @@ impl Tree {
         steps: &mut Steps,
         visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
     ) -> Result<Search, Error> {
-        self.pairs_in(self.root(), steps, visit)
-    }
-
-    pub(super) fn halves(&self, (node, first, end): Part) -> [Part; 2] {
-        let middle = first + (end - first) / 2;
-        [(2 * node, first, middle), (2 * node + 1, middle, end)]
+        self.root().map_or(Ok(Search::Finished), |root| self.pairs_in(root, steps, visit))
     }
 
     fn pairs_in(
         &self,
-        part: Part,
+        place: Place,
         steps: &mut Steps,
         visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
     ) -> Result<Search, Error> {
-        let (node, first, end) = part;
-        if self.is_leaf(node) {
-            if !steps.take((end - first).pow(2)) {
-                return Ok(Search::Exhausted);
-            }
-            for k in first..end {
-                for other in first..k {
-                    if !self.visit(other, k, visit)? {
-                        return Ok(Search::Ended);
-                    }
+        let node = self.node(place);
+        let parts = self.parts(place);
+        if place.level > 0 {
+            for k in 0..parts {
+                match self.pairs_in(place.child(k), steps, visit)? {
+                    Search::Finished => {}
+                    search => return Ok(search),
                 }
             }
-            return Ok(Search::Finished);
         }
-        let [low, high] = self.halves(part);
-        for half in [low, high] {
-            let search = self.pairs_in(half, steps, visit)?;
+        for k in 1..parts {
+            let earlier = (1 << k) - 1;
+            let search =
+                self.pairs_of((place, k), (place, node.touches(&node.part(k)) & earlier), steps, visit)?;
             if search != Search::Finished {
                 return Ok(search);
-            }
-        }
-        self.pairs_between(low, high, steps, visit)
-    }
-
-    /// Of two nodes of one level.
-    fn pairs_between(
-        &self,
-        a: Part,
-        b: Part,
-        steps: &mut Steps,
-        visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
-    ) -> Result<Search, Error> {
-        if !steps.take(1) {
-            return Ok(Search::Exhausted);
-        }
-        if !self.nodes[a.0].touches(&self.nodes[b.0]) {
-            return Ok(Search::Finished);
-        }
-        if self.is_leaf(a.0) {
-            if !steps.take((a.2 - a.1) * (b.2 - b.1)) {
-                return Ok(Search::Exhausted);
-            }
-            for i in a.1..a.2 {
-                for k in b.1..b.2 {
-                    if !self.visit(i, k, visit)? {
-                        return Ok(Search::Ended);
-                    }
-                }
-            }
-            return Ok(Search::Finished);
-        }
-        for of_a in self.halves(a) {
-            for of_b in self.halves(b) {
-                let search = self.pairs_between(of_a, of_b, steps, visit)?;
-                if search != Search::Finished {
-                    return Ok(search);
-                }
             }
         }
         Ok(Search::Finished)
     }
 
-    #[inline(always)]
-    fn visit(
+    /// Of part k of one node and some parts of another one of the same level.
+    fn pairs_of(
         &self,
-        i: usize,
-        k: usize,
+        (place, k): (Place, usize),
+        (other, mut parts): (Place, u32),
+        steps: &mut Steps,
         visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
-    ) -> Result<bool, Error> {
-        let (a, b) = (&self.items[i], &self.items[k]);
-        if !a.around.touches(&b.around) {
-            return Ok(true);
+    ) -> Result<Search, Error> {
+        if !steps.take(WIDTH) {
+            return Ok(Search::Exhausted);
         }
-        visit(a.triangle.min(b.triangle), a.triangle.max(b.triangle))
+        while parts != 0 {
+            let i = parts.trailing_zeros() as usize;
+            parts &= parts - 1;
+            if place.level > 0 {
+                match self.pairs_between(place.child(k), other.child(i), steps, visit)? {
+                    Search::Finished => {}
+                    search => return Ok(search),
+                }
+            } else if let (Some(a), Some(b)) = (self.triangle(place, k), self.triangle(other, i))
+                && !visit(a.min(b), a.max(b))?
+            {
+                return Ok(Search::Ended);
+            }
+        }
+        Ok(Search::Finished)
+    }
+
+    /// Of two nodes of one level.
+    fn pairs_between(
+        &self,
+        a: Place,
+        b: Place,
+        steps: &mut Steps,
+        visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
+    ) -> Result<Search, Error> {
+        let (of_a, of_b) = (self.node(a), self.node(b));
+        for k in 0..self.parts(a) {
+            let search = self.pairs_of((a, k), (b, of_b.touches(&of_a.part(k))), steps, visit)?;
+            if search != Search::Finished {
+                return Ok(search);
+            }
+        }
+        Ok(Search::Finished)
     }
 
     /// Calls `visit` with each triangle whose box the line through `p` along `axis` meets.
     pub(super) fn on_line(&self, p: &Point, axis: usize, visit: &mut impl FnMut(u32)) {
         let at = self.grid.rounded(p);
-        let mut low = at;
-        let mut high = at;
+        let (mut low, mut high) = (at, at);
         (low[axis], high[axis]) = (f32::NEG_INFINITY, f32::INFINITY);
-        self.within(self.root(), &Box3 { low, high }, visit);
+        let line = Box3 { low, high };
+        self.search(|node| node.touches(&line), visit);
     }
 
-    fn within(&self, part: Part, line: &Box3, visit: &mut impl FnMut(u32)) {
-        let (node, first, end) = part;
-        if !self.nodes[node].touches(line) {
-            return;
+    /// Calls `visit` with the triangles that are parts of nodes which `chosen` chooses, all the way down.
+    #[inline(always)]
+    pub(super) fn search(&self, chosen: impl Fn(&Node) -> u32, visit: &mut impl FnMut(u32)) {
+        let mut later = [Place { level: 0, number: 0 }; LATER];
+        let mut count = 0;
+        let mut next = self.root();
+        while let Some(place) = next {
+            let mut parts = chosen(self.node(place));
+            while parts != 0 {
+                let k = parts.trailing_zeros() as usize;
+                parts &= parts - 1;
+                if place.level > 0 {
+                    later[count] = place.child(k);
+                    count += 1;
+                } else if let Some(triangle) = self.triangle(place, k) {
+                    visit(triangle);
+                }
+            }
+            next = count.checked_sub(1).map(|last| {
+                count = last;
+                later[last]
+            });
         }
-        if self.is_leaf(node) {
-            let items = self.items[first..end].iter().filter(|item| item.around.touches(line));
-            items.for_each(|item| visit(item.triangle));
-            return;
-        }
-        self.halves(part).into_iter().for_each(|half| self.within(half, line, visit));
     }
 }
 
-/// A node with its items: from the first to before the end.
-pub(super) type Part = (usize, usize, usize);
+/// Sorts triangles so that each `unit` of them, and each quarter of a unit, and so on, lie together.
+fn arrange(items: &mut [Item], mut unit: usize, parallel: bool, control: &Control<'_>) -> Result<(), Error> {
+    if items.len() <= WIDTH {
+        return Ok(());
+    }
+    while unit >= items.len() {
+        unit /= WIDTH;
+    }
+    divide(items, unit, parallel, control)
+}
+
+/// The same of some units, by halves.
+fn divide(items: &mut [Item], unit: usize, parallel: bool, control: &Control<'_>) -> Result<(), Error> {
+    let units = items.len().div_ceil(unit);
+    if units <= 1 {
+        return arrange(items, unit / WIDTH, parallel, control);
+    }
+    let is_large = items.len() > MANY;
+    if is_large {
+        control.check()?;
+    }
+    let mut middles = Box3::NONE;
+    for item in items.iter() {
+        let at = array(|axis| item.around.middle(axis));
+        middles.include(&Box3 { low: at, high: at });
+    }
+    let extent = |axis: usize| middles.high[axis] - middles.low[axis];
+    let axis = (1..3).fold(0, |most, axis| if extent(axis) > extent(most) { axis } else { most });
+    let half = units / 2 * unit;
+    items.select_nth_unstable_by(half, |a, b| {
+        // Equal ones are told apart by their numbers: the halves are the same on every machine.
+        a.around.middle(axis).total_cmp(&b.around.middle(axis)).then(a.triangle.cmp(&b.triangle))
+    });
+    let (low, high) = items.split_at_mut(half);
+    let (low, high) = parallel::both(
+        parallel && is_large,
+        || divide(low, unit, parallel, control),
+        || divide(high, unit, parallel, control),
+    );
+    low.and(high)
+}

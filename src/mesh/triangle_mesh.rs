@@ -10,6 +10,7 @@
 //! be open.
 
 use alloc::boxed::Box;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -21,7 +22,9 @@ use super::attributes::MeshAttribute;
 use super::boundary::Loops;
 use super::positions::{NOWHERE, Places, is_proper, normalised};
 use super::topology::Topology;
+use super::tree::{Grid, Tree};
 
+use crate::control::Control;
 use crate::error::{Error, MeshError};
 use crate::memory;
 
@@ -65,7 +68,9 @@ impl FillRule {
 /// [`check_closed`](Self::check_closed) tells.
 ///
 /// A mesh takes 24 bytes per vertex and 12 bytes per triangle, and what its
-/// [attributes](Self::attributes) take, if it has any.
+/// [attributes](Self::attributes) take, if it has any. What asks for single triangles (rays, points and distances of a
+/// [`MeshSolid`](crate::MeshSolid), intersections, [`SurfaceAttribute`](crate::attribute::SurfaceAttribute)) shares a tree of
+/// their boxes, which is made when it is first needed and takes 36 bytes a triangle.
 #[derive(Clone)]
 pub struct TriangleMesh {
     vertices: Vec<[f64; 3]>,
@@ -79,6 +84,9 @@ pub struct TriangleMesh {
     pub(super) faces: Faces,
     pub(super) topology: OnceBox<Topology>,
     pub(super) details: OnceBox<Details>,
+    tree: OnceBox<Tree>,
+    /// The order of triangles in the tree of the mesh that this one is a moved copy of.
+    order: Option<Arc<Vec<u32>>>,
 }
 
 /// What only a report needs to know.
@@ -210,6 +218,8 @@ impl TriangleMesh {
             faces: Faces::default(),
             topology: OnceBox::new(),
             details: OnceBox::new(),
+            tree: OnceBox::new(),
+            order: None,
         }
     }
 
@@ -229,11 +239,13 @@ impl TriangleMesh {
     }
 
     /// Bytes of memory that the mesh keeps: vertices, triangles, attributes, and what was found out about its
-    /// edges if somebody asked. Room that its arrays have to spare is in.
+    /// edges, and the tree of its triangles, if somebody asked. Room that its arrays have to spare is in.
     pub fn bytes(&self) -> u64 {
-        let TriangleMesh { vertices, triangles, attributes, topology, details, .. } = self;
+        let TriangleMesh { vertices, triangles, attributes, topology, details, tree, .. } = self;
         let arrays = memory::bytes_of(vertices) + memory::bytes_of(triangles) + memory::bytes_of(attributes);
-        let known = topology.get().map_or(0, Topology::bytes) + details.get().map_or(0, size_of_val);
+        let known = topology.get().map_or(0, Topology::bytes)
+            + details.get().map_or(0, size_of_val)
+            + tree.get().map_or(0, Tree::bytes);
         (arrays + known) as u64 + attributes.iter().map(MeshAttribute::bytes).sum::<u64>()
     }
 
@@ -343,7 +355,10 @@ impl TriangleMesh {
     pub fn transformed(&self, f: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, Error> {
         let vertices = memory::collected(self.vertices.iter().copied().map(f))?;
         let attributes = attributes::copies(&self.attributes)?;
-        Self::with_attributes(vertices, memory::copied(&self.triangles)?, attributes)
+        let moved = Self::with_attributes(vertices, memory::copied(&self.triangles)?, attributes)?;
+        // (Triangles that vanish would have to vanish from the order.)
+        let order = self.known_order().filter(|_| moved.triangles.len() == self.triangles.len());
+        Ok(Self { order, ..moved })
     }
 
     /// The mesh with `f` applied to every coordinate. The report keeps what was found before.
@@ -395,8 +410,35 @@ impl TriangleMesh {
     pub fn try_clone(&self) -> Result<Self, Error> {
         let (vertices, triangles) = (memory::copied(&self.vertices)?, memory::copied(&self.triangles)?);
         let attributes = attributes::copies(&self.attributes)?;
-        let (topology, details) = (OnceBox::new(), OnceBox::new());
-        Ok(Self { vertices, triangles, attributes, topology, details, ..*self })
+        let (topology, details, tree, order) =
+            (OnceBox::new(), OnceBox::new(), OnceBox::new(), self.known_order());
+        Ok(Self { vertices, triangles, attributes, topology, details, tree, order, ..*self })
+    }
+
+    /// The tree of the triangles: made when it is first asked for, and kept. The first call takes as [`Tree::new`], of a moved
+    /// copy of a mesh that has one as [`Tree::in_order`]; later calls are free.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
+    pub(crate) fn tree(&self, control: &Control<'_>) -> Result<&Tree, Error> {
+        self.tree.get_or_try_init(|| {
+            let grid = Grid::around(self.bounds());
+            Ok(Box::new(match &self.order {
+                Some(order) => Tree::in_order(grid, &self.vertices, &self.triangles, order)?,
+                None => Tree::new(grid, &self.vertices, &self.triangles, control)?,
+            }))
+        })
+    }
+
+    /// The tree of the triangles, if it was made.
+    #[inline(always)]
+    pub(crate) fn known_tree(&self) -> Option<&Tree> {
+        self.tree.get()
+    }
+
+    /// The order of triangles in the tree, if it was made.
+    fn known_order(&self) -> Option<Arc<Vec<u32>>> {
+        self.tree.get().map(Tree::order).or(self.order.as_ref()).cloned()
     }
 
     /// The loops of the surface's boundary, in the direction of its triangles.
@@ -431,6 +473,7 @@ impl TriangleMesh {
         self.displacement = self.displacement.max(displacement);
         self.topology = OnceBox::new();
         self.details = OnceBox::new();
+        (self.tree, self.order) = (OnceBox::new(), None);
         Ok(self)
     }
 

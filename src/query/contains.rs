@@ -5,7 +5,7 @@ use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
-use crate::solid::{Batch, Classifier, Solid};
+use crate::solid::{AskWhole, Batch, Classifier, Direct, Solid};
 use crate::walk::Trail;
 use alloc::vec::Vec;
 
@@ -43,6 +43,7 @@ pub fn contains<S: Solid>(
     let classifier = solid.on(frame, control)?;
     let job = Job::new(control);
     job.check()?;
+    classifier.is_direct(Direct::Points, control)?;
     answers.fill(Membership::Undecided);
     let mut wanted: Vec<Wanted> = memory::with_capacity(points.len())?;
     wanted.extend((0..).zip(points).filter_map(|(place, &point)| {

@@ -60,7 +60,7 @@ pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
 pub use columns::{ColumnCells, ColumnRuns, Columns, Heights, Run, Side, columns, heights};
 pub use contains::contains;
 pub use content::{CellsIn, cells_in, volume_in};
-pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, PointDistance, distances};
+pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, NearPoint, PointDistance, distances};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
 pub use interference::{Interference, Overlap, interference, interference_at};
 pub use measure::{

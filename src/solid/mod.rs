@@ -18,6 +18,7 @@
 //! | answers [`Question::Moments`], [`Question::Area`] | third order: volume and moments to N^-1.5, areas |
 //! | answers [`Question::Crossing`] | vertices of surfaces on the surface, with normals, without a search |
 //! | answers [`Question::Surfaces`], [`WholeQuestion::Surfaces`] | extended octrees that keep the surfaces, and are as exact as the solid |
+//! | answers [`Question::Ray`], [`Question::Nearest`], writes [`Batch::inside`] | single rays, distances and points in microseconds |
 //! | answers [`Question::Chords`], writes [`fill`](Worker::fill) | nothing but speed: tri-dexel models, octrees |
 //! | writes [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for functions that take long; points without a descent ([`Batch::inside`]); cells without the way to them ([`Batch::recall`]) |
 //! | writes [`Parts`] in place of [`FreeParts`] | parts that are lists in scratch memory, so that children look only at what cut their parent |
@@ -41,6 +42,7 @@ mod fingerprint;
 pub(crate) mod forward;
 mod motion;
 mod subtree;
+mod trace;
 
 // Producers: none knows another one. (Half-spaces are no solid by themselves; expressions are made of them.)
 mod callback;
@@ -74,9 +76,11 @@ pub use motion::Motion;
 pub use parts::{FreeParts, Parts};
 #[cfg(feature = "std")]
 pub use prepared::Prepared;
-pub use question::{Ask, AskWhole, Chords, Question, WholeQuestion};
+pub(crate) use question::AskDirect;
+pub use question::{Ask, AskWhole, Chords, Direct, Question, WholeQuestion};
 pub use split_counter::SplitCounter;
 pub use subtree::Subtree;
+pub use trace::{NearestSurface, RayCrossing, RayQuestion, RayTrace};
 pub use transform::Transform;
 pub(crate) use transform::TransformClassifier;
 pub use verdict::Verdict;

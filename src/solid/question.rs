@@ -1,10 +1,13 @@
 //! What may be asked of a solid beside its cells.
 
-use super::{Classifier, Crossing, Enclosure, OpenSurfaces, PlacedHalfSpace, Segment, Worker};
+use super::{
+    Classifier, Crossing, Enclosure, NearestSurface, OpenSurfaces, PlacedHalfSpace, RayQuestion, RayTrace,
+    Segment, Worker,
+};
 use crate::control::Control;
 use crate::dexel::Beam;
 use crate::error::Error;
-use crate::lattice::{Cell, CellMoments, Interval, VolumeMoments};
+use crate::lattice::{Cell, CellMoments, Interval, Ray, VolumeMoments};
 use alloc::vec::Vec;
 
 /// A question about one PARTIAL cell, with the place for the answer, in which nothing is to be before. Nothing is put there where
@@ -41,6 +44,14 @@ pub enum Question<'q> {
     /// solid is, by the law that [`OpenSurfaces`] states. Nothing if there are too many, the solid is made otherwise, or nobody has
     /// asked for the list yet.
     Surfaces(&'q mut Option<OpenSurfaces>),
+
+    /// Where a ray goes in and out of the solid in the universe: asked of the root alone. Nothing is told unless
+    /// [`WholeQuestion::Direct`] was asked before.
+    Ray(RayQuestion<'q>),
+
+    /// Which point of the whole boundary is nearest to a point (model units): asked of the root alone. Nothing is told unless
+    /// [`WholeQuestion::Direct`] was asked before.
+    Nearest([f64; 3], &'q mut Option<NearestSurface>),
 }
 
 /// The place for intervals of rays.
@@ -73,6 +84,8 @@ impl<'q> Question<'q> {
             Question::Area(_) => {}
             Question::Surfaces(known) => *known = known.map(|known| known.complement()),
             Question::Crossing(_, known) => *known = known.map(|known| known.complement()),
+            Question::Ray(RayQuestion { trace, .. }) => trace.complement(),
+            Question::Nearest(_, known) => *known = known.map(NearestSurface::complement),
             Question::Chords(Chords { beam, found, first }) => {
                 if *found {
                     beam.complement(first)?;
@@ -94,6 +107,10 @@ impl<'q> Question<'q> {
                 Question::Chords(Chords { beam, found, first: *first })
             }
             Question::Surfaces(known) => Question::Surfaces(known),
+            Question::Ray(RayQuestion { ray, is_first_enough, trace }) => {
+                Question::Ray(RayQuestion { ray, is_first_enough: *is_first_enough, trace })
+            }
+            Question::Nearest(point, known) => Question::Nearest(*point, known),
         }
     }
 }
@@ -185,6 +202,38 @@ pub trait Ask: Worker {
 
 impl<W: Worker + ?Sized> Ask for W {}
 
+/// The questions about the universe that are answered without a descent.
+pub(crate) trait AskDirect: Worker {
+    /// Where a ray goes in and out of the solid: [`Question::Ray`]. `trace` is overwritten.
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline]
+    fn trace(
+        &mut self,
+        root: &Self::Part,
+        ray: &Ray,
+        is_first_enough: bool,
+        trace: &mut RayTrace,
+    ) -> Result<(), Error> {
+        trace.clear();
+        self.answer(Cell::ROOT, root, Question::Ray(RayQuestion { ray, is_first_enough, trace }))
+    }
+
+    /// Which point of the boundary is nearest to a point: [`Question::Nearest`].
+    ///
+    /// # Errors
+    /// As all questions.
+    #[inline]
+    fn nearest(&mut self, root: &Self::Part, point: [f64; 3]) -> Result<Option<NearestSurface>, Error> {
+        let mut known = None;
+        self.answer(Cell::ROOT, root, Question::Nearest(point, &mut known))?;
+        Ok(known)
+    }
+}
+
+impl<W: Worker + ?Sized> AskDirect for W {}
+
 /// A question about a whole shape on a frame, inside and outside of the universe, with the place for the answer, in which
 /// nothing is to be before. Nothing is put there where nothing is known. The answers are proven as verdicts are.
 #[non_exhaustive]
@@ -202,6 +251,22 @@ pub enum WholeQuestion<'q> {
     /// The surfaces that cells are crossed by, which [`Question::Surfaces`] tells by their places in this list. Surfaces may be
     /// equal.
     Surfaces(&'q mut Option<Vec<PlacedHalfSpace>>),
+
+    /// Whether questions of this kind about the universe are answered without a descent as a rule. What that takes is made now,
+    /// once, and kept for all that share the shape; the flag is set if there is such a thing.
+    Direct(Direct, &'q mut bool),
+}
+
+/// A kind of questions about the universe that some solids answer without a descent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Direct {
+    /// [`Question::Ray`].
+    Rays,
+    /// [`Batch::inside`](super::Batch::inside).
+    Points,
+    /// [`Question::Nearest`].
+    Distances,
 }
 
 /// The questions about whole shapes as functions. Every classifier has them, and none can change them: they ask
@@ -235,6 +300,16 @@ pub trait AskWhole: Classifier {
         let mut known = None;
         self.answer_whole(WholeQuestion::Surfaces(&mut known), control)?;
         Ok(known)
+    }
+
+    /// Whether questions of a kind are answered without a descent, and gets ready for them: [`WholeQuestion::Direct`].
+    ///
+    /// # Errors
+    /// As [`moments`](Self::moments).
+    fn is_direct(&self, kind: Direct, control: &Control<'_>) -> Result<bool, Error> {
+        let mut is_direct = false;
+        self.answer_whole(WholeQuestion::Direct(kind, &mut is_direct), control)?;
+        Ok(is_direct)
     }
 
     /// Whether no piece of the boundary is known to lie in a plane of the lattice: [`WholeQuestion::OffLattice`].

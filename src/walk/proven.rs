@@ -161,7 +161,9 @@ impl<W: Worker> Worker for ProvenWorker<W> {
             | Question::Area(_)
             | Question::Crossing(..)
             | Question::Chords(_)
-            | Question::Surfaces(_) => {}
+            | Question::Surfaces(_)
+            | Question::Ray(_)
+            | Question::Nearest(..) => {}
         }
         Ok(())
     }

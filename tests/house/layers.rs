@@ -29,7 +29,7 @@ const LAYERS: [&[&str]; 17] = [
 ];
 
 /// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
-const SHARED: [&str; 12] = [
+const SHARED: [&str; 13] = [
     "any",
     "batch",
     "erased",
@@ -41,6 +41,7 @@ const SHARED: [&str; 12] = [
     "prepared",
     "question",
     "subtree",
+    "trace",
     "verdict",
 ];
 

@@ -7,6 +7,7 @@ mod attributes;
 mod cells;
 mod closed;
 mod descended;
+mod direct;
 mod enclosure;
 mod moments;
 mod odd_rays;

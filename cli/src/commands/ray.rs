@@ -100,6 +100,7 @@ struct Hit {
     normal: [f64; 3],
     level: u8,
     cell: [u32; 3],
+    surface: Option<u32>,
 }
 
 impl Questions<6> for Batch<'_> {
@@ -131,12 +132,13 @@ impl Questions<6> for Batch<'_> {
 }
 
 fn json(hit: Option<RayHit>) -> Result<String, Failure> {
-    sink::json_line(&hit.map(|RayHit { t, cell, normal }| Hit {
+    sink::json_line(&hit.map(|RayHit { t, cell, normal, surface }| Hit {
         t_lower: t.lower,
         t_upper: t.upper.is_finite().then_some(t.upper),
         normal,
         level: cell.level,
         cell: cell.at,
+        surface,
     }))
 }
 

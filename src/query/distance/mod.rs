@@ -13,7 +13,7 @@ mod stored;
 mod walk;
 
 pub use nearest::NearCell;
-pub use solid::{DISTANCE_SPLITS, PointDistance, distances};
+pub use solid::{DISTANCE_SPLITS, NearPoint, PointDistance, distances};
 
 use crate::error::Error;
 use crate::lattice::Interval;

@@ -144,7 +144,7 @@ impl First {
         let upper = self.inner.map_or(f64::INFINITY, |(t, ..)| t);
         // What is solid may be solid: a solid whose slabs contradict this is believed as to what is solid.
         let lower = self.outer?.0.min(upper);
-        Some(RayHit { t: Interval::between(lower, upper), cell, normal })
+        Some(RayHit { t: Interval::between(lower, upper), cell, normal, surface: None })
     }
 
     /// Whether the ray is surely stopped, and whether it may be.
@@ -221,7 +221,7 @@ impl Visitor for First {
 }
 
 /// A normal of length 1, but for rounding.
-fn unit(normal: [f64; 3]) -> [f64; 3] {
+pub(super) fn unit(normal: [f64; 3]) -> [f64; 3] {
     let largest = normal.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
     let scaled = normal.map(|c| c / largest);
     let length = sqrt(scaled.iter().map(|c| c * c).sum());

@@ -1,5 +1,6 @@
 //! Rays on any solid, without an octree.
 
+use super::direct::{self, Stops};
 use super::line::Line;
 use super::search::{Cells, First, Stays};
 use super::{Obstacle, Ray, RayHit, RaySpans};
@@ -8,7 +9,9 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::octree::Tag;
-use crate::solid::{Ask, Classifier, Enclosure, Solid, Verdict, Worker};
+use crate::solid::{
+    Ask, AskDirect, AskWhole, Classifier, Direct, Enclosure, RayTrace, Solid, Verdict, Worker,
+};
 use crate::walk::Proven;
 use crate::walk::split_one;
 use alloc::vec::Vec;
@@ -30,6 +33,9 @@ pub enum Sight {
 /// cells that it passes up to the first FULL one: O(depth) splits across a surface, up to O(2^depth) along one.
 /// Each ray may split `control.max_splits` cells; cells that were not split count as PARTIAL. The answers are the
 /// same for any number of threads.
+///
+/// A closed mesh answers each ray from a tree over its triangles, in microseconds and to the rounding of doubles, whatever the
+/// frame's depth is; the first question makes the tree ([`MeshSolid`](crate::MeshSolid)).
 ///
 /// # Errors
 /// What the solid refuses; [`Error::OutOfMemory`], and [`Error::Cancelled`].
@@ -56,12 +62,18 @@ pub fn cast_rays<S: Solid>(
     let classifier = Proven(solid.on(frame, control)?);
     let job = Job::new(control);
     job.check()?;
+    let is_direct = classifier.is_direct(Direct::Rays, control)?;
     let found = control.run(rays.len() > CHUNK, |parallel| {
         job.each(parallel, rays.chunks(CHUNK), |chunk| {
             let mut worker = classifier.worker()?;
+            let mut traces = Traces::new(&mut worker, is_direct)?;
             let mut hits = memory::with_capacity(chunk.len())?;
-            for &ray in chunk {
-                hits.push(Asked::new(&mut worker, &job).first(&Line::new(frame, ray))?.hit(on));
+            for ray in chunk {
+                let line = Line::new(frame, *ray);
+                hits.push(match traces.find(&mut worker, ray, true)? {
+                    Some(trace) => Stops::new(trace, &line).hit(on),
+                    None => Asked::new(&mut worker, &job).first(&line)?.hit(on),
+                });
             }
             Ok(hits)
         })
@@ -85,7 +97,11 @@ pub fn ray_spans<S: Solid>(
 ) -> Result<RaySpans, Error> {
     let classifier = Proven(solid.on(frame, control)?);
     let (job, line) = (Job::new(control), Line::new(frame, *ray));
+    let is_direct = classifier.is_direct(Direct::Rays, control)?;
     let mut worker = classifier.worker()?;
+    if let Some(trace) = Traces::new(&mut worker, is_direct)?.find(&mut worker, ray, false)? {
+        return direct::spans(trace, &line);
+    }
     let mut asked = Asked::new(&mut worker, &job);
     let spans = Stays::search(&mut asked, &line);
     asked.release(0);
@@ -107,18 +123,51 @@ pub fn line_of_sight<S: Solid>(
 ) -> Result<Sight, Error> {
     let ray = Ray::between(from, to)?;
     let classifier = Proven(solid.on(frame, control)?);
-    let job = Job::new(control);
+    let (job, line) = (Job::new(control), Line::new(frame, ray));
+    let is_direct = classifier.is_direct(Direct::Rays, control)?;
     let mut worker = classifier.worker()?;
-    let found = Asked::new(&mut worker, &job).first(&Line::new(frame, ray))?;
+    let stops = match Traces::new(&mut worker, is_direct)?.find(&mut worker, &ray, true)? {
+        Some(trace) => Stops::new(trace, &line).are(),
+        None => Asked::new(&mut worker, &job).first(&line)?.stops(),
+    };
     // (What lies around the universe may take long to find out.)
     let all_known = || {
         frame.cell_of(from).is_some() && frame.cell_of(to).is_some() || classifier.exterior() == Tag::Empty
     };
-    Ok(match found.stops() {
+    Ok(match stops {
         (true, _) => Sight::Blocked,
         (false, false) if all_known() => Sight::Clear,
         _ => Sight::Undecided,
     })
+}
+
+/// The traces of rays of a solid that tells them.
+struct Traces<P> {
+    /// The universe, unless nothing is told or all of it is decided.
+    root: Option<P>,
+    trace: RayTrace,
+}
+
+impl<P> Traces<P> {
+    fn new<W: Worker<Part = P>>(worker: &mut W, is_direct: bool) -> Result<Self, Error> {
+        let root = match if is_direct { worker.root()? } else { Verdict::Undecided } {
+            Verdict::Partial(part) => Some(part),
+            _ => None,
+        };
+        Ok(Traces { root, trace: RayTrace::UNKNOWN })
+    }
+
+    /// The trace of a ray, if the solid tells it.
+    fn find<W: Worker<Part = P>>(
+        &mut self,
+        worker: &mut W,
+        ray: &Ray,
+        is_first_enough: bool,
+    ) -> Result<Option<&RayTrace>, Error> {
+        let Some(root) = &self.root else { return Ok(None) };
+        worker.trace(root, ray, is_first_enough, &mut self.trace)?;
+        Ok(self.trace.is_known().then_some(&self.trace))
+    }
 }
 
 /// Rays that one worker takes on.

@@ -2,6 +2,7 @@
 
 use super::chords::{Chords, Rays};
 use super::crossing::Projection;
+use super::direct::{self, Tracer};
 use super::local::View;
 use super::on_frame::{Branch, MeshOnFrame, MeshPart};
 use super::open::Surroundings;
@@ -19,8 +20,8 @@ use crate::memory;
 use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
 use crate::solid::{
-    Classifier, Crossing, Enclosure, Fingerprint, Fingerprinter, Motion, OneByOne, Parts, Question, Segment,
-    Solid, Verdict, WholeQuestion, Worker,
+    Batch, Classifier, Crossing, Direct, Enclosure, Fingerprint, Fingerprinter, Motion, Parts, Question,
+    Segment, Solid, Verdict, WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -77,6 +78,7 @@ pub struct MeshWorker {
     surroundings: Surroundings,
     scan: Option<Box<Scan>>,
     chords: Chords,
+    direct: direct::Direct,
 }
 
 impl MeshSolid {
@@ -123,6 +125,15 @@ impl MeshSolid {
     pub fn moments(&self, control: &Control<'_>) -> Result<MeshMoments, Error> {
         let find = || self.mesh.moments(self.fill, control).map(Box::new);
         self.boundary.moments.get_or_try_init(find).copied()
+    }
+
+    /// What answers without cells: of a closed mesh whose triangles have a tree.
+    #[inline]
+    fn tracer(&self) -> Option<Tracer<'_>> {
+        if self.boundary.loops.caps() > 0 {
+            return None;
+        }
+        Some(Tracer { tree: self.mesh.known_triangle_tree()?, fill: self.fill })
     }
 
     /// On which side of each triangle the solid lies, as far as that is known.
@@ -301,6 +312,7 @@ impl Classifier for MeshClassifier {
             surroundings: Surroundings::default(),
             scan: None,
             chords: Chords::default(),
+            direct: direct::Direct::default(),
         })
     }
 
@@ -333,6 +345,12 @@ impl Classifier for MeshClassifier {
                 *known = solid.sides(control)?.and_then(|sides| solid.mesh.boundary_area(sides));
             }
             WholeQuestion::Surfaces(_) => {}
+            WholeQuestion::Direct(kind, is_direct) => {
+                if solid.boundary.loops.caps() == 0 {
+                    solid.mesh.triangle_tree(control)?;
+                    *is_direct = kind != Direct::Distances || solid.sides(control)?.is_some();
+                }
+            }
             WholeQuestion::OffLattice(known) => {
                 *known = self.mesh.placed.displacement == 0.0
                     && self.mesh.caps.is_empty()
@@ -385,8 +403,6 @@ impl Parts for MeshWorker {
         Ok(MeshPart { first, ..*part })
     }
 }
-
-impl OneByOne for MeshWorker {}
 
 impl Worker for MeshWorker {
     fn frame(&self) -> &Frame {
@@ -497,8 +513,57 @@ impl Worker for MeshWorker {
             Question::Crossing(segment, known) => *known = self.first_crossing(cell, part, segment),
             Question::Chords(chords) => *chords.found = self.find_chords(cell, part, chords.beam)?,
             Question::Surfaces(_) => {}
+            Question::Ray(ray) => {
+                if let Some(tracer) = self.solid.tracer() {
+                    tracer.trace(&mut self.direct, ray)?;
+                }
+            }
+            Question::Nearest(point, known) => {
+                if let (Some(tracer), Some(Some(sides))) =
+                    (self.solid.tracer(), self.solid.boundary.sides.get())
+                {
+                    *known = tracer.nearest(&mut self.direct, sides, &point)?;
+                }
+            }
         }
         Ok(())
+    }
+}
+
+impl Batch for MeshWorker {
+    fn likes_many(&self) -> bool {
+        false
+    }
+
+    fn split_many(
+        &mut self,
+        cells: &[(Cell, MeshPart)],
+        control: &Control<'_>,
+        verdicts: &mut Vec<[Verdict<MeshPart>; 8]>,
+    ) -> Result<(), Error> {
+        split_one_by_one(self, cells, control, verdicts)
+    }
+
+    fn sample_many(
+        &mut self,
+        cells: &[(Cell, MeshPart)],
+        control: &Control<'_>,
+        inside: &mut Vec<Option<bool>>,
+    ) -> Result<(), Error> {
+        sample_one_by_one(self, cells, control, inside)
+    }
+
+    /// Of closed meshes, once [`WholeQuestion::Direct`] was asked. A point on the surface gets no answer.
+    fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
+        let Some(tracer) = self.solid.tracer() else { return Ok(()) };
+        for (point, answer) in points.iter().zip(answers) {
+            *answer = tracer.is_inside(&mut self.direct, point)?;
+        }
+        Ok(())
+    }
+
+    fn recall(&mut self, _: Cell) -> Option<MeshPart> {
+        None
     }
 }
 
@@ -511,7 +576,7 @@ impl MeshWorker {
         tell: impl FnOnce(&View<'_>, &Sides) -> Result<Option<T>, Error>,
     ) -> Result<Option<T>, Error> {
         let MeshWorker { mesh, solid, triangles, surroundings, .. } = self;
-        match (solid.sides(&Control::default())?, view(mesh, triangles, surroundings, cell, part)) {
+        match (solid.sides(&Control::threads(1))?, view(mesh, triangles, surroundings, cell, part)) {
             (Some(sides), Some(view)) => tell(&view, sides),
             _ => Ok(None),
         }

@@ -10,6 +10,9 @@
 //! mesh is closed by caps for that (`boundary`), whose own winding number is then taken off with bounds of
 //! its error and its slope (`winding`, `open`).
 //!
+//! Whoever asks for one ray, one point or one distance of a closed mesh gets the answer from a tree over its triangles
+//! (`direct`), without cells.
+//!
 //! Beyond verdicts, cells know the moments of what they hold, the area of the boundary and its slab, from the triangles
 //! that cut them (`integral`, `slab`).
 //!
@@ -18,12 +21,13 @@
 //! (the caps' winding number), `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells), `chords` (rays through centres),
 //! `on_frame` (a mesh on a frame, and what is known of a cell), `local` (triangles in a cell's coordinates), `base` (a
 //! point whose winding number is known), `fronts` (on which sides of triangles the solid lies), `integral` (moments and
-//! areas), `slab` (enclosures), `segment` (crossings), `open` (cells of an open surface), `split` (the solid, its classifier and its workers),
+//! areas), `slab` (enclosures), `segment` (crossings), `direct` (rays, points and distances without cells), `open` (cells of an open surface), `split` (the solid, its classifier and its workers),
 //! `parity` (rays that pierce an open mesh an odd number of times).
 
 mod base;
 mod chords;
 mod crossing;
+mod direct;
 mod fronts;
 mod integral;
 mod local;

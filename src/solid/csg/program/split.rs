@@ -233,7 +233,11 @@ impl Worker for CsgWorker {
             Question::Chords(chords) => {
                 *chords.found = self.rays.find(program, scratch, cell, part, chords.beam)?;
             }
-            Question::Centre(_) | Question::Crossing(..) | Question::Surfaces(_) => {}
+            Question::Centre(_)
+            | Question::Crossing(..)
+            | Question::Surfaces(_)
+            | Question::Ray(_)
+            | Question::Nearest(..) => {}
         }
         Ok(())
     }

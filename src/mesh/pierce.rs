@@ -1,0 +1,630 @@
+//! Which triangles a half-line passes through, and where: exactly which, and where to the rounding of doubles.
+//!
+//! The half-line is shifted by (ε, ε², ε³) in thought, ε → 0, or with other signs into another octant, so that it meets no edge
+//! of a triangle and begins on none. So the triangles that it passes through tell winding numbers along it, whatever it meets (simulation of
+//! simplicity: Edelsbrunner and Mücke 1990, with one perturbation for all points). A triangle that the half-line itself meets
+//! and the shifted one does not is *touched*.
+//!
+//! With the line's direction d, and corners p, q as seen from its beginning, the line passes an edge on the side that the sign
+//! of d · (p × q) tells, and a triangle between edges whose signs agree. Doubles with a bound of their error decide nearly all
+//! of them, exact arithmetic on the original coordinates the rest. (The watertight test of Woop, Benthin and Wald 2013 takes
+//! the same signs of rounded coordinates.) Where the surface may lie beside the mesh, no arithmetic decides what is too near.
+//!
+//! **The search.** The tree's boxes are looked at in single precision. In the grid's coordinates the half-line is cut to what
+//! lies in the cube around the mesh, and begins there. Along each axis a point of it is then off by no more than `slack`: by
+//! rounding its beginning and its direction to 24 bits, the way being no longer than the cube is wide, and by what was rounded
+//! before, which a beginning far away makes larger. Boxes are taken that much larger.
+
+use core::array::from_fn as array;
+
+use alloc::vec::Vec;
+
+use super::intersections::{axis_of, corners};
+use super::nearest::TriangleTree;
+use super::signs::{Point, cross_sign};
+use super::tree::{LATER, Node, Place, WIDTH};
+use super::triangle_mesh::TriangleMesh;
+use crate::error::Error;
+use crate::lattice::exact::{Expansion, two_product};
+use crate::lattice::{Interval, Ray};
+use crate::memory;
+
+/// What rounding may change in a sum of products of three factors, each rounded, as a part of the sum of their magnitudes.
+const ROUNDING: f64 = 12.0 * f64::EPSILON;
+
+/// How far beyond the mesh the half-line is looked at, in the scale of the grid.
+const CUBE: f64 = 1.0 + 1.0 / 1024.0;
+
+/// What single precision makes of positions in the cube: twice what the head of this file says.
+const SINGLE: f64 = 1.0 / (1 << 20) as f64;
+
+/// The same of the time that a line takes to a plane, as a part of it.
+const TIMES: f32 = 1.0 + 1.0 / (1 << 20) as f32;
+
+/// A triangle that a half-line meets.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hit {
+    /// When: of a triangle in whose plane the line runs, during which time at the most.
+    pub t: Interval,
+    /// What the winding number changes by along the shifted half-line: −1 if it leaves by the triangle, 0 if it only touches it.
+    pub step: i32,
+    pub triangle: u32,
+}
+
+/// Which triangles are asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// All.
+    All,
+    /// The first that is passed through, and all that are met no later. Others may be found, too.
+    First,
+}
+
+/// Which way the half-line is shifted: by (±ε, ±ε², ±ε³) with these signs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Shift([i32; 3]);
+
+impl Shift {
+    /// Into each octant, the first one first.
+    pub(crate) const ALL: [Shift; 8] = [
+        Shift([1, 1, 1]),
+        Shift([-1, -1, -1]),
+        Shift([-1, 1, 1]),
+        Shift([1, -1, -1]),
+        Shift([1, -1, 1]),
+        Shift([-1, 1, -1]),
+        Shift([1, 1, -1]),
+        Shift([-1, -1, 1]),
+    ];
+
+    /// On which side of a plane it leads: the sign of its product with the plane's normal, of whose parts the signs are told.
+    fn side(self, normal: impl Fn(usize) -> i32) -> i32 {
+        (0..3).map(|axis| self.0[axis] * normal(axis)).find(|&sign| sign != 0).unwrap_or(0)
+    }
+}
+
+impl TriangleTree<'_> {
+    /// The triangles that a ray, continued to infinity, meets, in no particular order. `false` if that is not sure, because the
+    /// surface may lie beside the mesh, and the ray comes near to an edge. O(log t) as a rule.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn pierced(
+        &self,
+        ray: &Ray,
+        wanted: Wanted,
+        shift: Shift,
+        hits: &mut Vec<Hit>,
+    ) -> Result<bool, Error> {
+        hits.clear();
+        let Some(cast) = Cast::new(self, ray) else { return Ok(true) };
+        let line = Line::new(self.mesh, ray, shift);
+        let (mut is_sure, mut kept) = (true, Ok(()));
+        let mut until = f64::INFINITY;
+        let mut meet = |triangle: u32| {
+            match line.meets(triangle) {
+                Met::No => {}
+                Met::Unsure => is_sure = false,
+                Met::At(hit) => {
+                    if wanted == Wanted::First && hit.step != 0 {
+                        until = until.min(hit.t.upper);
+                    }
+                    if kept.is_ok() {
+                        kept = memory::push(hits, hit);
+                    }
+                }
+            }
+            until
+        };
+        match wanted {
+            Wanted::All => self.tree.search(|node| cast.parts(node), &mut |triangle| {
+                meet(triangle);
+            }),
+            Wanted::First => cast.nearest_first(self, &mut meet),
+        }
+        if wanted == Wanted::First {
+            hits.retain(|hit| hit.t.lower <= until);
+        }
+        kept.map(|()| is_sure)
+    }
+}
+
+impl TriangleTree<'_> {
+    /// The normal of a triangle, twice as long as its area is large.
+    pub(crate) fn normal(&self, triangle: u32) -> Point {
+        let [a, b, c] = corners(self.mesh, triangle);
+        let [u, v]: [Point; 2] = [b, c].map(|p| array(|axis| p[axis] - a[axis]));
+        array(|k| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            u[i] * v[j] - u[j] * v[i]
+        })
+    }
+
+    /// How far the surface may lie from the mesh along an axis.
+    pub(crate) fn displacement(&self) -> f64 {
+        self.mesh.displacement()
+    }
+
+    /// The axis along which, up (1) or down (−1), a point leaves the box around the mesh soonest. `None` if it surely lies beyond.
+    pub(crate) fn way_out(&self, point: &Point) -> Option<(usize, f64)> {
+        let around = self.tree.around()?;
+        let at = self.tree.grid.scaled(point);
+        let mut best = (0, 0.0, f64::INFINITY);
+        for axis in 0..3 {
+            for (sign, plane) in [(1.0, around.high[axis]), (-1.0, around.low[axis])] {
+                let way = sign * (f64::from(plane) - at[axis]);
+                // (False for what is no number.)
+                let is_within = way >= -SINGLE;
+                if !is_within {
+                    return None;
+                }
+                if way < best.2 {
+                    best = (axis, sign, way);
+                }
+            }
+        }
+        Some((best.0, best.1))
+    }
+}
+
+/// A half-line in the cube around the mesh, in single precision.
+struct Cast {
+    /// Where it begins, moved by the slack against its direction, and along it.
+    near: [f32; 3],
+    far: [f32; 3],
+    /// One over the direction, and whether that is negative.
+    inverse: [f32; 3],
+    is_down: [usize; 3],
+    /// How long it is, in units of the direction.
+    length: f32,
+    /// When it begins there, and how many units it goes in one of the ray's.
+    begins: f64,
+    speed: f64,
+}
+
+impl Cast {
+    /// Nothing if the half-line misses the cube.
+    fn new(mesh: &TriangleTree<'_>, ray: &Ray) -> Option<Cast> {
+        let grid = &mesh.tree.grid;
+        mesh.tree.root()?;
+        let scale = grid.scale();
+        let from = grid.scaled(&ray.from);
+        let way = ray.direction.map(|[high, _]| high);
+        let speed = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let direction = way.map(|c| c / speed);
+        let furthest = from.iter().fold(1.0, |most: f64, c| most.max(c.abs()));
+        let slack = SINGLE + furthest * (1.0 / (1u64 << 48) as f64);
+        let (mut begins, mut ends) = (0.0, f64::INFINITY);
+        let reach = CUBE + slack;
+        for axis in 0..3 {
+            let (at, along) = (from[axis], direction[axis]);
+            if along == 0.0 {
+                if at.abs() > reach {
+                    return None;
+                }
+                continue;
+            }
+            let [one, other] = [(-reach - at) / along, (reach - at) / along];
+            (begins, ends) = (one.min(other).max(begins), one.max(other).min(ends));
+        }
+        // (What is rounded here moves points of the cube by less than the slack.)
+        if begins > ends {
+            return None;
+        }
+        /// A direction that leads across the cube in more than 2^60 units leads nowhere.
+        const LEAST: f32 = 1.0 / (1u64 << 60) as f32;
+        let single = direction.map(|c| {
+            let c = c as f32;
+            if c.abs() < LEAST { LEAST.copysign(c) } else { c }
+        });
+        let slack = slack.min(1e30) as f32;
+        let start: [f32; 3] = array(|axis| (from[axis] + begins * direction[axis]) as f32);
+        let back: [f32; 3] = single.map(|c| slack.copysign(c));
+        Some(Cast {
+            near: array(|axis| start[axis] + back[axis]),
+            far: array(|axis| start[axis] - back[axis]),
+            inverse: single.map(|c| 1.0 / c),
+            is_down: single.map(|c| usize::from(c < 0.0)),
+            length: ((ends - begins) * 1.001).min(1e30) as f32,
+            begins,
+            speed: speed * scale,
+        })
+    }
+
+    /// When it enters and leaves the boxes of a node, at the most.
+    #[inline(always)]
+    fn stays(&self, node: &Node, until: f32) -> [[f32; WIDTH]; 2] {
+        let mut enters = [0.0f32; WIDTH];
+        let mut leaves = [until; WIDTH];
+        for axis in 0..3 {
+            let down = self.is_down[axis];
+            let (near, far) = (&node.planes[axis][down], &node.planes[axis][1 - down]);
+            for k in 0..WIDTH {
+                let enter = (near[k] - self.near[axis]) * self.inverse[axis];
+                let leave = (far[k] - self.far[axis]) * self.inverse[axis];
+                enters[k] = if enter > enters[k] { enter } else { enters[k] };
+                leaves[k] = if leave < leaves[k] { leave } else { leaves[k] };
+            }
+        }
+        [enters, leaves.map(|leave| leave * TIMES)]
+    }
+
+    #[inline(always)]
+    fn parts(&self, node: &Node) -> u32 {
+        let [enters, leaves] = self.stays(node, self.length);
+        (0..WIDTH).fold(0, |bits, k| bits | u32::from(enters[k] <= leaves[k]) << k)
+    }
+
+    /// A time of the ray's as one of the line's here, and no less.
+    fn at_most(&self, t: f64) -> f32 {
+        let units = (t * self.speed - self.begins) * (1.0 + SINGLE) + SINGLE + self.begins * 1e-12;
+        (units as f32).min(self.length)
+    }
+
+    /// Calls `meet` with the triangles whose boxes are met, roughly nearest first, up to the time that it returns.
+    #[inline(always)]
+    fn nearest_first(&self, mesh: &TriangleTree<'_>, meet: &mut impl FnMut(u32) -> f64) {
+        let tree = mesh.tree;
+        let mut later = [(0.0f32, Place { level: 0, number: 0 }); LATER];
+        let mut count = 0;
+        let mut until = self.length;
+        let mut next = tree.root();
+        while let Some(place) = next {
+            let [enters, leaves] = self.stays(tree.node(place), until);
+            let mut parts = (0..WIDTH).fold(0, |bits, k| bits | u32::from(enters[k] <= leaves[k]) << k);
+            if place.level == 0 {
+                while parts != 0 {
+                    let k = parts.trailing_zeros() as usize;
+                    parts &= parts - 1;
+                    if let Some(triangle) = tree.triangle(place, k) {
+                        until = until.min(self.at_most(meet(triangle)));
+                    }
+                }
+            } else {
+                let first = count;
+                while parts != 0 {
+                    let k = parts.trailing_zeros() as usize;
+                    parts &= parts - 1;
+                    // The nearest last.
+                    let mut at = count;
+                    while at > first && later[at - 1].0 < enters[k] {
+                        later[at] = later[at - 1];
+                        at -= 1;
+                    }
+                    later[at] = (enters[k], place.child(k));
+                    count += 1;
+                }
+            }
+            next = loop {
+                let Some(last) = count.checked_sub(1) else { return };
+                count = last;
+                let (enters, place) = later[last];
+                if enters <= until * TIMES {
+                    break Some(place);
+                }
+            };
+        }
+    }
+}
+
+/// What a line makes of a triangle.
+enum Met {
+    No,
+    At(Hit),
+    Unsure,
+}
+
+/// A half-line as it is given.
+struct Line<'m> {
+    mesh: &'m TriangleMesh,
+    from: Point,
+    direction: [[f64; 2]; 3],
+    /// The direction, rounded.
+    way: Point,
+    /// The sum of its magnitudes.
+    size: f64,
+    /// How far the surface may lie from the mesh along an axis.
+    displacement: f64,
+    shift: Shift,
+}
+
+/// A triangle's corners as seen from where the line begins.
+struct Seen {
+    ends: [Point; 3],
+    /// Their greatest magnitude, if it matters.
+    reach: f64,
+}
+
+impl<'m> Line<'m> {
+    fn new(mesh: &'m TriangleMesh, ray: &Ray, shift: Shift) -> Line<'m> {
+        let way = ray.direction.map(|[high, _]| high);
+        let size = way.iter().map(|c| c.abs()).sum();
+        let displacement = mesh.displacement();
+        Line { mesh, from: ray.from, direction: ray.direction, way, size, displacement, shift }
+    }
+
+    fn meets(&self, triangle: u32) -> Met {
+        let corners = corners(self.mesh, triangle);
+        let ends: [Point; 3] = corners.map(|corner| array(|axis| corner[axis] - self.from[axis]));
+        let mut reach = 0.0;
+        if self.displacement > 0.0 {
+            reach = ends.iter().flatten().fold(0.0, |most: f64, c| most.max(c.abs()));
+        }
+        let seen = Seen { ends, reach };
+        let [a, b, c] = &seen.ends;
+        let sides = [[a, b], [b, c], [c, a]].map(|[p, q]| self.side(&seen, p, q));
+        let [Some(one), Some(two), Some(three)] = sides else {
+            return if may_pass(sides) { self.closer(triangle, &corners, &seen, sides) } else { Met::No };
+        };
+        if one != two || two != three {
+            return Met::No;
+        }
+        self.passed(triangle, &corners, &seen, -one)
+    }
+
+    /// On which side the line passes an edge, if that is sure.
+    #[inline(always)]
+    fn side(&self, seen: &Seen, p: &Point, q: &Point) -> Option<i32> {
+        let (value, magnitude) = determinant(&self.way, p, q);
+        let mut wrong = ROUNDING * magnitude;
+        if self.displacement > 0.0 {
+            wrong += 2.5 * self.size * self.displacement * (2.0 * seen.reach + self.displacement);
+        }
+        if value > wrong {
+            Some(1)
+        } else if value < -wrong {
+            Some(-1)
+        } else {
+            None
+        }
+    }
+
+    /// The same where doubles do not tell.
+    #[cold]
+    fn closer(&self, triangle: u32, corners: &[Point; 3], seen: &Seen, sides: [Option<i32>; 3]) -> Met {
+        if self.displacement > 0.0 {
+            return Met::Unsure;
+        }
+        let own: [i32; 3] = array(|k| sides[k].unwrap_or_else(|| self.exact_side(corners, k)));
+        if own.contains(&1) && own.contains(&-1) {
+            return Met::No;
+        }
+        if own == [0; 3] {
+            return self.along(triangle, corners);
+        }
+        let shifted: [i32; 3] = array(|k| if own[k] == 0 { self.shifted_side(corners, k) } else { own[k] });
+        let step = if shifted == [shifted[0]; 3] { -shifted[0] } else { 0 };
+        self.passed(triangle, corners, seen, step)
+    }
+
+    fn exact_way(&self) -> [Expansion; 3] {
+        self.direction.map(Expansion::sum)
+    }
+
+    /// Exactly: on which side the line passes edge k; 0 if it meets the edge's line.
+    fn exact_side(&self, corners: &[Point; 3], k: usize) -> i32 {
+        let seen =
+            |p: &Point| -> [Expansion; 3] { array(|axis| Expansion::sum([p[axis], -self.from[axis]])) };
+        exact_determinant(&self.exact_way(), &seen(&corners[k]), &seen(&corners[(k + 1) % 3])).sign()
+    }
+
+    /// The same of the shifted line: on which side of the plane through the edge and the line it is shifted.
+    fn shifted_side(&self, corners: &[Point; 3], k: usize) -> i32 {
+        let (p, q) = (&corners[k], &corners[(k + 1) % 3]);
+        let back: [Expansion; 3] = array(|axis| Expansion::sum([p[axis], -q[axis]]));
+        let way = self.exact_way();
+        let part = |axis: usize| {
+            let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+            back[i].times(&way[j]).minus(&back[j].times(&way[i])).sign()
+        };
+        self.shift.side(part)
+    }
+
+    /// A triangle that the line meets in one point; by what the winding number changes if it is passed.
+    fn passed(&self, triangle: u32, corners: &[Point; 3], seen: &Seen, step: i32) -> Met {
+        let [a, b, c] = corners;
+        let edge = |p: &Point| -> Point { array(|axis| p[axis] - a[axis]) };
+        let (u, v) = (edge(b), edge(c));
+        // t = n · (a − from) / n · d
+        let (height, of_height) = determinant(&seen.ends[0], &u, &v);
+        let (slope, of_slope) = determinant(&self.way, &u, &v);
+        let mut wrong = ROUNDING * of_height;
+        if self.displacement > 0.0 {
+            // The line meets the surface that near to a point of the triangle.
+            let (area, of_area) = size_of_normal(&u, &v);
+            wrong += (area + ROUNDING * of_area) * self.displacement * (1.0 + 1e-9);
+        }
+        let sure = slope.abs() - ROUNDING * of_slope;
+        let t = height / slope;
+        let error = 1.01 * ((wrong + t.abs() * ROUNDING * of_slope) / sure) + 2.0 * f64::EPSILON * t.abs();
+        let known = if self.displacement == 0.0 && self.is_short(corners, height, slope) {
+            quotient(height, slope)
+        } else if sure > 0.0 {
+            Interval::new(t - error, t + error)
+        } else {
+            None
+        };
+        let known = known.filter(|t| t.lower > 0.0 || t.upper < 0.0);
+        match known {
+            Some(t) if t.upper < 0.0 => Met::No,
+            Some(t) => Met::At(Hit { t, step, triangle }),
+            None => self.passed_exactly(triangle, corners, step),
+        }
+    }
+
+    /// Whether height and slope of a triangle were computed without rounding, because all numbers have few digits.
+    #[inline(always)]
+    fn is_short(&self, corners: &[Point; 3], height: f64, slope: f64) -> bool {
+        // (As a rule one of two numbers tells that they have many.)
+        const DIGITS: u64 = (1 << 16) - 1;
+        if (height.to_bits() | slope.to_bits()) & DIGITS != 0 || slope == 0.0 {
+            return false;
+        }
+        // Differences have a bit more, products of three have the sum of their bits, and sums of six three more: 51.
+        const BITS: i32 = 15;
+        let along = self.direction.map(|[high, _]| high);
+        let is_whole = self.direction.iter().all(|&[_, low]| low == 0.0);
+        let points = corners.iter().chain([&self.from]).flatten().copied();
+        is_whole && width_of(points) <= BITS && width_of(along) <= BITS
+    }
+
+    /// The same of a triangle that is steep, or near to where the line begins.
+    #[cold]
+    fn passed_exactly(&self, triangle: u32, corners: &[Point; 3], step: i32) -> Met {
+        if self.displacement > 0.0 {
+            return Met::Unsure;
+        }
+        let [a, b, c] = corners;
+        let minus =
+            |p: &Point, q: &Point| -> [Expansion; 3] { array(|axis| Expansion::sum([p[axis], -q[axis]])) };
+        let (u, v) = (minus(b, a), minus(c, a));
+        let height = exact_determinant(&minus(a, &self.from), &u, &v);
+        let slope = exact_determinant(&self.exact_way(), &u, &v);
+        let mut ahead = height.sign() * slope.sign();
+        let t = if ahead == 0 { 0.0 } else { height.estimate() / slope.estimate() };
+        // Estimates are off by two roundings each, and their quotient by one more.
+        let error = 8.0 * f64::EPSILON * t.abs();
+        let Some(mut t) = Interval::new(t - error, t + error) else { return Met::Unsure };
+        if ahead < 0 {
+            return Met::No;
+        }
+        let mut step = step;
+        if ahead == 0 {
+            // The line begins on the triangle, and its shifted beginning lies on one side.
+            let part = |axis: usize| {
+                let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+                u[i].times(&v[j]).minus(&u[j].times(&v[i])).sign()
+            };
+            ahead = -self.shift.side(part) * slope.sign();
+            if ahead < 0 {
+                step = 0;
+            }
+            t = Interval::exactly(0.0);
+        }
+        Met::At(Hit { t, step, triangle })
+    }
+
+    /// A triangle in whose plane the line runs, or whose corners lie on one line with a point of it.
+    fn along(&self, triangle: u32, corners: &[Point; 3]) -> Met {
+        let mut stay = Interval::between(0.0, f64::INFINITY);
+        for axis in 0..3 {
+            let at = corners.map(|corner| corner[axis]);
+            let (low, high) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]));
+            let [along, rest] = self.direction[axis];
+            let from = Interval::exactly(self.from[axis]);
+            let to = [low, high].map(|plane| Interval::exactly(plane).minus(from));
+            let passes = if along == 0.0 {
+                if low > self.from[axis] || high < self.from[axis] {
+                    return Met::No;
+                }
+                continue;
+            } else {
+                let speed = Interval::exactly(along).plus(Interval::exactly(rest));
+                let over = |to: Interval| {
+                    if along > 0.0 { to.over(speed) } else { to.negated().over(speed.negated()) }
+                };
+                over(to[0]).joined(over(to[1]))
+            };
+            match stay.common(passes) {
+                Some(both) => stay = both,
+                None => return Met::No,
+            }
+        }
+        match self.between_edges(corners, stay) {
+            Some(t) => Met::At(Hit { t, step: 0, triangle }),
+            None => Met::No,
+        }
+    }
+
+    /// Which part of a stay in a triangle's plane the line spends between its edges, at the most: seen along the axis along which
+    /// the triangle is largest.
+    fn between_edges(&self, corners: &[Point; 3], mut stay: Interval) -> Option<Interval> {
+        let exactly = Interval::exactly;
+        let minus = |p: f64, q: f64| exactly(p).minus(exactly(q));
+        let w = axis_of(corners);
+        let (u, v) = ((w + 1) % 3, (w + 2) % 3);
+        let turns = cross_sign([&corners[0], &corners[1]], [&corners[0], &corners[2]], w);
+        if turns == 0 {
+            return Some(stay);
+        }
+        let way = self.direction.map(|[high, low]| exactly(high).plus(exactly(low)));
+        for k in 0..3 {
+            let (p, q) = (&corners[k], &corners[(k + 1) % 3]);
+            let edge = [minus(q[u], p[u]), minus(q[v], p[v])];
+            // How far on the inner side of the edge it begins, and how fast it goes inward.
+            let side = |[x, y]: [Interval; 2]| {
+                let side = edge[0].times(y).minus(edge[1].times(x));
+                if turns > 0 { side } else { side.negated() }
+            };
+            let begins = side([minus(self.from[u], p[u]), minus(self.from[v], p[v])]);
+            let goes = side([way[u], way[v]]);
+            let within = if goes.lower > 0.0 {
+                Interval::new(begins.negated().over(goes).lower, f64::INFINITY)
+            } else if goes.upper < 0.0 {
+                Interval::new(f64::NEG_INFINITY, begins.over(goes.negated()).upper)
+            } else if begins.upper < 0.0 && goes == exactly(0.0) {
+                None
+            } else {
+                Some(Interval::ALL)
+            };
+            stay = stay.common(within?)?;
+        }
+        Some(stay)
+    }
+}
+
+/// Whether the line may pass between edges of which not all sides are sure.
+fn may_pass(sides: [Option<i32>; 3]) -> bool {
+    !(sides.contains(&Some(1)) && sides.contains(&Some(-1)))
+}
+
+/// How many bits numbers take, as integers of the largest power of two that divides them all.
+fn width_of(numbers: impl IntoIterator<Item = f64>) -> i32 {
+    let (mut least, mut most) = (i32::MAX, i32::MIN);
+    for number in numbers {
+        let bits = number.to_bits() & !(1 << 63);
+        // (Numbers are zero or normal.)
+        if bits != 0 {
+            let exponent = (bits >> 52) as i32;
+            least = least.min(exponent - 52 + (bits | 1 << 52).trailing_zeros() as i32);
+            most = most.max(exponent);
+        }
+    }
+    if most < least { 0 } else { most - least + 1 }
+}
+
+/// The quotient of two numbers, rounded outward.
+fn quotient(a: f64, b: f64) -> Option<Interval> {
+    let t = a / b;
+    let is_exact = two_product(t, b) == (a, 0.0);
+    if is_exact { Some(Interval::exactly(t)) } else { Interval::new(t.next_down(), t.next_up()) }
+}
+
+/// The sum of the magnitudes of u × v, and that of its products.
+fn size_of_normal(u: &Point, v: &Point) -> (f64, f64) {
+    (0..3).fold((0.0, 0.0), |(size, magnitude), k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let (left, right) = (u[i] * v[j], u[j] * v[i]);
+        (size + (left - right).abs(), magnitude + left.abs() + right.abs())
+    })
+}
+
+/// d · (p × q), and the sum of the magnitudes of its products.
+#[inline(always)]
+fn determinant(d: &Point, p: &Point, q: &Point) -> (f64, f64) {
+    let (mut value, mut magnitude) = (0.0, 0.0);
+    for k in 0..3 {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let (left, right) = (p[i] * q[j], p[j] * q[i]);
+        value += d[k] * (left - right);
+        magnitude += d[k].abs() * (left.abs() + right.abs());
+    }
+    (value, magnitude)
+}
+
+fn exact_determinant(d: &[Expansion; 3], p: &[Expansion; 3], q: &[Expansion; 3]) -> Expansion {
+    (0..3).fold(Expansion::default(), |sum, k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        sum.plus(&p[i].times(&q[j]).minus(&p[j].times(&q[i])).times(&d[k]))
+    })
+}

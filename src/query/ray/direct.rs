@@ -1,0 +1,150 @@
+//! Rays of solids that tell where a ray goes in and out.
+
+use super::line::{Line, Passage};
+use super::search::unit;
+use super::{Obstacle, RayHit, RaySpans};
+use crate::error::Error;
+use crate::lattice::{Cell, Interval, axes};
+use crate::memory;
+use crate::solid::RayTrace;
+use alloc::vec::Vec;
+
+/// What a ray does for a while.
+#[derive(Clone, Copy)]
+struct Piece {
+    from: f64,
+    to: f64,
+    /// Nothing if it may be inside or outside.
+    is_inside: Option<bool>,
+    /// Whether it is proven to be inside at some time.
+    is_met: bool,
+    /// The outward normal, and the number, of the surface by which it goes in.
+    entry: Option<([f64; 3], Option<u32>)>,
+}
+
+/// Calls `visit` with what a ray does, one piece after the other, until it returns `false`.
+fn each_piece(trace: &RayTrace, mut visit: impl FnMut(Piece) -> bool) {
+    let is_met = trace.begins_inside;
+    let mut now = Piece { from: 0.0, to: 0.0, is_inside: Some(is_met), is_met, entry: None };
+    for crossing in &trace.crossings {
+        now.to = crossing.t.lower;
+        let within = Piece {
+            from: crossing.t.lower,
+            to: crossing.t.upper,
+            is_inside: None,
+            is_met: crossing.is_met,
+            entry: Some((crossing.normal, crossing.surface)),
+        };
+        if !visit(now) || !visit(within) {
+            return;
+        }
+        let is_met = crossing.is_inside_after;
+        now = Piece { from: crossing.t.upper, is_inside: Some(is_met), is_met, ..within };
+    }
+    now.to = trace.until;
+    visit(now);
+}
+
+/// The first places where a ray is stopped in the universe.
+#[derive(Default)]
+pub(super) struct Stops {
+    /// By what may be solid, and the least t of it.
+    outer: Option<RayHit>,
+    /// By what is solid, and the least t of that.
+    inner: Option<RayHit>,
+}
+
+impl Stops {
+    pub(super) fn new(trace: &RayTrace, line: &Line<'_>) -> Stops {
+        let mut stops = Stops::default();
+        let Some(Passage { entry, exit }) = line.passage(Cell::ROOT) else { return stops };
+        let hit = |t: f64, piece: &Piece, begins: f64| {
+            let (normal, surface) = match piece.entry {
+                Some((normal, surface)) if piece.from > begins => (unit(normal), surface),
+                _ => (line.face(&entry), None),
+            };
+            let cell = cell_at(line, t);
+            RayHit { t: Interval::exactly(t), cell, normal, surface }
+        };
+        each_piece(trace, |piece| {
+            if piece.from > exit.t.upper {
+                return false;
+            }
+            if piece.is_inside != Some(false) && stops.outer.is_none() && piece.to >= entry.t.lower {
+                let t = piece.from.max(entry.t.lower);
+                stops.outer = Some(hit(t, &piece, entry.t.lower));
+            }
+            if piece.is_inside == Some(true) {
+                let (t, until) = (piece.from.max(entry.t.upper), piece.to.min(exit.t.lower));
+                if t < until || t == until && piece.from == piece.to {
+                    stops.inner = Some(hit(t, &piece, entry.t.upper));
+                }
+            } else if piece.is_met && entry.t.upper <= piece.from && piece.to <= exit.t.lower {
+                stops.inner = Some(hit(piece.to, &piece, entry.t.upper));
+            }
+            stops.inner.is_none()
+        });
+        stops
+    }
+
+    /// The answer to a query.
+    pub(super) fn hit(self, on: Obstacle) -> Option<RayHit> {
+        let Stops { outer, inner } = self;
+        let found = match on {
+            Obstacle::Full => inner?,
+            Obstacle::Upper => outer?,
+        };
+        let upper = inner.map_or(f64::INFINITY, |hit| hit.t.upper);
+        let lower = outer?.t.lower.min(upper);
+        Some(RayHit { t: Interval::between(lower, upper), ..found })
+    }
+
+    /// Whether the ray is surely stopped, and whether it may be.
+    pub(super) fn are(&self) -> (bool, bool) {
+        (self.inner.is_some(), self.outer.is_some())
+    }
+}
+
+/// The finest cell of the universe where a ray is at a time, but for rounding.
+fn cell_at(line: &Line<'_>, t: f64) -> Cell {
+    let frame = line.frame;
+    let at = axes(|axis| {
+        let [along, rest] = line.ray.direction[axis];
+        let at = frame.scaled(axis, line.ray.from[axis] + t * along + t * rest);
+        // (What is no number lies at the lower end.)
+        (at.max(0.0) as u32).min(frame.cells() - 1)
+    });
+    Cell { level: frame.depth(), at }
+}
+
+/// The intervals in which a ray is in the solid and in the universe.
+pub(super) fn spans(trace: &RayTrace, line: &Line<'_>) -> Result<RaySpans, Error> {
+    let mut spans = RaySpans { inner: Vec::new(), outer: Vec::new() };
+    let Some(Passage { entry, exit }) = line.passage(Cell::ROOT) else { return Ok(spans) };
+    let mut added = Ok(());
+    each_piece(trace, |piece| {
+        if piece.is_inside != Some(false) {
+            let outer = Interval::new(piece.from.max(entry.t.lower), piece.to.min(exit.t.upper));
+            added = add(&mut spans.outer, outer);
+        }
+        let is_point = piece.is_met && piece.from == piece.to;
+        if (piece.is_inside == Some(true) || is_point) && added.is_ok() {
+            let inner = Interval::new(piece.from.max(entry.t.upper), piece.to.min(exit.t.lower));
+            added = add(&mut spans.inner, inner);
+        }
+        added.is_ok()
+    });
+    added.map(|()| spans)
+}
+
+/// Adds a span, which as a rule goes on where the last one ended.
+fn add(spans: &mut Vec<Interval>, span: Option<Interval>) -> Result<(), Error> {
+    match (span, spans.last_mut()) {
+        (None, _) => Ok(()),
+        (Some(span), Some(last)) if span.lower <= last.upper => {
+            *last = last.joined(span);
+            Ok(())
+        }
+        (Some(span), _) => memory::push(spans, span),
+    }
+}

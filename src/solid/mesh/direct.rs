@@ -1,0 +1,218 @@
+//! Rays, points and distances, answered for the whole mesh without a descent through cells.
+//!
+//! The winding number of a point of a half-line is what the triangles ahead of it take away until infinity, where it is zero.
+//! So what a half-line passes through (`mesh/pierce`) tells winding numbers all along it, and where the fill rule's answer
+//! changes is the boundary: facets inside of overlapping bodies are none. Between triangles that are passed within each other's
+//! rounding nothing is told.
+//!
+//! Off the surface the shifted half-line's winding numbers are those of the half-line itself. Where that only touches the
+//! surface, its points belong to the solid if points on any side do: it is shifted into all octants. Where all of these run
+//! outside, next to a sharp corner, nothing is told.
+//!
+//! All of it is for closed meshes. An open one bounds the solid beside its triangles, too.
+
+use crate::error::Error;
+use crate::lattice::{Interval, Ray};
+use crate::memory;
+use crate::mesh::{FillRule, Hit, Shift, Sides, TriangleTree, Wanted};
+use crate::solid::{NearestSurface, RayCrossing, RayQuestion, RayTrace};
+use alloc::vec::Vec;
+
+/// Lists that are kept from question to question.
+#[derive(Default)]
+pub(super) struct Direct {
+    /// Triangles that are passed through.
+    hits: Vec<Hit>,
+    /// Triangles that are touched.
+    touched: Vec<Hit>,
+}
+
+/// A closed mesh with the tree of its triangles.
+#[derive(Clone, Copy)]
+pub(super) struct Tracer<'m> {
+    pub(super) tree: TriangleTree<'m>,
+    pub(super) fill: FillRule,
+}
+
+impl Tracer<'_> {
+    /// Where a ray goes in and out. Nothing is told where the surface may lie beside the mesh, and the ray comes near to an edge.
+    pub(super) fn trace(&self, direct: &mut Direct, question: RayQuestion<'_>) -> Result<(), Error> {
+        let RayQuestion { ray, is_first_enough, trace } = question;
+        trace.clear();
+        let [first, others @ ..] = Shift::ALL;
+        // From outside the first triangle leads in, unless it leads to a negative winding number that does not count.
+        if is_first_enough && self.fill != FillRule::Positive && self.tree.way_out(&ray.from).is_none() {
+            let is_sure = self.tree.pierced(ray, Wanted::First, first, &mut direct.hits)?;
+            if !is_sure || self.follow(direct, true, trace)? && !trace.has_touches() {
+                return Ok(());
+            }
+            trace.clear();
+        }
+        if !self.tree.pierced(ray, Wanted::All, first, &mut direct.hits)? {
+            return Ok(());
+        }
+        self.follow(direct, false, trace)?;
+        for shift in others {
+            if !trace.has_touches() {
+                break;
+            }
+            self.tree.pierced(ray, Wanted::All, shift, &mut direct.hits)?;
+            let mut other = RayTrace::UNKNOWN;
+            self.follow(direct, false, &mut other)?;
+            *trace = trace.united(&other)?;
+        }
+        Ok(())
+    }
+
+    /// Follows the winding number along the triangles that were hit: all of them, or those up to the first that is passed by a
+    /// ray from outside. `false` if the trace is to go on behind these.
+    fn follow(
+        &self,
+        direct: &mut Direct,
+        is_first_enough: bool,
+        trace: &mut RayTrace,
+    ) -> Result<bool, Error> {
+        let Direct { hits, touched } = direct;
+        touched.clear();
+        for hit in hits.iter().filter(|hit| hit.step == 0) {
+            memory::push(touched, *hit)?;
+        }
+        hits.retain(|hit| hit.step != 0);
+        for list in [&mut *hits, &mut *touched] {
+            list.sort_unstable_by(|a, b| {
+                let by_time = a.t.lower.total_cmp(&b.t.lower).then(a.t.upper.total_cmp(&b.t.upper));
+                by_time.then(a.triangle.cmp(&b.triangle))
+            });
+        }
+        let steps = |hits: &[Hit]| hits.iter().map(|hit| hit.step).sum::<i32>();
+        let mut winding = if is_first_enough { 0 } else { -steps(hits) };
+        trace.begins_inside = self.fill.encloses(winding);
+        let (mut from, mut rest) = (0.0, &hits[..]);
+        let mut touched = Touched { hits: touched, tree: &self.tree };
+        while let Some((first, more)) = rest.split_first() {
+            // Those that are passed at the same time, as far as rounding tells.
+            let mut until = first.t.upper;
+            let count = more.iter().take_while(|hit| {
+                let meets = hit.t.lower <= until;
+                until = if meets { until.max(hit.t.upper) } else { until };
+                meets
+            });
+            let (together, behind) = rest.split_at(1 + count.count());
+            rest = behind;
+            // Whatever their order is, the winding number does not leave this range.
+            let falls = together.iter().map(|hit| hit.step.min(0)).sum::<i32>();
+            let rises = together.iter().map(|hit| hit.step.max(0)).sum::<i32>();
+            let before = self.fill.encloses(winding);
+            // It is inside somewhere in between if any first step leads there.
+            let is_met = before || together.iter().all(|hit| self.fill.encloses(winding + hit.step));
+            let changes = (winding + falls..=winding + rises).any(|w| self.fill.encloses(w) != before);
+            let first_changed = self.crossed(together, winding);
+            winding += steps(together);
+            if !changes {
+                continue;
+            }
+            let t = Interval::between(first.t.lower, until);
+            if !before {
+                touched.note(from, t.lower, trace)?;
+            }
+            let is_inside_after = self.fill.encloses(winding);
+            let normal = self.tree.normal(first_changed.triangle);
+            // A way that leaves the solid and passes the triangle from behind leaves along its normal.
+            let is_along = first_changed.step < 0;
+            let normal = if is_along == before { normal } else { normal.map(|n| -n) };
+            let (is_met, surface) = (is_met || is_inside_after, Some(first_changed.triangle));
+            trace.push(RayCrossing { t, is_inside_after, is_met, normal, surface })?;
+            from = t.upper;
+            if is_first_enough && is_inside_after {
+                trace.until = from;
+                return Ok(true);
+            }
+        }
+        if is_first_enough && !hits.is_empty() {
+            return Ok(false);
+        }
+        if !self.fill.encloses(winding) {
+            touched.note(from, f64::INFINITY, trace)?;
+        }
+        trace.until = f64::INFINITY;
+        Ok(true)
+    }
+
+    /// The first of some triangles at which the fill rule's answer changes, if they are passed in their order.
+    fn crossed(&self, together: &[Hit], mut winding: i32) -> Hit {
+        let before = self.fill.encloses(winding);
+        let found = together.iter().find(|hit| {
+            winding += hit.step;
+            self.fill.encloses(winding) != before
+        });
+        *found.unwrap_or(&together[0])
+    }
+
+    /// Whether the solid holds a point; nothing of a point on the surface of the mesh, or nearer to it than is known.
+    pub(super) fn is_inside(&self, direct: &mut Direct, point: &[f64; 3]) -> Result<Option<bool>, Error> {
+        if !point.iter().all(|c| c.is_finite()) {
+            return Ok(None);
+        }
+        let Some((axis, sign)) = self.tree.way_out(point) else { return Ok(Some(self.fill.encloses(0))) };
+        let ray = Ray::along_axis(*point, axis, sign);
+        let hits = &mut direct.hits;
+        if !self.tree.pierced(&ray, Wanted::All, Shift::ALL[0], hits)?
+            || hits.iter().any(|hit| hit.t.lower <= 0.0)
+        {
+            return Ok(None);
+        }
+        Ok(Some(self.fill.encloses(-hits.iter().map(|hit| hit.step).sum::<i32>())))
+    }
+
+    /// The nearest point of the boundary. Nothing if it is not known whether the nearest triangle belongs to it.
+    pub(super) fn nearest(
+        &self,
+        direct: &mut Direct,
+        sides: &Sides,
+        point: &[f64; 3],
+    ) -> Result<Option<NearestSurface>, Error> {
+        let (tree, displacement) = (&self.tree, self.tree.displacement());
+        let may_bound = |triangle: u32| !sides.is_flat(triangle) && sides.of(triangle) != Some(0);
+        let Some((near, mut distance)) = tree.nearest_of(point, may_bound) else { return Ok(None) };
+        // (One that intersects others may lie within the solid, or outside of it.)
+        if sides.of(near.triangle).is_none() {
+            return Ok(None);
+        }
+        if displacement > 0.0 {
+            // Along each axis the surface may lie that far from the mesh.
+            let moved = Interval::exactly(3.0).root().times(Interval::exactly(displacement)).upper;
+            distance = distance.plus(Interval::between(-moved, moved)).not_negative();
+        }
+        let is_inside = if distance.lower > 0.0 { self.is_inside(direct, point)? } else { None };
+        let (point, surface) = (tree.point_of(&near), Some(near.triangle));
+        Ok(Some(NearestSurface { distance, is_inside, point, surface }))
+    }
+}
+
+/// Triangles that are touched, in the order of time.
+struct Touched<'t> {
+    hits: &'t [Hit],
+    tree: &'t TriangleTree<'t>,
+}
+
+impl Touched<'_> {
+    /// Adds those between two times, during which the ray is outside.
+    fn note(&mut self, from: f64, to: f64, trace: &mut RayTrace) -> Result<(), Error> {
+        let mut end = from;
+        for hit in self.hits.iter().take_while(|hit| hit.t.lower <= to) {
+            let (lower, upper) = (hit.t.lower.max(end), hit.t.upper.min(to));
+            if lower <= upper && hit.t.upper >= from {
+                let (normal, surface) = (self.tree.normal(hit.triangle), Some(hit.triangle));
+                trace.push(RayCrossing {
+                    t: Interval::between(lower, upper),
+                    is_inside_after: false,
+                    is_met: false,
+                    normal,
+                    surface,
+                })?;
+                end = upper;
+            }
+        }
+        Ok(())
+    }
+}
