@@ -58,8 +58,10 @@ impl Default for DexelOptions {
 /// by at most 2^-31 of the universe's edge, or 2^-36 with [`DexelEnds::Double`]. Intervals shorter than this vanish.
 ///
 /// So it is with closed meshes, under any fill rule, with half-spaces (planes, quadrics, powers, tori) and expressions of
-/// them, and with stored octrees. Of other solids (expressions with other solids as operands, transforms, functions of a
-/// host, volumes), and of open meshes around their holes, cells and samples are asked. Ends between centres on different sides
+/// them, and with stored octrees. Around the holes of open meshes, too, every crossing of a triangle is an end if it changes
+/// the side; where the solid is bounded by no triangle, it has an end between two centres on different sides, where the
+/// winding number passes one half. Of other solids (expressions with other solids as operands, transforms, functions of a
+/// host, volumes) cells and samples are asked. Ends between centres on different sides
 /// are narrowed down by cells to a depth of 20. So are ends between a face of the universe and the centre next to it, if the
 /// centre lies inside and the ray does not where it meets the face. Walls between two neighbouring centres on one side are not
 /// seen. With a frame of depth 20 ends of such solids lie in the planes between cells. Surfaces at ends are numbers of triangles and of half-spaces, the latter in the order
@@ -67,7 +69,8 @@ impl Default for DexelOptions {
 ///
 /// (The method is that of Gao, Zhang and Hou 2007 for polygons, with exact decisions at edges and vertices.)
 ///
-/// O(rays + crossings), and the descent to where the solid knows rays. The same for any number of threads.
+/// O(rays + crossings), and the descent to where the solid knows rays. Each end that an open mesh has without a triangle takes
+/// some sums over the edges of all holes. The same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if no direction is asked for, or for [`Rule::Certified`], as intervals cannot be undecided;

@@ -8,5 +8,6 @@ mod dexel_algebra;
 mod ends;
 mod faces;
 mod models;
+mod open;
 mod real_meshes;
 mod surface;

@@ -15,9 +15,9 @@ use core::ops::Range;
 
 /// A ray that pierces a triangle.
 #[derive(Debug, Clone, Copy)]
-struct Hit {
+pub(super) struct Hit {
     /// In finest cells from the universe's lower face.
-    at: f64,
+    pub(super) at: f64,
     ray: u32,
     /// The triangle, and in the lowest bit whether the winding number grows.
     triangle: u32,
@@ -28,8 +28,14 @@ impl Hit {
         Hit { at, ray, triangle: triangle << 1 | u32::from(step > 0) }
     }
 
+    /// What is pierced.
+    pub(super) fn triangle(&self) -> u32 {
+        self.triangle >> 1
+    }
+
+    /// By how much the winding number changes.
     #[inline(always)]
-    fn step(&self) -> i32 {
+    pub(super) fn step(&self) -> i32 {
         2 * (self.triangle & 1) as i32 - 1
     }
 }
@@ -151,18 +157,18 @@ pub(super) struct Rays<'t> {
 }
 
 /// The rays of a beam in the mesh's integers.
-struct Bundle {
+pub(super) struct Bundle {
     /// The axis that rays run along, and the other two, ascending.
-    w: usize,
-    u: usize,
-    v: usize,
-    columns: Range<i32>,
-    rows: Range<i32>,
-    span: Range<i32>,
+    pub(super) w: usize,
+    pub(super) u: usize,
+    pub(super) v: usize,
+    pub(super) columns: Range<i32>,
+    pub(super) rows: Range<i32>,
+    pub(super) span: Range<i32>,
 }
 
 impl Bundle {
-    fn new(beam: &Beam) -> Bundle {
+    pub(super) fn new(beam: &Beam) -> Bundle {
         let [u, v] = OTHERS[beam.axis()];
         let signed = |range: Range<u32>| range.start as i32..range.end as i32;
         let [columns, rows] = beam.rays().map(signed);
@@ -185,10 +191,21 @@ impl Chords {
     /// Adds the intervals of all rays of a beam in a cell.
     pub(super) fn find(&mut self, rays: Rays<'_>, beam: &mut Beam) -> Result<(), Error> {
         let bundle = Bundle::new(beam);
-        self.wind_floor(&rays, &bundle)?;
-        self.pierce(&rays, &bundle)?;
-        self.sort()?;
+        self.trace(&rays, &bundle)?;
         self.walk(&rays, &bundle, beam)
+    }
+
+    /// Finds out where all rays of a beam pierce triangles in a cell.
+    pub(super) fn trace(&mut self, rays: &Rays<'_>, bundle: &Bundle) -> Result<(), Error> {
+        self.wind_floor(rays, bundle)?;
+        self.pierce(rays, bundle)?;
+        self.sort()
+    }
+
+    /// The winding number of a ray's lowest centre, and where the ray pierces triangles, in ascending order.
+    pub(super) fn traced(&self, bundle: &Bundle, column: i32, row: i32) -> (i32, &[Hit]) {
+        let index = bundle.index(column, row);
+        (self.floor[index], &self.sorted[self.starts[index] as usize..self.starts[index + 1] as usize])
     }
 
     /// Winding numbers of the lowest centres on all rays: from the cell's lowest centre along v, then along u.
@@ -351,11 +368,11 @@ impl Chords {
 }
 
 /// The end of an interval at a hit, which starts there or not.
-fn end(placed: &Placed, hit: &Hit, starts: bool, marked: bool) -> BeamEnd {
+pub(super) fn end(placed: &Placed, hit: &Hit, starts: bool, marked: bool) -> BeamEnd {
     if !marked {
         return BeamEnd { at: hit.at, mark: Mark::NONE };
     }
-    let triangle = hit.triangle >> 1;
+    let triangle = hit.triangle();
     let mark = Mark { surface: triangle, normal: encoded(normal_of(placed, triangle)) };
     // The normal of a triangle that is passed upward with step −1 leads up.
     let leads_up = hit.step() < 0;

@@ -6,6 +6,7 @@ use super::direct::{self, Tracer};
 use super::local::View;
 use super::on_frame::{Branch, MeshOnFrame, MeshPart};
 use super::open::Surroundings;
+use super::open_rays::OpenRays;
 use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
 use super::reach;
@@ -79,6 +80,7 @@ pub struct MeshWorker {
     scan: Option<Box<Scan>>,
     chords: Chords,
     direct: direct::Direct,
+    open_rays: OpenRays,
 }
 
 impl MeshSolid {
@@ -313,6 +315,7 @@ impl Classifier for MeshClassifier {
             scan: None,
             chords: Chords::default(),
             direct: direct::Direct::default(),
+            open_rays: OpenRays::default(),
         })
     }
 
@@ -483,12 +486,18 @@ impl Worker for MeshWorker {
     }
 
     fn fill(&mut self, cell: Cell, part: &MeshPart, block: &mut Block) -> Result<bool, Error> {
-        if part.caps.is_some() {
-            return Ok(false);
-        }
-        let MeshWorker { mesh, triangles, scan, .. } = self;
+        let MeshWorker { mesh, triangles, scan, open_rays, .. } = self;
         let (at, _) = extent(cell, mesh.placed.frame.depth());
         let triangles = list(&mesh.roots, triangles, part);
+        if part.caps.is_some() {
+            // (Which cells the boundary of an open surface crosses is asked cell by cell.)
+            if block.planes_mut().is_some() {
+                return Ok(false);
+            }
+            let Some(centres) = block.centres_mut() else { return Ok(false) };
+            mesh.open_centres(open_rays, (triangles, at), *part, centres)?;
+            return Ok(true);
+        }
         let task = Task { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
         let scan = match scan {
             Some(scan) => scan,
@@ -609,12 +618,15 @@ impl MeshWorker {
     }
 
     fn find_chords(&mut self, cell: Cell, part: &MeshPart, beam: &mut Beam) -> Result<bool, Error> {
-        if part.caps.is_some() || self.mesh.placed.count() > Chords::MOST {
+        if self.mesh.placed.count() > Chords::MOST {
             return Ok(false);
         }
-        let MeshWorker { mesh, triangles, chords, .. } = self;
-        let (at, _) = extent(cell, mesh.placed.frame.depth());
+        let MeshWorker { mesh, triangles, open_rays, chords, .. } = self;
+        let (at, size) = extent(cell, mesh.placed.frame.depth());
         let triangles = list(&mesh.roots, triangles, part);
+        if part.caps.is_some() {
+            return mesh.open_chords(open_rays, (triangles, at, size), *part, beam);
+        }
         // Caps come last. They are not counted where the surface's own winding number is known.
         let triangles = &triangles[..triangles.partition_point(|&triangle| !mesh.placed.is_cap(triangle))];
         let rays = Rays { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };

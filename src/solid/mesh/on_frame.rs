@@ -54,6 +54,13 @@ impl Branch {
     }
 }
 
+impl MeshPart {
+    /// Of a cell of which nothing is known but the winding number of its lowest centre, of the surface with its caps.
+    pub(super) fn unknown(winding: i32) -> MeshPart {
+        MeshPart { first: 0, count: 0, winding, caps: Some(Branch::UNKNOWN) }
+    }
+}
+
 impl MeshOnFrame {
     /// Whether no triangle lies in a plane between cells. Exact.
     pub(super) fn has_no_triangle_in_planes(&self) -> bool {

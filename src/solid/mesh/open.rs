@@ -10,6 +10,8 @@
 //! * If the surface does not cut it, its winding number is continuous in the cell, caps or not, and may be
 //!   bounded away from what the fill rule asks for: FULL or EMPTY.
 //! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
+//!
+//! Centres and rays are not asked cell by cell, but by pieces that are as large as expansions are good for (`open_rays`).
 
 use super::on_frame::{Branch, MeshOnFrame, MeshPart};
 use super::slab;
@@ -68,7 +70,7 @@ impl Surroundings {
 }
 
 /// The caps' winding number at the centre of a finest cell.
-fn at_centre(mesh: &MeshOnFrame, at: [i32; 3], enough: f64) -> Range {
+pub(super) fn at_centre(mesh: &MeshOnFrame, at: [i32; 3], enough: f64) -> Range {
     let local = mesh.caps.local(&mesh.placed, middle(at, 1), 0.0, enough, Some(at));
     local.map_or(Range::UNKNOWN, |local| local.within(0.0))
 }
@@ -213,7 +215,7 @@ impl MeshOnFrame {
     }
 
     /// By how much a winding number exceeds what the fill rule asks for.
-    fn excess(&self, winding: f64) -> f64 {
+    pub(super) fn excess(&self, winding: f64) -> f64 {
         match self.fill {
             FillRule::Positive => winding - 0.5,
             FillRule::NonZero | FillRule::EvenOdd => winding.abs() - 0.5,

@@ -124,6 +124,11 @@ impl Placed {
         (self.mesh.triangles().len() + self.caps.len()) as u32
     }
 
+    /// The number of a cap among all triangles.
+    pub(super) fn cap(&self, cap: u32) -> u32 {
+        self.mesh.triangles().len() as u32 + cap
+    }
+
     pub(super) fn is_cap(&self, triangle: u32) -> bool {
         triangle as usize >= self.mesh.triangles().len()
     }

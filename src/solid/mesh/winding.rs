@@ -19,6 +19,7 @@
 
 use super::crossing::Projection;
 use super::placed::{Placed, ranks};
+use super::rim::Rim;
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::exact::{floor, sqrt};
@@ -31,6 +32,12 @@ use glam::{DMat3, DVec2, DVec3};
 /// Triangles that are summed one by one.
 const LEAF: usize = 4;
 
+/// A cap is far from a ball if it is so many radii from its middle.
+const APART: f64 = 6.0;
+
+/// A rim is close to a ball if it is so many radii from its middle.
+const CLOSE: f64 = 1.5;
+
 const SCALE: f64 = 1.0 / (4.0 * PI);
 
 /// A tree of bounding spheres over the caps of a surface, which are in the tree's order.
@@ -39,7 +46,10 @@ pub(super) struct Caps {
     /// Bit i: the edge from corner i to corner i + 1 is one of the surface's boundary.
     rims: Vec<u8>,
     sizes: Vec<Size>,
+    /// Which cap lies beyond each edge that is none of the boundary.
+    beyond: Vec<[u32; 3]>,
     nodes: Vec<Node>,
+    pub(super) rim: Rim,
     /// How far the boundary may lie from where its vertices are placed, in finest cells.
     boundary_error: f64,
     /// Bound of the error of a vertex's position per axis.
@@ -154,7 +164,62 @@ impl Range {
     }
 }
 
+/// For each edge of each cap that is none of the boundary the cap beyond it: one that has the same edge backward. (There may be
+/// several, of different loops. They lie in one place, and each is taken once.)
+fn neighbours(slots: &[Slot]) -> Result<Vec<[u32; 3]>, Error> {
+    let mut edges = memory::with_capacity(3 * slots.len())?;
+    for (cap, (corners, rims)) in slots.iter().enumerate() {
+        for i in (0..3).filter(|i| rims >> i & 1 == 0) {
+            let (a, b) = (corners[i], corners[(i + 1) % 3]);
+            edges.push(([a.min(b), a.max(b)], a > b, cap as u32, i as u8));
+        }
+    }
+    edges.sort_unstable();
+    let mut beyond = memory::filled(slots.len(), [u32::MAX; 3])?;
+    for group in edges.chunk_by(|a, b| a.0 == b.0) {
+        let (forward, backward) = group.split_at(group.partition_point(|edge| !edge.1));
+        for (&(_, _, cap, i), &(_, _, other, k)) in forward.iter().zip(backward) {
+            beyond[cap as usize][i as usize] = other;
+            beyond[other as usize][k as usize] = cap;
+        }
+    }
+    Ok(beyond)
+}
+
+/// How far the origin is from a segment.
+fn segment_distance(a: DVec3, b: DVec3) -> f64 {
+    let edge = b - a;
+    let along = -a.dot(edge) / edge.length_squared();
+    let along = if along.is_nan() { 0.0 } else { along.clamp(0.0, 1.0) };
+    length(a + along * edge)
+}
+
 impl Local {
+    /// Of no caps.
+    pub(super) fn nothing(point: [f64; 3]) -> Local {
+        Local {
+            point: DVec3::from(point),
+            value: 0.0,
+            gradient: DVec3::ZERO,
+            hessian: DMat3::ZERO,
+            value_error: 0.0,
+            gradient_error: 0.0,
+            hessian_error: 0.0,
+            third_by_edges: 0.0,
+            third_by_areas: 0.0,
+            position_sensitivity: 0.0,
+        }
+    }
+
+    /// The same function as seen from another point, good for a ball around that which lies in the one it is of.
+    fn moved(&self, point: [f64; 3], radius: f64) -> Local {
+        let to = DVec3::from(point) - self.point;
+        let Range { value, .. } = self.at(point);
+        let hessian = (self.hessian + self.hessian.transpose()) * 0.5;
+        let value_error = self.error_at(length(to) + radius);
+        Local { value, gradient: self.gradient + hessian * to, hessian, value_error, ..Local::nothing(point) }
+    }
+
     /// In the ball of the given radius around the point it was made for.
     pub(super) fn within(&self, radius: f64) -> Range {
         let change = (length(self.gradient) + 0.5 * sum_of_magnitudes(self.hessian) * radius) * radius;
@@ -191,9 +256,28 @@ impl Local {
 
     /// At the centre of a cell.
     pub(super) fn at_centre(&self, cell: [i32; 3]) -> Range {
-        let to = DVec3::from(cell.map(|a| a as f64 + 0.5)) - self.point;
+        self.at(cell.map(|a| a as f64 + 0.5))
+    }
+
+    /// At a point.
+    pub(super) fn at(&self, point: [f64; 3]) -> Range {
+        let to = DVec3::from(point) - self.point;
         let value = self.value + (self.gradient + 0.5 * (self.hessian * to)).dot(to);
         Range { value, change: 0.0, error: self.error_at(length(to)) }
+    }
+
+    /// By how much the winding number changes on a finest cell's length, about.
+    pub(super) fn steepness(&self) -> f64 {
+        length(self.gradient)
+    }
+
+    /// Along an axis, as a function of how far a point lies from `from`: the coefficients of 1, x and x².
+    pub(super) fn along(&self, axis: usize, from: [f64; 3]) -> [f64; 3] {
+        let to = DVec3::from(from) - self.point;
+        let symmetric = (self.hessian + self.hessian.transpose()) * 0.5;
+        let hessian_step = symmetric * to;
+        let value = self.value + (self.gradient + 0.5 * hessian_step).dot(to);
+        [value, (self.gradient + hessian_step)[axis], 0.5 * symmetric.col(axis)[axis]]
     }
 
     fn error_at(&self, distance: f64) -> f64 {
@@ -208,12 +292,16 @@ impl Local {
 impl Caps {
     /// Bytes that the lists take.
     pub(super) fn bytes(&self) -> usize {
-        memory::bytes_of(&self.rims) + memory::bytes_of(&self.sizes) + memory::bytes_of(&self.nodes)
+        memory::bytes_of(&self.rims)
+            + memory::bytes_of(&self.sizes)
+            + memory::bytes_of(&self.beyond)
+            + memory::bytes_of(&self.nodes)
+            + self.rim.bytes()
     }
 
     /// Closes `placed` by caps over the loops of its boundary.
     ///
-    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 250 bytes a cap.
+    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 320 bytes a cap.
     pub(super) fn close(placed: &mut Placed, loops: &Loops) -> Result<Caps, Error> {
         let count = loops.caps();
         let mut caps = Caps::default();
@@ -232,6 +320,7 @@ impl Caps {
             });
         }
         caps.vertex_error = error as f64;
+        caps.rim.vertex_error = caps.vertex_error;
         caps.boundary_error = 2.0 * (caps.vertex_error + placed.displacement);
         caps.nodes.try_reserve_exact(2 * count.div_ceil(LEAF).next_power_of_two())?;
         let at = |vertex: u32| DVec3::from(placed.at(vertex));
@@ -247,6 +336,13 @@ impl Caps {
             let longest = edges.iter().copied().fold(0.0, f64::max) * (1.0 + 1e-9);
             Size { area: length((b - a).cross(c - a)) / 2.0, edges, longest }
         }));
+        for &(corners, rims) in &slots {
+            let ends = corners.map(at);
+            for i in (0..3).filter(|i| rims >> i & 1 != 0) {
+                caps.rim.push([ends[i], ends[(i + 1) % 3]])?;
+            }
+        }
+        caps.beyond = neighbours(&slots)?;
         placed.close(triangles)?;
         Ok(caps)
     }
@@ -303,18 +399,7 @@ impl Caps {
         cell: Option<[i32; 3]>,
     ) -> Option<Local> {
         let reach = if radius > 0.0 { radius + self.boundary_error } else { 0.0 };
-        let mut local = Local {
-            point: DVec3::from(point),
-            value: 0.0,
-            gradient: DVec3::ZERO,
-            hessian: DMat3::ZERO,
-            value_error: 0.0,
-            gradient_error: 0.0,
-            hessian_error: 0.0,
-            third_by_edges: 0.0,
-            third_by_areas: 0.0,
-            position_sensitivity: 0.0,
-        };
+        let mut local = Local::nothing(point);
         let mut turned = DVec2::X;
         let mut next = 0;
         while let Some(node) = self.nodes.get(next) {
@@ -332,6 +417,164 @@ impl Caps {
         local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
         local.value_error += self.boundary_error * local.position_sensitivity;
         Some(local)
+    }
+
+    /// All caps, as a list.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(super) fn list(&self, list: &mut Vec<u32>) -> Result<(), Error> {
+        list.try_reserve(self.sizes.len())?;
+        list.extend(0..self.sizes.len() as u32);
+        Ok(())
+    }
+
+    /// The winding number of the caps that are not `near`, in the ball of `radius` around a point, which lies in the ball that
+    /// `known` is of. That tells of all caps but those of a list; those of them that are far from the ball are added, and the
+    /// others are appended to `near`.
+    ///
+    /// Lists are ascending. A cap that is far from the ball has all its edges far from it, so that derivatives of its own winding
+    /// number are sums over these. Edges between two caps that are added cancel.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(super) fn far(
+        &self,
+        placed: &Placed,
+        known: &Local,
+        list: core::ops::Range<usize>,
+        near: &mut Vec<u32>,
+        (point, radius): ([f64; 3], f64),
+    ) -> Result<Local, Error> {
+        let reach = radius + self.boundary_error;
+        let mut local = known.moved(point, radius);
+        let first = near.len();
+        near.try_reserve(list.len())?;
+        for i in list.clone() {
+            let cap = near[i];
+            let corners =
+                placed.caps[cap as usize].map(|vertex| DVec3::from(placed.at(vertex)) - local.point);
+            let farthest = sqrt(corners.iter().fold(0.0, |most: f64, at| most.max(at.length_squared())));
+            // (Of what is no number nothing is known.)
+            let is_far = farthest - self.sizes[cap as usize].longest > APART * reach;
+            if !is_far {
+                near.push(cap);
+            }
+        }
+        let (list, near) = (&near[list], &near[first..]);
+        let is_new = |cap: u32| list.binary_search(&cap).is_ok() && near.binary_search(&cap).is_err();
+        let mut turned = DVec2::X;
+        let mut next = near.iter().copied().peekable();
+        for &cap in list {
+            if next.next_if_eq(&cap).is_some() {
+                continue;
+            }
+            let added = self
+                .add_cap(placed, cap as usize, reach, None, &mut local, &mut turned)
+                .and_then(|()| self.add_inner_edges(placed, cap as usize, reach, is_new, &mut local));
+            if added.is_none() {
+                local.value_error = f64::INFINITY;
+            }
+        }
+        local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
+        local.value_error += self.boundary_error * local.position_sensitivity;
+        local.position_sensitivity = 0.0;
+        Ok(local)
+    }
+
+    /// The winding number of all caps in the ball of `radius` around the point that `far` is of, which tells of all that are
+    /// not `near`. `None` if the boundary passes through the ball, or comes so near to it that one expansion says little.
+    pub(super) fn whole(&self, placed: &Placed, far: &Local, near: &[u32], radius: f64) -> Option<Local> {
+        let reach = radius + self.boundary_error;
+        let is_close = |&cap: &u32| {
+            let corners = placed.caps[cap as usize];
+            (0..3).any(|i| {
+                let ends = [corners[i], corners[(i + 1) % 3]];
+                let [a, b] = ends.map(|vertex| DVec3::from(placed.at(vertex)) - far.point);
+                self.rims[cap as usize] >> i & 1 != 0 && segment_distance(a, b) < CLOSE * reach
+            })
+        };
+        if near.iter().any(is_close) {
+            return None;
+        }
+        let mut local = *far;
+        let mut turned = DVec2::X;
+        for &cap in near {
+            self.add_cap(placed, cap as usize, reach, None, &mut local, &mut turned)?;
+            let is_near = |cap: u32| near.binary_search(&cap).is_ok();
+            self.add_inner_edges(placed, cap as usize, reach, is_near, &mut local)?;
+        }
+        local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
+        local.value_error += self.boundary_error * local.position_sensitivity;
+        Some(local)
+    }
+
+    /// The winding number at a point of the ball that `far` is of, which tells of all caps that are not `near`. If the point is
+    /// a cell's centre, `cell` says so, as for [`local`](Self::local).
+    pub(super) fn at(
+        &self,
+        placed: &Placed,
+        (far, near): (&Local, &[u32]),
+        point: [f64; 3],
+        cell: Option<[i32; 3]>,
+    ) -> Range {
+        let mut local = Local::nothing(point);
+        let mut turned = DVec2::X;
+        for &cap in near {
+            let is_added = self.turn(placed, cap as usize, &mut local, &mut turned)
+                || self.add_cap(placed, cap as usize, 0.0, cell, &mut local, &mut turned).is_some();
+            if !is_added {
+                return Range::UNKNOWN;
+            }
+        }
+        let far = far.at(point);
+        let value = local.value + libm::atan2(turned.y, turned.x) / (2.0 * PI) + far.value;
+        Range { value, change: 0.0, error: local.error_at(0.0) + far.error }
+    }
+
+    /// Adds half a cap's solid angle to the argument of `turned`, if it is less than a right one and well told, as most are: what
+    /// [`add_cap`](Self::add_cap) does with numbers that are not divided by the corners' distances.
+    #[inline]
+    fn turn(&self, placed: &Placed, cap: usize, sum: &mut Local, turned: &mut DVec2) -> bool {
+        let [a, b, c] = placed.caps[cap].map(|vertex| DVec3::from(placed.at(vertex)) - sum.point);
+        let [far, farther, farthest] = [a, b, c].map(length);
+        let pairs = [farther * farthest, farthest * far, far * farther];
+        let all = pairs[0] * far;
+        let real = all + a.dot(b) * farthest + b.dot(c) * far + c.dot(a) * farther;
+        let imaginary = a.dot(b.cross(c));
+        let size = sqrt(real * real + imaginary * imaginary);
+        let wrong = 64.0 * f64::EPSILON * all + 8.0 * self.vertex_error * (pairs[0] + pairs[1] + pairs[2]);
+        // (False for NaN.)
+        let is_told = real > 0.0 && turned.x > 0.0 && size >= 2.0 * wrong;
+        if is_told {
+            let inverse = 1.0 / size;
+            *turned = turned.rotate(DVec2::new(real, imaginary) * inverse);
+            sum.value_error += wrong * inverse;
+        }
+        is_told
+    }
+
+    /// Adds what those edges of a cap do to the derivatives that are none of the boundary, but for edges beyond which lies a
+    /// cap that is added, too.
+    fn add_inner_edges(
+        &self,
+        placed: &Placed,
+        cap: usize,
+        radius: f64,
+        is_added: impl Fn(u32) -> bool,
+        sum: &mut Local,
+    ) -> Option<()> {
+        let corners = placed.caps[cap];
+        for i in (0..3).filter(|i| self.rims[cap] >> i & 1 == 0) {
+            if is_added(self.beyond[cap][i]) {
+                continue;
+            }
+            let ends = [corners[i], corners[(i + 1) % 3]];
+            let ends = ends.map(|vertex| End::new(DVec3::from(placed.at(vertex)) - sum.point));
+            let cosine = ends[0].direction.dot(ends[1].direction);
+            sum.add_rim(ends, cosine, self.sizes[cap].edges[i], radius)?;
+        }
+        Some(())
     }
 
     /// Adds one cap; half its solid angle to the value or to the argument of `turned`, of modulus 1.

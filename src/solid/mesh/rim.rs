@@ -1,0 +1,111 @@
+//! Winding numbers of caps from the rim alone.
+//!
+//! All surfaces over the same loops have one winding number, but for integers. Of cones from a point infinitely far away
+//! it is a sum over the loops' edges, as smooth beside the caps as anywhere else. It has no error but that of rounding, so
+//! that it tells where a winding number passes one half, however slowly it changes.
+
+use crate::error::Error;
+use crate::lattice::exact::sqrt;
+use crate::memory;
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+use glam::DVec3;
+
+/// Whence cones come: directions that hardly any model has. The second is for points that an edge hides from the first.
+const DIRECTIONS: [DVec3; 3] = [
+    DVec3::new(0.267_261_241_912_424_4, 0.534_522_483_824_848_8, 0.801_783_725_737_273_2),
+    DVec3::new(-0.811_107_105_653_812_7, 0.324_442_842_261_525_1, 0.486_664_263_392_287_6),
+    DVec3::new(0.455_842_305_838_551_8, -0.569_802_882_298_189_7, -0.683_763_458_757_827_6),
+];
+
+/// Of a point that an edge hides, the modulus is less.
+const HIDDEN: f64 = 1e-6;
+
+/// The edges of a surface's boundary, backward, as its caps have them.
+#[derive(Default)]
+pub(super) struct Rim {
+    edges: Vec<[DVec3; 2]>,
+    /// Bound of the error of a vertex's position per axis.
+    pub(super) vertex_error: f64,
+}
+
+/// A winding number but for an integer, and a bound of its error.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fraction {
+    pub(super) value: f64,
+    pub(super) error: f64,
+}
+
+/// How the caps' winding number may change around a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slope {
+    /// The distance to the rim.
+    pub(super) distance: f64,
+    /// The change per distance is nowhere greater within half of that.
+    pub(super) most: f64,
+}
+
+impl Rim {
+    pub(super) fn bytes(&self) -> usize {
+        memory::bytes_of(&self.edges)
+    }
+
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(super) fn push(&mut self, edge: [DVec3; 2]) -> Result<(), Error> {
+        memory::push(&mut self.edges, edge)
+    }
+
+    /// The caps' winding number at a point (in finest cells from the frame's origin), but for an integer. `None` on the rim
+    /// itself. O(n) in the edges.
+    pub(super) fn fraction(&self, point: [f64; 3]) -> Option<Fraction> {
+        let point = DVec3::from(point);
+        DIRECTIONS.into_iter().find_map(|towards| self.fraction_of_cones(point, towards))
+    }
+
+    /// The same by cones from one direction: half the solid angle of each edge's triangle (van Oosterom and Strackee 1983),
+    /// one corner of which is infinitely far away, is the argument of a complex number; the product of these has the
+    /// argument of the sum.
+    fn fraction_of_cones(&self, point: DVec3, towards: DVec3) -> Option<Fraction> {
+        let (mut real, mut imaginary, mut error) = (1.0f64, 0.0f64, 0.0);
+        for &[from, to] in &self.edges {
+            let (a, b) = (from - point, to - point);
+            let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
+            // Over the product of both distances, so that it takes one division.
+            let (x, y) = (
+                far * farther + a.dot(b) + b.dot(towards) * far + a.dot(towards) * farther,
+                towards.dot(a.cross(b)),
+            );
+            let size = sqrt(x * x + y * y);
+            // Also false for NaN.
+            let is_seen = size > HIDDEN * (far * farther);
+            if !is_seen {
+                return None;
+            }
+            let inverse = 1.0 / size;
+            // As of a cap (`add_cap`), two of whose corners are that near.
+            error +=
+                (64.0 * f64::EPSILON * (far * farther) + 8.0 * self.vertex_error * (far + farther)) * inverse;
+            (real, imaginary) = ((real * x - imaginary * y) * inverse, (real * y + imaginary * x) * inverse);
+        }
+        Some(Fraction { value: libm::atan2(imaginary, real) / (2.0 * PI), error: error + 4.0 * f64::EPSILON })
+    }
+
+    /// How far the rim is, and a bound of the slope: the gradient is the magnetic field of a current along the rim. O(n) in the
+    /// edges.
+    pub(super) fn slope(&self, point: [f64; 3]) -> Slope {
+        let point = DVec3::from(point);
+        let (mut least, mut most) = (f64::INFINITY, 0.0);
+        for &[from, to] in &self.edges {
+            let (edge, back) = (to - from, point - from);
+            let along = back.dot(edge) / edge.length_squared();
+            let along = if along.is_nan() { 0.0 } else { along.clamp(0.0, 1.0) };
+            let distance = sqrt((back - along * edge).length_squared());
+            least = distance.min(least);
+            // ∫ ds / distance², at half the distance, is at most that of the edge's whole line.
+            let inverse = 2.0 / distance;
+            most += (sqrt(edge.length_squared()) * inverse).min(PI) * inverse;
+        }
+        Slope { distance: least, most: most / (4.0 * PI) }
+    }
+}
