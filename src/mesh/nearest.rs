@@ -22,6 +22,7 @@ use core::array::from_fn as array;
 
 use alloc::vec::Vec;
 
+use super::intersections::corners;
 use super::signs::Point;
 use super::tree::{Box3, LATER, Node, Place, Tree, WIDTH};
 use super::triangle_mesh::TriangleMesh;
@@ -177,14 +178,17 @@ impl TriangleTree<'_> {
             point[axis].clamp(centre - limit, centre + limit)
         });
         let hint = hint.filter(|&triangle| (triangle as usize) < mesh.triangles().len());
+        let scaled = tree.grid.scaled(&point);
         let mut search = Search {
             tree,
             mesh,
             point,
-            scaled: tree.grid.scaled(&point),
+            scaled,
+            single: Single::new(&scaled),
             wanted,
             is_certified,
             best: None,
+            until: f32::INFINITY,
             lower: f64::INFINITY,
         };
         if let Some(triangle) = hint {
@@ -227,9 +231,43 @@ impl TriangleTree<'_> {
 
 /// The larger of two, in one instruction.
 #[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
+fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
+
+/// A point in single precision, in the scale of the tree.
+struct Single {
+    at: [f32; 3],
+    /// By how much gaps to boxes may be less than they seem.
+    slack: f32,
+}
+
+impl Single {
+    /// Nothing of a point so far away that single precision tells little.
+    fn new(scaled: &Point) -> Option<Single> {
+        const FAR: f64 = 1024.0;
+        let furthest = scaled.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        // Boxes and the point are off by 2^-25 each, the gap by as much of itself.
+        let slack = (furthest / f64::from(1 << 22)) as f32;
+        (furthest < FAR).then(|| Single { at: scaled.map(|x| x as f32), slack })
+    }
+
+    #[inline(always)]
+    fn bounds(&self, node: &Node) -> [f32; WIDTH] {
+        let mut squares = [0.0; WIDTH];
+        for axis in 0..3 {
+            let ([low, high], at) = (&node.planes[axis], self.at[axis]);
+            for k in 0..WIDTH {
+                let gap = larger(larger(low[k] - at, at - high[k]) - self.slack, 0.0);
+                squares[k] += gap * gap;
+            }
+        }
+        squares.map(|square| square * (1.0 - 1.0 / (1 << 20) as f32))
+    }
+}
+
+/// The largest number of single precision.
+const LARGEST: f64 = f32::MAX as f64;
 
 /// A search for the nearest triangle.
 struct Search<'a, W> {
@@ -238,10 +276,14 @@ struct Search<'a, W> {
     point: Point,
     /// The point in the scale of the tree, about the grid's centre.
     scaled: Point,
+    /// The same, unless it is far away.
+    single: Option<Single>,
     wanted: W,
     /// Whether bounds of true distances are asked for.
     is_certified: bool,
     best: Option<NearestPoint>,
+    /// No less than the square of the best one's distance.
+    until: f32,
     /// No triangle that was looked at is nearer; those that were left out are not nearer than the best.
     lower: f64,
 }
@@ -249,23 +291,33 @@ struct Search<'a, W> {
 impl<W: Fn(u32) -> bool> Search<'_, W> {
     /// Less than the squares of computed distances to anything in the boxes of a node.
     #[inline(always)]
-    fn bounds(&self, node: &Node) -> [f64; WIDTH] {
-        let mut squares = [0.0; WIDTH];
-        for axis in 0..3 {
-            let ([low, high], at) = (&node.planes[axis], self.scaled[axis]);
-            for k in 0..WIDTH {
-                let gap = larger(f64::from(low[k]) - at, at - f64::from(high[k])) - BOX;
-                let gap = larger(gap, 0.0);
-                squares[k] += gap * gap;
-            }
+    fn bounds(&self, node: &Node) -> [f32; WIDTH] {
+        match &self.single {
+            Some(single) => single.bounds(node),
+            None => self.bounds_from_afar(node),
         }
-        // Where the point is far away, its own rounding is a part of the distance.
-        squares.map(|square| square * (1.0 - 1.0 / (1 << 20) as f64))
+    }
+
+    /// The same of a point far away.
+    #[cold]
+    fn bounds_from_afar(&self, node: &Node) -> [f32; WIDTH] {
+        array(|k| {
+            let part = node.part(k);
+            let square = (0..3).fold(0.0, |sum, axis| {
+                let (low, high) = (f64::from(part.low[axis]), f64::from(part.high[axis]));
+                let gap = (low - self.scaled[axis]).max(self.scaled[axis] - high) - BOX;
+                let gap = gap.max(0.0);
+                sum + gap * gap
+            });
+            // The point's own rounding is a part of the distance. (There is nothing in a box at an infinite distance.)
+            let square = square * (1.0 - 1.0 / (1 << 20) as f64);
+            if square < f64::INFINITY { (square.min(LARGEST) as f32).next_down() } else { f32::INFINITY }
+        })
     }
 
     #[inline(always)]
-    fn may_hold_better(&self, bound: f64) -> bool {
-        self.best.is_none_or(|best| bound <= best.square)
+    fn may_hold_better(&self, bound: f32) -> bool {
+        bound <= self.until
     }
 
     /// Looks at nearer parts first.
@@ -275,27 +327,32 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
         let mut next = self.tree.root();
         while let Some(place) = next {
             let bounds = self.bounds(self.tree.node(place));
-            let mut order = [0, 1, 2, 3];
-            for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
-                if bounds[order[j]] < bounds[order[i]] {
-                    order.swap(i, j);
+            let mut near = [(0.0, 0); WIDTH];
+            let mut parts = 0;
+            for (k, &bound) in bounds.iter().enumerate() {
+                if bound < f32::INFINITY && self.may_hold_better(bound) {
+                    // The nearest last.
+                    let mut at = parts;
+                    while at > 0 && near[at - 1].0 < bound {
+                        near[at] = near[at - 1];
+                        at -= 1;
+                    }
+                    near[at] = (bound, k);
+                    parts += 1;
                 }
             }
             if place.level == 0 {
-                for k in order {
-                    if self.may_hold_better(bounds[k])
+                for &(bound, k) in near[..parts].iter().rev() {
+                    if self.may_hold_better(bound)
                         && let Some(triangle) = self.tree.triangle(place, k)
                     {
                         self.look_at(triangle);
                     }
                 }
             } else {
-                for k in order.into_iter().rev() {
-                    // (There is nothing at an infinite distance.)
-                    if bounds[k] < f64::INFINITY && self.may_hold_better(bounds[k]) {
-                        later[count] = (bounds[k], place.child(k));
-                        count += 1;
-                    }
+                for &(bound, k) in &near[..parts] {
+                    later[count] = (bound, place.child(k));
+                    count += 1;
                 }
             }
             next = loop {
@@ -314,15 +371,20 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
         if !(self.wanted)(triangle) {
             return;
         }
-        let corners = Corners::of(self.mesh, triangle, self.tree.grid.scale());
-        let from = corners.from(&self.point);
+        let scale = self.tree.grid.scale();
+        let from: [Point; 3] = corners(self.mesh, triangle)
+            .map(|corner| array(|axis| (self.point[axis] - corner[axis]) * scale));
         if self.best.is_some_and(|best| is_beyond(&from, best.square)) {
             return;
         }
+        let corners = Corners::of(self.mesh, triangle, scale);
+        let from = corners.from(&self.point);
         let (square, weights) = corners.nearest_to(&from);
         let is_better = |best: &NearestPoint| (square, triangle) < (best.square, best.triangle);
         if self.best.as_ref().is_none_or(is_better) {
             self.best = Some(NearestPoint { triangle, weights, square, lower: 0.0 });
+            // (Rounded up.)
+            self.until = (square * (1.0 + 1.0 / (1 << 20) as f64)) as f32;
         }
         if self.is_certified {
             let distance = sqrt(square);

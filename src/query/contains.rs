@@ -92,12 +92,15 @@ fn locate<C: Classifier>(
     let mut known = memory::filled(wanted.len(), None)?;
     let mut answers = memory::with_capacity(wanted.len())?;
     worker.inside(&own, &mut known)?;
+    if known.iter().all(Option::is_some) {
+        answers.extend(known.into_iter().flatten().map(Membership::of));
+        return Ok(answers);
+    }
     let mut trail = Trail::new(worker)?;
     let level = classifier.frame().depth();
     for (&(_, at, _), known) in wanted.iter().zip(known) {
         answers.push(match known {
-            Some(true) => Membership::Inside,
-            Some(false) => Membership::Outside,
+            Some(inside) => Membership::of(inside),
             None => {
                 job.check()?;
                 let cell = Cell { level, at };

@@ -82,7 +82,7 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// A closed mesh in the universe answers each point from a tree over its triangles, in microseconds and to the rounding of
 /// doubles (some 10^-12 of the distance and of the triangle), and tells the nearest point and its triangle. The first question
 /// makes the tree, and finds out which triangles bound the solid ([`MeshSolid`](crate::MeshSolid)). Where the nearest triangle
-/// intersects another one, cells are asked.
+/// intersects another one and lies within the solid or outside of it, cells are asked.
 ///
 /// A point takes some dozen splits a level as a rule. It takes more the more of the surface is about as near: a ball's
 /// centre has no better bounds than cells as large as the budget allows. The answers are the same for any number of

@@ -30,6 +30,13 @@ pub enum Membership {
     Undecided = 2,
 }
 
+impl Membership {
+    /// What is proven of a point.
+    pub(super) fn of(inside: bool) -> Membership {
+        if inside { Membership::Inside } else { Membership::Outside }
+    }
+}
+
 impl From<Tag> for Membership {
     /// A branch that leads nowhere is undecided.
     #[inline(always)]

@@ -56,35 +56,59 @@ pub(super) struct Stops {
 
 impl Stops {
     pub(super) fn new(trace: &RayTrace, line: &Line<'_>) -> Stops {
+        // As a rule the ray is stopped well within the universe, or not at all.
+        if let Some(stay) = rough_stay(line) {
+            let begins_within = stay[0] == Interval::exactly(0.0);
+            let (stops, is_known) = Stops::within(trace, line, stay, begins_within.then_some([0.0; 3]));
+            if is_known {
+                return stops;
+            }
+        }
+        let Some(Passage { entry, exit }) = line.passage(Cell::ROOT) else { return Stops::default() };
+        Stops::within(trace, line, [entry.t, exit.t], Some(line.face(&entry))).0
+    }
+
+    /// Where it is stopped during a stay between two times, each known as an interval, and whether narrower ones would tell the
+    /// same; `face` is the normal where it begins.
+    fn within(
+        trace: &RayTrace,
+        line: &Line<'_>,
+        [entry, exit]: [Interval; 2],
+        face: Option<[f64; 3]>,
+    ) -> (Stops, bool) {
         let mut stops = Stops::default();
-        let Some(Passage { entry, exit }) = line.passage(Cell::ROOT) else { return stops };
-        let hit = |t: f64, piece: &Piece, begins: f64| {
+        let mut is_known = true;
+        let mut hit = |t: f64, piece: &Piece, begins: f64| {
             let (normal, surface) = match piece.entry {
                 Some((normal, surface)) if piece.from > begins => (unit(normal), surface),
-                _ => (line.face(&entry), None),
+                _ => {
+                    is_known &= face.is_some();
+                    (face.unwrap_or_default(), None)
+                }
             };
-            let cell = cell_at(line, t);
-            RayHit { t: Interval::exactly(t), cell, normal, surface }
+            RayHit { t: Interval::exactly(t), cell: cell_at(line, t), normal, surface }
         };
+        let mut is_late = false;
         each_piece(trace, |piece| {
-            if piece.from > exit.t.upper {
+            if piece.from > exit.upper {
                 return false;
             }
-            if piece.is_inside != Some(false) && stops.outer.is_none() && piece.to >= entry.t.lower {
-                let t = piece.from.max(entry.t.lower);
-                stops.outer = Some(hit(t, &piece, entry.t.lower));
+            is_late |= piece.is_inside != Some(false) && piece.from >= exit.lower;
+            if piece.is_inside != Some(false) && stops.outer.is_none() && piece.to >= entry.lower {
+                let t = piece.from.max(entry.lower);
+                stops.outer = Some(hit(t, &piece, if face.is_some() { entry.lower } else { entry.upper }));
             }
             if piece.is_inside == Some(true) {
-                let (t, until) = (piece.from.max(entry.t.upper), piece.to.min(exit.t.lower));
+                let (t, until) = (piece.from.max(entry.upper), piece.to.min(exit.lower));
                 if t < until || t == until && piece.from == piece.to {
-                    stops.inner = Some(hit(t, &piece, entry.t.upper));
+                    stops.inner = Some(hit(t, &piece, entry.upper));
                 }
-            } else if piece.is_met && entry.t.upper <= piece.from && piece.to <= exit.t.lower {
-                stops.inner = Some(hit(piece.to, &piece, entry.t.upper));
+            } else if piece.is_met && entry.upper <= piece.from && piece.to <= exit.lower {
+                stops.inner = Some(hit(piece.to, &piece, entry.upper));
             }
             stops.inner.is_none()
         });
-        stops
+        (stops, is_known && !is_late)
     }
 
     /// The answer to a query.
@@ -103,6 +127,36 @@ impl Stops {
     pub(super) fn are(&self) -> (bool, bool) {
         (self.inner.is_some(), self.outer.is_some())
     }
+}
+
+/// When a ray enters and leaves the universe, in intervals that are wider than they need be. Nothing of a ray that misses it, or
+/// that comes near to a face along which it runs.
+fn rough_stay(line: &Line<'_>) -> Option<[Interval; 2]> {
+    let (frame, ray) = (line.frame, &line.ray);
+    let (mut entry, mut exit) = (Interval::exactly(0.0), Interval::exactly(ray.last));
+    for axis in 0..3 {
+        let (low, from, along) = (frame.origin()[axis], ray.from[axis], ray.direction[axis][0]);
+        let high = low + frame.edge();
+        let magnitude = low.abs() + frame.edge() + from.abs();
+        if along == 0.0 {
+            let is_within = (from - low).min(high - from) > 1e-12 * magnitude;
+            if !is_within {
+                return None;
+            }
+            continue;
+        }
+        // More than all that is rounded here.
+        let wrong = 1e-12 * magnitude / along.abs();
+        let about = |plane: f64| {
+            let t = (plane - from) / along;
+            Interval::new(t - wrong, t + wrong)
+        };
+        let (low, high) = (about(low)?, about(high)?);
+        let [near, far] = if along > 0.0 { [low, high] } else { [high, low] };
+        entry = Interval::new(entry.lower.max(near.lower), entry.upper.max(near.upper))?;
+        exit = Interval::new(exit.lower.min(far.lower), exit.upper.min(far.upper))?;
+    }
+    (entry.upper < exit.lower).then_some([entry, exit])
 }
 
 /// The finest cell of the universe where a ray is at a time, but for rounding.

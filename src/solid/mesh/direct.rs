@@ -12,7 +12,7 @@
 //! All of it is for closed meshes. An open one bounds the solid beside its triangles, too.
 
 use crate::error::Error;
-use crate::lattice::{Interval, Ray};
+use crate::lattice::{Interval, Ray, axes};
 use crate::memory;
 use crate::mesh::{FillRule, Hit, Shift, Sides, TriangleTree, Wanted};
 use crate::solid::{NearestSurface, RayCrossing, RayQuestion, RayTrace};
@@ -164,7 +164,7 @@ impl Tracer<'_> {
         Ok(Some(self.fill.encloses(-hits.iter().map(|hit| hit.step).sum::<i32>())))
     }
 
-    /// The nearest point of the boundary. Nothing if it is not known whether the nearest triangle belongs to it.
+    /// The nearest point of the boundary. Nothing if it is not found out whether the nearest triangle belongs to it.
     pub(super) fn nearest(
         &self,
         direct: &mut Direct,
@@ -174,18 +174,48 @@ impl Tracer<'_> {
         let (tree, displacement) = (&self.tree, self.tree.displacement());
         let may_bound = |triangle: u32| !sides.is_flat(triangle) && sides.of(triangle) != Some(0);
         let Some((near, mut distance)) = tree.nearest_of(point, may_bound) else { return Ok(None) };
-        // (One that intersects others may lie within the solid, or outside of it.)
+        let found = tree.point_of(&near);
+        let is_inside = self.is_inside(direct, point)?;
         if sides.of(near.triangle).is_none() {
-            return Ok(None);
+            // It may lie within the solid, or outside of it.
+            match self.across(direct, point, is_inside, &found)? {
+                Some(most) if most >= distance.lower => distance = Interval::between(distance.lower, most),
+                _ => return Ok(None),
+            }
         }
         if displacement > 0.0 {
             // Along each axis the surface may lie that far from the mesh.
             let moved = Interval::exactly(3.0).root().times(Interval::exactly(displacement)).upper;
             distance = distance.plus(Interval::between(-moved, moved)).not_negative();
         }
-        let is_inside = if distance.lower > 0.0 { self.is_inside(direct, point)? } else { None };
-        let (point, surface) = (tree.point_of(&near), Some(near.triangle));
-        Ok(Some(NearestSurface { distance, is_inside, point, surface }))
+        let is_inside = is_inside.filter(|_| distance.lower > 0.0);
+        Ok(Some(NearestSurface { distance, is_inside, point: found, surface: Some(near.triangle) }))
+    }
+
+    /// A distance from a point within which there surely is a point on the other side of the boundary: hardly more than that of
+    /// the surface's point `near`. Nothing if none is found.
+    fn across(
+        &self,
+        direct: &mut Direct,
+        point: &[f64; 3],
+        is_inside: Option<bool>,
+        near: &[f64; 3],
+    ) -> Result<Option<f64>, Error> {
+        let Some(is_inside) = is_inside else { return Ok(None) };
+        let way = axes(|axis| near[axis] - point[axis]);
+        let length = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let size = near.iter().fold(length, |most, c| most.max(c.abs()));
+        for digits in [44, 36, 28] {
+            let further = size / (1u64 << digits) as f64 / length;
+            let beyond = axes(|axis| near[axis] + further * way[axis]);
+            if self.is_inside(direct, &beyond)?.is_some_and(|inside| inside != is_inside) {
+                let exactly =
+                    |axis: usize| Interval::exactly(beyond[axis]).minus(Interval::exactly(point[axis]));
+                let [x, y, z] = axes(|axis| exactly(axis).square());
+                return Ok(Some(x.plus(y).plus(z).root().upper));
+            }
+        }
+        Ok(None)
     }
 }
 

@@ -45,8 +45,9 @@ const MOST_CAPS: usize = 1 << 22;
 /// cell alone, kept for those below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
-    /// The cell's lower corner, and what is known unless the boundary passes close by.
-    levels: [Option<([i32; 3], Option<Local>)>; MAX_DEPTH as usize + 1],
+    /// The cell's lower corner, and what is known unless the boundary passes close by. Empty until somebody asks: closed meshes
+    /// never do.
+    levels: Vec<Option<([i32; 3], Option<Local>)>>,
 }
 
 impl Surroundings {
@@ -55,16 +56,22 @@ impl Surroundings {
     fn local(&mut self, mesh: &MeshOnFrame, level: u8, at: [i32; 3]) -> Option<Local> {
         let size = 1 << (mesh.placed.frame.depth() - level);
         let corner = at.map(|a| a & -size);
-        let slot = &mut self.levels[level as usize];
-        if let Some((kept, local)) = slot
-            && *kept == corner
+        if let Some(&Some((kept, local))) = self.levels.get(level as usize)
+            && kept == corner
         {
-            return *local;
+            return local;
         }
         let radius = size as f64 * HALF_DIAGONAL;
         let cell = (size == 1).then_some(corner);
         let local = mesh.caps.local(&mesh.placed, middle(corner, size), radius, ENOUGH, cell);
-        *slot = Some((corner, local));
+        // (Without memory it is found out anew.)
+        const LEVELS: usize = MAX_DEPTH as usize + 1;
+        if self.levels.is_empty() && self.levels.try_reserve_exact(LEVELS).is_ok() {
+            self.levels.resize(LEVELS, None);
+        }
+        if let Some(slot) = self.levels.get_mut(level as usize) {
+            *slot = Some((corner, local));
+        }
         local
     }
 }
