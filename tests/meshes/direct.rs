@@ -453,3 +453,59 @@ fn turned_meshes_are_asked_without_cells_too() {
         );
     }
 }
+
+/// The winding number of an open surface by its definition: solid angles (van Oosterom and Strackee 1983).
+fn winding_of(mesh: &TriangleMesh, p: Point) -> f64 {
+    let sum: f64 = (0..mesh.triangles().len())
+        .map(|triangle| {
+            let [a, b, c] = corners(mesh, triangle).map(|corner| [0, 1, 2].map(|k| corner[k] - p[k]));
+            let dot = |u: Point, v: Point| (0..3).map(|k| u[k] * v[k]).sum::<f64>();
+            let length = |u: Point| dot(u, u).sqrt();
+            let volume = a[0] * (b[1] * c[2] - b[2] * c[1])
+                + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0]);
+            let (x, y, z) = (length(a), length(b), length(c));
+            2.0 * volume.atan2(x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y)
+        })
+        .sum();
+    sum / (4.0 * std::f64::consts::PI)
+}
+
+#[test]
+fn points_of_open_meshes_are_those_of_solid_angles() {
+    let mut random = Random(7);
+    let frame = Frame::new([-8.0; 3], 16.0, 20).unwrap();
+    let (mut inside, mut undecided) = (0, 0);
+    for round in 0..30 {
+        let mut soup = bodies(&mut random, round % 5);
+        // Some holes, of one triangle or of several.
+        for _ in 0..1 + round % 4 {
+            let first = random.below(soup.len() as u64) as usize;
+            soup.drain(first..(first + 1 + round % 3).min(soup.len()));
+        }
+        let mesh = TriangleMesh::from_facets(&soup).unwrap();
+        for fill in [FillRule::NonZero, FillRule::Positive] {
+            let solid = MeshSolid::new(mesh.try_clone().unwrap(), fill).unwrap();
+            let points: Vec<Point> = (0..200).map(|_| point(&mut random, &mesh)).collect();
+            let mut answers = vec![Membership::Undecided; points.len()];
+            contains(&solid, &frame, &points, &mut answers, &alone()).unwrap();
+            for (&p, answer) in points.iter().zip(&answers) {
+                let winding = winding_of(&mesh, p);
+                let excess = if fill == FillRule::Positive { winding - 0.5 } else { winding.abs() - 0.5 };
+                if excess.abs() < 1e-9 || is_near(&mesh, p, 1e-9) {
+                    continue;
+                }
+                match answer {
+                    Membership::Undecided => undecided += 1,
+                    _ => assert_eq!(
+                        *answer == Membership::Inside,
+                        excess > 0.0,
+                        "{round} {fill:?} {p:?} {winding}"
+                    ),
+                }
+                inside += i32::from(excess > 0.0);
+            }
+        }
+    }
+    assert!(inside > 1000 && undecided == 0, "{inside} {undecided}");
+}

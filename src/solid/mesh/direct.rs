@@ -9,14 +9,18 @@
 //! surface, its points belong to the solid if points on any side do: it is shifted into all octants. Where all of these run
 //! outside, next to a sharp corner, nothing is told.
 //!
-//! All of it is for closed meshes. An open one bounds the solid beside its triangles, too.
+//! Rays and distances are those of closed meshes: an open one bounds the solid beside its triangles, too. Of a point of an open
+//! mesh the triangles on the way to infinity count what the surface and cones over the rim of its holes, from the other end of
+//! that way, wind around it, and the cones' own winding number is taken off (`rim`).
 
+use super::rim::{DIRECTIONS, Rim};
 use crate::error::Error;
 use crate::lattice::{Interval, Ray, axes};
 use crate::memory;
-use crate::mesh::{FillRule, Hit, Shift, Sides, TriangleTree, Wanted};
+use crate::mesh::{FillRule, Hit, Loops, Shift, Sides, TriangleMesh, TriangleTree, Wanted};
 use crate::solid::{NearestSurface, RayCrossing, RayQuestion, RayTrace};
 use alloc::vec::Vec;
+use glam::DVec3;
 
 /// Lists that are kept from question to question.
 #[derive(Default)]
@@ -27,11 +31,26 @@ pub(super) struct Direct {
     touched: Vec<Hit>,
 }
 
-/// A closed mesh with the tree of its triangles.
+/// A mesh with the tree of its triangles.
 #[derive(Clone, Copy)]
 pub(super) struct Tracer<'m> {
     pub(super) tree: TriangleTree<'m>,
     pub(super) fill: FillRule,
+}
+
+/// The rim of an open mesh in model units; a displacement counts as the error of its vertices.
+///
+/// # Errors
+/// [`Error::OutOfMemory`].
+pub(super) fn rim(mesh: &TriangleMesh, loops: &Loops) -> Result<Rim, Error> {
+    let mut rim = Rim::default();
+    rim.vertex_error = mesh.displacement();
+    let at = |vertex: u32| DVec3::from(mesh.vertices()[vertex as usize]);
+    for walk in loops.iter() {
+        let next = walk.iter().skip(1).chain(walk.first());
+        walk.iter().zip(next).try_for_each(|(&from, &to)| rim.push([at(to), at(from)]))?;
+    }
+    Ok(rim)
 }
 
 impl Tracer<'_> {
@@ -162,6 +181,36 @@ impl Tracer<'_> {
             return Ok(None);
         }
         Ok(Some(self.fill.encloses(-hits.iter().map(|hit| hit.step).sum::<i32>())))
+    }
+
+    /// Whether the solid of an open mesh holds a point; nothing where its winding number may be one half, or jumps.
+    pub(super) fn is_inside_open(
+        &self,
+        direct: &mut Direct,
+        rim: &Rim,
+        point: &[f64; 3],
+    ) -> Result<Option<bool>, Error> {
+        if !point.iter().all(|c| c.is_finite()) {
+            return Ok(None);
+        }
+        for towards in DIRECTIONS {
+            // Away from where cones come from: there is none of them.
+            let away = (-towards).to_array().map(|c| [c, 0.0]);
+            let ray = Ray { from: *point, direction: away, last: f64::INFINITY };
+            let hits = &mut direct.hits;
+            let is_sure = self.tree.pierced(&ray, Wanted::All, Shift::ALL[0], hits)?;
+            if !is_sure || hits.iter().any(|hit| hit.t.lower <= 0.0) {
+                return Ok(None);
+            }
+            let Some(cones) = rim.of_cones(DVec3::from(*point), towards) else { continue };
+            let winding = -f64::from(hits.iter().map(|hit| hit.step).sum::<i32>()) - cones.value;
+            let excess = match self.fill {
+                FillRule::Positive => winding - 0.5,
+                FillRule::NonZero | FillRule::EvenOdd => winding.abs() - 0.5,
+            };
+            return Ok((excess.abs() > cones.error + 1e-12).then_some(excess > 0.0));
+        }
+        Ok(None)
     }
 
     /// The nearest point of the boundary. Nothing if it is not found out whether the nearest triangle belongs to it.

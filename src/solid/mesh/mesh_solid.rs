@@ -10,6 +10,7 @@ use super::open_rays::OpenRays;
 use super::overlap::Overlap;
 use super::placed::{Corners, Placed, bounds, ranks};
 use super::reach;
+use super::rim::Rim;
 use super::scan::{Scan, Task};
 use super::winding::Caps;
 use crate::control::Control;
@@ -60,6 +61,8 @@ struct Boundary {
     moments: OnceBox<MeshMoments>,
     /// The same; nothing if the triangles lie too close to each other.
     sides: OnceBox<Option<Sides>>,
+    /// The rim of an open mesh.
+    rim: OnceBox<Rim>,
 }
 
 /// A mesh on a frame: the handle.
@@ -110,6 +113,7 @@ impl MeshSolid {
                 reach: OnceBox::new(),
                 moments: OnceBox::new(),
                 sides: OnceBox::new(),
+                rim: OnceBox::new(),
             }),
         })
     }
@@ -129,13 +133,14 @@ impl MeshSolid {
         self.boundary.moments.get_or_try_init(find).copied()
     }
 
-    /// What answers without cells: of a closed mesh whose triangles have a tree.
+    /// What answers without cells: of a mesh whose triangles have a tree.
     #[inline]
     fn tracer(&self) -> Option<Tracer<'_>> {
-        if self.boundary.loops.caps() > 0 {
-            return None;
-        }
         Some(Tracer { tree: self.mesh.known_triangle_tree()?, fill: self.fill })
+    }
+
+    fn is_closed(&self) -> bool {
+        self.boundary.loops.caps() == 0
     }
 
     /// On which side of each triangle the solid lies, as far as that is known.
@@ -278,10 +283,11 @@ impl Solid for MeshSolid {
 
     /// The mesh, and what was found out about its boundary and what it encloses.
     fn kept_bytes(&self) -> u64 {
-        let Boundary { loops, reach, moments, sides } = &*self.boundary;
+        let Boundary { loops, reach, moments, sides, rim } = &*self.boundary;
         let found = reach.get().map_or(0, size_of_val)
             + moments.get().map_or(0, size_of_val)
-            + sides.get().map_or(0, |sides| size_of_val(sides) + sides.as_ref().map_or(0, Sides::bytes));
+            + sides.get().map_or(0, |sides| size_of_val(sides) + sides.as_ref().map_or(0, Sides::bytes))
+            + rim.get().map_or(0, |rim| size_of_val(rim) + rim.bytes());
         self.mesh.bytes() + (size_of::<Boundary>() + loops.bytes() + found) as u64
     }
 
@@ -349,9 +355,14 @@ impl Classifier for MeshClassifier {
             }
             WholeQuestion::Surfaces(_) => {}
             WholeQuestion::Direct(kind, is_direct) => {
-                if solid.boundary.loops.caps() == 0 {
+                let Boundary { loops, rim, .. } = &*solid.boundary;
+                if loops.caps() == 0 {
                     solid.mesh.triangle_tree(control)?;
                     *is_direct = kind != Direct::Distances || solid.sides(control)?.is_some();
+                } else if kind == Direct::Points {
+                    solid.mesh.triangle_tree(control)?;
+                    rim.get_or_try_init(|| direct::rim(&solid.mesh, loops).map(Box::new))?;
+                    *is_direct = true;
                 }
             }
             WholeQuestion::OffLattice(known) => {
@@ -523,7 +534,7 @@ impl Worker for MeshWorker {
             Question::Chords(chords) => *chords.found = self.find_chords(cell, part, chords.beam)?,
             Question::Surfaces(_) => {}
             Question::Ray(ray) => {
-                if let Some(tracer) = self.solid.tracer() {
+                if let Some(tracer) = self.solid.tracer().filter(|_| self.solid.is_closed()) {
                     tracer.trace(&mut self.direct, ray)?;
                 }
             }
@@ -562,11 +573,16 @@ impl Batch for MeshWorker {
         sample_one_by_one(self, cells, control, inside)
     }
 
-    /// Of closed meshes, once [`WholeQuestion::Direct`] was asked. A point on the surface gets no answer.
+    /// Once [`WholeQuestion::Direct`] was asked. A point on the surface gets no answer.
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
         let Some(tracer) = self.solid.tracer() else { return Ok(()) };
+        let rim = if self.solid.is_closed() { None } else { Some(self.solid.boundary.rim.get()) };
         for (point, answer) in points.iter().zip(answers) {
-            *answer = tracer.is_inside(&mut self.direct, point)?;
+            *answer = match rim {
+                None => tracer.is_inside(&mut self.direct, point)?,
+                Some(Some(rim)) => tracer.is_inside_open(&mut self.direct, rim, point)?,
+                Some(None) => None,
+            };
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ use core::f64::consts::PI;
 use glam::DVec3;
 
 /// Whence cones come: directions that hardly any model has. The second is for points that an edge hides from the first.
-const DIRECTIONS: [DVec3; 3] = [
+pub(super) const DIRECTIONS: [DVec3; 3] = [
     DVec3::new(0.267_261_241_912_424_4, 0.534_522_483_824_848_8, 0.801_783_725_737_273_2),
     DVec3::new(-0.811_107_105_653_812_7, 0.324_442_842_261_525_1, 0.486_664_263_392_287_6),
     DVec3::new(0.455_842_305_838_551_8, -0.569_802_882_298_189_7, -0.683_763_458_757_827_6),
@@ -34,6 +34,13 @@ pub(super) struct Rim {
 pub(super) struct Fraction {
     pub(super) value: f64,
     pub(super) error: f64,
+}
+
+/// Half a solid angle as a complex number of modulus 1, and a bound of its error.
+struct Cone {
+    real: f64,
+    imaginary: f64,
+    error: f64,
 }
 
 /// How the caps' winding number may change around a point.
@@ -63,32 +70,64 @@ impl Rim {
         DIRECTIONS.into_iter().find_map(|towards| self.fraction_of_cones(point, towards))
     }
 
-    /// The same by cones from one direction: half the solid angle of each edge's triangle (van Oosterom and Strackee 1983),
-    /// one corner of which is infinitely far away, is the argument of a complex number; the product of these has the
-    /// argument of the sum.
+    /// The same by cones from one direction: the product of their complex numbers has the argument of the sum.
     fn fraction_of_cones(&self, point: DVec3, towards: DVec3) -> Option<Fraction> {
         let (mut real, mut imaginary, mut error) = (1.0f64, 0.0f64, 0.0);
         for &[from, to] in &self.edges {
-            let (a, b) = (from - point, to - point);
-            let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
-            // Over the product of both distances, so that it takes one division.
-            let (x, y) = (
-                far * farther + a.dot(b) + b.dot(towards) * far + a.dot(towards) * farther,
-                towards.dot(a.cross(b)),
+            let cone = self.cone([from - point, to - point], towards)?;
+            error += cone.error;
+            (real, imaginary) = (
+                real * cone.real - imaginary * cone.imaginary,
+                real * cone.imaginary + imaginary * cone.real,
             );
-            let size = sqrt(x * x + y * y);
-            // Also false for NaN.
-            let is_seen = size > HIDDEN * (far * farther);
-            if !is_seen {
-                return None;
-            }
-            let inverse = 1.0 / size;
-            // As of a cap (`add_cap`), two of whose corners are that near.
-            error +=
-                (64.0 * f64::EPSILON * (far * farther) + 8.0 * self.vertex_error * (far + farther)) * inverse;
-            (real, imaginary) = ((real * x - imaginary * y) * inverse, (real * y + imaginary * x) * inverse);
         }
         Some(Fraction { value: libm::atan2(imaginary, real) / (2.0 * PI), error: error + 4.0 * f64::EPSILON })
+    }
+
+    /// The winding number of the cones from one of the [`DIRECTIONS`] at a point, the whole of it: what the surface's own lacks of
+    /// the integer that triangles on the way to the other side count. `None` if the point may lie on a cone, or the rim. O(n) in the edges.
+    pub(super) fn of_cones(&self, point: DVec3, towards: DVec3) -> Option<Fraction> {
+        let (mut real, mut imaginary, mut error, mut turns) = (1.0f64, 0.0f64, 0.0, 0.0);
+        for &[from, to] in &self.edges {
+            let cone = self.cone([from - point, to - point], towards)?;
+            // Beside a cone its angle is nearly half a turn to one side or to the other.
+            if cone.real < 0.0 && cone.imaginary.abs() <= 4.0 * cone.error {
+                return None;
+            }
+            error += cone.error;
+            let was_up = (imaginary >= 0.0, imaginary <= 0.0);
+            (real, imaginary) = (
+                real * cone.real - imaginary * cone.imaginary,
+                real * cone.imaginary + imaginary * cone.real,
+            );
+            // An angle of less than half a turn was added to one: beyond half a turn signs tell.
+            if cone.imaginary > 0.0 && was_up.0 && imaginary < 0.0 {
+                turns += 1.0;
+            } else if cone.imaginary < 0.0 && was_up.1 && imaginary > 0.0 {
+                turns -= 1.0;
+            }
+        }
+        let value = libm::atan2(imaginary, real) / (2.0 * PI) + turns;
+        Some(Fraction { value, error: error + 4.0 * f64::EPSILON * (1.0 + turns.abs()) })
+    }
+
+    /// Half the solid angle of an edge's triangle, one corner of which is infinitely far away, as a complex number of modulus 1
+    /// (van Oosterom and Strackee 1983). `None` of a point that the edge hides.
+    #[inline(always)]
+    fn cone(&self, [a, b]: [DVec3; 2], towards: DVec3) -> Option<Cone> {
+        let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
+        // Over the product of both distances, so that it takes one division.
+        let (x, y) = (
+            far * farther + a.dot(b) + b.dot(towards) * far + a.dot(towards) * farther,
+            towards.dot(a.cross(b)),
+        );
+        let size = sqrt(x * x + y * y);
+        // Also false for NaN.
+        let is_seen = size > HIDDEN * (far * farther);
+        let inverse = 1.0 / size;
+        // As of a cap (`add_cap`), two of whose corners are that near.
+        let wrong = 64.0 * f64::EPSILON * (far * farther) + 8.0 * self.vertex_error * (far + farther);
+        is_seen.then(|| Cone { real: x * inverse, imaginary: y * inverse, error: wrong * inverse })
     }
 
     /// How far the rim is, and a bound of the slope: the gradient is the magnetic field of a current along the rim. O(n) in the
