@@ -36,6 +36,15 @@ use once_cell::race::OnceBox;
 /// which convention a point is inside; a cell is FULL or EMPTY if that is proven for all of its points, and
 /// around holes stay PARTIAL cells which no triangle cuts: [`TriangleMesh::report`] tells of holes.
 ///
+/// # One question after the other
+/// Rays ([`cast_rays`](crate::cast_rays), [`ray_spans`](crate::query::ray_spans)) and distances
+/// ([`distances`](crate::query::distances)) of a closed mesh, and points ([`contains`](crate::contains)) of any mesh, are answered
+/// without cells. The first such question makes what that takes: a tree over the triangles, which the mesh keeps for all solids
+/// that share it (O(t log t), 0.1 to 0.3 µs a triangle; 36 bytes a triangle); for distances, on which sides of its triangles the
+/// solid lies (about twice that, and a byte); for points of open meshes, the rim of their holes. A [placed](Self::placed) copy takes
+/// over the order of the tree, and makes its boxes anew. Threads that ask first at the same time may each make it once. A solid that
+/// is not [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer than the answer.
+///
 /// ```
 /// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};
 /// let vertices = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
