@@ -15,6 +15,7 @@ mod boundary;
 mod defects;
 #[cfg(feature = "std")]
 mod faces;
+mod in_box;
 mod intersections;
 mod moments;
 mod nearest;

@@ -155,6 +155,13 @@ impl TriangleTree<'_> {
         Some((found, bounds.over(exactly(grid.scale()))))
     }
 
+    /// The point of a triangle that is nearest to another one, but for rounding.
+    pub(crate) fn nearest_to(&self, triangle: u32, point: &Point) -> Point {
+        let shape = Corners::of(self.mesh, triangle, self.tree.grid.scale());
+        let (square, weights) = shape.nearest_to(&shape.from(point));
+        self.point_of(&NearestPoint { triangle, weights, square, lower: 0.0 })
+    }
+
     /// The point of a triangle with such weights, but for rounding.
     pub(crate) fn point_of(&self, near: &NearestPoint) -> Point {
         let corners = self.mesh.triangles()[near.triangle as usize].map(|v| self.mesh.vertices()[v as usize]);

@@ -459,6 +459,12 @@ impl Tree {
         self.search(|node| node.touches(&line), visit);
     }
 
+    /// Calls `visit` with each triangle whose box meets another one.
+    pub(super) fn within(&self, low: [f32; 3], high: [f32; 3], visit: &mut impl FnMut(u32)) {
+        let around = Box3 { low, high };
+        self.search(|node| node.touches(&around), visit);
+    }
+
     /// Calls `visit` with the triangles that are parts of nodes which `chosen` chooses, all the way down.
     #[inline(always)]
     pub(super) fn search(&self, chosen: impl Fn(&Node) -> u32, visit: &mut impl FnMut(u32)) {

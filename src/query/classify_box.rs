@@ -3,12 +3,12 @@
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::axes;
-use crate::lattice::{Ball, Cell, Cube, Frame, Window, morton};
+use crate::lattice::{Ball, Bounds, Cell, Cube, Frame, Window, morton};
 use crate::octree::cuts::{CellCut, CellIds, CutsRef, Figure, Head};
 use crate::octree::links::Windows;
 use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
-use crate::solid::{Classifier, OCTANTS, Solid, Verdict, Worker};
+use crate::solid::{AskDirect, AskWhole, BoxContent, Classifier, Direct, OCTANTS, Solid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::{Step, descend};
 
@@ -29,6 +29,9 @@ pub enum Region {
 /// How the box `[min, max]` (model units, min ≤ max) lies to a solid, as far as cells of `frame` tell; what
 /// of the box lies outside of the universe is undecided. Ends as soon as the answer is known, or once
 /// `control.max_splits` cells are split. One thread.
+///
+/// A closed mesh tells of most boxes in the universe from a tree over its triangles, without cells
+/// ([`MeshSolid`](crate::MeshSolid)).
 ///
 /// # Errors
 /// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number; what the solid refuses;
@@ -55,7 +58,19 @@ pub fn classify_box<S: Solid>(
     let classifier = Proven(solid.on(frame, control)?);
     let Some(mut survey) = region else { return Ok(Region::Undecided) };
     let job = Job::new(control);
+    let is_direct = !survey.partial && classifier.is_direct(Direct::Boxes, control)?;
     let mut worker = classifier.worker()?;
+    if is_direct
+        && let Verdict::Partial(root) = worker.root()?
+        && let Some(bounds) = Bounds::new(min, max)
+        && let Some(content) = worker.content_of(&root, &bounds)?
+    {
+        return Ok(match content {
+            BoxContent::Empty => Region::Outside,
+            BoxContent::Full => Region::Inside,
+            BoxContent::Both => Region::Crossing,
+        });
+    }
     let mut left = control.max_splits.unwrap_or(u64::MAX);
     let mut step = |cell: Cell, verdict| match verdict {
         _ if !survey.window.meets(&Cube { frame, cell }) => Step::Past,

@@ -80,7 +80,7 @@ pub(crate) use question::AskDirect;
 pub use question::{Ask, AskWhole, Chords, Direct, Question, WholeQuestion};
 pub use split_counter::SplitCounter;
 pub use subtree::Subtree;
-pub use trace::{NearestSurface, RayCrossing, RayQuestion, RayTrace};
+pub use trace::{BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrace};
 pub use transform::Transform;
 pub(crate) use transform::TransformClassifier;
 pub use verdict::Verdict;

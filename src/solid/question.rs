@@ -1,13 +1,13 @@
 //! What may be asked of a solid beside its cells.
 
 use super::{
-    Classifier, Crossing, Enclosure, NearestSurface, OpenSurfaces, PlacedHalfSpace, RayQuestion, RayTrace,
-    Segment, Worker,
+    BoxContent, Classifier, Crossing, Enclosure, NearestSurface, OpenSurfaces, PlacedHalfSpace, RayQuestion,
+    RayTrace, Segment, Worker,
 };
 use crate::control::Control;
 use crate::dexel::Beam;
 use crate::error::Error;
-use crate::lattice::{Cell, CellMoments, Interval, Ray, VolumeMoments};
+use crate::lattice::{Bounds, Cell, CellMoments, Interval, Ray, VolumeMoments};
 use alloc::vec::Vec;
 
 /// A question about one PARTIAL cell, with the place for the answer, in which nothing is to be before. Nothing is put there where
@@ -52,6 +52,10 @@ pub enum Question<'q> {
     /// Which point of the whole boundary is nearest to a point (model units): asked of the root alone. Nothing is told unless
     /// [`WholeQuestion::Direct`] was asked before.
     Nearest([f64; 3], &'q mut Option<NearestSurface>),
+
+    /// How a box in the universe lies to the solid: asked of the root alone. Nothing is told unless [`WholeQuestion::Direct`] was
+    /// asked before.
+    Box(&'q Bounds, &'q mut Option<BoxContent>),
 }
 
 /// The place for intervals of rays.
@@ -86,6 +90,7 @@ impl<'q> Question<'q> {
             Question::Crossing(_, known) => *known = known.map(|known| known.complement()),
             Question::Ray(RayQuestion { trace, .. }) => trace.complement(),
             Question::Nearest(_, known) => *known = known.map(NearestSurface::complement),
+            Question::Box(_, known) => *known = known.map(BoxContent::complement),
             Question::Chords(Chords { beam, found, first }) => {
                 if *found {
                     beam.complement(first)?;
@@ -111,6 +116,7 @@ impl<'q> Question<'q> {
                 Question::Ray(RayQuestion { ray, is_first_enough: *is_first_enough, trace })
             }
             Question::Nearest(point, known) => Question::Nearest(*point, known),
+            Question::Box(bounds, known) => Question::Box(bounds, known),
         }
     }
 }
@@ -230,6 +236,16 @@ pub(crate) trait AskDirect: Worker {
         self.answer(Cell::ROOT, root, Question::Nearest(point, &mut known))?;
         Ok(known)
     }
+
+    /// How a box in the universe lies to the solid: [`Question::Box`].
+    ///
+    /// # Errors
+    /// As all questions.
+    fn content_of(&mut self, root: &Self::Part, bounds: &Bounds) -> Result<Option<BoxContent>, Error> {
+        let mut known = None;
+        self.answer(Cell::ROOT, root, Question::Box(bounds, &mut known))?;
+        Ok(known)
+    }
 }
 
 impl<W: Worker + ?Sized> AskDirect for W {}
@@ -267,6 +283,8 @@ pub enum Direct {
     Points,
     /// [`Question::Nearest`].
     Distances,
+    /// [`Question::Box`].
+    Boxes,
 }
 
 /// The questions about whole shapes as functions. Every classifier has them, and none can change them: they ask

@@ -144,6 +144,27 @@ impl NearestSurface {
     }
 }
 
+/// How a box lies to a solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BoxContent {
+    /// Its interior is disjoint from the solid's.
+    Empty,
+    /// It lies in the solid.
+    Full,
+    /// Part of it lies inside, part outside.
+    Both,
+}
+
+impl BoxContent {
+    pub(crate) fn complement(self) -> BoxContent {
+        match self {
+            BoxContent::Empty => BoxContent::Full,
+            BoxContent::Full => BoxContent::Empty,
+            BoxContent::Both => BoxContent::Both,
+        }
+    }
+}
+
 /// How far one of two traces has been followed.
 struct Side<'t> {
     trace: &'t RayTrace,

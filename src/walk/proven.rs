@@ -163,7 +163,8 @@ impl<W: Worker> Worker for ProvenWorker<W> {
             | Question::Chords(_)
             | Question::Surfaces(_)
             | Question::Ray(_)
-            | Question::Nearest(..) => {}
+            | Question::Nearest(..)
+            | Question::Box(..) => {}
         }
         Ok(())
     }

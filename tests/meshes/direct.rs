@@ -4,7 +4,7 @@ use crate::common::{Random, alone};
 use crate::descended::Descended;
 use crate::oracle::PointOracle;
 use crate::shapes::{self, Soup};
-use leafless::query::{DistanceTo, Obstacle, distances, line_of_sight, ray_spans};
+use leafless::query::{DistanceTo, Obstacle, Region, classify_box, distances, line_of_sight, ray_spans};
 use leafless::query::{RaySpans, Sight};
 use leafless::{
     Affine, FillRule, Frame, Interval, Membership, MeshSolid, Ray, TriangleMesh, cast_rays, contains,
@@ -508,4 +508,38 @@ fn points_of_open_meshes_are_those_of_solid_angles() {
         }
     }
     assert!(inside > 1000 && undecided == 0, "{inside} {undecided}");
+}
+
+/// Boxes beside points of all of them, and beside cells, which may be undecided where the tree is not, and the other way round.
+#[test]
+fn boxes_are_those_of_points_and_of_cells() {
+    let mut random = Random(8);
+    let frame = Frame::new([-8.0; 3], 16.0, 7).unwrap();
+    let mut counts = [0; 4];
+    for round in 0..40 {
+        let mesh = TriangleMesh::from_facets(bodies(&mut random, round % 5)).unwrap();
+        let oracle = PointOracle::new(&mesh);
+        let fill = RULES[round / 5 % 3];
+        let solid = MeshSolid::new(mesh.try_clone().unwrap(), fill).unwrap();
+        let cells = MeshSolid::new(mesh.try_clone().unwrap(), fill).unwrap();
+        for _ in 0..60 {
+            let (a, size) = (point(&mut random, &mesh), [0.0, 0.01, 0.3, 2.0, 6.0][random.below(5) as usize]);
+            let b = [0, 1, 2].map(|k| (a[k] + size * random.unit()).min(8.0));
+            let own = classify_box(&solid, &frame, a, b, &alone()).unwrap();
+            let by_cells = classify_box(&Descended(&cells), &frame, a, b, &alone()).unwrap();
+            let place = format!("{round} {fill:?} {a:?} {b:?} {own:?} {by_cells:?}");
+            assert!(own == by_cells || own == Region::Undecided || by_cells == Region::Undecided, "{place}");
+            counts[own as usize] += 1;
+            for _ in 0..20 {
+                let p = [0, 1, 2].map(|k| random.between(a[k], b[k]));
+                let Some(winding) = oracle.winding(p) else { continue };
+                match own {
+                    Region::Outside => assert!(!encloses(fill, winding), "{place} {p:?}"),
+                    Region::Inside => assert!(encloses(fill, winding), "{place} {p:?}"),
+                    Region::Crossing | Region::Undecided => {}
+                }
+            }
+        }
+    }
+    assert!(counts[..3].iter().all(|&count| count > 150), "{counts:?}");
 }

@@ -15,10 +15,10 @@
 
 use super::rim::{DIRECTIONS, Rim};
 use crate::error::Error;
-use crate::lattice::{Interval, Ray, axes};
+use crate::lattice::{Bounds, Interval, Ray, axes};
 use crate::memory;
 use crate::mesh::{FillRule, Hit, Loops, Shift, Sides, TriangleMesh, TriangleTree, Wanted};
-use crate::solid::{NearestSurface, RayCrossing, RayQuestion, RayTrace};
+use crate::solid::{BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrace};
 use alloc::vec::Vec;
 use glam::DVec3;
 
@@ -181,6 +181,66 @@ impl Tracer<'_> {
             return Ok(None);
         }
         Ok(Some(self.fill.encloses(-hits.iter().map(|hit| hit.step).sum::<i32>())))
+    }
+
+    /// How a box lies to the solid. Nothing if triangles meet it, and no points on different sides of the boundary are found in it.
+    pub(super) fn content_of(
+        &self,
+        direct: &mut Direct,
+        bounds: &Bounds,
+    ) -> Result<Option<BoxContent>, Error> {
+        /// Triangles next to which points are looked for.
+        const MOST: usize = 8;
+        let (mut met, mut count) = ([0; MOST], 0);
+        self.tree.in_box(bounds, &mut |triangle| {
+            if let Some(place) = met.get_mut(count) {
+                *place = triangle;
+            }
+            count += 1;
+        });
+        let Bounds { min, max } = bounds;
+        let centre = axes(|axis| 0.5 * min[axis] + 0.5 * max[axis]);
+        let mut found = [false; 2];
+        let mut look_at = |direct: &mut Direct, point: &[f64; 3]| -> Result<bool, Error> {
+            if let Some(inside) = self.is_inside(direct, point)? {
+                found[usize::from(inside)] = true;
+            }
+            Ok(found == [true; 2])
+        };
+        if look_at(direct, &centre)? {
+            return Ok(Some(BoxContent::Both));
+        }
+        if count > 0 {
+            // Next to a corner that lies on no triangle the box is on the corner's side.
+            for k in 0..8 {
+                let corner = axes(|axis| if k >> axis & 1 != 0 { max[axis] } else { min[axis] });
+                if look_at(direct, &corner)? {
+                    return Ok(Some(BoxContent::Both));
+                }
+            }
+            for &triangle in &met[..count.min(MOST)] {
+                // Points of the box on both sides of the triangle, next to its point that is nearest to the centre.
+                let near = self.tree.nearest_to(triangle, &centre);
+                let normal = self.tree.normal(triangle);
+                let size = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+                let room = (0..3)
+                    .map(|axis| (near[axis] - min[axis]).min(max[axis] - near[axis]))
+                    .fold(f64::INFINITY, f64::min);
+                for sign in [1.0, -1.0] {
+                    let beside = axes(|axis| near[axis] + sign * (room / 1024.0) * (normal[axis] / size));
+                    let is_within = (0..3).all(|axis| min[axis] < beside[axis] && beside[axis] < max[axis]);
+                    if is_within && look_at(direct, &beside)? {
+                        return Ok(Some(BoxContent::Both));
+                    }
+                }
+            }
+            return Ok(None);
+        }
+        Ok(match found {
+            [true, false] => Some(BoxContent::Empty),
+            [false, true] => Some(BoxContent::Full),
+            _ => None,
+        })
     }
 
     /// Whether the solid of an open mesh holds a point; nothing where its winding number may be one half, or jumps.

@@ -547,6 +547,11 @@ impl Worker for MeshWorker {
                     tracer.trace(&mut self.direct, ray)?;
                 }
             }
+            Question::Box(bounds, known) => {
+                if let Some(tracer) = self.solid.tracer().filter(|_| self.solid.is_closed()) {
+                    *known = tracer.content_of(&mut self.direct, bounds)?;
+                }
+            }
             Question::Nearest(point, known) => {
                 if let (Some(tracer), Some(Some(sides))) =
                     (self.solid.tracer(), self.solid.boundary.sides.get())

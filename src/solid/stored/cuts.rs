@@ -147,7 +147,7 @@ impl PlacedCuts {
                 }
                 *known = Some(open.with_table(dense));
             }
-            Question::Crossing(..) | Question::Ray(_) | Question::Nearest(..) => {}
+            Question::Crossing(..) | Question::Ray(_) | Question::Nearest(..) | Question::Box(..) => {}
         }
         Ok(())
     }

@@ -672,7 +672,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
                     *known = self.inner.surfaces(source, &own)?;
                 }
             }
-            Question::Chords(_) | Question::Ray(_) | Question::Nearest(..) => {}
+            Question::Chords(_) | Question::Ray(_) | Question::Nearest(..) | Question::Box(..) => {}
         }
         Ok(())
     }

@@ -237,7 +237,8 @@ impl Worker for CsgWorker {
             | Question::Crossing(..)
             | Question::Surfaces(_)
             | Question::Ray(_)
-            | Question::Nearest(..) => {}
+            | Question::Nearest(..)
+            | Question::Box(..) => {}
         }
         Ok(())
     }
