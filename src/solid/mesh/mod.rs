@@ -18,7 +18,7 @@
 //!
 //! From the bottom up, each file uses only files named before it: `placed` (vertices on the lattice),
 //! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `rim` (winding numbers of
-//! caps from the boundary's edges alone), `winding` (the caps' winding number), `reach` (how far an open surface's solid may
+//! caps from the boundary's edges alone), `terms` (what caps and edges add), `winding` (the caps' winding number), `reach` (how far an open surface's solid may
 //! reach), `scan` (blocks of 64³ cells), `chords` (rays through centres), `on_frame` (a mesh on a frame, and what is known
 //! of a cell), `local` (triangles in a cell's coordinates), `base` (a point whose winding number is known), `fronts` (on
 //! which sides of triangles the solid lies), `integral` (moments and areas), `slab` (enclosures), `segment` (crossings),
@@ -45,6 +45,7 @@ mod rim;
 mod scan;
 mod segment;
 mod slab;
+mod terms;
 mod winding;
 
 pub use mesh_solid::MeshSolid;

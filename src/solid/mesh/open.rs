@@ -18,6 +18,7 @@ use super::slab;
 use super::winding::{Local, Range};
 use crate::lattice::MAX_DEPTH;
 use crate::lattice::exact::floor;
+use crate::memory;
 use crate::mesh::FillRule;
 use crate::solid::{Enclosure, Slab, Verdict};
 use alloc::vec::Vec;
@@ -41,14 +42,20 @@ const MOST_SQUARES: usize = 2048;
 /// How many caps are looked at for that at most, about.
 const MOST_CAPS: usize = 1 << 22;
 
-/// The caps' winding number around the latest cell of each level that it was asked for: a function of the
+/// The caps' winding number around the latest cells of each level that it was asked for: a function of the
 /// cell alone, kept for those below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
-    /// The cell's lower corner, and what is known unless the boundary passes close by. Empty until somebody asks: closed meshes
-    /// never do.
-    levels: Vec<Option<([i32; 3], Option<Local>)>>,
+    /// None before a level's first cell; then of all that lie in the same place of the two levels above the latest. (Cells are
+    /// divided twice before the first of those below is looked at.)
+    levels: [Vec<Slot>; MAX_DEPTH as usize + 1],
 }
+
+/// A cell's lower corner, and what is known unless the boundary passes close by.
+type Slot = Option<([i32; 3], Option<Local>)>;
+
+/// Cells of a level that are kept, in each axis: a power of two.
+const KEPT: i32 = 4;
 
 impl Surroundings {
     /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on
@@ -56,20 +63,24 @@ impl Surroundings {
     fn local(&mut self, mesh: &MeshOnFrame, level: u8, at: [i32; 3]) -> Option<Local> {
         let size = 1 << (mesh.placed.frame.depth() - level);
         let corner = at.map(|a| a & -size);
-        if let Some(&Some((kept, local))) = self.levels.get(level as usize)
-            && kept == corner
+        let place = |axis: usize| ((corner[axis] / size) & (KEPT - 1)) as usize;
+        let place = (place(2) * KEPT as usize + place(1)) * KEPT as usize + place(0);
+        let slots = &mut self.levels[level as usize];
+        if let Some(Some((kept, local))) = slots.get(place)
+            && *kept == corner
         {
-            return local;
+            return *local;
         }
         let radius = size as f64 * HALF_DIAGONAL;
         let cell = (size == 1).then_some(corner);
         let local = mesh.caps.local(&mesh.placed, middle(corner, size), radius, ENOUGH, cell);
-        // (Without memory it is found out anew.)
-        const LEVELS: usize = MAX_DEPTH as usize + 1;
-        if self.levels.is_empty() && self.levels.try_reserve_exact(LEVELS).is_ok() {
-            self.levels.resize(LEVELS, None);
+        if slots.is_empty()
+            && let Ok(none) = memory::filled((KEPT * KEPT * KEPT) as usize, None)
+        {
+            *slots = none;
         }
-        if let Some(slot) = self.levels.get_mut(level as usize) {
+        // (Without memory it is found anew each time.)
+        if let Some(slot) = slots.get_mut(place) {
             *slot = Some((corner, local));
         }
         local

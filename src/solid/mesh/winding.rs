@@ -20,6 +20,8 @@
 use super::crossing::Projection;
 use super::placed::{Placed, ranks};
 use super::rim::Rim;
+use super::terms::{self, Angle, CapTerms, Edge, EdgeTerms, End, SCALE, length};
+use crate::dispatch::{Hot, with_vectors};
 use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::exact::{floor, sqrt};
@@ -38,13 +40,12 @@ const APART: f64 = 6.0;
 /// A rim is close to a ball if it is so many radii from its middle.
 const CLOSE: f64 = 1.5;
 
-const SCALE: f64 = 1.0 / (4.0 * PI);
-
 /// A tree of bounding spheres over the caps of a surface, which are in the tree's order.
 #[derive(Default)]
 pub(super) struct Caps {
     /// Bit i: the edge from corner i to corner i + 1 is one of the surface's boundary.
     rims: Vec<u8>,
+    corners: Vec<[DVec3; 3]>,
     sizes: Vec<Size>,
     /// Which cap lies beyond each edge that is none of the boundary.
     beyond: Vec<[u32; 3]>,
@@ -63,25 +64,6 @@ struct Size {
     edges: [f64; 3],
     /// Of the edges, rounded up.
     longest: f64,
-}
-
-/// A corner as seen from a point.
-#[derive(Clone, Copy)]
-struct End {
-    at: DVec3,
-    distance: f64,
-    /// One over the distance.
-    inverse: f64,
-    direction: DVec3,
-}
-
-impl End {
-    #[inline(always)]
-    fn new(at: DVec3) -> End {
-        let distance = length(at);
-        let inverse = 1.0 / distance;
-        End { at, distance, inverse, direction: at * inverse }
-    }
 }
 
 /// A cap and its rims.
@@ -112,6 +94,22 @@ struct Node {
     end: u32,
     /// The node after the last one below this; the next one if this is a leaf.
     skip: u32,
+}
+
+/// A group of caps as seen from afar, from a point and in a ball around it.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// From the point to the group's middle.
+    towards: DVec3,
+    distance: f64,
+    /// How far from the ball the group is at least.
+    clear: f64,
+    /// Bounds of what it adds, as in [`Local`].
+    error: f64,
+    gradient_error: f64,
+    hessian_error: f64,
+    third_by_edges: f64,
+    third_by_areas: f64,
 }
 
 /// The caps' winding number in a ball around a point, to second order. It jumps by an integer on every cap;
@@ -293,6 +291,7 @@ impl Caps {
     /// Bytes that the lists take.
     pub(super) fn bytes(&self) -> usize {
         memory::bytes_of(&self.rims)
+            + memory::bytes_of(&self.corners)
             + memory::bytes_of(&self.sizes)
             + memory::bytes_of(&self.beyond)
             + memory::bytes_of(&self.nodes)
@@ -301,7 +300,7 @@ impl Caps {
 
     /// Closes `placed` by caps over the loops of its boundary.
     ///
-    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 320 bytes a cap.
+    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 400 bytes a cap.
     pub(super) fn close(placed: &mut Placed, loops: &Loops) -> Result<Caps, Error> {
         let count = loops.caps();
         let mut caps = Caps::default();
@@ -329,6 +328,8 @@ impl Caps {
         }
         triangles.extend(slots.iter().map(|slot| slot.0));
         caps.rims.extend(slots.iter().map(|slot| slot.1));
+        caps.corners.try_reserve_exact(count)?;
+        caps.corners.extend(slots.iter().map(|slot| slot.0.map(at)));
         caps.sizes.try_reserve_exact(count)?;
         caps.sizes.extend(slots.iter().map(|slot| {
             let [a, b, c] = slot.0.map(at);
@@ -398,25 +399,7 @@ impl Caps {
         enough: f64,
         cell: Option<[i32; 3]>,
     ) -> Option<Local> {
-        let reach = if radius > 0.0 { radius + self.boundary_error } else { 0.0 };
-        let mut local = Local::nothing(point);
-        let mut turned = DVec2::X;
-        let mut next = 0;
-        while let Some(node) = self.nodes.get(next) {
-            if node.add_from_afar(reach, enough, &mut local) {
-                next = node.skip as usize;
-                continue;
-            }
-            if node.skip as usize == next + 1 {
-                for cap in node.first as usize..node.end as usize {
-                    self.add_cap(placed, cap, reach, cell, &mut local, &mut turned)?;
-                }
-            }
-            next += 1;
-        }
-        local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
-        local.value_error += self.boundary_error * local.position_sensitivity;
-        Some(local)
+        with_vectors(Around { caps: self, placed, point, radius, enough, cell })
     }
 
     /// All caps, as a list.
@@ -447,13 +430,12 @@ impl Caps {
         (point, radius): ([f64; 3], f64),
     ) -> Result<Local, Error> {
         let reach = radius + self.boundary_error;
-        let mut local = known.moved(point, radius);
+        let local = known.moved(point, radius);
         let first = near.len();
         near.try_reserve(list.len())?;
         for i in list.clone() {
             let cap = near[i];
-            let corners =
-                placed.caps[cap as usize].map(|vertex| DVec3::from(placed.at(vertex)) - local.point);
+            let corners = self.corners[cap as usize].map(|corner| corner - local.point);
             let farthest = sqrt(corners.iter().fold(0.0, |most: f64, at| most.max(at.length_squared())));
             // (Of what is no number nothing is known.)
             let is_far = farthest - self.sizes[cap as usize].longest > APART * reach;
@@ -462,24 +444,7 @@ impl Caps {
             }
         }
         let (list, near) = (&near[list], &near[first..]);
-        let is_new = |cap: u32| list.binary_search(&cap).is_ok() && near.binary_search(&cap).is_err();
-        let mut turned = DVec2::X;
-        let mut next = near.iter().copied().peekable();
-        for &cap in list {
-            if next.next_if_eq(&cap).is_some() {
-                continue;
-            }
-            let added = self
-                .add_cap(placed, cap as usize, reach, None, &mut local, &mut turned)
-                .and_then(|()| self.add_inner_edges(placed, cap as usize, reach, is_new, &mut local));
-            if added.is_none() {
-                local.value_error = f64::INFINITY;
-            }
-        }
-        local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
-        local.value_error += self.boundary_error * local.position_sensitivity;
-        local.position_sensitivity = 0.0;
-        Ok(local)
+        Ok(with_vectors(Far { caps: self, placed, list, near, reach, known: local }))
     }
 
     /// The winding number of all caps in the ball of `radius` around the point that `far` is of, which tells of all that are
@@ -487,26 +452,16 @@ impl Caps {
     pub(super) fn whole(&self, placed: &Placed, far: &Local, near: &[u32], radius: f64) -> Option<Local> {
         let reach = radius + self.boundary_error;
         let is_close = |&cap: &u32| {
-            let corners = placed.caps[cap as usize];
+            let corners = self.corners[cap as usize].map(|corner| corner - far.point);
             (0..3).any(|i| {
-                let ends = [corners[i], corners[(i + 1) % 3]];
-                let [a, b] = ends.map(|vertex| DVec3::from(placed.at(vertex)) - far.point);
-                self.rims[cap as usize] >> i & 1 != 0 && segment_distance(a, b) < CLOSE * reach
+                self.rims[cap as usize] >> i & 1 != 0
+                    && segment_distance(corners[i], corners[(i + 1) % 3]) < CLOSE * reach
             })
         };
         if near.iter().any(is_close) {
             return None;
         }
-        let mut local = *far;
-        let mut turned = DVec2::X;
-        for &cap in near {
-            self.add_cap(placed, cap as usize, reach, None, &mut local, &mut turned)?;
-            let is_near = |cap: u32| near.binary_search(&cap).is_ok();
-            self.add_inner_edges(placed, cap as usize, reach, is_near, &mut local)?;
-        }
-        local.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
-        local.value_error += self.boundary_error * local.position_sensitivity;
-        Some(local)
+        with_vectors(Whole { caps: self, placed, near, reach, far: *far })
     }
 
     /// The winding number at a point of the ball that `far` is of, which tells of all caps that are not `near`. If the point is
@@ -518,85 +473,28 @@ impl Caps {
         point: [f64; 3],
         cell: Option<[i32; 3]>,
     ) -> Range {
-        let mut local = Local::nothing(point);
-        let mut turned = DVec2::X;
-        for &cap in near {
-            let is_added = self.turn(placed, cap as usize, &mut local, &mut turned)
-                || self.add_cap(placed, cap as usize, 0.0, cell, &mut local, &mut turned).is_some();
-            if !is_added {
-                return Range::UNKNOWN;
-            }
-        }
+        let near = with_vectors(Near { caps: self, placed, near, point, cell });
         let far = far.at(point);
-        let value = local.value + libm::atan2(turned.y, turned.x) / (2.0 * PI) + far.value;
-        Range { value, change: 0.0, error: local.error_at(0.0) + far.error }
+        Range { value: near.value + far.value, change: 0.0, error: near.error_at(0.0) + far.error }
     }
 
-    /// Adds half a cap's solid angle to the argument of `turned`, if it is less than a right one and well told, as most are: what
-    /// [`add_cap`](Self::add_cap) does with numbers that are not divided by the corners' distances.
-    #[inline]
-    fn turn(&self, placed: &Placed, cap: usize, sum: &mut Local, turned: &mut DVec2) -> bool {
-        let [a, b, c] = placed.caps[cap].map(|vertex| DVec3::from(placed.at(vertex)) - sum.point);
-        let [far, farther, farthest] = [a, b, c].map(length);
-        let pairs = [farther * farthest, farthest * far, far * farther];
-        let all = pairs[0] * far;
-        let real = all + a.dot(b) * farthest + b.dot(c) * far + c.dot(a) * farther;
-        let imaginary = a.dot(b.cross(c));
-        let size = sqrt(real * real + imaginary * imaginary);
-        let wrong = 64.0 * f64::EPSILON * all + 8.0 * self.vertex_error * (pairs[0] + pairs[1] + pairs[2]);
-        // (False for NaN.)
-        let is_told = real > 0.0 && turned.x > 0.0 && size >= 2.0 * wrong;
-        if is_told {
-            let inverse = 1.0 / size;
-            *turned = turned.rotate(DVec2::new(real, imaginary) * inverse);
-            sum.value_error += wrong * inverse;
-        }
-        is_told
+    /// Those edges of a cap that are none of the boundary, as bits, but for edges beyond which lies a cap that is added, too.
+    #[inline(always)]
+    fn inner_edges(&self, cap: u32, is_added: impl Fn(u32) -> bool) -> u8 {
+        let (rims, beyond) = (self.rims[cap as usize], self.beyond[cap as usize]);
+        (0..3).filter(|i| rims >> i & 1 == 0 && !is_added(beyond[*i])).fold(0, |mask, i| mask | 1 << i)
     }
 
-    /// Adds what those edges of a cap do to the derivatives that are none of the boundary, but for edges beyond which lies a
-    /// cap that is added, too.
-    fn add_inner_edges(
+    /// Adds half a cap's solid angle to the value or to the argument of `turned`, of modulus 1.
+    #[inline(always)]
+    fn add_angle(
         &self,
-        placed: &Placed,
-        cap: usize,
-        radius: f64,
-        is_added: impl Fn(u32) -> bool,
-        sum: &mut Local,
-    ) -> Option<()> {
-        let corners = placed.caps[cap];
-        for i in (0..3).filter(|i| self.rims[cap] >> i & 1 == 0) {
-            if is_added(self.beyond[cap][i]) {
-                continue;
-            }
-            let ends = [corners[i], corners[(i + 1) % 3]];
-            let ends = ends.map(|vertex| End::new(DVec3::from(placed.at(vertex)) - sum.point));
-            let cosine = ends[0].direction.dot(ends[1].direction);
-            sum.add_rim(ends, cosine, self.sizes[cap].edges[i], radius)?;
-        }
-        Some(())
-    }
-
-    /// Adds one cap; half its solid angle to the value or to the argument of `turned`, of modulus 1.
-    #[inline]
-    fn add_cap(
-        &self,
-        placed: &Placed,
-        cap: usize,
-        radius: f64,
-        cell: Option<[i32; 3]>,
+        (placed, cap, cell): (&Placed, usize, Option<[i32; 3]>),
+        angle: Angle,
         sum: &mut Local,
         turned: &mut DVec2,
-    ) -> Option<()> {
-        let ends = placed.caps[cap].map(|vertex| End::new(DVec3::from(placed.at(vertex)) - sum.point));
-        let [a, b, c] = ends.map(|end| end.direction);
-        let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
-        // Half the solid angle is the argument of (real, imaginary).
-        let imaginary = a.dot(b.cross(c));
-        let real = 1.0 + ab + bc + ca;
-        let modulus = sqrt(real * real + imaginary * imaginary);
-        let [near, far, farther] = ends.map(|end| end.inverse);
-        let wrong = 64.0 * f64::EPSILON + 8.0 * self.vertex_error * (near + far + farther);
+    ) {
+        let Angle { real, imaginary, modulus, wrong } = angle;
         // Also false for NaN.
         if modulus >= 2.0 * wrong {
             let inverse = 1.0 / modulus;
@@ -624,26 +522,10 @@ impl Caps {
             sum.value_error += 1.0;
             if let Some(cell) = cell {
                 // No proof, because the centre may lie beside the edge; but the best guess, and exact on it.
-                sum.value += self.on_edge(placed, cap, cell, ends.map(|end| end.at)) / (2.0 * PI);
+                let corners = self.corners[cap].map(|corner| corner - sum.point);
+                sum.value += self.on_edge(placed, cap, cell, corners) / (2.0 * PI);
             }
         }
-        if radius == 0.0 {
-            // Only the value counts.
-            return Some(());
-        }
-        // A triangle is nowhere farther from its farthest corner than its longest edge.
-        let Size { area, edges, longest } = self.sizes[cap];
-        let farthest = ends.iter().fold(0.0, |most: f64, end| most.max(end.distance));
-        let inverse = 1.0 / (farthest * (1.0 - 1e-9) - longest - radius);
-        let square = inverse * inverse;
-        sum.third_by_areas +=
-            if inverse > 0.0 { SCALE * 24.0 * area * square * square * inverse } else { f64::INFINITY };
-        for (i, cosine) in [ab, bc, ca].into_iter().enumerate() {
-            if self.rims[cap] >> i & 1 != 0 {
-                sum.add_rim([ends[i], ends[(i + 1) % 3]], cosine, edges[i], radius)?;
-            }
-        }
-        Some(())
     }
 
     /// Half the solid angle of a cap on whose edge or corner the centre of a cell lies, as seen from where
@@ -772,17 +654,17 @@ impl Node {
         node
     }
 
-    /// Adds the group's winding number as seen from afar to what is known of the ball of `radius` around a
-    /// point, if that adds at most `enough` to the error anywhere in it.
-    #[inline]
-    fn add_from_afar(&self, radius: f64, enough: f64, sum: &mut Local) -> bool {
-        let towards = self.centre - sum.point;
+    /// The group as seen from afar, in the ball of `radius` around a point, if taking it together adds at most `enough` to the
+    /// error anywhere in it.
+    #[inline(always)]
+    fn seen(&self, point: DVec3, radius: f64, enough: f64) -> Option<Seen> {
+        let towards = self.centre - point;
         let distance = length(towards);
         let (gap, clear) = (distance - self.radius, distance - self.radius - radius);
         // (What is no number fails this and all tests below.)
         let is_apart = clear > self.radius;
         if !is_apart {
-            return false;
+            return None;
         }
         // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is
         // harmonic, so that it is largest along y. (`rounding` and `rim_rounding` are for what is
@@ -792,7 +674,7 @@ impl Node {
         let error = (3.0 * self.second_moment * per_gap * per_gap + self.rounding) * near;
         let is_exact = error <= enough;
         if !is_exact {
-            return false;
+            return None;
         }
         let wide = self.radius * per_gap;
         let gradient_error = (3.0 * wide * wide * self.rim + self.rim_rounding) * near;
@@ -804,10 +686,25 @@ impl Node {
         let beyond_value = (gradient_error + (0.5 * hessian_error + third / 6.0 * radius) * radius) * radius;
         let is_smooth = error + beyond_value <= enough;
         if !is_smooth {
-            return false;
+            return None;
         }
-        let inverse = 1.0 / distance;
-        let direction = towards * inverse;
+        Some(Seen {
+            towards,
+            distance,
+            clear,
+            error,
+            gradient_error,
+            hessian_error,
+            third_by_edges,
+            third_by_areas,
+        })
+    }
+
+    /// Adds the group's winding number as seen from afar.
+    #[inline(always)]
+    fn add(&self, seen: &Seen, sum: &mut Local) {
+        let inverse = 1.0 / seen.distance;
+        let direction = seen.towards * inverse;
         let (square, cube) = (SCALE * inverse * inverse, SCALE * inverse * inverse * inverse);
         // The kernel at the centre, and its first derivative (1 − 3 d dᵀ)/|y|³.
         let facing = self.area.dot(direction);
@@ -822,66 +719,30 @@ impl Node {
         let columns =
             DVec3::AXES.map(|v| (3.0 * direction.dot(v) * direction - v).cross(self.current) * cube);
         sum.hessian += DMat3::from_cols(columns[0], columns[1], columns[2]);
-        sum.value_error += error + f64::EPSILON * sum.value.abs();
-        sum.gradient_error += gradient_error;
-        sum.hessian_error += hessian_error;
+        sum.value_error += seen.error + f64::EPSILON * sum.value.abs();
+        sum.gradient_error += seen.gradient_error;
+        sum.hessian_error += seen.hessian_error;
         sum.round_derivatives();
-        sum.third_by_edges += third_by_edges;
-        sum.third_by_areas += third_by_areas;
-        sum.position_sensitivity += SCALE * self.rim / (clear * clear);
-        true
+        sum.third_by_edges += seen.third_by_edges;
+        sum.third_by_areas += seen.third_by_areas;
+        sum.position_sensitivity += SCALE * self.rim / (seen.clear * seen.clear);
     }
 }
 
 impl Local {
-    /// Adds what an edge of the boundary does to the derivatives. The gradient is the magnetic field of a
-    /// current along the edge. `None` if the edge passes through the ball.
-    #[inline]
-    fn add_rim(&mut self, [from, to]: [End; 2], cosine: f64, length: f64, radius: f64) -> Option<()> {
-        let (a, b) = (from.direction, to.direction);
-        let (both, inverse_product) = (from.distance + to.distance, from.inverse * to.inverse);
-        let edge = to.at - from.at;
-        let along = if length > 0.0 { (-from.at.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
-        let nearest = self::length(from.at + along * edge);
-        let distance = nearest * (1.0 - 1e-9) - 8.0 * f64::EPSILON * both - radius;
-        // What is no number fails such a test, too.
-        let is_apart = distance > 0.0;
-        if !is_apart {
+    /// Adds what an edge does to the derivatives. `None` if it passes through the ball.
+    #[inline(always)]
+    fn add_edge(&mut self, edge: &Edge) -> Option<()> {
+        if !edge.is_known {
             return None;
         }
-        let field = a.cross(b);
-        let square = field.length_squared();
-        let sine = sqrt(square);
-        // 1 + cosine, also of an edge so close by that its ends lie in opposite directions.
-        let open = if cosine < 0.0 { square / (1.0 - cosine) } else { 1.0 + cosine };
-        let is_told = cosine >= 0.0 || sine > 1e-12;
-        if !is_told {
-            return None;
-        }
-        let inverse_open = 1.0 / open;
-        let strength = SCALE * both * inverse_product * inverse_open;
-        self.gradient += field * strength;
-        // Along v the derivative of from × to is edge × v, that of `strength` over both distances is
-        // `weaker` · v.
-        let mixed = (a * to.distance + b * from.distance) * inverse_product;
-        let weaker =
-            strength * (mixed + (a + b) * (both * inverse_product * inverse_open) - (a + b) * (1.0 / both));
-        let turning = edge * (strength * inverse_product);
-        self.hessian += DMat3::from_cols(
-            DVec3::new(0.0, turning.z, -turning.y) + field * weaker.x,
-            DVec3::new(-turning.z, 0.0, turning.x) + field * weaker.y,
-            DVec3::new(turning.y, -turning.x, 0.0) + field * weaker.z,
-        );
-        // Of the field's direction, and of `open`.
-        let rounding = 256.0 * f64::EPSILON * strength * if cosine < 0.0 { 2.0 } else { 1.0 + sine };
-        self.gradient_error += rounding;
-        self.hessian_error += rounding * both * inverse_product * inverse_open.max(1.0);
+        self.gradient += edge.gradient;
+        self.hessian += DMat3::from_cols(edge.hessian[0], edge.hessian[1], edge.hessian[2]);
+        self.gradient_error += edge.gradient_error;
+        self.hessian_error += edge.hessian_error;
         self.round_derivatives();
-        // ∫ 6 ds / distance⁴ along the edge, and at most along its whole line.
-        let inverse = 1.0 / distance;
-        let angle = length * inverse;
-        self.position_sensitivity += SCALE * angle.min(PI) * inverse;
-        self.third_by_edges += SCALE * 6.0 * angle.min(PI / 2.0) * inverse * inverse * inverse;
+        self.position_sensitivity += edge.position_sensitivity;
+        self.third_by_edges += edge.third;
         Some(())
     }
 
@@ -890,6 +751,268 @@ impl Local {
     fn round_derivatives(&mut self) {
         self.gradient_error += f64::EPSILON * self.gradient.abs().element_sum();
         self.hessian_error += f64::EPSILON * sum_of_magnitudes(self.hessian);
+    }
+}
+
+/// What is summed.
+#[derive(Clone, Copy)]
+enum Item {
+    /// A cap, and which of its edges do something to the derivatives besides those of the boundary.
+    Cap(u32, u8),
+    Group(u32, Seen),
+}
+
+/// A sum over caps and groups of them, in the order in which they are given. Terms are found for many at a time.
+struct Summing<'c> {
+    caps: &'c Caps,
+    placed: &'c Placed,
+    cell: Option<[i32; 3]>,
+    /// Of the ball; without a radius there is only the value.
+    reach: f64,
+    sum: Local,
+    /// Of modulus 1: half its argument is part of the sum.
+    turned: DVec2,
+    /// False if an edge passes through the ball.
+    is_known: bool,
+    /// Those that are not summed yet, and the terms of theirs.
+    items: [Item; terms::MOST],
+    count: usize,
+    cap_terms: CapTerms,
+    edge_terms: EdgeTerms,
+}
+
+impl<'c> Summing<'c> {
+    #[inline(always)]
+    fn new(caps: &'c Caps, placed: &'c Placed, sum: Local, reach: f64) -> Summing<'c> {
+        Summing {
+            caps,
+            placed,
+            cell: None,
+            reach,
+            sum,
+            turned: DVec2::X,
+            is_known: true,
+            items: [Item::Cap(0, 0); terms::MOST],
+            count: 0,
+            cap_terms: CapTerms::new(),
+            edge_terms: EdgeTerms::new(),
+        }
+    }
+
+    /// Adds items, all of them or until one is not known if that is `enough`.
+    #[inline(always)]
+    fn add(&mut self, mut items: impl Iterator<Item = Item>, enough: bool) {
+        loop {
+            let mut is_end = false;
+            while self.count < terms::MOST && self.edge_terms.room() >= 3 {
+                match items.next() {
+                    Some(item) => self.push(item),
+                    None => {
+                        is_end = true;
+                        break;
+                    }
+                }
+            }
+            self.add_terms();
+            if is_end || enough && !self.is_known {
+                return;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, item: Item) {
+        if let Item::Cap(cap, inner) = item {
+            let i = cap as usize;
+            let (corners, Size { area, edges, longest }) = (&self.caps.corners[i], self.caps.sizes[i]);
+            self.cap_terms.push(corners, area, longest);
+            if self.reach != 0.0 {
+                for mask in [self.caps.rims[i], inner] {
+                    for k in (0..3).filter(|k| mask >> k & 1 != 0) {
+                        self.edge_terms.push([corners[k], corners[(k + 1) % 3]], edges[k]);
+                    }
+                }
+            }
+        }
+        self.items[self.count] = item;
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    fn add_terms(&mut self) {
+        let Summing { caps, placed, cell, reach, sum, turned, is_known, .. } = self;
+        self.cap_terms.find(sum.point, caps.vertex_error, *reach);
+        self.edge_terms.find(sum.point, *reach);
+        let (mut caps_taken, mut edges_taken) = (0, 0);
+        for item in &self.items[..self.count] {
+            let (cap, inner) = match item {
+                Item::Group(node, seen) => {
+                    caps.nodes[*node as usize].add(seen, sum);
+                    continue;
+                }
+                Item::Cap(cap, inner) => (*cap as usize, *inner),
+            };
+            caps.add_angle((placed, cap, *cell), self.cap_terms.angle(caps_taken), sum, turned);
+            if *reach != 0.0 {
+                sum.third_by_areas += self.cap_terms.third(caps_taken);
+                let edges = (caps.rims[cap].count_ones() + inner.count_ones()) as usize;
+                let mut all = (edges_taken..edges_taken + edges).map(|i| self.edge_terms.edge(i));
+                *is_known &= all.try_for_each(|edge| sum.add_edge(&edge)).is_some();
+                edges_taken += edges;
+            }
+            caps_taken += 1;
+        }
+        self.count = 0;
+        self.cap_terms.clear();
+        self.edge_terms.clear();
+    }
+
+    #[inline(always)]
+    fn finish(self) -> Local {
+        let Summing { caps, mut sum, turned, .. } = self;
+        sum.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
+        sum.value_error += caps.boundary_error * sum.position_sensitivity;
+        sum
+    }
+}
+
+/// [`Caps::local`].
+struct Around<'c> {
+    caps: &'c Caps,
+    placed: &'c Placed,
+    point: [f64; 3],
+    radius: f64,
+    enough: f64,
+    cell: Option<[i32; 3]>,
+}
+
+impl Hot for Around<'_> {
+    type Output = Option<Local>;
+
+    #[inline(always)]
+    fn run(self) -> Option<Local> {
+        let Around { caps, placed, point, radius, enough, cell } = self;
+        let reach = if radius > 0.0 { radius + caps.boundary_error } else { 0.0 };
+        let mut summing = Summing::new(caps, placed, Local::nothing(point), reach);
+        summing.cell = cell;
+        let (mut next, mut leaf) = (0, 0..0);
+        let point = DVec3::from(point);
+        let items = core::iter::from_fn(|| {
+            loop {
+                if let Some(cap) = leaf.next() {
+                    return Some(Item::Cap(cap, 0));
+                }
+                let node = caps.nodes.get(next)?;
+                if let Some(seen) = node.seen(point, reach, enough) {
+                    let item = Item::Group(next as u32, seen);
+                    next = node.skip as usize;
+                    return Some(item);
+                }
+                next += 1;
+                if node.skip as usize == next {
+                    leaf = node.first..node.end;
+                }
+            }
+        });
+        summing.add(items, true);
+        if summing.is_known { Some(summing.finish()) } else { None }
+    }
+}
+
+/// What [`Caps::far`] adds: the caps of a list that are not `near`.
+struct Far<'c> {
+    caps: &'c Caps,
+    placed: &'c Placed,
+    list: &'c [u32],
+    near: &'c [u32],
+    reach: f64,
+    known: Local,
+}
+
+impl Hot for Far<'_> {
+    type Output = Local;
+
+    #[inline(always)]
+    fn run(self) -> Local {
+        let Far { caps, placed, list, near, reach, known } = self;
+        let is_new = |cap: u32| list.binary_search(&cap).is_ok() && near.binary_search(&cap).is_err();
+        let mut next = near.iter().peekable();
+        let far = list.iter().filter(|&cap| next.next_if_eq(&cap).is_none());
+        let mut summing = Summing::new(caps, placed, known, reach);
+        summing.add(far.map(|&cap| Item::Cap(cap, caps.inner_edges(cap, is_new))), false);
+        let is_known = summing.is_known;
+        let mut local = summing.finish();
+        if !is_known {
+            local.value_error = f64::INFINITY;
+        }
+        Local { position_sensitivity: 0.0, ..local }
+    }
+}
+
+/// What [`Caps::whole`] adds.
+struct Whole<'c> {
+    caps: &'c Caps,
+    placed: &'c Placed,
+    near: &'c [u32],
+    reach: f64,
+    far: Local,
+}
+
+impl Hot for Whole<'_> {
+    type Output = Option<Local>;
+
+    #[inline(always)]
+    fn run(self) -> Option<Local> {
+        let Whole { caps, placed, near, reach, far } = self;
+        let is_near = |cap: u32| near.binary_search(&cap).is_ok();
+        let mut summing = Summing::new(caps, placed, far, reach);
+        summing.add(near.iter().map(|&cap| Item::Cap(cap, caps.inner_edges(cap, is_near))), true);
+        if summing.is_known { Some(summing.finish()) } else { None }
+    }
+}
+
+/// The value of the caps that [`Caps::at`] sums one by one.
+struct Near<'c> {
+    caps: &'c Caps,
+    placed: &'c Placed,
+    near: &'c [u32],
+    point: [f64; 3],
+    cell: Option<[i32; 3]>,
+}
+
+impl Hot for Near<'_> {
+    type Output = Local;
+
+    /// Most half angles are less than a right one and well told: then numbers do that are not divided by the corners' distances.
+    #[inline(always)]
+    fn run(self) -> Local {
+        let Near { caps, placed, near, point, cell } = self;
+        let mut sum = Local::nothing(point);
+        let mut turned = DVec2::X;
+        let mut found = CapTerms::new();
+        for near in near.chunks(terms::MOST) {
+            found.clear();
+            for &cap in near {
+                found.push(&caps.corners[cap as usize], 0.0, 0.0);
+            }
+            found.find_undivided(sum.point, caps.vertex_error);
+            for (i, &cap) in near.iter().enumerate() {
+                let Angle { real, imaginary, modulus, wrong } = found.angle(i);
+                // (False for NaN.)
+                let is_told = real > 0.0 && turned.x > 0.0 && modulus >= 2.0 * wrong;
+                if is_told {
+                    let inverse = 1.0 / modulus;
+                    turned = turned.rotate(DVec2::new(real, imaginary) * inverse);
+                    sum.value_error += wrong * inverse;
+                } else {
+                    let ends = caps.corners[cap as usize].map(|corner| End::new(corner - sum.point));
+                    let angle = Angle::new(ends, caps.vertex_error);
+                    caps.add_angle((placed, cap as usize, cell), angle, &mut sum, &mut turned);
+                }
+            }
+        }
+        sum.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
+        sum
     }
 }
 
@@ -905,11 +1028,6 @@ fn curl(m: DMat3) -> DVec3 {
 fn sum_of_magnitudes(m: DMat3) -> f64 {
     let sums = m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs();
     sums.x + sums.y + sums.z
-}
-
-#[inline(always)]
-fn length(v: DVec3) -> f64 {
-    sqrt(v.length_squared())
 }
 
 /// The triangles of a polygon with `corners` corners, by halves; `found` gets the corners of each,
