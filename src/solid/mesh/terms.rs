@@ -1,6 +1,7 @@
 //! What caps and their edges add to winding numbers and derivatives, many at a time.
 //!
-//! Loops over arrays find the terms, which compilers make vector instructions of. Whoever sums takes the terms in turn, so that
+//! Loops over arrays find the terms, which compilers make vector instructions of if nothing in them is a call (so do arrays
+//! without `map`). Whoever sums takes the terms in turn, so that
 //! sums are those of one term after the other, bit for bit.
 
 use crate::lattice::exact::sqrt;
@@ -49,20 +50,20 @@ pub(super) struct Angle {
 impl Angle {
     #[inline(always)]
     pub(super) fn new(ends: [End; 3], vertex_error: f64) -> Angle {
-        let [a, b, c] = ends.map(|end| end.direction);
+        let [a, b, c] = [ends[0].direction, ends[1].direction, ends[2].direction];
         let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
         let imaginary = a.dot(b.cross(c));
         let real = 1.0 + ab + bc + ca;
         let modulus = sqrt(real * real + imaginary * imaginary);
-        let [near, far, farther] = ends.map(|end| end.inverse);
-        let wrong = 64.0 * f64::EPSILON + 8.0 * vertex_error * (near + far + farther);
+        let inverses = ends[0].inverse + ends[1].inverse + ends[2].inverse;
+        let wrong = 64.0 * f64::EPSILON + 8.0 * vertex_error * inverses;
         Angle { real, imaginary, modulus, wrong }
     }
 
     /// The same, of numbers that are not divided by the corners' distances.
     #[inline(always)]
     fn undivided([a, b, c]: [DVec3; 3], vertex_error: f64) -> Angle {
-        let [far, farther, farthest] = [a, b, c].map(length);
+        let [far, farther, farthest] = [length(a), length(b), length(c)];
         let pairs = [farther * farthest, farthest * far, far * farther];
         let all = pairs[0] * far;
         let real = all + a.dot(b) * farthest + b.dot(c) * far + c.dot(a) * farther;
@@ -110,12 +111,13 @@ impl CapTerms {
     pub(super) fn find(&mut self, point: DVec3, vertex_error: f64, radius: f64) {
         let CapTerms { count, corners, area, longest, angles, third } = self;
         for i in 0..count.next_multiple_of(WIDTH).min(MOST) {
-            let ends = corners.each_ref().map(|rows| End::new(at(rows, i) - point));
+            let [a, b, c] = [at(&corners[0], i), at(&corners[1], i), at(&corners[2], i)];
+            let ends = [End::new(a - point), End::new(b - point), End::new(c - point)];
             let angle = Angle::new(ends, vertex_error);
             (angles[0][i], angles[1][i], angles[2][i], angles[3][i]) =
                 (angle.real, angle.imaginary, angle.modulus, angle.wrong);
             // A triangle is nowhere farther from its farthest corner than its longest edge.
-            let farthest = ends.iter().fold(0.0, |most: f64, end| most.max(end.distance));
+            let farthest = 0f64.max(ends[0].distance).max(ends[1].distance).max(ends[2].distance);
             let inverse = 1.0 / (farthest * (1.0 - 1e-9) - longest[i] - radius);
             let square = inverse * inverse;
             third[i] = if inverse > 0.0 {
@@ -131,7 +133,8 @@ impl CapTerms {
     pub(super) fn find_undivided(&mut self, point: DVec3, vertex_error: f64) {
         let CapTerms { count, corners, angles, .. } = self;
         for i in 0..count.next_multiple_of(WIDTH).min(MOST) {
-            let angle = Angle::undivided(corners.each_ref().map(|rows| at(rows, i) - point), vertex_error);
+            let [a, b, c] = [at(&corners[0], i), at(&corners[1], i), at(&corners[2], i)];
+            let angle = Angle::undivided([a - point, b - point, c - point], vertex_error);
             (angles[0][i], angles[1][i], angles[2][i], angles[3][i]) =
                 (angle.real, angle.imaginary, angle.modulus, angle.wrong);
         }
@@ -139,8 +142,8 @@ impl CapTerms {
 
     #[inline(always)]
     pub(super) fn angle(&self, i: usize) -> Angle {
-        let [real, imaginary, modulus, wrong] = self.angles.each_ref().map(|row| row[i]);
-        Angle { real, imaginary, modulus, wrong }
+        let [real, imaginary, modulus, wrong] = &self.angles;
+        Angle { real: real[i], imaginary: imaginary[i], modulus: modulus[i], wrong: wrong[i] }
     }
 
     /// A bound of the third derivative.
@@ -265,8 +268,8 @@ impl EdgeTerms {
     pub(super) fn find(&mut self, point: DVec3, radius: f64) {
         let EdgeTerms { count, ends, length, known, gradient, hessian, bounds } = self;
         for i in 0..count.next_multiple_of(WIDTH).min(MOST) {
-            let ends = ends.each_ref().map(|rows| End::new(at(rows, i) - point));
-            let edge = Edge::new(ends, length[i], radius);
+            let (from, to) = (at(&ends[0], i) - point, at(&ends[1], i) - point);
+            let edge = Edge::new([End::new(from), End::new(to)], length[i], radius);
             known[i] = if edge.is_known { 1.0 } else { 0.0 };
             put(gradient, i, edge.gradient);
             put(&mut hessian[0], i, edge.hessian[0]);
@@ -279,16 +282,15 @@ impl EdgeTerms {
 
     #[inline(always)]
     pub(super) fn edge(&self, i: usize) -> Edge {
-        let [gradient_error, hessian_error, position_sensitivity, third] =
-            self.bounds.each_ref().map(|row| row[i]);
+        let [gradient_error, hessian_error, position_sensitivity, third] = &self.bounds;
         Edge {
             is_known: self.known[i] != 0.0,
             gradient: at(&self.gradient, i),
-            hessian: self.hessian.each_ref().map(|rows| at(rows, i)),
-            gradient_error,
-            hessian_error,
-            position_sensitivity,
-            third,
+            hessian: [at(&self.hessian[0], i), at(&self.hessian[1], i), at(&self.hessian[2], i)],
+            gradient_error: gradient_error[i],
+            hessian_error: hessian_error[i],
+            position_sensitivity: position_sensitivity[i],
+            third: third[i],
         }
     }
 }

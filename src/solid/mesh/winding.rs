@@ -659,7 +659,12 @@ impl Node {
     #[inline(always)]
     fn seen(&self, point: DVec3, radius: f64, enough: f64) -> Option<Seen> {
         let towards = self.centre - point;
-        let distance = length(towards);
+        // Most that are not apart are seen to be that without a root.
+        let (square, least) = (towards.length_squared(), 2.0 * self.radius + radius);
+        if square < least * least * (1.0 - 1e-9) {
+            return None;
+        }
+        let distance = sqrt(square);
         let (gap, clear) = (distance - self.radius, distance - self.radius - radius);
         // (What is no number fails this and all tests below.)
         let is_apart = clear > self.radius;
@@ -716,8 +721,8 @@ impl Node {
         sum.gradient +=
             direction.cross(self.current) * square + (turned - 3.0 * direction.cross(along_direction)) * cube;
         // The first of them once more differentiated: −(v − 3 d (d·v))/|y|³ × ds for a step v.
-        let columns =
-            DVec3::AXES.map(|v| (3.0 * direction.dot(v) * direction - v).cross(self.current) * cube);
+        let column = |v: DVec3| (3.0 * direction.dot(v) * direction - v).cross(self.current) * cube;
+        let columns = [column(DVec3::X), column(DVec3::Y), column(DVec3::Z)];
         sum.hessian += DMat3::from_cols(columns[0], columns[1], columns[2]);
         sum.value_error += seen.error + f64::EPSILON * sum.value.abs();
         sum.gradient_error += seen.gradient_error;
@@ -856,8 +861,12 @@ impl<'c> Summing<'c> {
             if *reach != 0.0 {
                 sum.third_by_areas += self.cap_terms.third(caps_taken);
                 let edges = (caps.rims[cap].count_ones() + inner.count_ones()) as usize;
-                let mut all = (edges_taken..edges_taken + edges).map(|i| self.edge_terms.edge(i));
-                *is_known &= all.try_for_each(|edge| sum.add_edge(&edge)).is_some();
+                for i in edges_taken..edges_taken + edges {
+                    if sum.add_edge(&self.edge_terms.edge(i)).is_none() {
+                        *is_known = false;
+                        break;
+                    }
+                }
                 edges_taken += edges;
             }
             caps_taken += 1;
@@ -873,6 +882,41 @@ impl<'c> Summing<'c> {
         sum.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
         sum.value_error += caps.boundary_error * sum.position_sensitivity;
         sum
+    }
+}
+
+/// All groups that are far from a ball, as large as may be, and the caps between them, in the tree's order.
+struct Items<'c> {
+    caps: &'c Caps,
+    point: DVec3,
+    reach: f64,
+    enough: f64,
+    /// The node that comes next, and what is left of the latest leaf.
+    next: usize,
+    leaf: core::ops::Range<u32>,
+}
+
+impl Iterator for Items<'_> {
+    type Item = Item;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Item> {
+        loop {
+            if self.leaf.start < self.leaf.end {
+                self.leaf.start += 1;
+                return Some(Item::Cap(self.leaf.start - 1, 0));
+            }
+            let node = self.caps.nodes.get(self.next)?;
+            if let Some(seen) = node.seen(self.point, self.reach, self.enough) {
+                let item = Item::Group(self.next as u32, seen);
+                self.next = node.skip as usize;
+                return Some(item);
+            }
+            self.next += 1;
+            if node.skip as usize == self.next {
+                self.leaf = node.first..node.end;
+            }
+        }
     }
 }
 
@@ -895,25 +939,7 @@ impl Hot for Around<'_> {
         let reach = if radius > 0.0 { radius + caps.boundary_error } else { 0.0 };
         let mut summing = Summing::new(caps, placed, Local::nothing(point), reach);
         summing.cell = cell;
-        let (mut next, mut leaf) = (0, 0..0);
-        let point = DVec3::from(point);
-        let items = core::iter::from_fn(|| {
-            loop {
-                if let Some(cap) = leaf.next() {
-                    return Some(Item::Cap(cap, 0));
-                }
-                let node = caps.nodes.get(next)?;
-                if let Some(seen) = node.seen(point, reach, enough) {
-                    let item = Item::Group(next as u32, seen);
-                    next = node.skip as usize;
-                    return Some(item);
-                }
-                next += 1;
-                if node.skip as usize == next {
-                    leaf = node.first..node.end;
-                }
-            }
-        });
+        let items = Items { caps, point: DVec3::from(point), reach, enough, next: 0, leaf: 0..0 };
         summing.add(items, true);
         if summing.is_known { Some(summing.finish()) } else { None }
     }
