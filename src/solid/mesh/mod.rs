@@ -18,9 +18,9 @@
 //!
 //! From the bottom up, each file uses only files named before it: `placed` (vertices on the lattice),
 //! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `rim` (winding numbers of
-//! caps from the boundary's edges alone), `terms` (what caps and edges add), `winding` (the caps' winding number), `reach` (how far an open surface's solid may
-//! reach), `scan` (blocks of 64³ cells), `chords` (rays through centres), `on_frame` (a mesh on a frame, and what is known
-//! of a cell), `local` (triangles in a cell's coordinates), `base` (a point whose winding number is known), `fronts` (on
+//! caps from the boundary's edges alone), `terms` (what caps and edges add to sums), `winding` (the caps' winding number),
+//! `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells), `chords` (rays through centres),
+//! `on_frame` (a mesh on a frame, and what is known of a cell), `local` (triangles in a cell's coordinates), `base` (a point whose winding number is known), `fronts` (on
 //! which sides of triangles the solid lies), `integral` (moments and areas), `slab` (enclosures), `segment` (crossings),
 //! `direct` (rays, points and distances without cells),
 //! `open` (cells of an open surface), `open_rays` (rays through it), `split` (the solid, its classifier and its workers),

@@ -46,15 +46,15 @@ const MOST_CAPS: usize = 1 << 22;
 /// cell alone, kept for those below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
-    /// None before a level's first cell; then of all that lie in the same place of the two levels above the latest. (Cells are
-    /// divided twice before the first of those below is looked at.)
+    /// Empty before a level's first cell; then one place for each grandchild of a cell, because builders divide a cell twice
+    /// before they ask for what is below the first of its grandchildren.
     levels: [Vec<Slot>; MAX_DEPTH as usize + 1],
 }
 
 /// A cell's lower corner, and what is known unless the boundary passes close by.
 type Slot = Option<([i32; 3], Option<Local>)>;
 
-/// Cells of a level that are kept, in each axis: a power of two.
+/// Cells of a level that are kept along each axis: a power of two.
 const KEPT: i32 = 4;
 
 impl Surroundings {
