@@ -13,7 +13,7 @@ pub use crate::walk::Zone;
 pub use boolean::{
     complement, difference, difference_of, intersection, intersection_of, union, union_of, xor, xor_of,
 };
-use build::build_on;
+pub(crate) use build::build_on;
 pub use build::{build, compact, resolve};
 pub use dexel_centres::octree_from_dexels;
 pub use dexelize::{DexelOptions, dexelize};

@@ -91,6 +91,11 @@ impl SightLine {
         Ray::new(from, plain).and_then(|ray| ray.until(self.length - t)).ok()
     }
 
+    /// After how many times its direction it ends.
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
     /// Whether it begins in what it meets by such a face after t times its direction.
     pub fn begins_in(&self, t: f64, face: DVec3) -> bool {
         t == 0.0 && face == DVec3::ZERO

@@ -1,21 +1,25 @@
 //! Surfaces of any solids, by rays.
 
+use super::kept::Kept;
 use super::normals::{Normals, normal_of_cells};
 use super::place_cache::Places;
 use super::sight::{Finish, SightLine};
 use super::stage::{Colouring, Draw, Painter, Stage};
 use super::surface::{Seen, Skin, paint};
 use super::tile::Tile;
+use super::told::{Told, ask, probe};
 use crate::attribute::Attribute;
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH};
+use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH, Ray};
 use crate::memory;
 use crate::octree::{Octree, Tag};
-use crate::op::{Rule, build};
+use crate::op::{Rule, build_on};
 use crate::query::TouchedCell;
-use crate::solid::{Classifier, Enclosure, Segment, SlabJoin, Solid, Verdict, Worker};
-use crate::walk::Trail;
+use crate::solid::{
+    Ask, AskWhole, Classifier, Direct, Enclosure, OCTANTS, Parts, RayTrace, Segment, SlabJoin, Solid,
+    Verdict, Worker,
+};
 use alloc::boxed::Box;
 use glam::DVec3;
 
@@ -81,9 +85,12 @@ where
 {
     let frame = pixelled(frame, deepest, stage)?;
     let control = Control { progress: None, ..*stage.job.control() };
-    let octree = build(solid, &frame, Rule::Certified, &control)?;
+    let classifier = solid.on(&frame, &control)?;
+    // (Whether the universe is told of says nothing of its cells.)
+    classifier.is_direct(Direct::Rays, &control)?;
+    let octree = build_on(&Told(classifier), Rule::Certified, &control)?;
     let classifier = solid.on(&frame.with_depth(MAX_DEPTH)?, &control)?;
-    Ok(memory::boxed(SolidPainter { skin, stage: *stage, octree, classifier })?)
+    Ok(memory::boxed(SolidPainter { skin, stage: *stage, octree, classifier, probe: probe(&frame)? })?)
 }
 
 impl<S: Solid> Draw for SolidLayer<'_, S> {
@@ -93,20 +100,26 @@ impl<S: Solid> Draw for SolidLayer<'_, S> {
     }
 }
 
+/// The parts of a classifier's cells.
+type PartOf<C> = <<C as Classifier>::Worker as Parts>::Part;
+
 struct SolidPainter<'a, C> {
     skin: &'a Skin<'a>,
     stage: Stage<'a>,
     octree: Octree,
     /// On the finest lattice.
     classifier: C,
+    /// Of which a solid that tells rays tells.
+    probe: Ray,
 }
 
 impl<C: Classifier> Painter for SolidPainter<'_, C> {
     fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
         let mut hand = Hand {
-            trail: Trail::new(self.classifier.worker()?)?,
+            kept: Kept::new(self.classifier.worker()?)?,
             normals: Normals::new(self.octree.view()),
             enclosures: Places::new(),
+            trace: RayTrace::UNKNOWN,
         };
         // The cells are as large as a pixel.
         paint(tile, &self.stage, self.octree.view(), self.skin, 0.0, |sight, touch| {
@@ -118,9 +131,18 @@ impl<C: Classifier> Painter for SolidPainter<'_, C> {
 
 /// What a tile needs.
 struct Hand<'t, W: Worker> {
-    trail: Trail<W>,
+    kept: Kept<W>,
     normals: Normals<'t>,
-    enclosures: Places<Option<Enclosure>>,
+    enclosures: Places<Known>,
+    trace: RayTrace,
+}
+
+/// What is known of the boundary in a cell.
+enum Known {
+    /// Where rays go.
+    Told,
+    Enclosed(Enclosure),
+    Nothing,
 }
 
 /// What is known of a line of sight in a cell.
@@ -154,13 +176,18 @@ impl<C: Classifier> SolidPainter<'_, C> {
             let (t, face) = (hit.t, DVec3::from(hit.normal));
             let begins = sight.begins_in(t, face);
             let at = hit.cell.first_at(frame.depth()).at;
-            if hit.cell.level < frame.depth() || octree.tag_at(at) != Tag::Partial {
+            if octree.tag_at(at) != Tag::Partial {
                 // The face of a FULL cell is the surface, unless that was just passed by for a rounding.
                 let near = passed.filter(|(end, normal)| t - end <= step && *normal != DVec3::ZERO);
                 return Ok(Some((t, (!begins).then_some(near.map_or(face, |(_, normal)| normal)))));
             }
             let [_, leaves] = stay(frame, hit.cell, sight);
-            match self.met(hand, hit.cell, sight, [t, leaves])? {
+            let met = if hit.cell.level < frame.depth() {
+                self.within(hand, hit.cell, sight, ([t, leaves], face))?
+            } else {
+                self.met(hand, hit.cell, sight, [t, leaves])?
+            };
+            match met {
                 Met::At(s, normal) => return Ok(Some((s, (s > 0.0).then_some(normal)))),
                 Met::Unknown => {
                     let point = sight.from + sight.along * t;
@@ -180,7 +207,73 @@ impl<C: Classifier> SolidPainter<'_, C> {
         Ok(None)
     }
 
-    /// Where a line of sight meets the surface in a cell that it crosses between two times.
+    /// Where a line of sight meets the surface in a cell of any size, which it crosses between two times and enters by a face.
+    fn within(
+        &self,
+        hand: &mut Hand<'_, C::Worker>,
+        cell: Cell,
+        sight: &SightLine,
+        ([enters, leaves], face): ([f64; 2], DVec3),
+    ) -> Result<Met, Error> {
+        let frame = self.octree.frame();
+        let part = match hand.kept.verdict(cell, self.stage.job.control())? {
+            Verdict::Empty => return Ok(Met::Nowhere(DVec3::ZERO)),
+            Verdict::Full | Verdict::Undecided => return Ok(Met::At(enters, face)),
+            Verdict::Partial(part) => part,
+        };
+        if cell.level >= frame.depth() {
+            return self.met(hand, cell, sight, [enters, leaves]);
+        }
+        if let Some(met) = self.told(hand, (cell, &part), sight, ([enters, leaves], face))? {
+            return Ok(met);
+        }
+        let mut ways = OCTANTS.map(|k| {
+            let [a, b] = stay(frame, cell.child(k), sight);
+            (a.max(enters), b.min(leaves), cell.child(k))
+        });
+        ways.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut last = DVec3::ZERO;
+        for (from, to, child) in ways.into_iter().filter(|(from, to, _)| from < to) {
+            let entry = if from > enters { entry(frame, child, sight) } else { face };
+            match self.within(hand, child, sight, ([from, to], entry))? {
+                Met::Nowhere(normal) => last = normal,
+                Met::Unknown => return Ok(Met::At(from, entry)),
+                met => return Ok(met),
+            }
+        }
+        Ok(Met::Nowhere(last))
+    }
+
+    /// Where a line of sight goes into the solid in a cell, if the solid tells that.
+    fn told(
+        &self,
+        hand: &mut Hand<'_, C::Worker>,
+        (cell, part): (Cell, &PartOf<C>),
+        sight: &SightLine,
+        ([enters, leaves], face): ([f64; 2], DVec3),
+    ) -> Result<Option<Met>, Error> {
+        let near = 1e-6 * self.octree.frame().cell_size() / sight.along.length();
+        let enters = enters.max(0.0);
+        // As a rule the line of sight begins outside of what is met, whose first triangle is found soonest. What it went into
+        // before the cell may not count, so that it is asked for again from there.
+        for start in [0.0, enters] {
+            let Some(ray) = sight.beyond(start) else { return Ok(Some(Met::Nowhere(DVec3::ZERO))) };
+            let trace = &mut hand.trace;
+            hand.kept.ask(|worker| ask(worker, cell, part, &ray, trace))?;
+            let until = leaves.min(sight.length());
+            return Ok(Some(match WayIn::new(trace, enters - start, near) {
+                WayIn::Unknown => continue,
+                WayIn::At(t, None) => Met::At(start + t, face),
+                WayIn::At(t, Some(normal)) if start + t <= until => Met::At(start + t, normal),
+                // The next cell begins with the face.
+                WayIn::At(t, Some(normal)) if start + t <= until + near => Met::Nowhere(normal),
+                WayIn::At(..) | WayIn::Nowhere => Met::Nowhere(DVec3::ZERO),
+            }));
+        }
+        Ok(None)
+    }
+
+    /// Where a line of sight meets the surface in a finest cell that it crosses between two times.
     fn met(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -188,22 +281,35 @@ impl<C: Classifier> SolidPainter<'_, C> {
         sight: &SightLine,
         [enters, leaves]: [f64; 2],
     ) -> Result<Met, Error> {
-        if let Some(enclosure) = self.enclosure(hand, cell)? {
-            let (met, cone) = (self.through(enclosure, cell, sight, [enters, leaves]), enclosure.cone);
-            return match met {
-                Met::At(t, normal) if cone > CONE && t > enters => {
-                    Ok(self.closer(hand, cell, cone, sight, (t, normal))?.unwrap_or(met))
+        match self.known(hand, cell)? {
+            Known::Enclosed(enclosure) => {
+                let (met, cone) = (self.through(enclosure, cell, sight, [enters, leaves]), enclosure.cone);
+                return match met {
+                    Met::At(t, normal) if cone > CONE && t > enters => {
+                        Ok(self.closer(hand, cell, cone, sight, (t, normal))?.unwrap_or(met))
+                    }
+                    met => Ok(met),
+                };
+            }
+            Known::Told => {
+                if let Verdict::Partial(part) = hand.kept.verdict(cell, self.stage.job.control())? {
+                    let face = entry(self.octree.frame(), cell, sight);
+                    if let Some(met) = self.told(hand, (cell, &part), sight, ([enters, leaves], face))? {
+                        return Ok(met);
+                    }
                 }
-                met => Ok(met),
-            };
+            }
+            Known::Nothing => {}
         }
-        hand.trail.follow(cell.parent(), self.stage.job.control())?;
+        let Verdict::Partial(part) = hand.kept.verdict(cell, self.stage.job.control())? else {
+            return Ok(Met::Unknown);
+        };
         let cube = Cube { frame: self.octree.frame(), cell };
         let (min, max) = cube.bounds();
         let point =
             |t: f64| (sight.from + sight.along * t).clamp(DVec3::from(min), DVec3::from(max)).to_array();
         let segment = Segment { from: point(enters), to: point(leaves) };
-        Ok(match hand.trail.crossing(cell, &segment)? {
+        Ok(match hand.kept.ask(|worker| worker.crossing(cell, &part, &segment))? {
             Some(crossing) => {
                 Met::At(enters + crossing.t.clamp(0.0, 1.0) * (leaves - enters), DVec3::from(crossing.normal))
             }
@@ -212,21 +318,23 @@ impl<C: Classifier> SolidPainter<'_, C> {
     }
 
     /// What is known of the boundary in a cell.
-    fn enclosure<'h>(
-        &self,
-        hand: &'h mut Hand<'_, C::Worker>,
-        cell: Cell,
-    ) -> Result<Option<&'h Enclosure>, Error> {
+    fn known<'h>(&self, hand: &'h mut Hand<'_, C::Worker>, cell: Cell) -> Result<&'h Known, Error> {
         if let Some(found) = hand.enclosures.find(cell) {
-            return Ok(hand.enclosures.item(found).as_ref());
+            return Ok(hand.enclosures.item(found));
         }
-        hand.trail.follow(cell.parent(), self.stage.job.control())?;
-        let found = match hand.trail.verdict(cell) {
-            Verdict::Partial(_) => hand.trail.enclosure(cell)?,
-            _ => None,
-        };
-        let kept = hand.enclosures.keep(cell, found)?;
-        Ok(hand.enclosures.item(kept).as_ref())
+        let mut known = Known::Nothing;
+        if let Verdict::Partial(part) = hand.kept.verdict(cell, self.stage.job.control())? {
+            let trace = &mut hand.trace;
+            let probe = &self.probe;
+            hand.kept.ask(|worker| ask(worker, cell, &part, probe, trace))?;
+            if trace.is_known() {
+                known = Known::Told;
+            } else if let Some(enclosure) = hand.kept.ask(|worker| worker.enclosure(cell, &part))? {
+                known = Known::Enclosed(enclosure);
+            }
+        }
+        let kept = hand.enclosures.keep(cell, known)?;
+        Ok(hand.enclosures.item(kept))
     }
 
     /// Where it meets the surface in a smaller cell about the place and the normal that were found, in which the boundary
@@ -249,7 +357,7 @@ impl<C: Classifier> SolidPainter<'_, C> {
         for offset in [DVec3::ZERO, outward, -outward] {
             let Some(at) = finest.cell_of((point + offset).to_array()) else { continue };
             let near = Cell { level, at: at.map(|a| a >> (MAX_DEPTH - level)) };
-            let Some(found) = self.enclosure(hand, near)? else { continue };
+            let Known::Enclosed(found) = self.known(hand, near)? else { continue };
             let normal = DVec3::from(found.slabs[0].normal);
             let [enters, leaves] = stay(&finest, near, sight);
             return Ok(Some(match self.through(found, near, sight, [enters, leaves]) {
@@ -318,6 +426,54 @@ impl<C: Classifier> SolidPainter<'_, C> {
     }
 }
 
+/// When a ray is first inside.
+enum WayIn {
+    /// At a time, with the outward normal where it goes in; none if it is inside already.
+    At(f64, Option<DVec3>),
+    /// Never.
+    Nowhere,
+    /// The trace ends before.
+    Unknown,
+}
+
+impl WayIn {
+    /// At a time or later. What lies as near to it as `near` is as if it lay there.
+    fn new(trace: &RayTrace, from: f64, near: f64) -> WayIn {
+        let mut is_inside = trace.begins_inside;
+        for crossing in &trace.crossings {
+            let t = 0.5 * crossing.t.lower + 0.5 * crossing.t.upper;
+            let is_in = crossing.is_inside_after;
+            if t < from - near || !is_in && t <= from + near {
+                is_inside = is_in;
+            } else if is_inside {
+                break;
+            } else if is_in {
+                return WayIn::At(t.max(from), Some(DVec3::from(crossing.normal).normalize_or_zero()));
+            }
+        }
+        match is_inside {
+            true if trace.until >= from => WayIn::At(from, None),
+            false if trace.until == f64::INFINITY => WayIn::Nowhere,
+            _ => WayIn::Unknown,
+        }
+    }
+}
+
+/// The outward normal of the face by which a line of sight enters a cell.
+fn entry(frame: &Frame, cell: Cell, sight: &SightLine) -> DVec3 {
+    let (low, edge) = corner_of(frame, cell);
+    let axes = (0..3).filter(|&axis| sight.along[axis] != 0.0);
+    let time = |axis: usize| {
+        let near = if sight.along[axis] > 0.0 { low[axis] } else { low[axis] + edge };
+        (near - sight.from[axis]) / sight.along[axis]
+    };
+    let mut normal = DVec3::ZERO;
+    if let Some(axis) = axes.max_by(|&a, &b| time(a).total_cmp(&time(b))) {
+        normal[axis] = -sight.along[axis].signum();
+    }
+    normal
+}
+
 /// The lower corner and the edge of a cell, but for rounding.
 fn corner_of(frame: &Frame, cell: Cell) -> (DVec3, f64) {
     let edge = frame.edge() / f64::from(1u32 << cell.level);
@@ -341,6 +497,7 @@ mod tests {
     use super::super::clip::Clip;
     use super::*;
     use crate::control::Job;
+    use crate::op::build;
     use crate::solid::Csg;
     use std::vec::Vec;
 
@@ -359,12 +516,14 @@ mod tests {
             stage,
             octree: build(&ball, &frame, Rule::Certified, &control).unwrap(),
             classifier: ball.on(&frame.with_depth(MAX_DEPTH).unwrap(), &control).unwrap(),
+            probe: probe(&frame).unwrap(),
         };
         let octree = painter.octree.view();
         let mut hand = Hand {
-            trail: Trail::new(painter.classifier.worker().unwrap()).unwrap(),
+            kept: Kept::new(painter.classifier.worker().unwrap()).unwrap(),
             normals: Normals::new(octree),
             enclosures: Places::new(),
+            trace: RayTrace::UNKNOWN,
         };
         let tile = Tile::new(&view, [0, 0], [256, 256], 1).unwrap();
         let mut cast = Cast::new(octree, stage);

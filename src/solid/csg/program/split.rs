@@ -10,7 +10,7 @@ use crate::lattice::{Bounds, Cell, Frame};
 use crate::octree::{Block, Planes, Proof, Tag};
 use crate::solid::csg::Csg;
 use crate::solid::{
-    AskWhole, Batch, Classifier, Fingerprint, OCTANTS, Parts, Question, Solid, Subtree, Verdict,
+    AskWhole, Batch, Classifier, Direct, Fingerprint, OCTANTS, Parts, Question, Solid, Subtree, Verdict,
     WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use alloc::sync::Arc;
@@ -123,7 +123,18 @@ impl Classifier for CsgClassifier {
                 *known = Some(program.surfaces(control)?);
                 Ok(())
             }
-            question => program.sole().map_or(Ok(()), |solid| solid.answer_whole(question, control)),
+            question => {
+                if let Some(solid) = program.sole() {
+                    return solid.answer_whole(question, control);
+                }
+                // The universe is not told of, but cells are in which one of the solids is open alone.
+                if let WholeQuestion::Direct(Direct::Rays, _) = question {
+                    for solid in &program.solids {
+                        solid.is_direct(Direct::Rays, control)?;
+                    }
+                }
+                Ok(())
+            }
         }
     }
 }
