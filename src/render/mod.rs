@@ -11,6 +11,7 @@ mod clip;
 mod clipped;
 mod coverage;
 mod crease;
+mod facets;
 mod kept;
 mod legend;
 mod light;

@@ -1,5 +1,6 @@
 //! Surfaces of any solids, by rays.
 
+use super::facets::Facets;
 use super::kept::Kept;
 use super::normals::{Normals, normal_of_cells};
 use super::place_cache::Places;
@@ -36,6 +37,8 @@ pub struct SolidLayer<'a, S> {
     frame: Frame,
     skin: Skin<'a>,
     deepest: u8,
+    /// The triangles of a solid that is a mesh and nothing else.
+    facets: Option<Facets<'a>>,
 }
 
 /// Levels to which a solid is split at most.
@@ -48,7 +51,8 @@ impl<'a, S: Solid> SolidLayer<'a, S> {
     /// What lies of a solid in the universe of a frame, whatever its depth. (A solid has no cells that
     /// [`faces`](Finish::faces) could show.)
     pub fn new(solid: &'a S, frame: &Frame, finish: Finish) -> SolidLayer<'a, S> {
-        SolidLayer { solid, frame: *frame, skin: Skin { finish, values: None }, deepest: DEEPEST }
+        let facets = solid.sole_mesh().map(|mesh| Facets::new(mesh, &finish));
+        SolidLayer { solid, frame: *frame, skin: Skin { finish, values: None }, deepest: DEEPEST, facets }
     }
 
     /// The same in the colours of an attribute's values: `colour` tells the colour of a value, and of none. Values are those
@@ -83,19 +87,19 @@ pub fn painter<'a, S: Solid>(
 where
     S::Classifier: 'a,
 {
-    let frame = pixelled(frame, deepest, stage)?;
-    let control = Control { progress: None, ..*stage.job.control() };
-    let classifier = solid.on(&frame, &control)?;
-    // (Whether the universe is told of says nothing of its cells.)
-    classifier.is_direct(Direct::Rays, &control)?;
-    let octree = build_on(&Told(classifier), Rule::Certified, &control)?;
-    let classifier = solid.on(&frame.with_depth(MAX_DEPTH)?, &control)?;
-    Ok(memory::boxed(SolidPainter { skin, stage: *stage, octree, classifier, probe: probe(&frame)? })?)
+    Ok(memory::boxed(SolidPainter::new(solid, frame, deepest, skin, stage)?)?)
 }
 
 impl<S: Solid> Draw for SolidLayer<'_, S> {
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         self.skin.check()?;
+        if let Some(facets) = &self.facets
+            && facets.show_the_solid(&self.skin, &self.frame, stage)?
+        {
+            let stage = *stage;
+            let make = move || SolidPainter::new(self.solid, &self.frame, self.deepest, &self.skin, &stage);
+            return facets.painter(&stage, make);
+        }
         painter(self.solid, &self.frame, self.deepest, &self.skin, stage)
     }
 }
@@ -111,6 +115,25 @@ struct SolidPainter<'a, C> {
     classifier: C,
     /// Of which a solid that tells rays tells.
     probe: Ray,
+}
+
+impl<'a, C: Classifier> SolidPainter<'a, C> {
+    fn new<S: Solid<Classifier = C>>(
+        solid: &S,
+        frame: &Frame,
+        deepest: u8,
+        skin: &'a Skin<'a>,
+        stage: &Stage<'a>,
+    ) -> Result<Self, Error> {
+        let frame = pixelled(frame, deepest, stage)?;
+        let control = Control { progress: None, ..*stage.job.control() };
+        let classifier = solid.on(&frame, &control)?;
+        // (Whether the universe is told of says nothing of its cells.)
+        classifier.is_direct(Direct::Rays, &control)?;
+        let octree = build_on(&Told(classifier), Rule::Certified, &control)?;
+        let classifier = solid.on(&frame.with_depth(MAX_DEPTH)?, &control)?;
+        Ok(SolidPainter { skin, stage: *stage, octree, classifier, probe: probe(&frame)? })
+    }
 }
 
 impl<C: Classifier> Painter for SolidPainter<'_, C> {

@@ -7,12 +7,14 @@
 
 use super::forward::{forward_answers, forward_batch, forward_classifier, forward_parts, forward_solid};
 use super::{
-    Batch, Classifier, Fingerprint, Motion, Parts, Question, Solid, Subtree, Verdict, WholeQuestion, Worker,
+    Batch, Classifier, Fingerprint, MeshSolid, Motion, Parts, Question, Solid, Subtree, Verdict,
+    WholeQuestion, Worker,
 };
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
+use crate::mesh::TriangleMesh;
 use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -97,6 +99,7 @@ trait ErasedSolid: Send + Sync {
     fn placed(&self, placement: &Affine) -> Result<Option<AnySolid>, Error>;
     fn motion(&self) -> Motion;
     fn kept_bytes(&self) -> u64;
+    fn sole_mesh(&self) -> Option<&TriangleMesh>;
 }
 
 impl<S: Erasable> ErasedSolid for S {
@@ -131,6 +134,11 @@ impl<S: Erasable> ErasedSolid for S {
     fn kept_bytes(&self) -> u64 {
         Solid::kept_bytes(self)
     }
+
+    fn sole_mesh(&self) -> Option<&TriangleMesh> {
+        let own = (self as &dyn Any).downcast_ref::<MeshSolid>().map(|solid| &**solid.mesh());
+        own.or_else(|| Solid::sole_mesh(self))
+    }
 }
 
 impl Solid for AnySolid {
@@ -156,8 +164,8 @@ impl Solid for AnySolid {
 /// What a solid says of itself, unless too many lie within each other: no answer goes deeper than the stack.
 struct Shallow<'s>(&'s AnySolid);
 
-impl Shallow<'_> {
-    fn known(&self) -> Option<&dyn ErasedSolid> {
+impl<'s> Shallow<'s> {
+    fn known(&self) -> Option<&'s dyn ErasedSolid> {
         (self.0.nesting <= AnySolid::MOST_NESTED).then_some(&*self.0.solid)
     }
 
@@ -179,6 +187,10 @@ impl Shallow<'_> {
 
     fn kept_bytes(&self) -> u64 {
         self.known().map_or(0, |solid| solid.kept_bytes())
+    }
+
+    fn sole_mesh(&self) -> Option<&'s TriangleMesh> {
+        self.known()?.sole_mesh()
     }
 }
 

@@ -24,6 +24,10 @@ macro_rules! forward_solid {
             $to.kept_bytes()
         }
 
+        fn sole_mesh(&$self) -> Option<&$crate::mesh::TriangleMesh> {
+            $to.sole_mesh()
+        }
+
         $crate::solid::forward::forward_solid!(@shape $self => $to);
     };
     (@shape $self:ident => $to:expr) => {

@@ -90,6 +90,7 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
+use crate::mesh::TriangleMesh;
 use crate::octree::{Block, Planes, Proof, Tag};
 use alloc::vec::Vec;
 
@@ -250,6 +251,12 @@ pub trait Solid: Send + Sync {
     {
         let _ = placement;
         Ok(None)
+    }
+
+    /// The mesh whose solid this is, if it is nothing else: a picture draws its triangles. `None`, the default, if that is not
+    /// known.
+    fn sole_mesh(&self) -> Option<&TriangleMesh> {
+        None
     }
 
     /// What moving the shape does to it.

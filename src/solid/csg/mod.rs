@@ -22,6 +22,7 @@ use super::Motion;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Frame};
 use crate::memory;
+use crate::mesh::TriangleMesh;
 use crate::solid::{AnySolid, Solid};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -251,6 +252,18 @@ impl Csg {
             moved.insert(Arc::as_ptr(node), result);
         }
         Ok(Csg { root: moved[&Arc::as_ptr(&self.root)].clone(), touch: Touch::Exact })
+    }
+
+    /// The mesh that the expression is another name of, if it is.
+    fn mesh_of_expression(&self) -> Option<&TriangleMesh> {
+        let mut node = &self.root;
+        loop {
+            match &node.kind {
+                Kind::Solid(solid) => return solid.sole_mesh(),
+                Kind::Join(_, parts) if parts.len() == 1 => node = &parts[0],
+                _ => return None,
+            }
+        }
     }
 
     /// What moving it does: the worst of what it does to its parts.

@@ -7,6 +7,7 @@ use super::worker::{Ask, CsgPart, Scratch};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Frame};
+use crate::mesh::TriangleMesh;
 use crate::octree::{Block, Planes, Proof, Tag};
 use crate::solid::csg::Csg;
 use crate::solid::{
@@ -76,6 +77,10 @@ impl Solid for Csg {
 
     fn kept_bytes(&self) -> u64 {
         self.bytes_of_expression()
+    }
+
+    fn sole_mesh(&self) -> Option<&TriangleMesh> {
+        self.mesh_of_expression()
     }
 }
 
