@@ -7,11 +7,15 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::attribute::{Detail, FunctionAttribute, ValueRange};
 use leafless::render::{
-    Camera, ColourMap, Finish, Layer, MeshLayer, OctreeLayer, Shot, SolidLayer, Transfer, VolumeLayer, render,
+    Camera, Clip, ColourMap, Finish, Layer, MeshLayer, OctreeLayer, Shot, SolidLayer, Transfer, VolumeLayer,
+    render,
 };
 use leafless::surface::Resolve;
 use leafless::voxel::{VoxelOptions, VoxelRecords};
-use leafless::{Bounds, Control, Csg, Frame, Interval, Rule, build, marching_cubes};
+use leafless::{
+    AnySolid, Bounds, Control, Csg, FillRule, Frame, Interval, MeshSolid, Rule, TriangleMesh, build,
+    marching_cubes,
+};
 use std::hint::black_box;
 
 /// Pixels on a side of the picture.
@@ -92,5 +96,39 @@ fn surfaces(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, surfaces, volumes);
+/// A mesh, and what scenes make of it: the same alone, cut open, and with a hole.
+fn scenes(c: &mut Criterion) {
+    let control = Control::threads(2);
+    let frame = Frame::new([-1.125; 3], 2.25, 6).expect("a frame");
+    let tree = build(&part(), &frame, Rule::Certified, &control).expect("an octree");
+    let mesh = marching_cubes(tree.view(), Some(Resolve::Outer), &control).expect("a mesh");
+    let camera = Camera::fitted(mesh.vertices(), [30.0, 25.0], Some(30.0), 1.0).expect("a camera");
+    let shot = Shot::new(camera, [SIDE; 2]);
+    let clip = Clip::new().plane([0.0, 1.0, 0.0, 0.2]).expect("a clip plane");
+    let cut = Shot { clip, ..shot.clone() };
+    let own: TriangleMesh = mesh.try_clone().expect("a mesh");
+    let alone = Csg::solid(AnySolid::new(MeshSolid::new(own, FillRule::NonZero).expect("a solid")));
+    let hole = Csg::cylinder_between([0.6, -0.5, -2.0], [0.6, -0.5, 2.0], 0.2).expect("a hole");
+    let bored = alone.difference(&hole).expect("a scene");
+    let of_mesh = MeshLayer::new(&mesh);
+    let of_scene = SolidLayer::new(&alone, &frame, Finish::default());
+    let of_bored = SolidLayer::new(&bored, &frame, Finish::default());
+    let mut group =
+        c.benchmark_group(format!("pictures of scenes with {} triangles", mesh.triangles().len()));
+    group.sample_size(10).throughput(Throughput::Elements(u64::from(SIDE * SIDE)));
+    let pictures: [(&str, &Shot, &dyn Layer); 4] = [
+        ("the mesh", &shot, &of_mesh),
+        ("alone", &shot, &of_scene),
+        ("alone, cut open", &cut, &of_scene),
+        ("with a hole", &shot, &of_bored),
+    ];
+    for (name, shot, layer) in pictures {
+        group.bench_function(name, |b| {
+            b.iter(|| render(black_box(shot), &[layer], &control).expect("a picture"))
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, surfaces, scenes, volumes);
 criterion_main!(benches);

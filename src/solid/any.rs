@@ -1,9 +1,10 @@
 //! What is done alike with solids of all kinds, which this file therefore knows: they are wrapped, and they
 //! are moved.
 
-use super::{Adaptive, AnySolid, Csg, Erasable, SplitCounter, Transform};
+use super::{Adaptive, AnySolid, Csg, Erasable, MeshSolid, SplitCounter, Transform};
 use crate::error::Error;
 use crate::lattice::Affine;
+use crate::mesh::TriangleMesh;
 use core::any::Any;
 
 impl AnySolid {
@@ -39,6 +40,11 @@ impl AnySolid {
             Some(placed) => Ok(placed),
             None => Ok(AnySolid::new(Transform::of(self.clone(), placement))),
         }
+    }
+
+    /// The mesh of a solid that a mesh encloses.
+    pub(super) fn mesh_by_kind(&self) -> Option<&TriangleMesh> {
+        self.get::<MeshSolid>().map(|solid| &**solid.mesh())
     }
 }
 

@@ -7,8 +7,7 @@
 
 use super::forward::{forward_answers, forward_batch, forward_classifier, forward_parts, forward_solid};
 use super::{
-    Batch, Classifier, Fingerprint, MeshSolid, Motion, Parts, Question, Solid, Subtree, Verdict,
-    WholeQuestion, Worker,
+    Batch, Classifier, Fingerprint, Motion, Parts, Question, Solid, Subtree, Verdict, WholeQuestion, Worker,
 };
 use crate::control::Control;
 use crate::error::Error;
@@ -136,8 +135,7 @@ impl<S: Erasable> ErasedSolid for S {
     }
 
     fn sole_mesh(&self) -> Option<&TriangleMesh> {
-        let own = (self as &dyn Any).downcast_ref::<MeshSolid>().map(|solid| &**solid.mesh());
-        own.or_else(|| Solid::sole_mesh(self))
+        Solid::sole_mesh(self)
     }
 }
 
@@ -190,7 +188,7 @@ impl<'s> Shallow<'s> {
     }
 
     fn sole_mesh(&self) -> Option<&'s TriangleMesh> {
-        self.known()?.sole_mesh()
+        self.0.mesh_by_kind().or_else(|| self.known()?.sole_mesh())
     }
 }
 

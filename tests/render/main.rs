@@ -5,6 +5,7 @@ mod common;
 
 #[cfg(feature = "png")]
 mod gear;
+mod mesh_solid;
 mod raster;
 mod surface;
 mod volume;

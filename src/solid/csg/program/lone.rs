@@ -4,12 +4,13 @@
 use super::Program;
 use super::word::{Op, Word};
 use super::worker::{CsgPart, Scratch, Slot};
+use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::Cell;
+use crate::lattice::{Cell, Ray};
 use crate::memory;
 use crate::octree::Planes;
 use crate::solid::erased::ErasedPart;
-use crate::solid::{AnyWorker, Parts, Question, Verdict, Worker};
+use crate::solid::{AnyWorker, AskWhole, Direct, Parts, Question, RayQuestion, RayTrace, Verdict, Worker};
 use alloc::vec::Vec;
 
 /// The only operand that is open in a cell: a part of another solid, or of its complement.
@@ -20,7 +21,50 @@ pub(crate) struct Lone {
     pub(crate) complement: bool,
 }
 
+/// The trace that was asked for last. Cells along a ray ask for the same one.
+#[derive(Default)]
+pub(crate) struct LastTrace {
+    /// Of which operand, along which ray, and whether until its first way in.
+    of: Option<(u32, Ray, bool)>,
+    trace: Option<RayTrace>,
+}
+
 impl Scratch {
+    /// Where a ray goes in and out of the only operand that is open, if there is only one and it tells that.
+    #[inline(never)]
+    pub(crate) fn trace_of_lone(
+        &mut self,
+        program: &Program,
+        (cell, part): (Cell, CsgPart),
+        question: RayQuestion<'_>,
+        last: &mut LastTrace,
+    ) -> Result<(), Error> {
+        let Some(Lone { solid, part, complement }) = self.lone(program, part)? else { return Ok(()) };
+        let RayQuestion { ray, is_first_enough, trace } = question;
+        let known = last.trace.get_or_insert(RayTrace::UNKNOWN);
+        let of = Some((solid, *ray, is_first_enough));
+        if last.of != of {
+            last.of = None;
+            known.clear();
+            let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
+            worker.answer(cell, &part, Question::Ray(RayQuestion { ray, is_first_enough, trace: known }))?;
+            // What tells of the whole universe says the same in all cells. (An expression in this one may not.)
+            if known.is_known()
+                && program.solids[solid as usize].is_direct(Direct::Rays, &Control::threads(1))?
+            {
+                last.of = of;
+            }
+        }
+        trace.crossings.clear();
+        trace.crossings.try_reserve(known.crossings.len())?;
+        trace.crossings.extend_from_slice(&known.crossings);
+        (trace.begins_inside, trace.until) = (known.begins_inside, known.until);
+        if complement {
+            trace.complement();
+        }
+        Ok(())
+    }
+
     /// Whether it is worth asking for the only operand that is open.
     #[inline(always)]
     pub(crate) fn may_be_lone(&self, program: &Program, part: CsgPart) -> bool {

@@ -3,6 +3,7 @@
 use super::Program;
 use super::chords::Rays;
 use super::kleene::Kleene;
+use super::lone::LastTrace;
 use super::worker::{Ask, CsgPart, Scratch};
 use crate::control::Control;
 use crate::error::Error;
@@ -31,6 +32,7 @@ pub struct CsgWorker {
     universe: Verdict<CsgPart>,
     scratch: Scratch,
     rays: Rays,
+    last_trace: LastTrace,
 }
 
 impl Solid for Csg {
@@ -98,6 +100,7 @@ impl Classifier for CsgClassifier {
             universe: self.universe,
             scratch,
             rays: Rays::default(),
+            last_trace: LastTrace::default(),
         })
     }
 
@@ -238,6 +241,9 @@ impl Worker for CsgWorker {
         if let Question::Surfaces(known) = question {
             *known = scratch.open_surfaces(program, cell, part)?;
             return Ok(());
+        }
+        if let Question::Ray(question) = question {
+            return scratch.trace_of_lone(program, (cell, part), question, &mut self.last_trace);
         }
         if scratch.may_be_lone(program, part) && scratch.answer_of_lone(program, cell, part, &mut question)? {
             return Ok(());
