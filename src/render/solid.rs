@@ -31,6 +31,10 @@ use glam::DVec3;
 /// surface and its normals are those of an [`OctreeLayer`](crate::render::OctreeLayer). Through what is translucent other layers are seen,
 /// but nothing more of this one.
 ///
+/// Where a solid tells where rays go, its cells are not split: lines of sight ask. A closed mesh does so, and in an expression in all
+/// cells in which nothing else is open. Of a solid that is a closed mesh and nothing else ([`Solid::sole_mesh`]) the triangles are
+/// drawn, each of them flat, where these show what the solid does.
+///
 /// O(cells of the surface), once; then O(samples · cells along a line of sight).
 pub struct SolidLayer<'a, S> {
     solid: &'a S,
@@ -196,8 +200,10 @@ impl<C: Classifier> SolidPainter<'_, C> {
         let mut passed: Option<(f64, DVec3)> = None;
         // A line meets no more cells than that, and may pass by the slabs of all of them.
         for _ in 0..3u32 << frame.depth() {
-            let (t, face) = (hit.t, DVec3::from(hit.normal));
-            let begins = sight.begins_in(t, face);
+            let (t, met) = (hit.t, DVec3::from(hit.normal));
+            let begins = sight.begins_in(t, met);
+            // What goes on behind a cell begins in the next one, past its face.
+            let face = if t > 0.0 && met == DVec3::ZERO { entry(frame, hit.cell, sight) } else { met };
             let at = hit.cell.first_at(frame.depth()).at;
             if octree.tag_at(at) != Tag::Partial {
                 // The face of a FULL cell is the surface, unless that was just passed by for a rounding.
