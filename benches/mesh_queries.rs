@@ -2,10 +2,11 @@
 //! thread, processor time, medians of five rounds.
 //!
 //! ```text
-//! LEAFLESS_MODELS=/path/to/models cargo bench --bench mesh_queries -- [QUESTIONS]
+//! LEAFLESS_MODELS=/path/to/models cargo bench --bench mesh_queries -- [QUESTIONS [TIMES]]
 //! ```
 //!
-//! 1000 questions of each kind unless told otherwise. The frame has depth 20. `peers/mesh_queries.cpp`, `.py` and
+//! 1000 questions of each kind unless told otherwise. Each triangle is divided in four so many TIMES beforehand (0). The frame has
+//! depth 20. `peers/mesh_queries.cpp`, `.py` and
 //! `peers/src/bin/mesh_queries.rs` ask other programs the same, `peers/mesh_queries.c` asks through the C interface; see
 //! `benches/README.md`.
 
@@ -13,7 +14,9 @@ use leafless::query::{
     DistanceTo, Obstacle, PointDistance, RayHit, StopReason, cast_rays, contains, distances, ray_spans,
 };
 use leafless::solid::Prepared;
-use leafless::{AnySolid, Control, FillRule, Frame, Membership, MeshSolid, Ray, Solid, exchange};
+use leafless::{
+    AnySolid, Control, FillRule, Frame, Membership, MeshSolid, Ray, Solid, TriangleMesh, exchange,
+};
 use mesh_questions::{points_within, rays_from_afar, rays_from_within, sum_of_bits};
 use rustix::time::{ClockId, clock_gettime};
 use std::path::Path;
@@ -98,6 +101,21 @@ fn ask(name: &str, solid: &Prepared, frame: &Frame, [min, max]: [[f64; 3]; 2], c
     solid.on(frame, &control).expect("a frame");
     println!("{:<38} {:12.2} ms", "prepared", 1e-6 * (now() - start));
 
+    let bytes = solid.kept_bytes();
+    let start = now();
+    let first = Ray::new(min, [0, 1, 2].map(|axis| max[axis] - min[axis])).expect("a ray");
+    cast_rays(solid, frame, &[first], Obstacle::Upper, &control).expect("answers");
+    let tree = 1e-6 * (now() - start);
+    println!(
+        "{:<38} {tree:12.2} ms, {} bytes beside {bytes}",
+        "a first ray: the tree",
+        solid.kept_bytes() - bytes
+    );
+    let (bytes, start) = (solid.kept_bytes(), now());
+    distances(solid, frame, &[min], DistanceTo::Boundary, 1.0, &control).expect("answers");
+    let sides = 1e-6 * (now() - start);
+    println!("{:<38} {sides:12.2} ms, {} bytes more", "a first distance: sides", solid.kept_bytes() - bytes);
+
     let lists =
         [("from afar", rays_from_afar(min, max, count)), ("from within", rays_from_within(min, max, count))];
     let points = points_within(min, max, count);
@@ -170,9 +188,21 @@ fn ask(name: &str, solid: &Prepared, frame: &Frame, [min, max]: [[f64; 3]; 2], c
     });
 }
 
+/// The mesh with each triangle divided in four.
+fn finer(mesh: &TriangleMesh) -> TriangleMesh {
+    let facets = mesh.triangles().iter().flat_map(|triangle| {
+        let [a, b, c] = triangle.map(|vertex| mesh.vertices()[vertex as usize]);
+        let middle = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|axis| 0.5 * p[axis] + 0.5 * q[axis]);
+        let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    });
+    TriangleMesh::from_facets(facets).expect("a mesh")
+}
+
 fn main() {
     let mut arguments = std::env::args().skip(1).filter(|argument| !argument.starts_with('-'));
     let count = arguments.next().map_or(1000, |count| count.parse().expect("a number of questions"));
+    let times: usize = arguments.next().map_or(0, |times| times.parse().expect("a number of divisions"));
     let Some(folder) = std::env::var_os("LEAFLESS_MODELS") else {
         eprintln!("SKIPPED: LEAFLESS_MODELS is not set");
         return;
@@ -180,7 +210,9 @@ fn main() {
     for name in ["bunny-closed.stl", "featuretype.STL"] {
         let bytes = std::fs::read(Path::new(&folder).join(name)).expect(name);
         let file = exchange::read_mesh(&bytes, &exchange::MeshOptions::default()).expect("a mesh");
-        let mesh = Arc::new(file.mesh.sewn().expect("a mesh"));
+        let mesh = (0..times).fold(file.mesh.sewn().expect("a mesh"), |mesh, _| finer(&mesh));
+        let mesh = Arc::new(mesh);
+        println!("{name}: {} triangles", mesh.triangles().len());
         let (min, max) = mesh.bounds();
         let frame = Frame::around(min, max, DEPTH).expect("a mesh");
         let solid = MeshSolid::new(mesh, FillRule::NonZero).expect("a mesh");

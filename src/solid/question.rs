@@ -45,8 +45,8 @@ pub enum Question<'q> {
     /// asked for the list yet.
     Surfaces(&'q mut Option<OpenSurfaces>),
 
-    /// Where a ray goes in and out of the solid in the universe: asked of the root alone. Nothing is told unless
-    /// [`WholeQuestion::Direct`] was asked before.
+    /// Where a ray goes in and out of the solid in the cell: of the root, in the universe. Beyond the cell the trace need not be right.
+    /// Nothing is told unless [`WholeQuestion::Direct`] was asked before.
     Ray(RayQuestion<'q>),
 
     /// Which point of the whole boundary is nearest to a point (model units): asked of the root alone. Nothing is told unless

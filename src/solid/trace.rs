@@ -121,7 +121,7 @@ pub struct RayQuestion<'q> {
     pub ray: &'q Ray,
     /// Whether it is enough to know the trace until the ray is first proven inside.
     pub is_first_enough: bool,
-    /// The trace, if it is known, as far as the ray runs in the universe.
+    /// The trace, if it is known, as far as the ray runs in the cell.
     pub trace: &'q mut RayTrace,
 }
 
