@@ -1,4 +1,5 @@
-/* Distances of points and cells from a ball, and the cells nearest to a point. */
+/* Distances of points and cells from a ball, and the cells nearest to a point; points of a closed mesh, which tells its nearest
+   points itself. */
 #include "check.h"
 
 #include <math.h>
@@ -90,10 +91,56 @@ static void field(const leafless_octree *octree) {
           LEAFLESS_E_CANCELLED);
 }
 
+/* A cube of triangles: where a point lies, how far away, and the nearest point and triangle. */
+static void closed_mesh(const leafless_solid *ball) {
+    static const double at[7][3] = {{0.25, 0.5, -2},  {0.75, 0.25, 3}, {0.5, -0.5, 0.25}, {0.5, 0.125, 0.25},
+                                    {2, 0.75, 0.625}, {4, 5, 1},       {0.0, NAN, 0.0}};
+    static const double nearest_points[6][3] = {{0.25, 0.5, 0}, {0.75, 0.25, 1}, {0.5, 0, 0.25},
+                                                {0.5, 0, 0.25}, {1, 0.75, 0.625}, {1, 1, 1}};
+    static const double truth[6] = {2, 2, 0.5, -0.125, 1, 5};
+    /* Faces of two triangles each; all three that meet in a corner are as near. */
+    static const uint32_t faces[5] = {0, 1, 2, 2, 5};
+    const leafless_frame frame = {{-3, -3, -3}, 16, 6};
+    leafless_membership where[7];
+    leafless_point_distance near[7];
+    leafless_mesh *mesh = check_cube();
+    leafless_solid *cube;
+    uint32_t to;
+    int i, axis;
+    OK(leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &cube));
+    OK(leafless_solid_contains_many(cube, &frame, &at[0][0], 7, NULL, where));
+    for (i = 0; i < 7; i++) {
+        CHECK(where[i] == (i == 6 ? LEAFLESS_MEMBERSHIP_UNDECIDED
+                           : i == 3 ? LEAFLESS_MEMBERSHIP_INSIDE : LEAFLESS_MEMBERSHIP_OUTSIDE));
+    }
+    for (to = LEAFLESS_DISTANCE_TO_SOLID; to <= LEAFLESS_DISTANCE_TO_BOUNDARY; to++) {
+        OK(leafless_solid_distances(cube, &frame, &at[0][0], 7, to, 1e-9, NULL, near));
+        for (i = 0; i < 6; i++) {
+            const double outside = truth[i] > 0 ? truth[i] : 0, inside = outside - truth[i];
+            const double wanted = to == LEAFLESS_DISTANCE_TO_SOLID ? outside
+                                  : to == LEAFLESS_DISTANCE_TO_COMPLEMENT ? inside : truth[i];
+            const leafless_interval distance = near[i].distance_model;
+            CHECK(distance.lower <= wanted && wanted <= distance.upper && distance.upper - distance.lower < 1e-9);
+            CHECK(near[i].has_nearest && near[i].splits == 0 && near[i].measured == LEAFLESS_STOP_REASON_TOLERANCE);
+            CHECK(near[i].surface < 12 && (i == 5 || near[i].surface / 2 == faces[i]));
+            for (axis = 0; axis < 3; axis++) {
+                CHECK(fabs(near[i].nearest_model[axis] - nearest_points[i][axis]) < 1e-12);
+            }
+        }
+        CHECK(!near[6].has_nearest && near[6].surface == UINT32_MAX && near[6].nearest_model[0] == 0);
+        /* A ball tells none. */
+        OK(leafless_solid_distances(ball, &frame, &at[0][0], 1, to, 1e-3, NULL, near));
+        CHECK(!near[0].has_nearest && near[0].surface == UINT32_MAX && near[0].nearest_model[2] == 0);
+    }
+    leafless_solid_free(cube);
+    leafless_mesh_free(mesh);
+}
+
 int main(void) {
     leafless_octree *octree = check_ball(DEPTH, LEAFLESS_RULE_CERTIFIED);
     leafless_solid *solid = check_ball_solid();
     points(octree, solid);
+    closed_mesh(solid);
     nearest(octree);
     field(octree);
     leafless_octree_free(octree);

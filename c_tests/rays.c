@@ -1,4 +1,5 @@
-/* Rays on an octree and on a solid: the true hits of a ball lie in the intervals; segments end; spans and sight. */
+/* Rays on an octree and on a solid: the true hits of a ball lie in the intervals; segments end; spans and sight. A closed mesh
+   answers single rays by its triangles, and tells which. */
 #include "check.h"
 
 #define DEPTH 8
@@ -178,6 +179,65 @@ static void bad_rays(void) {
     }
 }
 
+/* Rays on a cube of triangles: each face is met by one of its two, from both sides of the diagonal and on it, and the normal
+   is that of the face. */
+static void closed_mesh(void) {
+    leafless_mesh *mesh = check_cube();
+    const leafless_frame around = {{-3, -3, -3}, 8, 5};
+    leafless_ray rays[6 * 3];
+    leafless_ray_hit hits[6 * 3], again[6 * 3];
+    leafless_interval inner[2], outer[2];
+    uint64_t inner_count, outer_count;
+    leafless_solid *cube;
+    leafless_sight found;
+    int face, i, axis;
+    OK(leafless_solid_from_mesh(mesh, LEAFLESS_FILL_NON_ZERO, &cube));
+    leafless_mesh_free(mesh);
+    for (i = 0; i < 18; i++) {
+        /* The faces in the order of the triangles: below and above along z, y and x. */
+        const double places[3][2] = {{0.25, 0.625}, {0.625, 0.25}, {0.5, 0.5}};
+        face = i / 3;
+        axis = 2 - face / 2;
+        rays[i].t_last = INFINITY;
+        rays[i].origin_model[axis] = face % 2 == 0 ? -2 : 3;
+        rays[i].origin_model[(axis + 1) % 3] = places[i % 3][0];
+        rays[i].origin_model[(axis + 2) % 3] = places[i % 3][1];
+        rays[i].direction_model[axis] = face % 2 == 0 ? 4 : -4;
+        rays[i].direction_model[(axis + 1) % 3] = rays[i].direction_model[(axis + 2) % 3] = 0;
+    }
+    OK(leafless_solid_cast_rays(cube, &around, rays, 18, LEAFLESS_OBSTACLE_FULL, NULL, hits));
+    OK(leafless_solid_cast_rays(cube, &around, rays, 18, LEAFLESS_OBSTACLE_UPPER, NULL, again));
+    for (i = 0; i < 18; i++) {
+        const uint32_t surface = hits[i].surface;
+        face = i / 3;
+        axis = 2 - face / 2;
+        CHECK(hits[i].is_hit && hits[i].t.lower == 0.5 && hits[i].t.upper == 0.5 && hits[i].level == 5);
+        CHECK(same(&hits[i], &again[i]) && surface == again[i].surface && surface / 2 == (uint32_t)face);
+        CHECK(hits[i].normal[axis] == (face % 2 == 0 ? -1 : 1));
+        CHECK(hits[i].normal[(axis + 1) % 3] == 0 && hits[i].normal[(axis + 2) % 3] == 0);
+        /* On either side of the diagonal is another triangle. */
+        CHECK(i % 3 == 0 || i % 3 == 2 || surface != hits[i - 1].surface);
+    }
+    /* From within there is no surface, and no normal; beside it there is no hit, and no surface either. */
+    rays[0].origin_model[2] = 0.5;
+    rays[1].origin_model[0] = 2;
+    OK(leafless_solid_cast_rays(cube, &around, rays, 2, LEAFLESS_OBSTACLE_FULL, NULL, hits));
+    CHECK(hits[0].is_hit && hits[0].t.upper == 0 && hits[0].surface == UINT32_MAX);
+    CHECK(hits[0].normal[0] == 0 && hits[0].normal[1] == 0 && hits[0].normal[2] == 0);
+    CHECK(!hits[1].is_hit && hits[1].t.lower == INFINITY && hits[1].surface == UINT32_MAX);
+    /* A ball does not answer rays itself. */
+    OK(leafless_solid_cast_rays(solid, &frame, &rays[2], 1, LEAFLESS_OBSTACLE_UPPER, NULL, hits));
+    CHECK(hits[0].surface == UINT32_MAX);
+    OK(leafless_solid_ray_spans(cube, &around, &rays[3], NULL, inner, 2, &inner_count, outer, 2, &outer_count));
+    CHECK(inner_count == 1 && outer_count == 1 && inner[0].lower == 0.5 && inner[0].upper == 0.75);
+    CHECK(outer[0].lower == 0.5 && outer[0].upper == 0.75);
+    OK(leafless_solid_line_of_sight(cube, &around, rays[3].origin_model, rays[2].origin_model, NULL, &found));
+    CHECK(found == LEAFLESS_SIGHT_BLOCKED);
+    OK(leafless_solid_line_of_sight(cube, &around, rays[3].origin_model, rays[1].origin_model, NULL, &found));
+    CHECK(found == LEAFLESS_SIGHT_CLEAR);
+    leafless_solid_free(cube);
+}
+
 int main(void) {
     frame = check_frame(DEPTH);
     solid = check_ball_solid();
@@ -186,6 +246,7 @@ int main(void) {
     spans();
     sight();
     bad_rays();
+    closed_mesh();
     leafless_octree_free(octree);
     leafless_solid_free(solid);
     return 0;

@@ -21,7 +21,7 @@ use alloc::vec::Vec;
 
 use super::intersections::{axis_of, corners};
 use super::nearest::TriangleTree;
-use super::signs::{Point, cross_sign};
+use super::signs::{Point, cross_sign, volume_sign};
 use super::tree::{LATER, Node, Place, WIDTH};
 use super::triangle_mesh::TriangleMesh;
 use crate::error::Error;
@@ -140,6 +140,12 @@ impl TriangleTree<'_> {
         })
     }
 
+    /// Whether two triangles with area lie in one plane.
+    pub(crate) fn are_coplanar(&self, one: u32, other: u32) -> bool {
+        let [a, b, c] = corners(self.mesh, one);
+        corners(self.mesh, other).iter().all(|p| volume_sign(&a, &b, &c, p) == 0)
+    }
+
     /// How far the surface may lie from the mesh along an axis.
     pub(crate) fn displacement(&self) -> f64 {
         self.mesh.displacement()
@@ -217,8 +223,11 @@ impl Cast {
             let c = c as f32;
             if c.abs() < LEAST { LEAST.copysign(c) } else { c }
         });
-        let slack = slack.min(1e30) as f32;
-        let start: [f32; 3] = array(|axis| (from[axis] + begins * direction[axis]) as f32);
+        // (So far away nothing is known of where it is in the cube: all boxes are met.)
+        let is_lost = slack > 1e30;
+        let slack = if is_lost { 1e36 } else { slack as f32 };
+        let start: [f32; 3] =
+            array(|axis| if is_lost { 0.0 } else { (from[axis] + begins * direction[axis]) as f32 });
         let back: [f32; 3] = single.map(|c| slack.copysign(c));
         Some(Cast {
             near: array(|axis| start[axis] + back[axis]),
@@ -543,9 +552,13 @@ impl<'m> Line<'m> {
         let minus = |p: f64, q: f64| exactly(p).minus(exactly(q));
         let w = axis_of(corners);
         let (u, v) = ((w + 1) % 3, (w + 2) % 3);
-        let turns = cross_sign([&corners[0], &corners[1]], [&corners[0], &corners[2]], w);
+        let turns_along =
+            |axis: usize| cross_sign([&corners[0], &corners[1]], [&corners[0], &corners[2]], axis);
+        let turns = turns_along(w);
         if turns == 0 {
-            return Some(stay);
+            // Without any area it bounds nothing: its edges are those of others.
+            let is_flat = turns_along(u) == 0 && turns_along(v) == 0;
+            return (!is_flat).then_some(stay);
         }
         let way = self.direction.map(|[high, low]| exactly(high).plus(exactly(low)));
         for k in 0..3 {

@@ -86,7 +86,9 @@ impl RayTrace {
                 (Some(is_inside_after), Some(begun)) => {
                     let t = Interval::between(begun.t.lower, t);
                     let is_met = begun.is_met || crossing.is_met || is_inside_after;
-                    united.push(RayCrossing { t, is_inside_after, is_met, ..begun })?;
+                    // What it began with may only be a touch.
+                    let RayCrossing { normal, surface, .. } = if is_inside_after { crossing } else { begun };
+                    united.push(RayCrossing { t, is_inside_after, is_met, normal, surface })?;
                     open = None;
                 }
                 _ => {}

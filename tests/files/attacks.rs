@@ -140,6 +140,7 @@ fn what_the_fuzzer_found_interesting() {
     corpus("measures", measures::measures);
     corpus("attributes", attributes::attributes);
     corpus("records", records::records);
+    corpus("direct", direct::direct);
 }
 
 #[test]
@@ -173,4 +174,15 @@ fn any_arrays_are_records_or_refused() {
 #[ignore = "minutes"]
 fn more_arrays_are_records_or_refused() {
     any_bytes(records::records, 4000..400_000, 200);
+}
+
+#[test]
+fn meshes_answer_rays_points_and_distances() {
+    any_bytes(direct::direct, 0..2000, 160);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn more_meshes_answer_rays_points_and_distances() {
+    any_bytes(direct::direct, 2000..200_000, 160);
 }

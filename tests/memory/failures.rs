@@ -16,7 +16,7 @@ use leafless::mesh::{Polyhedron, PolyhedronArrays};
 use leafless::op::{DexelOptions, Zone, octree_from_dexels, resolve, union_of};
 use leafless::query::{
     Columns, DistanceTo, Obstacle, PointTable, SectionPlane, Side, cells_in, classify_box, classify_in,
-    columns, distances, heights, interference_at, ray_spans, section_area, surface_area,
+    columns, distances, heights, interference_at, line_of_sight, ray_spans, section_area, surface_area,
 };
 use leafless::render::{
     Camera, Clip, ColourMap, Finish, MeshEdges, MeshLayer, OctreeLayer, Shot, SliceLayer, SlicePlane,
@@ -483,6 +483,44 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let rays = [Ray::new([-3.0, 9.0, 11.0], [1.0, 0.1, 0.0])?, Ray::new([11.0; 3], [0.0, 0.0, 1.0])?];
         ray_spans(&solid, &frame(), &rays[0], &CONTROL)?;
         cast_rays(&solid, &frame(), &rays, Obstacle::Upper, &CONTROL)
+    });
+    // Each time a mesh without a tree, so that all requests of one come again.
+    operation!("rays on a new mesh", [facets], {
+        let solid = MeshSolid::new(TriangleMesh::from_facets(&facets)?, FillRule::NonZero)?;
+        // The second runs along edges and touches the solid, the third passes through vertices.
+        let rays = [
+            Ray::new([-3.0, 9.0, 11.0], [1.0, 0.1, 0.0])?,
+            Ray::new([-3.0, 3.3, 3.3], [1.0, 0.0, 0.0])?,
+            Ray::new([0.0; 3], [1.0; 3])?,
+        ];
+        cast_rays(&solid, &frame(), &rays, Obstacle::Upper, &CONTROL)?;
+        for ray in &rays {
+            ray_spans(&solid, &frame(), ray, &CONTROL)?;
+        }
+        line_of_sight(&solid, &frame(), [1.0; 3], [9.0; 3], &CONTROL)
+    });
+    operation!("sight past a new mesh", [facets], {
+        let solid = MeshSolid::new(TriangleMesh::from_facets(&facets)?, FillRule::Positive)?;
+        line_of_sight(&solid, &frame(), [1.0; 3], [9.0; 3], &CONTROL)
+    });
+    operation!("points of a new mesh", [facets], {
+        let solid = MeshSolid::new(TriangleMesh::from_facets(&facets)?, FillRule::NonZero)?;
+        let points: [[f64; 3]; 40] = std::array::from_fn(|i| [i as f64 / 2.0, 7.7, 3.3]);
+        contains(&solid, &frame(), &points, &mut [Membership::Undecided; 40], &CONTROL)
+    });
+    operation!("distances to a new mesh", [facets], {
+        let solid = MeshSolid::new(TriangleMesh::from_facets(&facets)?, FillRule::NonZero)?;
+        let points: [[f64; 3]; 20] = std::array::from_fn(|i| [3.0 * i as f64, 7.7, 9.1]);
+        distances(&solid, &frame(), &points, DistanceTo::Boundary, 0.1, &CONTROL)
+    });
+    operation!("a moved mesh", [closed], {
+        let turn = Affine::new([[0.6, -0.8, 0.0, 9.0], [0.8, 0.6, 0.0, 0.3], [0.0, 0.0, 1.0, 0.1]])?;
+        let solid = MeshSolid::new(closed.clone(), FillRule::NonZero)?;
+        let ray = Ray::new([-3.0, 9.0, 11.0], [1.0, 0.1, 0.0])?;
+        cast_rays(&solid, &frame(), &[ray], Obstacle::Upper, &CONTROL)?;
+        let moved = solid.placed(&turn)?;
+        cast_rays(&moved, &frame(), &[ray], Obstacle::Upper, &CONTROL)?;
+        distances(&moved, &frame(), &[[1.0; 3]], DistanceTo::Boundary, 0.1, &CONTROL)
     });
     operation!("columns", [a], {
         a.ray_spans(&Ray::new([-3.0, 9.0, 11.0], [1.0, 0.1, 0.0])?)?;

@@ -8,6 +8,8 @@ mod cells;
 mod closed;
 mod descended;
 mod direct;
+mod direct_awkward;
+mod direct_heavy;
 mod enclosure;
 mod moments;
 mod odd_rays;

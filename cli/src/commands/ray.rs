@@ -39,7 +39,8 @@ pub struct Arguments {
     splits: u64,
     #[command(flatten)]
     looking: Looking,
-    /// Print a line of JSON for each ray: an object, or `null` for a miss
+    /// Print a line of JSON for each ray: an object, or `null` for a miss. `surface` is the number of the triangle that a
+    /// closed mesh is met in, counted from 0; `null` for what does not answer rays itself, and for a ray that starts within
     #[arg(long)]
     json: bool,
 }

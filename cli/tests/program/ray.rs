@@ -2,7 +2,7 @@
 
 use crate::place::{Place, Run, solids};
 use leafless::query::Obstacle;
-use leafless::{Ray, file};
+use leafless::{Ray, exchange, file};
 use serde_json::Value;
 use std::io::{Read, Write};
 use std::process::Stdio;
@@ -48,6 +48,29 @@ fn json_lines() {
     // The cube is 2 of 8 units: on no level beyond the second is that less than a cell.
     let (level, cell) = (hit["level"].as_u64().unwrap(), hit["cell"][0].as_u64().unwrap());
     assert_eq!(cell << (5 - level), 4, "{hit}");
+}
+
+/// A closed mesh answers itself, and tells the triangle; cells have none.
+#[test]
+fn triangles_of_meshes() {
+    let place = solids();
+    let rays = b"0 2.25 1.5 1 0 0\n0 5 2 1 0 0\n2 2 2 1 0 0\n2.25 1.5 9 0 0 -2\n";
+    let mesh = exchange::read_stl(&std::fs::read(place.path("cube.stl")).unwrap()).unwrap();
+    for on in ["upper", "full"] {
+        let run = place.run_with(&format!("ray cube.stl --json --on {on}"), rays).good();
+        let lines: Vec<Value> = run.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(lines.len(), 4);
+        for (line, axis, plane) in [(0, 0, 1.0), (3, 2, 3.0)] {
+            let surface = lines[line]["surface"].as_u64().expect("a triangle") as usize;
+            let corners = mesh.triangles()[surface].map(|v| mesh.vertices()[v as usize]);
+            assert!(corners.iter().all(|corner| corner[axis] == plane), "{}", lines[line]);
+            assert_eq!(lines[line]["normal"][axis], plane - 2.0);
+        }
+        assert_eq!(lines[1], Value::Null);
+        assert_eq!(lines[2]["surface"], Value::Null);
+    }
+    let run = place.run_with("ray cube.lfl --json", b"0 2.25 1.5 1 0 0\n").good();
+    assert_eq!(run.json()["surface"], Value::Null);
 }
 
 /// Meshes and scenes are split as deep as it takes; what may be missed has no upper bound.

@@ -159,6 +159,15 @@ fn rough_stay(line: &Line<'_>) -> Option<[Interval; 2]> {
     (entry.upper < exit.lower).then_some([entry, exit])
 }
 
+/// Whether nothing is known of a ray from when it enters the universe on.
+pub(super) fn ends_before(trace: &RayTrace, line: &Line<'_>) -> bool {
+    let is_after = |entry: Interval| trace.until > entry.upper;
+    if trace.until == f64::INFINITY || rough_stay(line).is_some_and(|[entry, _]| is_after(entry)) {
+        return false;
+    }
+    line.passage(Cell::ROOT).is_some_and(|Passage { entry, .. }| trace.until < entry.t.upper)
+}
+
 /// The finest cell of the universe where a ray is at a time, but for rounding.
 fn cell_at(line: &Line<'_>, t: f64) -> Cell {
     let frame = line.frame;

@@ -220,9 +220,12 @@ impl Visitor for First {
     }
 }
 
-/// A normal of length 1, but for rounding.
+/// A normal of length 1, but for rounding; zeros of zeros, which a triangle has that is thinner than rounding.
 pub(super) fn unit(normal: [f64; 3]) -> [f64; 3] {
     let largest = normal.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+    if largest == 0.0 {
+        return normal;
+    }
     let scaled = normal.map(|c| c / largest);
     let length = sqrt(scaled.iter().map(|c| c * c).sum());
     scaled.map(|c| c / length)

@@ -70,8 +70,8 @@ pub fn cast_rays<S: Solid>(
             let mut hits = memory::with_capacity(chunk.len())?;
             for ray in chunk {
                 let line = Line::new(frame, *ray);
-                hits.push(match traces.find(&mut worker, ray, true)? {
-                    Some(trace) => Stops::new(trace, &line).hit(on),
+                hits.push(match traces.stops(&mut worker, &line)? {
+                    Some(stops) => stops.hit(on),
                     None => Asked::new(&mut worker, &job).first(&line)?.hit(on),
                 });
             }
@@ -126,8 +126,8 @@ pub fn line_of_sight<S: Solid>(
     let (job, line) = (Job::new(control), Line::new(frame, ray));
     let is_direct = classifier.is_direct(Direct::Rays, control)?;
     let mut worker = classifier.worker()?;
-    let stops = match Traces::new(&mut worker, is_direct)?.find(&mut worker, &ray, true)? {
-        Some(trace) => Stops::new(trace, &line).are(),
+    let stops = match Traces::new(&mut worker, is_direct)?.stops(&mut worker, &line)? {
+        Some(stops) => stops.are(),
         None => Asked::new(&mut worker, &job).first(&line)?.stops(),
     };
     // (What lies around the universe may take long to find out.)
@@ -167,6 +167,20 @@ impl<P> Traces<P> {
         let Some(root) = &self.root else { return Ok(None) };
         worker.trace(root, ray, is_first_enough, &mut self.trace)?;
         Ok(self.trace.is_known().then_some(&self.trace))
+    }
+
+    /// What stops a ray in the universe, if the solid tells it.
+    fn stops<W: Worker<Part = P>>(
+        &mut self,
+        worker: &mut W,
+        line: &Line<'_>,
+    ) -> Result<Option<Stops>, Error> {
+        let Some(trace) = self.find(worker, &line.ray, true)? else { return Ok(None) };
+        if !direct::ends_before(trace, line) {
+            return Ok(Some(Stops::new(trace, line)));
+        }
+        // It goes in outside of the universe, and may come out again.
+        Ok(self.find(worker, &line.ray, false)?.map(|trace| Stops::new(trace, line)))
     }
 }
 

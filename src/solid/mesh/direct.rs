@@ -15,7 +15,7 @@
 
 use super::rim::{DIRECTIONS, Rim};
 use crate::error::Error;
-use crate::lattice::{Bounds, Interval, Ray, axes};
+use crate::lattice::{Bounds, Interval, Ray, axes, valid};
 use crate::memory;
 use crate::mesh::{FillRule, Hit, Loops, Shift, Sides, TriangleMesh, TriangleTree, Wanted};
 use crate::solid::{BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrace};
@@ -106,7 +106,8 @@ impl Tracer<'_> {
         let steps = |hits: &[Hit]| hits.iter().map(|hit| hit.step).sum::<i32>();
         let mut winding = if is_first_enough { 0 } else { -steps(hits) };
         trace.begins_inside = self.fill.encloses(winding);
-        let (mut from, mut rest) = (0.0, &hits[..]);
+        // (What begins on the surface touches it at 0.)
+        let (mut from, mut rest) = (-1.0, &hits[..]);
         let mut touched = Touched { hits: touched, tree: &self.tree };
         while let Some((first, more)) = rest.split_first() {
             // Those that are passed at the same time, as far as rounding tells.
@@ -122,15 +123,14 @@ impl Tracer<'_> {
             let falls = together.iter().map(|hit| hit.step.min(0)).sum::<i32>();
             let rises = together.iter().map(|hit| hit.step.max(0)).sum::<i32>();
             let before = self.fill.encloses(winding);
-            // It is inside somewhere in between if any first step leads there.
-            let is_met = before || together.iter().all(|hit| self.fill.encloses(winding + hit.step));
+            let first_winding = winding;
             let changes = (winding + falls..=winding + rises).any(|w| self.fill.encloses(w) != before);
             let first_changed = self.crossed(together, winding);
             winding += steps(together);
             if !changes {
                 continue;
             }
-            let t = Interval::between(first.t.lower, until);
+            let t = touched.joined(Interval::between(first.t.lower, until));
             if !before {
                 touched.note(from, t.lower, trace)?;
             }
@@ -139,7 +139,8 @@ impl Tracer<'_> {
             // A way that leaves the solid and passes the triangle from behind leaves along its normal.
             let is_along = first_changed.step < 0;
             let normal = if is_along == before { normal } else { normal.map(|n| -n) };
-            let (is_met, surface) = (is_met || is_inside_after, Some(first_changed.triangle));
+            let is_met = before || is_inside_after || self.passes_within(together, first_winding);
+            let surface = Some(first_changed.triangle);
             trace.push(RayCrossing { t, is_inside_after, is_met, normal, surface })?;
             from = t.upper;
             if is_first_enough && is_inside_after {
@@ -167,12 +168,33 @@ impl Tracer<'_> {
         *found.unwrap_or(&together[0])
     }
 
+    /// Whether a way is inside somewhere between triangles, in whatever order it passes them: if each first step leads there.
+    /// Those in one plane are one step, which leads nowhere where facets lie back to back.
+    fn passes_within(&self, together: &[Hit], winding: i32) -> bool {
+        // Nobody knows what lies in one plane.
+        if self.tree.displacement() > 0.0 {
+            return false;
+        }
+        together.iter().all(|first| {
+            let plane = together.iter().filter(|hit| self.tree.are_coplanar(first.triangle, hit.triangle));
+            self.fill.encloses(winding + plane.map(|hit| hit.step).sum::<i32>())
+        })
+    }
+
     /// Whether the solid holds a point; nothing of a point on the surface of the mesh, or nearer to it than is known.
     pub(super) fn is_inside(&self, direct: &mut Direct, point: &[f64; 3]) -> Result<Option<bool>, Error> {
         if !point.iter().all(|c| c.is_finite()) {
             return Ok(None);
         }
         let Some((axis, sign)) = self.tree.way_out(point) else { return Ok(Some(self.fill.encloses(0))) };
+        if !point.iter().all(|&c| valid::is_moderate(c)) {
+            // The least coordinates become zero, if that leads across no surface.
+            let at = point.map(|c| if valid::is_moderate(c) { c } else { 0.0 });
+            let apart = 1e-76 + 2.0 * self.tree.displacement();
+            let near = self.tree.nearest_of(&at, |_| true);
+            let is_apart = near.is_some_and(|(_, distance)| distance.lower > apart);
+            return if is_apart { self.is_inside(direct, &at) } else { Ok(None) };
+        }
         let ray = Ray::along_axis(*point, axis, sign);
         let hits = &mut direct.hits;
         if !self.tree.pierced(&ray, Wanted::All, Shift::ALL[0], hits)?
@@ -335,12 +357,21 @@ struct Touched<'t> {
 }
 
 impl Touched<'_> {
+    /// The time of a crossing with those that may be at the same time, as the triangle on the other side of an edge. Where the ray
+    /// runs in a triangle's plane for longer, that is for itself.
+    fn joined(&self, crossing: Interval) -> Interval {
+        let longest = 16.0 * crossing.width() + 1e-14 * crossing.upper;
+        let met = self.hits.iter().take_while(|hit| hit.t.lower <= crossing.upper);
+        let met = met.filter(|hit| hit.t.upper >= crossing.lower && hit.t.width() <= longest);
+        met.fold(crossing, |all, hit| all.joined(hit.t))
+    }
+
     /// Adds those between two times, during which the ray is outside.
     fn note(&mut self, from: f64, to: f64, trace: &mut RayTrace) -> Result<(), Error> {
         let mut end = from;
-        for hit in self.hits.iter().take_while(|hit| hit.t.lower <= to) {
+        for hit in self.hits.iter().take_while(|hit| hit.t.lower < to) {
             let (lower, upper) = (hit.t.lower.max(end), hit.t.upper.min(to));
-            if lower <= upper && hit.t.upper >= from {
+            if lower <= upper && hit.t.upper > from {
                 let (normal, surface) = (self.tree.normal(hit.triangle), Some(hit.triangle));
                 trace.push(RayCrossing {
                     t: Interval::between(lower, upper),

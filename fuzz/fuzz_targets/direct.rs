@@ -1,0 +1,7 @@
+//! Any bytes as a closed mesh that answers rays, points and distances without cells.
+#![no_main]
+
+#[path = "../bodies/direct.rs"]
+mod direct;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| direct::direct(data));
