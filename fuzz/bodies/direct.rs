@@ -242,6 +242,15 @@ impl Scene {
         self.moved.iter().any(|facet| from_triangle(*facet, p) <= distance)
     }
 
+    /// Whether a point lies near to the plane of a facet: at a small angle times are known less well than places.
+    fn is_near_to_a_plane(&self, p: Point, distance: f64) -> bool {
+        self.moved.iter().any(|facet| {
+            let [a, b, c, p] = [facet[0], facet[1], facet[2], p].map(|p| p.map(|c| c / self.size));
+            let normal = cross(minus(b, a), minus(c, a));
+            dot(normal, minus(p, a)).abs() <= distance / self.size * length(normal)
+        })
+    }
+
     /// Where a point lies in regard to the universe, unless it is near to its faces.
     fn is_in_universe(&self, Place { near: p, size, .. }: &Place) -> Option<bool> {
         let (low, edge) = (self.frame.origin(), self.frame.edge());
@@ -568,7 +577,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         assert!(is_outer || !truth, "not outside: {t} {spans:?} {told}");
         if is_outer && !is_inner && scene.is_plain && scene.motion.is_none() {
             let margin = 1e-9 * (scene.size + place.size);
-            assert!(scene.is_near(place.near, margin), "nothing told: {t} {spans:?} {told}");
+            assert!(scene.is_near_to_a_plane(place.near, margin), "nothing told: {t} {spans:?} {told}");
         }
         for hit in [&full, &upper].into_iter().flatten() {
             assert!(t >= hit.t.lower || !truth, "met before: {t} {hit:?} {spans:?} {told}");
@@ -593,7 +602,8 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             "{told}"
         );
     }
-    for hit in [full, upper].into_iter().flatten() {
+    for (hit, is_proven) in [(full, true), (upper, false)] {
+        let Some(hit) = hit else { continue };
         if let Some(surface) = hit.surface {
             let facet = scene.moved[surface as usize];
             if plumpness(facet) > 1e-3 {
@@ -604,7 +614,8 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
                 assert!(turn.abs() > 1.0 - 1e-6, "another normal: {turn} {told}");
                 let against = dot(hit.normal, way.map(|c| c / length(way)));
                 // (Of what is only touched nobody sees the side.)
-                let goes_in = inner.iter().any(|span| span.lower == hit.t.upper && span.width() > 0.0);
+                let goes_in =
+                    is_proven && inner.iter().any(|span| span.lower == hit.t.upper && span.width() > 0.0);
                 assert!(!goes_in || against < 1e-6, "not outward: {against} {told}");
             }
         }
@@ -645,7 +656,9 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         (Membership::Outside, Some(truth)) => assert!(!truth, "not outside: {told}"),
         (Membership::Undecided, _) => {
             let is_in = scene.is_in_universe(&place) == Some(true);
-            assert!(!is_in || all <= margin, "undecided: {told}");
+            // (Of a moved mesh nothing is known where a way out passes an edge; then the cells are asked.)
+            let is_known = is_in && scene.motion.is_none();
+            assert!(!is_known || all <= margin, "undecided: {told}");
         }
         _ => {}
     }
