@@ -14,9 +14,10 @@ use leafless::{
     AnySolid, FillRule, Frame, Interval, Membership, MeshSolid, Ray, TriangleMesh, cast_rays, contains,
     exchange,
 };
-use std::f64::INFINITY;
 
 type Point = [f64; 3];
+
+const INFINITY: f64 = f64::INFINITY;
 
 fn at(k: impl Fn(usize) -> f64) -> Point {
     [k(0), k(1), k(2)]
