@@ -1,6 +1,6 @@
 //! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense arrays.
 
-use crate::{attributes, measures, records};
+use crate::{attributes, direct, measures, records};
 use leafless::attribute::{
     Attribute, Criterion, Detail, FillOptions, MovedAttribute, ScalarType, ValueRange, ValueType,
     fill_channel,
