@@ -272,7 +272,7 @@ impl Tracer<'_> {
         rim: &Rim,
         point: &[f64; 3],
     ) -> Result<Option<bool>, Error> {
-        if !point.iter().all(|c| c.is_finite()) {
+        if !point.iter().all(|&c| valid::is_moderate(c)) {
             return Ok(None);
         }
         for towards in DIRECTIONS {

@@ -127,7 +127,7 @@ impl Rim {
         let inverse = 1.0 / size;
         // As of a cap (`add_cap`), two of whose corners are that near.
         let wrong = 64.0 * f64::EPSILON * (far * farther) + 8.0 * self.vertex_error * (far + farther);
-        is_seen.then(|| Cone { real: x * inverse, imaginary: y * inverse, error: wrong * inverse })
+        is_seen.then_some(Cone { real: x * inverse, imaginary: y * inverse, error: wrong * inverse })
     }
 
     /// How far the rim is, and a bound of the slope: the gradient is the magnetic field of a current along the rim. O(n) in the
