@@ -630,7 +630,9 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             // (A point beside the segment, but for its ends, where it is far from the surface.)
             let is_clear = !scene.is_near(near, 1e-9 * (scene.size + length(from) + length(end)));
             if is_clear && scene.is_in_universe(&place) == Some(true) && scene.holds(&place) == Some(true) {
-                assert_eq!(sight, Sight::Blocked, "{near:?} {told}");
+                assert_ne!(sight, Sight::Clear, "{near:?} {told}");
+                // (Of a moved mesh nothing is known of a ray that comes near to an edge; then the cells are asked.)
+                assert!(sight == Sight::Blocked || scene.motion.is_some(), "{near:?} {told}");
             }
         }
     }
@@ -684,7 +686,8 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             assert!(!inside || truth, "not inside: {told}");
             assert!(outside || inside || all <= margin, "no side told: {told}");
         }
-        if to == DistanceTo::Boundary {
+        // (From far away many points are as near, but for rounding.)
+        if to == DistanceTo::Boundary && size < 1e6 * scene.size {
             bounds_the_solid(scene, near.point, facet, &told);
             no_boundary_is_nearer(scene, p, size, margin, &told);
         }

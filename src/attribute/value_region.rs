@@ -7,7 +7,7 @@ use crate::memory;
 use crate::octree::channel::{Bits, Spot};
 use crate::octree::{ChannelRef, Octree, Proof, Tag, ValueType};
 use crate::op::{Rule, build};
-use crate::solid::{Batch, Classifier, Parts, Question, Solid, Verdict, WholeQuestion, Worker};
+use crate::solid::{Batch, Classifier, Direct, Parts, Question, Solid, Verdict, WholeQuestion, Worker};
 use alloc::vec::Vec;
 
 /// The part of a solid in which the values of a channel lie in a band: a material of a part, all that is
@@ -125,9 +125,12 @@ impl<'a, C: Classifier> Classifier for RegionOnFrame<'a, C> {
         self.solid.proof()
     }
 
-    /// What is known of the solid says nothing of its values.
-    fn answer_whole(&self, _: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
-        Ok(())
+    /// What is known of the solid says nothing of its values, but that points lie outside.
+    fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
+        match question {
+            WholeQuestion::Direct(Direct::Points, _) => self.solid.answer_whole(question, control),
+            _ => Ok(()),
+        }
     }
 
     fn kept_bytes(&self) -> u64 {

@@ -32,6 +32,9 @@ use crate::memory;
 /// What rounding may change in a sum of products of three factors, each rounded, as a part of the sum of their magnitudes.
 const ROUNDING: f64 = 12.0 * f64::EPSILON;
 
+/// What a time may be off by, as a part of it, before exact arithmetic is asked: that of a line nearly in the plane of a triangle.
+const FINE: f64 = 1.0 / (1u64 << 36) as f64;
+
 /// How far beyond the mesh the half-line is looked at, in the scale of the grid.
 const CUBE: f64 = 1.0 + 1.0 / 1024.0;
 
@@ -144,6 +147,11 @@ impl TriangleTree<'_> {
     pub(crate) fn are_coplanar(&self, one: u32, other: u32) -> bool {
         let [a, b, c] = corners(self.mesh, one);
         corners(self.mesh, other).iter().all(|p| volume_sign(&a, &b, &c, p) == 0)
+    }
+
+    /// About half the mesh's extent, or as much again.
+    pub(crate) fn extent(&self) -> f64 {
+        1.0 / self.tree.grid.scale()
     }
 
     /// How far the surface may lie from the mesh along an axis.
@@ -448,7 +456,7 @@ impl<'m> Line<'m> {
         let error = 1.01 * ((wrong + t.abs() * ROUNDING * of_slope) / sure) + 2.0 * f64::EPSILON * t.abs();
         let known = if self.displacement == 0.0 && self.is_short(corners, height, slope) {
             quotient(height, slope)
-        } else if sure > 0.0 {
+        } else if sure > 0.0 && (self.displacement > 0.0 || error <= t.abs() * FINE) {
             Interval::new(t - error, t + error)
         } else {
             None
@@ -477,7 +485,7 @@ impl<'m> Line<'m> {
         is_whole && width_of(points) <= BITS && width_of(along) <= BITS
     }
 
-    /// The same of a triangle that is steep, or near to where the line begins.
+    /// The same of a triangle nearly along the line, or near to where the line begins.
     #[cold]
     fn passed_exactly(&self, triangle: u32, corners: &[Point; 3], step: i32) -> Met {
         if self.displacement > 0.0 {

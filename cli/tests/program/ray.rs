@@ -54,17 +54,17 @@ fn json_lines() {
 #[test]
 fn triangles_of_meshes() {
     let place = solids();
-    let rays = b"0 2.25 1.5 1 0 0\n0 5 2 1 0 0\n2 2 2 1 0 0\n2.25 1.5 9 0 0 -2\n";
-    let mesh = exchange::read_stl(&std::fs::read(place.path("cube.stl")).unwrap()).unwrap();
+    let rays = b"0 3.25 1.5 1 0 0\n0 7 1 1 0 0\n3 3 1 1 0 0\n3.25 3.5 9 0 0 -2\n";
+    let mesh = exchange::read_stl(&std::fs::read(place.path("slab.stl")).unwrap()).unwrap();
     for on in ["upper", "full"] {
-        let run = place.run_with(&format!("ray cube.stl --json --on {on}"), rays).good();
+        let run = place.run_with(&format!("ray slab.stl --json --on {on}"), rays).good();
         let lines: Vec<Value> = run.text().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         assert_eq!(lines.len(), 4);
-        for (line, axis, plane) in [(0, 0, 1.0), (3, 2, 3.0)] {
+        for (line, axis, plane, normal) in [(0, 0, 2.0, -1.0), (3, 2, 2.0, 1.0)] {
             let surface = lines[line]["surface"].as_u64().expect("a triangle") as usize;
             let corners = mesh.triangles()[surface].map(|v| mesh.vertices()[v as usize]);
             assert!(corners.iter().all(|corner| corner[axis] == plane), "{}", lines[line]);
-            assert_eq!(lines[line]["normal"][axis], plane - 2.0);
+            assert_eq!(lines[line]["normal"][axis], normal);
         }
         assert_eq!(lines[1], Value::Null);
         assert_eq!(lines[2]["surface"], Value::Null);

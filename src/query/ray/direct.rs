@@ -79,8 +79,10 @@ impl Stops {
         let mut stops = Stops::default();
         let mut is_known = true;
         let mut hit = |t: f64, piece: &Piece, begins: f64| {
+            // (A surface may lie in the face by which the ray enters the universe.)
+            let is_in_face = face.is_some() && entry.upper > 0.0 && piece.from >= entry.lower;
             let (normal, surface) = match piece.entry {
-                Some((normal, surface)) if piece.from > begins => (unit(normal), surface),
+                Some((normal, surface)) if piece.from > begins || is_in_face => (unit(normal), surface),
                 _ => {
                     is_known &= face.is_some();
                     (face.unwrap_or_default(), None)

@@ -335,7 +335,7 @@ impl Tracer<'_> {
         let Some(is_inside) = is_inside else { return Ok(None) };
         let way = axes(|axis| near[axis] - point[axis]);
         let length = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let size = near.iter().fold(length, |most, c| most.max(c.abs()));
+        let size = near.iter().fold(self.tree.extent(), |most, c| most.max(c.abs()));
         for digits in [44, 36, 28] {
             let further = size / (1u64 << digits) as f64 / length;
             let beyond = axes(|axis| near[axis] + further * way[axis]);

@@ -6,8 +6,8 @@ mod slabs;
 mod splits;
 
 use super::{
-    Ask, AskWhole, Batch, Classifier, Enclosure, Fingerprint, Fingerprinter, Parts, Question, Solid, Verdict,
-    WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
+    Ask, AskWhole, Batch, Classifier, Direct, Enclosure, Fingerprint, Fingerprinter, Parts, Question, Solid,
+    Verdict, WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use crate::control::Control;
 use crate::error::Error;
@@ -300,14 +300,19 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
         self.inner.kept_bytes()
     }
 
-    /// Surfaces move along.
+    /// Surfaces move along, and so do points.
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
-        if let WholeQuestion::Surfaces(known) = question
-            && let Some(own) = self.inner.surfaces(control)?
-        {
-            *known = Some(memory::collected(own.iter().map(|surface| surface.placed(&self.placement)))?);
+        match question {
+            WholeQuestion::Surfaces(known) => {
+                if let Some(own) = self.inner.surfaces(control)? {
+                    *known =
+                        Some(memory::collected(own.iter().map(|surface| surface.placed(&self.placement)))?);
+                }
+                Ok(())
+            }
+            WholeQuestion::Direct(Direct::Points, _) => self.inner.answer_whole(question, control),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }
 

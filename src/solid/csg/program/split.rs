@@ -135,10 +135,10 @@ impl Classifier for CsgClassifier {
                 if let Some(solid) = program.sole() {
                     return solid.answer_whole(question, control);
                 }
-                // The universe is not told of, but cells are in which one of the solids is open alone.
-                if let WholeQuestion::Direct(Direct::Rays, _) = question {
+                // The universe is not told of, but cells are in which one of the solids is open alone, and points that one knows.
+                if let WholeQuestion::Direct(kind @ (Direct::Rays | Direct::Points), _) = question {
                     for solid in &program.solids {
-                        solid.is_direct(Direct::Rays, control)?;
+                        solid.is_direct(kind, control)?;
                     }
                 }
                 Ok(())
