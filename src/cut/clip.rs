@@ -73,6 +73,36 @@ impl Pieces {
 /// Moments of the points of [-1, 1]³ with n · x ≤ offset for all `halves`; `None` if rounding makes more faces than
 /// there is place for.
 pub(super) fn moments(halves: &[Half]) -> Option<CubeMoments> {
+    let Clipped { faces, count } = clipped(halves)?;
+    let mut sum = CubeMoments::EMPTY;
+    for face in &faces[..count] {
+        for k in 2..face.count {
+            add_pyramid(&mut sum, [face.corners[0], face.corners[k - 1], face.corners[k]]);
+        }
+    }
+    Some(sum)
+}
+
+/// The mean of the corners of the same points; nothing if there are none. `None` as above.
+pub(super) fn middle(halves: &[Half]) -> Option<Option<[f64; 3]>> {
+    let Clipped { faces, count } = clipped(halves)?;
+    let (mut sum, mut corners) = ([0.0; 3], 0);
+    for face in &faces[..count] {
+        for corner in &face.corners[..face.count] {
+            (0..3).for_each(|k| sum[k] += corner[k]);
+            corners += 1;
+        }
+    }
+    Some((corners > 0).then(|| sum.map(|c| c / f64::from(corners))))
+}
+
+/// The faces of a clipped cube.
+struct Clipped {
+    faces: [Polygon; FACES],
+    count: usize,
+}
+
+fn clipped(halves: &[Half]) -> Option<Clipped> {
     let mut faces = [Polygon::EMPTY; FACES];
     let mut count = 6;
     for (k, face) in faces[..6].iter_mut().enumerate() {
@@ -95,13 +125,7 @@ pub(super) fn moments(halves: &[Half]) -> Option<CubeMoments> {
             count += 1;
         }
     }
-    let mut sum = CubeMoments::EMPTY;
-    for face in &faces[..count] {
-        for k in 2..face.count {
-            add_pyramid(&mut sum, [face.corners[0], face.corners[k - 1], face.corners[k]]);
-        }
-    }
-    Some(sum)
+    Some(Clipped { faces, count })
 }
 
 /// The part of a polygon on the inner side of a plane. Where its outline goes along the plane, the same way back lacks

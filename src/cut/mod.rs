@@ -73,6 +73,16 @@ pub(crate) fn between(enclosure: &Enclosure) -> CellMoments {
     CellMoments { moments: inner.mean(&outer), error }
 }
 
+/// A point inside of the points of the cell with n · x ≤ offset for up to three `halves`, where that is more than rounding makes;
+/// nothing if there are none. `None` if rounding hinders.
+pub(crate) fn middle(halves: &[([f64; 3], f64)]) -> Option<Option<[f64; 3]>> {
+    let mut own = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
+    for (own, &(normal, offset)) in own.iter_mut().zip(halves) {
+        *own = Half { normal, offset };
+    }
+    clip::middle(&own[..halves.len().min(3)])
+}
+
 /// Moments of { x in the cell : f(x) ≥ 0 } on the inner sides of up to two planes, of which slabs tell all but what
 /// rounding leaves open; `None` if they are not known to third order.
 pub(crate) fn curved(f: &Quadratic, planes: &[Slab]) -> Option<CellMoments> {

@@ -6,7 +6,7 @@
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `attributes`
 //! (data on triangles), `topology` (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
 //! mesh `normals`, `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles), `nearest`,
-//! `intersections`, `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle) and `moments`
+//! `intersections`, `planes` (in which triangles lie), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle) and `moments`
 //! (volume and inertia); `polygon` (triangulation), `polyhedron` and its `faces`.
 
 mod attributes;
@@ -23,6 +23,7 @@ mod normals;
 mod overlap;
 mod pierce;
 mod placement;
+mod planes;
 #[cfg(feature = "std")]
 mod polygon;
 #[cfg(feature = "std")]
@@ -48,6 +49,7 @@ pub use intersections::{IntersectingPair, IntersectingPairs};
 pub use moments::MeshMoments;
 pub(crate) use nearest::{NearVisitor, NearestPoint, TriangleTree};
 pub(crate) use pierce::{Hit, Shift, Wanted};
+pub(crate) use planes::{FacetPlane, FacetPlanes};
 #[cfg(feature = "std")]
 pub(crate) use polygon::flatness;
 #[cfg(feature = "std")]

@@ -18,6 +18,7 @@
 //! | answers [`Question::Moments`], [`Question::Area`] | third order: volume and moments to N^-1.5, areas |
 //! | answers [`Question::Crossing`] | vertices of surfaces on the surface, with normals, without a search |
 //! | answers [`Question::Surfaces`], [`WholeQuestion::Surfaces`] | extended octrees that keep the surfaces, and are as exact as the solid |
+//! | answers [`Question::Layers`], [`WholeQuestion::Layers`] | the same where surfaces are known within a width |
 //! | answers [`Question::Ray`], [`Question::Nearest`], writes [`Batch::inside`] | single rays, distances and points in microseconds |
 //! | answers [`Question::Chords`], writes [`fill`](Worker::fill) | nothing but speed: tri-dexel models, octrees |
 //! | writes [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for functions that take long; points without a descent ([`Batch::inside`]); cells without the way to them ([`Batch::recall`]) |
@@ -76,8 +77,8 @@ pub use motion::Motion;
 pub use parts::{FreeParts, Parts};
 #[cfg(feature = "std")]
 pub use prepared::Prepared;
-pub(crate) use question::AskDirect;
-pub use question::{Ask, AskWhole, Chords, Direct, Question, WholeQuestion};
+pub use question::{Ask, AskWhole, Chords, Direct, LayersQuestion, Question, WholeQuestion};
+pub(crate) use question::{AskDirect, AskLayers};
 pub use split_counter::SplitCounter;
 pub use subtree::Subtree;
 pub use trace::{BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrace};

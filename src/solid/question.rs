@@ -45,6 +45,10 @@ pub enum Question<'q> {
     /// asked for the list yet.
     Surfaces(&'q mut Option<OpenSurfaces>),
 
+    /// The same of the list with layers ([`WholeQuestion::Layers`]): where nothing exact is known of a surface, planes with a width
+    /// may stand for it.
+    Layers(LayersQuestion<'q>),
+
     /// Where a ray goes in and out of the solid in the cell: of the root, in the universe. Beyond the cell the trace need not be right.
     /// Nothing is told unless [`WholeQuestion::Direct`] was asked before.
     Ray(RayQuestion<'q>),
@@ -56,6 +60,16 @@ pub enum Question<'q> {
     /// How a box in the universe lies to the solid: asked of the root alone. Nothing is told unless [`WholeQuestion::Direct`] was
     /// asked before.
     Box(&'q Bounds, &'q mut Option<BoxContent>),
+}
+
+/// How thick layers may be, with the places for the answer.
+pub struct LayersQuestion<'q> {
+    /// The greatest width of a layer (model units).
+    pub tolerance: f64,
+    /// Layers for this cell alone are added: a surface with the number [`OpenSurfaces::OWN`] + i is number i of these.
+    pub own: &'q mut Vec<PlacedHalfSpace>,
+    /// The function, of surfaces of the list and own ones.
+    pub known: &'q mut Option<OpenSurfaces>,
 }
 
 /// The place for intervals of rays.
@@ -86,7 +100,9 @@ impl<'q> Question<'q> {
             Question::Enclosure(known) => *known = known.map(|known| known.complement()),
             Question::Moments(known) => *known = known.map(|known| known.complement()),
             Question::Area(_) => {}
-            Question::Surfaces(known) => *known = known.map(|known| known.complement()),
+            Question::Surfaces(known) | Question::Layers(LayersQuestion { known, .. }) => {
+                *known = known.map(|known| known.complement());
+            }
             Question::Crossing(_, known) => *known = known.map(|known| known.complement()),
             Question::Ray(RayQuestion { trace, .. }) => trace.complement(),
             Question::Nearest(_, known) => *known = known.map(NearestSurface::complement),
@@ -112,6 +128,9 @@ impl<'q> Question<'q> {
                 Question::Chords(Chords { beam, found, first: *first })
             }
             Question::Surfaces(known) => Question::Surfaces(known),
+            Question::Layers(LayersQuestion { tolerance, own, known }) => {
+                Question::Layers(LayersQuestion { tolerance: *tolerance, own, known })
+            }
             Question::Ray(RayQuestion { ray, is_first_enough, trace }) => {
                 Question::Ray(RayQuestion { ray, is_first_enough: *is_first_enough, trace })
             }
@@ -208,6 +227,28 @@ pub trait Ask: Worker {
 
 impl<W: Worker + ?Sized> Ask for W {}
 
+/// The same, for wrappers and builders.
+pub(crate) trait AskLayers: Worker {
+    /// Which surfaces and layers cross a PARTIAL cell, and which function of them the solid is: [`Question::Layers`].
+    ///
+    /// # Errors
+    /// As all questions.
+    fn layers(
+        &mut self,
+        cell: Cell,
+        part: &Self::Part,
+        tolerance: f64,
+        own: &mut Vec<PlacedHalfSpace>,
+    ) -> Result<Option<OpenSurfaces>, Error> {
+        let mut known = None;
+        let question = LayersQuestion { tolerance, own, known: &mut known };
+        self.answer(cell, part, Question::Layers(question))?;
+        Ok(known)
+    }
+}
+
+impl<W: Worker + ?Sized> AskLayers for W {}
+
 /// The questions about the universe that are answered without a descent.
 pub(crate) trait AskDirect: Worker {
     /// Where a ray goes in and out of the solid: [`Question::Ray`]. `trace` is overwritten.
@@ -268,6 +309,10 @@ pub enum WholeQuestion<'q> {
     /// equal.
     Surfaces(&'q mut Option<Vec<PlacedHalfSpace>>),
 
+    /// The surfaces that cells are crossed by, and planes with a width that stand for such of which nothing exact is known: the list
+    /// of [`Question::Layers`]. A solid that tells nothing has none but its [`Surfaces`](Self::Surfaces).
+    Layers(&'q mut Option<Vec<PlacedHalfSpace>>),
+
     /// Whether questions of this kind about the universe are answered without a descent as a rule. What that takes is made now,
     /// once, and kept for all that share the shape; the flag is set if there is such a thing.
     Direct(Direct, &'q mut bool),
@@ -317,6 +362,16 @@ pub trait AskWhole: Classifier {
     fn surfaces(&self, control: &Control<'_>) -> Result<Option<Vec<PlacedHalfSpace>>, Error> {
         let mut known = None;
         self.answer_whole(WholeQuestion::Surfaces(&mut known), control)?;
+        Ok(known)
+    }
+
+    /// The surfaces and layers that cells are crossed by: [`WholeQuestion::Layers`].
+    ///
+    /// # Errors
+    /// As [`moments`](Self::moments).
+    fn layers(&self, control: &Control<'_>) -> Result<Option<Vec<PlacedHalfSpace>>, Error> {
+        let mut known = None;
+        self.answer_whole(WholeQuestion::Layers(&mut known), control)?;
         Ok(known)
     }
 

@@ -162,6 +162,7 @@ impl<W: Worker> Worker for ProvenWorker<W> {
             | Question::Crossing(..)
             | Question::Chords(_)
             | Question::Surfaces(_)
+            | Question::Layers(_)
             | Question::Ray(_)
             | Question::Nearest(..)
             | Question::Box(..) => {}

@@ -268,7 +268,7 @@ fn dot(a: Point, b: Point) -> f64 {
 
 /// The distance of a point from a triangle, and the weights of the nearest point: by Ericson's regions, unlike
 /// the library.
-fn distance(p: Point, [a, b, c]: [Point; 3]) -> (f64, Point) {
+pub fn distance(p: Point, [a, b, c]: [Point; 3]) -> (f64, Point) {
     let (ab, ac) = (sub(b, a), sub(c, a));
     let at = |weights: Point| {
         let q: Point = array(|k| weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k]);

@@ -11,6 +11,7 @@ mod direct;
 mod direct_awkward;
 mod direct_heavy;
 mod enclosure;
+mod layers;
 mod moments;
 mod odd_rays;
 mod open;

@@ -4,7 +4,7 @@ use super::element::{Family, Fate, Output, Source, element};
 use super::function::{Done, Function, Known, MOST_KEPT};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Bounds, Cell, Cube, Frame, Interval, axes, valid};
+use crate::lattice::{Bounds, Cell, Cube, Frame, valid};
 use crate::memory;
 use crate::octree::cuts::{Cut, Origin};
 use crate::octree::view::{element_levels, starts_half_way};
@@ -17,13 +17,15 @@ use crate::solid::half_space::Placed;
 use crate::solid::half_space::record::Pool;
 use crate::solid::half_space::table::Table;
 use crate::solid::{
-    Ask, AskWhole, Batch, Classifier, Enclosure, Fingerprinter, HalfSpace, OCTANTS, OpenSurfaces, Parts,
-    PlacedHalfSpace, Slab, SlabJoin, Solid, Verdict, Worker,
+    Ask, AskLayers, AskWhole, Batch, Classifier, Enclosure, Fingerprinter, HalfSpace, OCTANTS, OpenSurfaces,
+    Parts, PlacedHalfSpace, Slab, SlabJoin, Solid, Verdict, Worker,
 };
 use crate::walk::{LEVELS, Part, each, split_each};
+use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
+use once_cell::race::OnceBox;
 
 /// Which surfaces an extended octree keeps.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -104,27 +106,37 @@ pub fn build_extended<S: Solid>(
     let classifier = solid.on(frame, control)?;
     let job = Job::new(control);
     job.check()?;
-    let mut pool = Pool::default();
-    let mut names = Vec::new();
-    for surface in classifier.surfaces(control)?.unwrap_or_default() {
-        job.check()?;
-        memory::push(&mut names, pool.number(&surface)?)?;
-    }
-    // By their bytes: A ∪ B numbers them as B ∪ A does.
-    let (surfaces, places) = pool.sorted()?;
-    names.iter_mut().flatten().for_each(|(id, _)| *id = places[*id as usize]);
+    let layers = match options.tolerance {
+        Some(tolerance) => classifier.layers(control)?.map(|list| (tolerance, list)),
+        None => None,
+    };
+    let (layers, list) = match layers {
+        Some((tolerance, list)) => (Some(tolerance), list),
+        None => (None, classifier.surfaces(control)?.unwrap_or_default()),
+    };
+    let Listed { names, surfaces, shared } = Listed::new(list, &job)?;
     let mut placed = memory::with_capacity(surfaces.len())?;
     for surface in &surfaces {
         placed.push(surface.on(frame)?);
     }
+    let mut places = memory::with_capacity(shared.len())?;
+    places.resize_with(shared.len(), OnceBox::new);
     let levels = element_levels(frame.depth());
     // Shallow trees are made faster than threads, unless it is somebody else who takes the time.
     let likes_many = classifier.worker()?.likes_many();
     control.run(levels > 3 || likes_many, |parallel| {
-        let exact = surfaces.len() as u32;
-        let tolerance = options.tolerance;
-        let builder =
-            Extended { classifier: &classifier, frame: *frame, tolerance, names, placed, exact, parallel };
+        let (exact, tolerance) = (surfaces.len(), options.tolerance);
+        let builder = Extended {
+            classifier: &classifier,
+            frame: *frame,
+            tolerance,
+            layers,
+            names: &names,
+            placed: &placed,
+            shared: &shared,
+            places: &places,
+            parallel,
+        };
         let mut hand = Hand::new(&classifier, Output::new(Writer::new(&job, frame.depth(), false), frame)?)?;
         let root = hand.worker.root()?;
         let (tag, cut) = match builder.fate(Cell::ROOT, root, &mut hand)? {
@@ -133,26 +145,30 @@ pub fn build_extended<S: Solid>(
             Fate::Goes(part) => builder.element(0, Cell::ROOT, &part, &mut hand)?,
         };
         let Hand { out: Output { writer, cuts }, mut slabs, .. } = hand;
+        // Those of the solid's list come first.
+        let mut layers = shared.clone();
+        layers.try_reserve(slabs.len())?;
+        layers.append(&mut slabs);
         // Exact surfaces are numbered in their order.
         let by_size = |a: u32, b: u32| {
-            let slab = |id: u32| {
-                id.checked_sub(exact).and_then(|slab| slabs.get(slab as usize)).map(PlacedHalfSpace::size)
-            };
-            slab(a).cmp(&slab(b)).then(a.cmp(&b))
+            let size = |id: u32| Some(layers.get((id as usize).checked_sub(exact)?)?.size());
+            size(a).cmp(&size(b)).then(a.cmp(&b))
         };
         let mut cuts = cuts.finish((tag == Tag::Partial).then_some(cut), by_size)?;
         if let Some((cuts, used)) = &mut cuts {
-            let origin = if slabs.is_empty() { None } else { origin(solid, frame, options) };
+            let origin = if layers.is_empty() { None } else { origin(solid, frame, options) };
             // Slabs are numbered as the table of surfaces is.
             for (number, &id) in (0..).zip(&*used) {
-                if let (Some(slab), Some(origin)) = (id.checked_sub(exact), origin) {
-                    slabs[slab as usize].half_space.identify(origin, number);
+                if let (Some(layer), Some(origin)) = ((id as usize).checked_sub(exact), origin) {
+                    let half_space = &mut layers[layer].half_space;
+                    *half_space = half_space.identified(origin, number);
                 }
             }
-            cuts.surfaces = PlacedHalfSpace::write(used.iter().map(|&id| match id.checked_sub(exact) {
-                None => &surfaces[id as usize],
-                Some(slab) => &slabs[slab as usize],
-            }))?;
+            cuts.surfaces =
+                PlacedHalfSpace::write(used.iter().map(|&id| match (id as usize).checked_sub(exact) {
+                    None => &surfaces[id as usize],
+                    Some(layer) => &layers[layer],
+                }))?;
         }
         let cuts = cuts.map(|(cuts, _)| cuts);
         job.advance(WHOLE);
@@ -186,12 +202,52 @@ struct Extended<'a, C> {
     classifier: &'a C,
     frame: Frame,
     tolerance: Option<f64>,
+    /// The same, if the solid has a list of layers.
+    layers: Option<f64>,
     /// For each surface of the solid's list its number among those that differ, and whether it stands there negated.
-    names: Vec<Option<(u32, bool)>>,
-    /// The exact surfaces that differ, on the universe, and how many they are. Numbers from there on are those of slabs.
-    placed: Vec<Placed>,
-    exact: u32,
+    names: &'a [Option<(u32, bool)>],
+    /// The exact surfaces that differ, on the universe. Numbers from there on are those of the solid's layers, and then of those of
+    /// cells.
+    placed: &'a [Placed],
+    /// The solid's layers, and where they lie on the universe, once somebody has asked.
+    shared: &'a [PlacedHalfSpace],
+    places: &'a [OnceBox<Placed>],
     parallel: bool,
+}
+
+/// The list of surfaces that a solid gives.
+struct Listed {
+    /// For each its number among those that differ, exact ones first, and whether it stands there negated.
+    names: Vec<Option<(u32, bool)>>,
+    /// The exact surfaces that differ, in their order.
+    surfaces: Vec<PlacedHalfSpace>,
+    /// The layers.
+    shared: Vec<PlacedHalfSpace>,
+}
+
+impl Listed {
+    fn new(list: Vec<PlacedHalfSpace>, job: &Job<'_>) -> Result<Listed, Error> {
+        let mut pool = Pool::default();
+        let (mut names, mut shared) = (memory::with_capacity(list.len())?, Vec::new());
+        for surface in list {
+            job.check()?;
+            names.push(match pool.number(&surface)? {
+                None if surface.half_space.is_layer() => {
+                    memory::push(&mut shared, surface)?;
+                    Err(shared.len() as u32 - 1)
+                }
+                name => Ok(name),
+            });
+        }
+        // By their bytes: A ∪ B numbers them as B ∪ A does.
+        let (surfaces, places) = pool.sorted()?;
+        let exact = surfaces.len() as u32;
+        let names = memory::collected(names.into_iter().map(|name| match name {
+            Ok(name) => name.map(|(id, negated)| (places[id as usize], negated)),
+            Err(layer) => Some((exact + layer, false)),
+        }))?;
+        Ok(Listed { names, surfaces, shared })
+    }
 }
 
 /// What one thread needs, and what it has made.
@@ -222,7 +278,10 @@ enum Asked<P> {
 
 impl<C> Known for Extended<'_, C> {
     fn placed(&self, id: u32) -> Result<&Placed, Error> {
-        Ok(&self.placed[id as usize])
+        let Some(layer) = (id as usize).checked_sub(self.placed.len()) else {
+            return Ok(&self.placed[id as usize]);
+        };
+        self.places[layer].get_or_try_init(|| Ok(Box::new(self.shared[layer].on(&self.frame)?)))
     }
 
     fn order(&self, a: u32, b: u32) -> Ordering {
@@ -230,7 +289,7 @@ impl<C> Known for Extended<'_, C> {
     }
 
     fn joins(&self, id: u32) -> bool {
-        id < self.exact
+        (id as usize) < self.placed.len() + self.shared.len()
     }
 }
 
@@ -241,7 +300,8 @@ impl<C: Classifier> Extended<'_, C> {
         verdict: Verdict<Part<C>>,
         hand: &mut Hand<'_, C>,
     ) -> Result<Fate<Part<C>>, Error> {
-        let (fate, wants_slabs) = self.by_surfaces(cell, verdict, &mut hand.worker)?;
+        let Hand { worker, slabs, .. } = hand;
+        let (fate, wants_slabs) = self.by_surfaces(cell, verdict, worker, slabs)?;
         match fate {
             Fate::Goes(part) if wants_slabs => {
                 let enclosure = hand.worker.enclosure(cell, &part)?;
@@ -251,12 +311,18 @@ impl<C: Classifier> Extended<'_, C> {
         }
     }
 
-    /// What becomes of a cell by the exact surfaces that cross it, and whether slabs may still end it.
+    /// The number of the first layer that a cell has alone.
+    fn own(&self) -> u32 {
+        (self.placed.len() + self.shared.len()) as u32
+    }
+
+    /// What becomes of a cell by the surfaces that cross it, and whether its slabs may still end it.
     fn by_surfaces(
         &self,
         cell: Cell,
         verdict: Verdict<Part<C>>,
         worker: &mut C::Worker,
+        slabs: &mut Vec<PlacedHalfSpace>,
     ) -> Result<(Fate<Part<C>>, bool), Error> {
         let part = match verdict {
             Verdict::Empty => return Ok((Fate::Settled(Tag::Empty), false)),
@@ -264,12 +330,21 @@ impl<C: Classifier> Extended<'_, C> {
             Verdict::Undecided => return Ok((Fate::Ends(Cut::None), false)),
             Verdict::Partial(part) => part,
         };
-        let exact = match worker.surfaces(cell, &part)? {
+        let before = slabs.len();
+        let open = match self.layers {
+            Some(tolerance) => worker.layers(cell, &part, tolerance, slabs)?,
+            None => worker.surfaces(cell, &part)?,
+        };
+        let known = match open {
             Some(open) => self.renamed(cell, &open)?,
             None => None,
         };
-        let wants_slabs = exact.is_none() && self.tolerance.is_some();
-        let fate = match exact.and_then(|function| function.end()) {
+        let wants_slabs = known.is_none() && self.tolerance.is_some();
+        let done = known.and_then(|function| function.end());
+        if done.is_none() {
+            slabs.truncate(before);
+        }
+        let fate = match done {
             Some(done) => done.into(),
             None if cell.level == self.frame.depth() && !wants_slabs => Fate::Ends(Cut::None),
             None => Fate::Goes(part),
@@ -296,14 +371,20 @@ impl<C: Classifier> Extended<'_, C> {
     /// The same function of the surfaces that differ, simplified. `None` if a surface has no exact numbers.
     fn renamed(&self, cell: Cell, open: &OpenSurfaces) -> Result<Option<Function>, Error> {
         let (mut ids, mut table) = ([0; OpenSurfaces::MOST], open.table());
+        let mut has_own = false;
         for (i, &index) in open.indices().iter().enumerate() {
+            if let Some(own) = index.checked_sub(OpenSurfaces::OWN) {
+                (ids[i], has_own) = (self.own() + own, true);
+                continue;
+            }
             let Some((id, negated)) = self.names[index as usize] else { return Ok(None) };
             if negated {
                 table = table.negated(i);
             }
             ids[i] = id;
         }
-        Function::of_numbers(&ids[..open.indices().len()], table).simplified(cell, self).map(Some)
+        let function = Function::of_numbers(&ids[..open.indices().len()], table);
+        if has_own { Ok(Some(function.canonical(self))) } else { function.simplified(cell, self).map(Some) }
     }
 
     /// Planes with a width for the slabs of a cell; `None` if one is too thick, or says nothing.
@@ -317,7 +398,7 @@ impl<C: Classifier> Extended<'_, C> {
         let cube = Cube { frame: &self.frame, cell };
         let half = 0.5 * self.frame.edge() / (1u64 << cell.level) as f64;
         let is_slab = |slab: &&Slab| slab.normal != [0.0; 3];
-        let mut planes = [None; MOST_KEPT];
+        let mut planes = [const { None }; MOST_KEPT];
         for (plane, slab) in planes.iter_mut().zip(enclosure.slabs.iter().filter(is_slab)) {
             let length = libm::sqrt(slab.normal.iter().map(|c| c * c).sum::<f64>());
             let width = (slab.outer - slab.inner) * half / length;
@@ -326,12 +407,11 @@ impl<C: Classifier> Extended<'_, C> {
             if !is_thin {
                 return Ok(None);
             }
-            *plane = Some(thick_plane(&cube, half, slab));
+            *plane = Some(HalfSpace::layer(&cube, slab));
         }
         let (mut ids, mut count) = ([0; MOST_KEPT], 0);
-        for (normal, inner, outer) in planes.into_iter().flatten() {
-            let half_space = HalfSpace::slab(normal, inner, outer, None);
-            ids[count] = u32::try_from(self.exact as usize + slabs.len()).map_err(|_| Error::OutOfMemory)?;
+        for half_space in planes.into_iter().flatten() {
+            ids[count] = u32::try_from(self.own() as usize + slabs.len()).map_err(|_| Error::OutOfMemory)?;
             memory::push(slabs, PlacedHalfSpace { half_space, placements: Arc::new([]) })?;
             count += 1;
         }
@@ -381,7 +461,8 @@ impl<C: Classifier> Extended<'_, C> {
                 for ((k, verdict), known) in OCTANTS.into_iter().zip(verdicts).zip(&mut eight) {
                     let child = cell.child(k);
                     let wants_slabs;
-                    (*known, wants_slabs) = self.by_surfaces(child, verdict, &mut hand.worker)?;
+                    let Hand { worker, slabs, .. } = &mut *hand;
+                    (*known, wants_slabs) = self.by_surfaces(child, verdict, worker, slabs)?;
                     if let (Fate::Goes(part), true) = (&*known, wants_slabs) {
                         memory::push(&mut cells, (child, part.clone()))?;
                         memory::push(&mut places, (all.len(), usize::from(k)))?;
@@ -454,8 +535,8 @@ impl<C: Classifier> Extended<'_, C> {
         for ((tag, mut cut), out, slabs) in written {
             let before = hand.slabs.len() as u32;
             hand.out.writer.append(out.writer)?;
-            hand.out.cuts.append(out.cuts, self.exact, before)?;
-            cut.renumber(self.exact, before);
+            hand.out.cuts.append(out.cuts, self.own(), before)?;
+            cut.renumber(self.own(), before);
             hand.slabs.try_reserve(slabs.len())?;
             hand.slabs.extend(slabs);
             all.push((tag, cut));
@@ -552,21 +633,4 @@ impl<'j, C: Classifier> Source<'j> for Told<'_, '_, C> {
         }
         Ok(done)
     }
-}
-
-/// The slab of a cell in model space, rounded outward: normal, inner and outer offset.
-fn thick_plane(cube: &Cube<'_>, half: f64, slab: &Slab) -> ([f64; 3], f64, f64) {
-    let Cube { frame, cell } = cube;
-    // Centres of cells are exact in units of the universe.
-    let unit = |axis: usize| (2 * u64::from(cell.at[axis]) + 1) as f64 / (2u64 << cell.level) as f64;
-    let centre = axes(|axis| {
-        Interval::exactly(frame.edge())
-            .times(Interval::exactly(unit(axis)))
-            .plus(Interval::exactly(frame.origin()[axis]))
-    });
-    let along = (0..3).fold(Interval::exactly(0.0), |sum, axis| {
-        sum.plus(Interval::exactly(slab.normal[axis]).times(centre[axis]))
-    });
-    let offset = |own: f64| Interval::exactly(half).times(Interval::exactly(own)).plus(along);
-    (slab.normal, offset(slab.inner).lower, offset(slab.outer).upper)
 }

@@ -116,6 +116,11 @@ impl Function {
         Ok(own.reduced(possible))
     }
 
+    /// The same function, of as few surfaces as its table takes, in their order.
+    pub(super) fn canonical(&self, surfaces: &impl Known) -> Function {
+        self.ordered(surfaces).reduced(Table::FULL)
+    }
+
     fn possible(&self, cell: Cell, surfaces: &impl Known) -> Result<Table, Error> {
         let mut placed = [None; MOST];
         for (placed, &id) in placed.iter_mut().zip(self.ids()) {

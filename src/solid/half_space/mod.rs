@@ -211,10 +211,18 @@ impl HalfSpace {
         HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer, identity })))
     }
 
-    /// Says of a slab that nobody else has which one it is.
-    pub(crate) fn identify(&mut self, origin: Origin, number: u32) {
-        if let Some(Surface::Slab(slab)) = Arc::get_mut(&mut self.0) {
-            slab.identity = Some(SlabIdentity { origin, number });
+    /// Whether it is a plane with a width.
+    pub(crate) fn is_layer(&self) -> bool {
+        matches!(&*self.0, Surface::Slab(_))
+    }
+
+    /// The slab of which it is known which one it is; any other half-space as it is.
+    pub(crate) fn identified(&self, origin: Origin, number: u32) -> HalfSpace {
+        match &*self.0 {
+            &Surface::Slab(ThickPlane { normal, inner, outer, .. }) => {
+                HalfSpace::slab(normal, inner, outer, Some(SlabIdentity { origin, number }))
+            }
+            _ => self.clone(),
         }
     }
 

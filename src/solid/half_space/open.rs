@@ -26,7 +26,9 @@ impl PlacedHalfSpace {
 /// Up to six surfaces that cross a PARTIAL cell, and the function of their signs that the solid is.
 ///
 /// # Law
-/// At a point of the open cell at which no function of the surfaces is zero, the solid is what the table says of the signs there.
+/// At a point of the open cell at which no function of the surfaces is zero, the solid is what the table says of the signs there. A
+/// layer, a plane with a width, has no sign at points in its width: where the table says the same for all signs of the layers
+/// in whose widths a point lies, the solid is that there, and elsewhere nothing is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OpenSurfaces {
     indices: [u32; OpenSurfaces::MOST],
@@ -35,6 +37,9 @@ pub struct OpenSurfaces {
 }
 
 impl OpenSurfaces {
+    /// The number of the first layer that is made for a cell alone: lists are shorter.
+    pub const OWN: u32 = 1 << 31;
+
     /// Most surfaces of a cell.
     pub const MOST: usize = table::MOST;
 

@@ -1,11 +1,13 @@
 //! Planes with a width: what is known of a surface where nothing exact is known.
 
+use super::HalfSpace;
 use super::bounds::{Octants, Sides};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
-use crate::lattice::axes;
+use crate::cut::Slab;
 use crate::lattice::exact::Dyadic;
+use crate::lattice::{Cube, Interval, axes};
 use crate::octree::cuts::Origin;
 
 /// A point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer` is not; of others nothing is known.
@@ -14,6 +16,26 @@ pub(crate) struct ThickPlane {
     pub(crate) inner: f64,
     pub(crate) outer: f64,
     pub(crate) identity: Option<SlabIdentity>,
+}
+
+impl HalfSpace {
+    /// The slab of a cell in model space, rounded outward.
+    pub(crate) fn layer(cube: &Cube<'_>, slab: &Slab) -> HalfSpace {
+        let Cube { frame, cell } = cube;
+        // Centres of cells are exact in units of the universe.
+        let unit = |axis: usize| (2 * u64::from(cell.at[axis]) + 1) as f64 / (2u64 << cell.level) as f64;
+        let centre = axes(|axis| {
+            Interval::exactly(frame.edge())
+                .times(Interval::exactly(unit(axis)))
+                .plus(Interval::exactly(frame.origin()[axis]))
+        });
+        let along = (0..3).fold(Interval::exactly(0.0), |sum, axis| {
+            sum.plus(Interval::exactly(slab.normal[axis]).times(centre[axis]))
+        });
+        let half = Interval::exactly(cube.half_edge());
+        let offset = |own: f64| half.times(Interval::exactly(own)).plus(along);
+        HalfSpace::slab(slab.normal, offset(slab.inner).lower, offset(slab.outer).upper, None)
+    }
 }
 
 /// Which slab it is. A slab stands for a set that is not known, so that only its origin tells it from others: two with the same

@@ -209,6 +209,24 @@ impl Polygon {
         Some(kept)
     }
 
+    /// The part where `normal` · p is at most `bound`. `None` as above.
+    pub(super) fn behind(&self, normal: &Point, bound: f64) -> Option<Polygon> {
+        let mut kept = Polygon { points: [[0.0; 3]; Polygon::MOST], count: 0 };
+        let points = self.points();
+        for (k, p) in points.iter().enumerate() {
+            let q = &points[if k + 1 == points.len() { 0 } else { k + 1 }];
+            let [at_p, at_q] = [p, q].map(|p| dot(normal, p) - bound);
+            if at_p <= 0.0 {
+                kept.push(*p)?;
+            }
+            if (at_p <= 0.0) != (at_q <= 0.0) {
+                let t = at_p / (at_p - at_q);
+                kept.push(array(|k| p[k] + t * (q[k] - p[k])))?;
+            }
+        }
+        Some(kept)
+    }
+
     #[inline(always)]
     fn push(&mut self, point: Point) -> Option<()> {
         *self.points.get_mut(self.count)? = point;

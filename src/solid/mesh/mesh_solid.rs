@@ -3,6 +3,7 @@
 use super::chords::{Chords, Rays};
 use super::crossing::Projection;
 use super::direct::{self, Tracer};
+use super::layers::{Layering, Layers};
 use super::local::View;
 use super::on_frame::{Branch, MeshOnFrame, MeshPart};
 use super::open::Surroundings;
@@ -19,11 +20,11 @@ use crate::error::{Error, MeshError};
 use crate::lattice::axes;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
-use crate::mesh::{FillRule, Loops, MeshMoments, Sides, TriangleMesh};
+use crate::mesh::{FacetPlanes, FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
 use crate::solid::{
-    Batch, Classifier, Crossing, Direct, Enclosure, Fingerprint, Fingerprinter, Motion, Parts, Question,
-    Segment, Solid, Verdict, WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
+    Batch, Classifier, Crossing, Direct, Enclosure, Fingerprint, Fingerprinter, LayersQuestion, Motion,
+    Parts, Question, Segment, Solid, Verdict, WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -179,6 +180,19 @@ impl MeshOnFrame {
         if within && self.is_empty_outside() { Tag::Empty } else { Tag::Partial }
     }
 
+    /// The planes of the mesh.
+    fn layers(&self, control: &Control<'_>) -> Result<&Layers, Error> {
+        self.layers.get_or_try_init(|| {
+            let Placed { mesh, frame, .. } = &self.placed;
+            let displacement = mesh.displacement();
+            let planes = FacetPlanes::new(mesh, displacement == 0.0, control)?;
+            let ends = frame.origin().into_iter().flat_map(|c| [c, c + frame.edge()]);
+            let of_mesh = [mesh.bounds().0, mesh.bounds().1].into_iter().flatten();
+            let reach = ends.chain(of_mesh).fold(0.0, |most: f64, c| most.max(c.abs()));
+            Ok(Box::new(Layers::new(planes, reach, displacement)))
+        })
+    }
+
     /// What is known of a cell that these triangles cut.
     #[inline]
     fn verdict(
@@ -251,7 +265,8 @@ impl Solid for MeshSolid {
             }
         }
         let exterior = OnceBox::new();
-        let mesh = Arc::new(MeshOnFrame { placed, caps, fill: self.fill, roots, winding, exterior });
+        let layers = OnceBox::new();
+        let mesh = Arc::new(MeshOnFrame { placed, caps, fill: self.fill, roots, winding, exterior, layers });
         Ok(MeshClassifier { mesh, solid: self.clone() })
     }
 
@@ -344,8 +359,9 @@ impl Classifier for MeshClassifier {
     }
 
     fn kept_bytes(&self) -> u64 {
-        let MeshOnFrame { placed, caps, roots, .. } = &*self.mesh;
-        (size_of::<MeshOnFrame>() + placed.bytes() + caps.bytes() + memory::bytes_of(roots)) as u64
+        let MeshOnFrame { placed, caps, roots, layers, .. } = &*self.mesh;
+        let layers = layers.get().map_or(0, Layers::bytes);
+        (size_of::<MeshOnFrame>() + placed.bytes() + caps.bytes() + memory::bytes_of(roots) + layers) as u64
     }
 
     /// Moments and area are known if the mesh is closed and no two triangles intersect. O(t).
@@ -363,6 +379,7 @@ impl Classifier for MeshClassifier {
                 *known = solid.sides(control)?.and_then(|sides| solid.mesh.boundary_area(sides));
             }
             WholeQuestion::Surfaces(_) => {}
+            WholeQuestion::Layers(known) => *known = Some(self.mesh.layers(control)?.list()?),
             WholeQuestion::Direct(kind, is_direct) => {
                 let Boundary { loops, rim, .. } = &*solid.boundary;
                 if loops.caps() == 0 {
@@ -542,6 +559,7 @@ impl Worker for MeshWorker {
             Question::Crossing(segment, known) => *known = self.first_crossing(cell, part, segment),
             Question::Chords(chords) => *chords.found = self.find_chords(cell, part, chords.beam)?,
             Question::Surfaces(_) => {}
+            Question::Layers(question) => self.find_layers(cell, part, question)?,
             Question::Ray(ray) => {
                 if let Some(tracer) = self.solid.tracer().filter(|_| self.solid.is_closed()) {
                     tracer.trace(&mut self.direct, ray)?;
@@ -639,6 +657,23 @@ impl MeshWorker {
         }
         let (at, size) = extent(cell, mesh.placed.frame.depth());
         mesh.open_slab(surroundings, list(&mesh.roots, triangles, part), at, size, *part)
+    }
+
+    fn find_layers(
+        &mut self,
+        cell: Cell,
+        part: &MeshPart,
+        question: LayersQuestion<'_>,
+    ) -> Result<(), Error> {
+        let MeshWorker { mesh, triangles, surroundings, .. } = self;
+        let LayersQuestion { tolerance, own, known } = question;
+        if let (Some(layers), Some(view)) =
+            (mesh.layers.get(), view(mesh, triangles, surroundings, cell, part))
+            && let Some(layering) = Layering::new(view, layers, mesh.fill, tolerance)?
+        {
+            *known = layering.function(own)?;
+        }
+        Ok(())
     }
 
     fn first_crossing(&mut self, cell: Cell, part: &MeshPart, segment: &Segment) -> Option<Crossing> {

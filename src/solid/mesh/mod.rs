@@ -21,7 +21,7 @@
 //! caps from the boundary's edges alone), `terms` (what caps and edges add to sums), `winding` (the caps' winding number),
 //! `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells), `chords` (rays through centres),
 //! `on_frame` (a mesh on a frame, and what is known of a cell), `local` (triangles in a cell's coordinates), `base` (a point whose winding number is known), `fronts` (on
-//! which sides of triangles the solid lies), `integral` (moments and areas), `slab` (enclosures), `segment` (crossings),
+//! which sides of triangles the solid lies), `integral` (moments and areas), `slab` (enclosures), `layers` (functions of planes with a width), `segment` (crossings),
 //! `direct` (rays, points and distances without cells),
 //! `open` (cells of an open surface), `open_rays` (rays through it), `split` (the solid, its classifier and its workers),
 //! `parity` (rays that pierce an open mesh an odd number of times).
@@ -32,6 +32,7 @@ mod crossing;
 mod direct;
 mod fronts;
 mod integral;
+mod layers;
 mod local;
 mod mesh_solid;
 mod on_frame;

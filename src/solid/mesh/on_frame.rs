@@ -1,6 +1,7 @@
 //! A mesh on a frame, and what is known of its cells.
 
 use super::crossing::Projection;
+use super::layers::Layers;
 use super::placed::Placed;
 use super::winding::Caps;
 use crate::lattice::exact::floor;
@@ -20,6 +21,8 @@ pub(super) struct MeshOnFrame {
     pub(super) winding: i32,
     /// What is known of the space around the universe, once somebody has asked.
     pub(super) exterior: OnceBox<Tag>,
+    /// The planes of the mesh, once somebody has asked.
+    pub(super) layers: OnceBox<Layers>,
 }
 
 /// What is remembered of a cell: the triangles that cut it, and the winding number of its lowest centre.

@@ -79,7 +79,7 @@ impl View<'_> {
     }
 
     /// The winding number at a point of the cell that no triangle comes near.
-    fn winding_at(&self, p: &Point, base: &Base) -> Option<i32> {
+    pub(super) fn winding_at(&self, p: &Point, base: &Base) -> Option<i32> {
         self.triangles
             .iter()
             .try_fold(base.winding, |sum, &triangle| Some(sum + self.seen(triangle).pierced(&base.at, p)?))

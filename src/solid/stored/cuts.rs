@@ -13,7 +13,7 @@ use crate::solid::half_space::function;
 use crate::solid::half_space::literals::Literals;
 use crate::solid::half_space::sweep::Sweep;
 use crate::solid::half_space::table::Table;
-use crate::solid::{OCTANTS, OpenSurfaces, PlacedHalfSpace, Question, Verdict};
+use crate::solid::{LayersQuestion, OCTANTS, OpenSurfaces, PlacedHalfSpace, Question, Verdict};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use once_cell::race::OnceBox;
@@ -139,7 +139,7 @@ impl PlacedCuts {
             }
             Question::Area(known) => *known = function::area(variables.each(), table, &self.cells, cell),
             Question::Chords(chords) => *chords.found = self.chords(&variables, chords.beam)?,
-            Question::Surfaces(known) => {
+            Question::Surfaces(known) | Question::Layers(LayersQuestion { known, .. }) => {
                 let (mut open, mut dense) = (OpenSurfaces::constant(false), table);
                 for (i, id) in variables.each() {
                     let Some(to) = open.number(id) else { return Ok(()) };

@@ -179,7 +179,7 @@ impl<T: Tree> Classifier for StoredOnFrame<T> {
     }
 
     fn answer_whole(&self, question: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
-        if let WholeQuestion::Surfaces(known) = question {
+        if let WholeQuestion::Surfaces(known) | WholeQuestion::Layers(known) = question {
             match &self.cuts {
                 Some(cuts) => *known = Some(memory::collected(cuts.surfaces().iter().cloned())?),
                 // No cell is crossed by any.

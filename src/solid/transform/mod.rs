@@ -6,8 +6,9 @@ mod slabs;
 mod splits;
 
 use super::{
-    Ask, AskWhole, Batch, Classifier, Direct, Enclosure, Fingerprint, Fingerprinter, Parts, Question, Solid,
-    Verdict, WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
+    Ask, AskLayers, AskWhole, Batch, Classifier, Direct, Enclosure, Fingerprint, Fingerprinter,
+    LayersQuestion, Parts, Question, Solid, Verdict, WholeQuestion, Worker, sample_one_by_one,
+    split_one_by_one,
 };
 use crate::control::Control;
 use crate::error::Error;
@@ -305,6 +306,13 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
         match question {
             WholeQuestion::Surfaces(known) => {
                 if let Some(own) = self.inner.surfaces(control)? {
+                    *known =
+                        Some(memory::collected(own.iter().map(|surface| surface.placed(&self.placement)))?);
+                }
+                Ok(())
+            }
+            WholeQuestion::Layers(known) => {
+                if let Some(own) = self.inner.layers(control)? {
                     *known =
                         Some(memory::collected(own.iter().map(|surface| surface.placed(&self.placement)))?);
                 }
@@ -675,6 +683,15 @@ impl<W: Worker> Worker for TransformWorker<W> {
             Question::Surfaces(known) => {
                 if let Some((_, source, own)) = self.source(cell, *part) {
                     *known = self.inner.surfaces(source, &own)?;
+                }
+            }
+            Question::Layers(LayersQuestion { tolerance, own: layers, known }) => {
+                if let Some((_, source, own)) = self.source(cell, *part) {
+                    let (first, tolerance) = (layers.len(), tolerance / self.placement.stretched(1.0));
+                    *known = self.inner.layers(source, &own, tolerance, layers)?;
+                    for layer in &mut layers[first..] {
+                        *layer = layer.placed(&self.placement);
+                    }
                 }
             }
             Question::Chords(_) | Question::Ray(_) | Question::Nearest(..) | Question::Box(..) => {}

@@ -518,15 +518,16 @@ fn meshes_that_differ_within_a_slab() {
         let options = SurfaceOptions { tolerance: Some(0.05) };
         build_extended(&MeshSolid::new(mesh, FillRule::NonZero).unwrap(), &frame, &options, &alone()).unwrap()
     };
-    let [a, same, b] = [pyramid(0.7), pyramid(0.7), pyramid(0.7000001)];
-    assert!(a.view().cuts().unwrap().surfaces > 50);
+    // (Layers are wider than the rounding of their corners by more than this.)
+    let [a, same, b] = [pyramid(0.7), pyramid(0.7), pyramid(0.7 + 2e-14)];
+    assert!(a.view().cuts().unwrap().surfaces >= 5);
     let rest = |a: &Octree, b: &Octree| difference(a.view(), b.view(), &alone()).unwrap();
     let none = rest(&a, &same);
     let given_up = |tree: &Octree| tree.view().cuts().map_or(0, |cuts| cuts.given_up);
     // Of the same origin all but the cells that were given up is gone.
     assert!(none.view().cuts().is_none_or(|cuts| cuts.cells == 0) && given_up(&none) <= given_up(&a));
     // Between the two tips nothing is known.
-    let tip = [0.0, 0.0, 0.70000005];
+    let tip = [0.0, 0.0, 0.7 + 1e-14];
     for (a, b, truth) in [(&a, &b, Membership::Outside), (&b, &a, Membership::Inside)] {
         let rest = rest(a, b);
         rest.view().check().unwrap();

@@ -278,7 +278,8 @@ fn every_kind_of_solid_answers_its_questions() {
     assert!(found.list && found.surfaces && found.enclosure, "{found:?}");
     // Slabs in a tree: surfaces, and enclosures, but no area, because they have no normals.
     let options = SurfaceOptions { tolerance: Some(0.05) };
-    let slabs = build_extended(&mesh(), &frame, &options, &alone()).unwrap();
+    let turned = mesh().placed(&turn).unwrap();
+    let slabs = build_extended(&turned, &frame, &options, &alone()).unwrap();
     let found = told(&slabs, &frame);
     assert_eq!(found, Told { moments: false, area: false, ..exact }, "{found:?}");
     // Nothing at all.

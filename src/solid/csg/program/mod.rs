@@ -32,6 +32,7 @@ use distinct::Equals;
 use hashbrown::HashMap;
 use hierarchy::{Groups, Operand};
 use once_cell::race::OnceBox;
+use surfaces::Start;
 use word::{Op, Word};
 
 /// An expression on one universe.
@@ -44,8 +45,9 @@ pub(crate) struct Program {
     sources: Vec<(HalfSpace, u32)>,
     /// Chains of placements: the last map, and the chain before it, which is one less than its number says; 0 is none.
     chains: Vec<(u32, Affine)>,
-    /// For each of the other solids where its surfaces begin, behind the half-spaces. (Known once asked for.)
-    surfaces: OnceBox<Vec<u32>>,
+    /// For each of the other solids where its surfaces begin, behind the half-spaces; in the list without layers, and in that with
+    /// them. (Known once asked for.)
+    surfaces: [OnceBox<Vec<Start>>; 2],
     pub(crate) solids: Vec<AnyClassifier>,
     /// Operands of large operations by where they lie.
     pub(crate) groups: Groups,
@@ -116,7 +118,7 @@ impl Program {
             half_spaces: Vec::new(),
             sources: Vec::new(),
             chains: Vec::new(),
-            surfaces: OnceBox::new(),
+            surfaces: [OnceBox::new(), OnceBox::new()],
             solids: Vec::new(),
             groups: Groups::default(),
             words: Vec::new(),
@@ -152,7 +154,12 @@ impl Program {
         let lists = memory::bytes_of(&self.half_spaces)
             + memory::bytes_of(&self.sources)
             + memory::bytes_of(&self.chains)
-            + self.surfaces.get().map_or(0, |list| size_of_val(list) + memory::bytes_of(list))
+            + self
+                .surfaces
+                .iter()
+                .filter_map(OnceBox::get)
+                .map(|list| size_of_val(list) + memory::bytes_of(list))
+                .sum::<usize>()
             + memory::bytes_of(&self.solids)
             + self.groups.bytes()
             + memory::bytes_of(&self.words)

@@ -12,8 +12,8 @@ use crate::mesh::TriangleMesh;
 use crate::octree::{Block, Planes, Proof, Tag};
 use crate::solid::csg::Csg;
 use crate::solid::{
-    AskWhole, Batch, Classifier, Direct, Fingerprint, OCTANTS, Parts, Question, Solid, Subtree, Verdict,
-    WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
+    AskWhole, Batch, Classifier, Direct, Fingerprint, LayersQuestion, OCTANTS, Parts, Question, Solid,
+    Subtree, Verdict, WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
 };
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -128,7 +128,11 @@ impl Classifier for CsgClassifier {
                 Ok(())
             }
             WholeQuestion::Surfaces(known) => {
-                *known = Some(program.surfaces(control)?);
+                *known = Some(program.surfaces(false, control)?);
+                Ok(())
+            }
+            WholeQuestion::Layers(known) => {
+                *known = Some(program.surfaces(true, control)?);
                 Ok(())
             }
             question => {
@@ -239,7 +243,11 @@ impl Worker for CsgWorker {
             return Ok(());
         }
         if let Question::Surfaces(known) = question {
-            *known = scratch.open_surfaces(program, cell, part)?;
+            *known = scratch.open_surfaces(program, cell, part, None)?;
+            return Ok(());
+        }
+        if let Question::Layers(LayersQuestion { tolerance, own, known }) = question {
+            *known = scratch.open_surfaces(program, cell, part, Some((tolerance, own)))?;
             return Ok(());
         }
         if let Question::Ray(question) = question {
@@ -258,6 +266,7 @@ impl Worker for CsgWorker {
             Question::Centre(_)
             | Question::Crossing(..)
             | Question::Surfaces(_)
+            | Question::Layers(_)
             | Question::Ray(_)
             | Question::Nearest(..)
             | Question::Box(..) => {}

@@ -9,14 +9,18 @@ use crate::lattice::{Affine, Cell};
 use crate::memory;
 use crate::solid::csg::Join;
 use crate::solid::half_space::table::Table;
-use crate::solid::{Ask, AskWhole, OpenSurfaces, PlacedHalfSpace};
+use crate::solid::{Ask, AskLayers, AskWhole, OpenSurfaces, PlacedHalfSpace};
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 impl Program {
-    /// All half-spaces, and behind them the surfaces of the other solids.
-    pub(crate) fn surfaces(&self, control: &Control<'_>) -> Result<Vec<PlacedHalfSpace>, Error> {
+    /// All half-spaces, and behind them the surfaces of the other solids; if so said, with their layers.
+    pub(crate) fn surfaces(
+        &self,
+        with_layers: bool,
+        control: &Control<'_>,
+    ) -> Result<Vec<PlacedHalfSpace>, Error> {
         let mut placements: Vec<Arc<[Affine]>> = memory::with_capacity(self.chains.len() + 1)?;
         placements.push(Arc::new([]));
         for (before, placement) in &self.chains {
@@ -30,25 +34,40 @@ impl Program {
             }))?;
         let mut starts = memory::with_capacity(self.solids.len())?;
         for solid in &self.solids {
-            starts.push(all.len() as u32);
-            let own = solid.surfaces(control)?.unwrap_or_default();
+            let layers = if with_layers { solid.layers(control)? } else { None };
+            starts.push(Start { first: all.len() as u32, has_layers: layers.is_some() });
+            let own = match layers {
+                Some(layers) => layers,
+                None => solid.surfaces(control)?.unwrap_or_default(),
+            };
             all.try_reserve(own.len())?;
             all.extend(own);
         }
         // (Every list that is made has the same starts.)
-        _ = self.surfaces.set(Box::new(starts));
+        _ = self.surfaces[usize::from(with_layers)].set(Box::new(starts));
         Ok(all)
     }
 }
 
+/// Where the surfaces of a solid begin in the program's list, and whether layers are among them.
+pub(super) struct Start {
+    first: u32,
+    has_layers: bool,
+}
+
+/// How thick layers may be, and the place for those of a cell.
+pub(crate) type Layers<'l> = (f64, &'l mut Vec<PlacedHalfSpace>);
+
 impl Scratch {
     /// The surfaces that are open in a cell, and the function of them that the part is; `None` if they are too many, something is
-    /// open that is not made of surfaces, or the list of the surfaces has not been asked for.
+    /// open that is not made of surfaces, or the list of the surfaces has not been asked for. With `layers` the list is that with
+    /// layers.
     pub(crate) fn open_surfaces(
         &mut self,
         program: &Program,
         cell: Cell,
         part: CsgPart,
+        mut layers: Option<Layers<'_>>,
     ) -> Result<Option<OpenSurfaces>, Error> {
         if program.paper || part.len == 0 || part.words() > MOST_WORDS {
             return Ok(None);
@@ -75,7 +94,10 @@ impl Scratch {
                     Table::of(i, complement)
                 }
                 Op::Solid { index, complement } => {
-                    let Some(own) = self.surfaces_of_solid(program, cell, index)? else { return Ok(None) };
+                    let layers = layers.as_mut().map(|(tolerance, own)| (*tolerance, &mut **own));
+                    let Some(own) = self.surfaces_of_solid(program, cell, index, layers)? else {
+                        return Ok(None);
+                    };
                     let Some(table) = joined(&mut open, &own) else { return Ok(None) };
                     if complement { Table(!table.0) } else { table }
                 }
@@ -104,12 +126,18 @@ impl Scratch {
         program: &Program,
         cell: Cell,
         index: u32,
+        layers: Option<Layers<'_>>,
     ) -> Result<Option<OpenSurfaces>, Error> {
-        let Some(starts) = program.surfaces.get() else { return Ok(None) };
+        let Some(starts) = program.surfaces[usize::from(layers.is_some())].get() else { return Ok(None) };
         let Some((solid, part)) = self.slot(program, index)? else { return Ok(None) };
-        let own = Scratch::other(&mut self.workers, program, solid)?.worker.surfaces(cell, &part)?;
-        let start = starts[solid as usize];
-        Ok(own.and_then(|own| OpenSurfaces::new(own.indices().iter().map(|i| start + i), own.table())))
+        let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
+        let Start { first, has_layers } = starts[solid as usize];
+        let own = match layers.filter(|_| has_layers) {
+            Some((tolerance, own)) => worker.layers(cell, &part, tolerance, own)?,
+            None => worker.surfaces(cell, &part)?,
+        };
+        let numbered = |&i: &u32| if i < OpenSurfaces::OWN { first + i } else { i };
+        Ok(own.and_then(|own| OpenSurfaces::new(own.indices().iter().map(numbered), own.table())))
     }
 }
 

@@ -1,0 +1,283 @@
+//! Extended octrees of meshes: which planes bound the solid in a cell, and which function of their sides it is.
+
+use crate::attributes::distance;
+use crate::common::{Random, alone, model};
+use crate::oracle::{Oracle, PointOracle};
+use crate::shapes::{self, Soup};
+
+use leafless::solid::HalfSpace;
+use leafless::{
+    Cell, Control, Csg, FillRule, Frame, Membership, MeshSolid, Octree, Solid, SurfaceOptions, TriangleMesh,
+    build_extended, contains, difference, exchange, intersection, measure, union, xor,
+};
+
+type Point = [f64; 3];
+
+fn at(of: impl FnMut(usize) -> f64) -> Point {
+    [0, 1, 2].map(of)
+}
+
+/// Turned by an angle of no round number, and moved.
+fn turned(soup: &Soup) -> Soup {
+    shapes::moved(soup, |[x, y, z]| {
+        let (x, y) = (0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y);
+        let (y, z) = (0.28 * y + 0.96 * z, 0.28 * z - 0.96 * y);
+        [x + 0.013, y - 0.17, z + 0.4]
+    })
+}
+
+/// As a file in single precision has it.
+fn single(soup: &Soup) -> Soup {
+    shapes::moved(soup, |p| p.map(|c| f64::from(c as f32)))
+}
+
+fn joined(soups: &[Soup]) -> Soup {
+    soups.concat()
+}
+
+/// What each mesh is there for.
+fn soups(random: &mut Random) -> Vec<(&'static str, Soup)> {
+    let block = shapes::block;
+    let base = || block([0.0; 3], [1.0, 0.75, 0.5]);
+    let octagon: Vec<[f64; 2]> = (0..8)
+        .map(|k| (0.5 + f64::from(k)) * std::f64::consts::FRAC_PI_4)
+        .map(|angle| [0.5 * angle.cos(), 0.5 * angle.sin()])
+        .collect();
+    let many: Vec<[f64; 2]> = (0..48)
+        .map(|k| f64::from(k) * std::f64::consts::TAU / 48.0)
+        .map(|angle| [0.5 * angle.cos(), 0.5 * angle.sin()])
+        .collect();
+    // Two facets on the same corners, one for each side.
+    let fin = |[a, b, c]: [Point; 3]| vec![[a, b, c], [a, c, b]];
+    let wedge = shapes::tetrahedron([[0.0; 3], [1.0, 0.0, 0.125], [1.0, 0.0, 0.25], [0.0, 1.0, 0.0]]);
+    let mut all = vec![
+        ("block", base()),
+        ("prism", shapes::prism(&octagon, [0.0; 2], -0.25, 0.25)),
+        ("cylinder", shapes::prism(&many, [0.0; 2], -0.25, 0.25)),
+        ("octahedron", shapes::octahedron([0.1, 0.2, 0.3], 0.7)),
+        ("torus", shapes::torus([0.0; 3], 1.0, 0.4, 24, 16)),
+        ("knife edge", wedge),
+        ("rib", joined(&[base(), block([0.3, 0.2, 0.5], [0.3001, 0.5, 0.9])])),
+        ("rib through", joined(&[base(), block([0.3, 0.2, -0.2], [0.3001, 0.5, 0.9])])),
+        ("slit", joined(&[base(), shapes::inside_out(block([0.3, 0.2, 0.1], [0.3001, 0.5, 0.4]))])),
+        ("fin", joined(&[base(), fin([[0.3, 0.2, 0.5], [0.5, 0.6, 0.5], [0.4, 0.3, 1.0]])])),
+        ("nested", joined(&[base(), block([0.2; 3], [0.7, 0.6, 0.4])])),
+        ("hollow", joined(&[base(), shapes::inside_out(block([0.2; 3], [0.7, 0.6, 0.4]))])),
+        ("inside out", shapes::inside_out(base())),
+        ("crossed", joined(&[base(), block([0.25, -0.2, 0.25], [0.75, 1.2, 0.75])])),
+        (
+            "crossed inside out",
+            joined(&[base(), shapes::inside_out(block([0.25, -0.2, 0.25], [0.75, 1.2, 0.75]))]),
+        ),
+        ("touching", joined(&[base(), block([1.0, 0.2, 0.1], [1.5, 0.6, 0.9])])),
+        ("twice", joined(&[base(), base()])),
+        ("bodies", shapes::tetrahedra(random, 6, |random| at(|_| random.between(-1.0, 1.0)))),
+        ("bodies on a grid", shapes::tetrahedra(random, 6, |random| at(|_| random.below(5) as f64 * 0.25))),
+        ("needle", shapes::tetrahedron([[0.0; 3], [1.0, 0.0, 1e-9], [1.0, 1e-9, 0.0], [0.0, 1e-9, 1e-9]])),
+    ];
+    let more: Vec<(&str, Soup)> = all.iter().map(|(name, soup)| (*name, turned(soup))).collect();
+    let rounded: Vec<(&str, Soup)> = more.iter().map(|(name, soup)| (*name, single(soup))).collect();
+    all.extend(more);
+    all.extend(rounded);
+    all
+}
+
+struct Trial {
+    mesh: TriangleMesh,
+    oracle: PointOracle,
+    fill: FillRule,
+    frame: Frame,
+    tolerance: f64,
+    tree: Octree,
+}
+
+impl Trial {
+    fn new(mesh: TriangleMesh, fill: FillRule, tolerance: f64, most: u8) -> Trial {
+        let solid = MeshSolid::new(mesh.try_clone().unwrap(), fill).unwrap();
+        let options = SurfaceOptions { tolerance: Some(tolerance) };
+        let frame = options.frame(&Solid::bounds(&solid).unwrap()).unwrap();
+        let frame = frame.with_depth(frame.depth().min(most)).unwrap();
+        let tree = build_extended(&solid, &frame, &options, &alone()).unwrap();
+        tree.view().check().unwrap();
+        let again = build_extended(&solid, &frame, &options, &Control::threads(2)).unwrap();
+        assert_eq!(tree, again);
+        Trial { oracle: PointOracle::new(&mesh), mesh, fill, frame, tolerance, tree }
+    }
+
+    /// The truth at a point; `None` on the surface.
+    fn truth(&self, p: Point) -> Option<bool> {
+        self.oracle.winding(p).map(|winding| Oracle::inside(self.fill, winding))
+    }
+
+    fn corners(&self) -> impl Iterator<Item = [Point; 3]> {
+        let vertices = self.mesh.vertices();
+        self.mesh.triangles().iter().map(|t| t.map(|v| vertices[v as usize]))
+    }
+
+    /// Points on the surface, and off it by next to nothing to a tenth of the size, and anywhere.
+    fn points(&self, random: &mut Random, count: usize) -> Vec<Point> {
+        let (low, high) = self.mesh.bounds();
+        let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        let corners: Vec<_> = self.corners().collect();
+        (0..count)
+            .map(|k| {
+                let [a, b, c] = corners[random.below(corners.len() as u64) as usize];
+                let (mut u, mut v) = (random.unit(), random.unit());
+                if u + v > 1.0 {
+                    (u, v) = (1.0 - u, 1.0 - v);
+                }
+                if k % 5 == 1 {
+                    v = 0.0;
+                }
+                let off = size * 10f64.powf(random.between(-16.0, -1.0));
+                let near =
+                    at(|i| a[i] + u * (b[i] - a[i]) + v * (c[i] - a[i]) + off * random.between(-1.0, 1.0));
+                match k % 5 {
+                    0 => at(|i| random.between(low[i] - 0.1 * size, high[i] + 0.1 * size)),
+                    2 => at(|i| a[i] + off * random.between(-1.0, 1.0)),
+                    _ => near,
+                }
+            })
+            .collect()
+    }
+
+    /// Whether nothing is known in the finest cell of a point.
+    fn is_given_up(&self, p: Point) -> bool {
+        let Some(at) = self.frame.cell_of(p) else { return true };
+        self.tree.view().cell_function(Cell { level: self.frame.depth(), at }).is_none()
+    }
+
+    /// Compares what is told of points with the truth; returns how many of them are told.
+    fn check(&self, name: &str, points: &[Point]) -> usize {
+        let mut answers = vec![Membership::Undecided; points.len()];
+        contains(&self.tree, &self.frame, points, &mut answers, &alone()).unwrap();
+        let mut known = 0;
+        for (&p, answer) in points.iter().zip(answers) {
+            let told = || format!("{name}, {:?}, {}, {:?}: {p:?}", self.fill, self.tolerance, self.frame);
+            match (answer, self.truth(p)) {
+                (Membership::Inside, truth) => assert!(truth != Some(false), "not inside: {}", told()),
+                (Membership::Outside, truth) => assert!(truth != Some(true), "not outside: {}", told()),
+                (Membership::Undecided, _) => {
+                    let away = self.corners().map(|corners| distance(p, corners).0);
+                    let away = away.fold(f64::INFINITY, f64::min);
+                    let is_far = away > 2.0 * self.tolerance && !self.is_given_up(p);
+                    assert!(!is_far, "undecided {away} from the surface: {}", told());
+                    continue;
+                }
+            }
+            known += 1;
+        }
+        known
+    }
+}
+
+/// No point is told wrong, and all are told that are not near to the surface, whatever the mesh.
+#[test]
+fn functions_of_planes_are_the_solid() {
+    let mut random = Random(0x1A7E5);
+    for (name, soup) in soups(&mut random) {
+        for (tolerance, most) in [(0.05, 9), (1e-3, 9)] {
+            let fill = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive][random.below(3) as usize];
+            let trial = Trial::new(shapes::mesh(&soup), fill, tolerance, most);
+            let points = trial.points(&mut random, 2_000);
+            let known = trial.check(name, &points);
+            assert!(known > 500, "{name}, {tolerance}: {known}");
+        }
+    }
+}
+
+/// A function of two booleans.
+type Joins = fn(bool, bool) -> bool;
+
+/// Set operations of a stored mesh with a ball, a turned block and the same mesh moved: no point is told wrong.
+fn check_booleans(name: &str, trial: &Trial, random: &mut Random, count: usize) {
+    let (low, high) = trial.mesh.bounds();
+    let middle = at(|k| low[k].midpoint(high[k]));
+    let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+    let centre = at(|k| middle[k] + [0.11, 0.07, 0.2][k] * size);
+    let radius = 0.23 * size;
+    let ball = Csg::ball(centre, radius).unwrap();
+    let normal = [0.6, -0.64, 0.48];
+    let offset = -(0..3).map(|k| normal[k] * middle[k]).sum::<f64>();
+    let half = Csg::from(HalfSpace::plane(normal, offset).unwrap());
+    let options = SurfaceOptions { tolerance: Some(trial.tolerance) };
+    let stored = |csg: &Csg| build_extended(csg, &trial.frame, &options, &alone()).unwrap();
+    let in_ball = |p: Point| {
+        let off = (0..3).map(|k| (p[k] - centre[k]).powi(2)).sum::<f64>().sqrt() - radius;
+        (off.abs() > 1e-12 * size).then_some(off < 0.0)
+    };
+    let in_half = |p: Point| {
+        let off = (0..3).map(|k| normal[k] * p[k]).sum::<f64>() + offset;
+        (off.abs() > 1e-12 * size).then_some(off > 0.0)
+    };
+    type Truth<'t> = &'t dyn Fn(Point) -> Option<bool>;
+    let others: [(&str, Octree, Truth<'_>); 2] =
+        [("ball", stored(&ball), &in_ball), ("half-space", stored(&half), &in_half)];
+    for (other_name, other, truth) in &others {
+        let (own, other, alone) = (trial.tree.view(), other.view(), &alone());
+        let results: [(&str, Octree, Joins); 5] = [
+            ("union", union(own, other, alone).unwrap(), |a, b| a || b),
+            ("intersection", intersection(own, other, alone).unwrap(), |a, b| a && b),
+            ("difference", difference(own, other, alone).unwrap(), |a, b| a && !b),
+            ("converse", difference(other, own, alone).unwrap(), |a, b| b && !a),
+            ("xor", xor(own, other, alone).unwrap(), |a, b| a != b),
+        ];
+        for (what, tree, joins) in &results {
+            tree.view().check().unwrap();
+            let points = trial.points(random, count);
+            let mut answers = vec![Membership::Undecided; points.len()];
+            contains(tree, &trial.frame, &points, &mut answers, alone).unwrap();
+            let mut known = 0;
+            for (&p, answer) in points.iter().zip(answers) {
+                let (Some(a), Some(b)) = (trial.truth(p), truth(p)) else { continue };
+                let inside = joins(a, b);
+                known += usize::from(answer != Membership::Undecided);
+                let is_wrong = answer == if inside { Membership::Outside } else { Membership::Inside };
+                assert!(!is_wrong, "{name} {what} {other_name}: {p:?} is told {answer:?}");
+            }
+            assert!(known > count / 3, "{name} {what} {other_name}: {known} of {count}");
+        }
+    }
+    // Of a set less itself nothing is left, though its slabs are known within a width alone.
+    let none = difference(trial.tree.view(), trial.tree.view(), &alone()).unwrap();
+    let given_up = trial.tree.view().cuts().map_or(0, |cuts| cuts.given_up);
+    assert!(given_up > 0 || none.statistics().nodes() == 0, "{name}");
+}
+
+#[test]
+fn set_operations_of_stored_meshes() {
+    let mut random = Random(0xB001);
+    for (name, soup) in soups(&mut random).into_iter().skip(1).step_by(3) {
+        let trial = Trial::new(shapes::mesh(&soup), FillRule::NonZero, 1e-3, 10);
+        check_booleans(name, &trial, &mut random, 500);
+    }
+}
+
+fn opened(name: &str) -> Option<(TriangleMesh, f64)> {
+    let path = model(name)?;
+    let mesh = exchange::open_mesh(path, &exchange::MeshOptions::default()).unwrap().mesh.sewn().unwrap();
+    let (low, high) = mesh.bounds();
+    let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+    Some((mesh, size))
+}
+
+/// Parts of a CAD program take few cells, and their volume is known nearly as well as the mesh's own.
+#[test]
+fn machined_parts_take_few_cells() {
+    for (name, most_nodes, width) in
+        [("featuretype.STL", 3_500, 1e-8), ("angle_block.STL", 2_500, 1e-6), ("plate_holes.STL", 3_500, 1e-7)]
+    {
+        let Some((mesh, size)) = opened(name) else { continue };
+        let volume = mesh.volume();
+        let trial = Trial::new(mesh, FillRule::NonZero, 1e-6 * size, 20);
+        let cuts = trial.tree.view().cuts().unwrap();
+        let nodes = trial.tree.statistics().nodes();
+        assert!(nodes <= most_nodes, "{name}: {nodes} nodes");
+        assert!(cuts.given_up < 100, "{name}: {cuts:?}");
+        let found =
+            measure(&trial.tree, &trial.frame, 1e-30, &Control { max_splits: Some(20_000), ..alone() })
+                .unwrap();
+        assert!(found.volume.contains(volume), "{name}: {:?}", found.volume);
+        assert!(found.volume.width() < width * volume, "{name}: {:e}", found.volume.width() / volume);
+    }
+}
