@@ -7,6 +7,7 @@ use crate::octree::cuts::{Cut, Head};
 use crate::solid::OCTANTS;
 use crate::solid::half_space::Placed;
 use crate::solid::half_space::bounds::{Octants, Sides};
+use crate::solid::half_space::joined::Joined;
 use crate::solid::half_space::possible::possible;
 use crate::solid::half_space::table::{MOST, Table};
 use core::cmp::Ordering;
@@ -46,7 +47,7 @@ impl Function {
     pub(super) fn of_record(ids: [u32; MOST_KEPT], table: u8) -> Function {
         let (mut own, count) = (Function::constant(false), Head(table).surfaces());
         own.ids[..count].copy_from_slice(&ids[..count]);
-        Function { count, table: widened(table), ..own }
+        Function { count, table: Table::widened(table), ..own }
     }
 
     /// A function of surfaces with these numbers, some of which may be the same: `table` is that of six that differ.
@@ -58,7 +59,7 @@ impl Function {
                 (own.ids[own.count], own.count) = (id, own.count + 1);
             }
         }
-        Function { table: spread(table, &places[..ids.len()]), ..own }
+        Function { table: table.spread(&places[..ids.len()]), ..own }
     }
 
     pub(super) fn ids(&self) -> &[u32] {
@@ -84,7 +85,7 @@ impl Function {
                 }
             };
         }
-        all.table.0 = combine(self.table.0, spread(other.table, &places[..other.count]).0);
+        all.table.0 = combine(self.table.0, other.table.spread(&places[..other.count]).0);
         Some(all)
     }
 
@@ -106,7 +107,7 @@ impl Function {
             own.ids[to] = self.ids[from];
             places[from] = to;
         }
-        Function { table: spread(self.table, &places[..self.count]), ..own }
+        Function { table: self.table.spread(&places[..self.count]), ..own }
     }
 
     /// The function on the combinations that are possible in a cell, of as few surfaces as that takes, in their order.
@@ -131,10 +132,7 @@ impl Function {
 
     fn reduced(&self, possible: Table) -> Function {
         let own = Function { table: self.table.simplified(possible), ..*self };
-        let (mut needed, mut count) = ([0; MOST], 0);
-        for i in (0..own.count).filter(|&i| own.table.depends_on(i)) {
-            (needed[count], count) = (i, count + 1);
-        }
+        let (needed, count) = own.table.needed();
         own.chosen(&needed[..count])
     }
 
@@ -190,14 +188,14 @@ impl Function {
         if all.count == 0 {
             return Ok(None);
         }
-        let mut all = all.ordered(surfaces);
+        let all = all.ordered(surfaces);
         // What is possible in a child: bounds of pairs tell more than signs, and exact signs tell what bounds do not.
         let at = Octants::of(cell);
         let mut sides = [Sides { inside: 0, outside: 0 }; MOST_KEPT];
         for (sides, &id) in sides.iter_mut().zip(all.ids()) {
             *sides = surfaces.placed(id)?.sides(&at, 0xFF, &mut 0)?;
         }
-        let (mut holds, mut fails) = (0, 0);
+        let mut joined = Joined::default();
         for (k, child) in OCTANTS.into_iter().zip(children) {
             let value = match child {
                 (Tag::Partial, Cut::Table { ids, table }) => {
@@ -206,44 +204,20 @@ impl Function {
                     for (place, id) in places.iter_mut().zip(own) {
                         *place = all.ids().iter().position(|known| known == id).unwrap_or(0);
                     }
-                    spread(widened(*table), &places[..own.len()])
+                    Table::widened(*table).spread(&places[..own.len()])
                 }
                 (Tag::Full, _) => Table::FULL,
                 _ => Table::EMPTY,
             };
-            let mut possible = all.possible(cell.child(k), surfaces)?.0;
+            let mut possible = all.possible(cell.child(k), surfaces)?;
             for (i, sides) in sides.iter().enumerate() {
-                let [inside, outside] = [sides.inside, sides.outside].map(|sides| sides >> k & 1 != 0);
-                if inside != outside {
-                    possible &= Table::of(i, outside).0;
-                }
+                possible = possible.on_side(i, sides.side(k.into()));
             }
-            (holds, fails) = (holds | value.0 & possible, fails | !value.0 & possible);
-            if holds & fails != 0 {
+            if !joined.take(value, possible) {
                 return Ok(None);
             }
         }
-        all.table = Table(holds);
-        Ok(Some(all.reduced(Table(holds | fails))))
+        let (table, possible) = joined.tables();
+        Ok(Some(Function { table, ..all }.reduced(possible)))
     }
-}
-
-/// The table of a record, as a function of six surfaces.
-fn widened(table: u8) -> Table {
-    Table(u64::from(table) * 0x0101_0101_0101_0101)
-}
-
-/// A table whose surface i is number `places[i]` of another one. It depends on no others than these.
-fn spread(table: Table, places: &[usize]) -> Table {
-    if places.iter().enumerate().all(|(from, &to)| from == to) {
-        return table;
-    }
-    // For each combination of signs of the surfaces the places where it holds.
-    (0..1u64 << places.len()).filter(|signs| table.0 >> signs & 1 != 0).fold(Table::EMPTY, |all, signs| {
-        let here = places
-            .iter()
-            .enumerate()
-            .fold(!0, |here, (from, &to)| here & Table::of(to, signs >> from & 1 == 0).0);
-        Table(all.0 | here)
-    })
 }

@@ -1,4 +1,4 @@
-//! What a cell knows in which few half-spaces are open, whatever function of them the solid is: moments and area.
+//! What a cell knows in which few half-spaces are open, whatever function of them the solid is: points, rays, moments and area.
 //!
 //! A function of up to three half-spaces is a union of intersections that do not overlap ([`Terms`]). So its moments are sums of
 //! theirs. A piece of a half-space's surface belongs to the boundary where the function's value depends on that half-space, which
@@ -7,10 +7,14 @@
 use super::Placed;
 use super::bounds::{centre, half_edge};
 use super::literals::{Literals, most_area};
-use super::table::Table;
+use super::sweep::Sweep;
+use super::table::{MOST, Table};
 use super::terms::{Term, Terms};
 use crate::cut::{self, Enclosure, Quadratic, Slab, SlabJoin, Taylor};
+use crate::dexel::Beam;
+use crate::error::Error;
 use crate::lattice::{Cell, CellMoments, CubeMoments, Interval};
+use crate::memory;
 
 /// A function of up to three half-spaces, numbered from 0 on.
 struct Function<'h> {
@@ -51,6 +55,49 @@ pub(crate) fn area(
         Some(function) => function.area(cell),
         None => most_area(variables.map(|(_, index)| &half_spaces[index as usize]), cell),
     }
+}
+
+/// Whether a point is inside, given on which side of half-spaces it lies; `None` if the function depends on one of which that is not
+/// known.
+pub(crate) fn inside(
+    variables: impl Iterator<Item = (usize, u32)>,
+    mut table: Table,
+    side: impl Fn(u32) -> Result<Option<bool>, Error>,
+) -> Result<Option<bool>, Error> {
+    for (i, index) in variables {
+        // What was found before may make it not matter.
+        if table.depends_on(i) {
+            table = table.at(i, side(index)?);
+        }
+    }
+    Ok(match table {
+        Table::FULL => Some(true),
+        Table::EMPTY => Some(false),
+        _ => None,
+    })
+}
+
+/// Adds the intervals of all rays of a beam; `false` if a half-space has no exact place.
+pub(crate) fn chords(
+    variables: impl Iterator<Item = (usize, u32)>,
+    table: Table,
+    all: &[Placed],
+    beam: &mut Beam,
+) -> Result<bool, Error> {
+    let mut sweep = Sweep::default();
+    let mut places = [0; MOST];
+    for (i, index) in variables {
+        places[sweep.half_spaces.len()] = i;
+        memory::push(&mut sweep.half_spaces, index)?;
+    }
+    if !sweep.are_known(all) {
+        return Ok(false);
+    }
+    sweep.find(all, beam, |inside| {
+        let signs = inside.iter().zip(places).fold(0, |signs, (&inside, i)| signs | u32::from(inside) << i);
+        Ok(table.0 >> signs & 1 != 0)
+    })?;
+    Ok(true)
 }
 
 impl<'h> Function<'h> {

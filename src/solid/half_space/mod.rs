@@ -4,6 +4,7 @@ pub(crate) mod bounds;
 mod bytes;
 pub(crate) mod function;
 mod host;
+pub(crate) mod joined;
 pub(crate) mod linear;
 pub(crate) mod lines;
 pub(crate) mod literals;

@@ -1,7 +1,6 @@
 //! What the cuts of a stored octree say: cells below its own, and points.
 
 use super::StoredPart;
-use crate::dexel::Beam;
 use crate::error::{Damage, Error};
 use crate::lattice::{Cell, Frame};
 use crate::memory;
@@ -11,7 +10,6 @@ use crate::solid::half_space::Placed;
 use crate::solid::half_space::bounds::{Octants, centre};
 use crate::solid::half_space::function;
 use crate::solid::half_space::literals::Literals;
-use crate::solid::half_space::sweep::Sweep;
 use crate::solid::half_space::table::Table;
 use crate::solid::{LayersQuestion, OCTANTS, OpenSurfaces, PlacedHalfSpace, Question, Verdict};
 use alloc::boxed::Box;
@@ -34,11 +32,6 @@ impl core::fmt::Debug for PlacedCuts {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_struct("PlacedCuts").field("surfaces", &self.surfaces.len()).finish_non_exhaustive()
     }
-}
-
-/// The table of a record, as a function of six half-spaces.
-fn widened(table: u8) -> Table {
-    Table(u64::from(table) * 0x0101_0101_0101_0101)
 }
 
 impl PlacedCuts {
@@ -99,7 +92,7 @@ impl PlacedCuts {
         record: u32,
         table: u8,
     ) -> Result<[Verdict<StoredPart>; 8], Error> {
-        let table = widened(table);
+        let table = Table::widened(table);
         let Some(variables) = self.variables(cuts, record, table) else { return Ok([Verdict::Undecided; 8]) };
         let at = Octants::of(cell);
         let mut tables = [table; 8];
@@ -124,11 +117,12 @@ impl PlacedCuts {
         (record, table): (u32, u8),
         question: Question<'_>,
     ) -> Result<(), Error> {
-        let table = widened(table);
+        let table = Table::widened(table);
         let Some(variables) = self.variables(cuts, record, table) else { return Ok(()) };
         match question {
             Question::Centre(inside) => {
-                *inside = variables.inside(|id| self.cells[id].contains(centre(cell)))?
+                let side = |id| self.cells[id as usize].contains(centre(cell));
+                *inside = function::inside(variables.each(), table, side)?
             }
             Question::Enclosure(known) => {
                 let literals = Literals::of_table(variables.each(), table);
@@ -138,7 +132,9 @@ impl PlacedCuts {
                 *known = function::moments(variables.each(), table, &self.cells, cell)
             }
             Question::Area(known) => *known = function::area(variables.each(), table, &self.cells, cell),
-            Question::Chords(chords) => *chords.found = self.chords(&variables, chords.beam)?,
+            Question::Chords(chords) => {
+                *chords.found = function::chords(variables.each(), table, &self.cells, chords.beam)?
+            }
             Question::Surfaces(known) | Question::Layers(LayersQuestion { known, .. }) => {
                 let (mut open, mut dense) = (OpenSurfaces::constant(false), table);
                 for (i, id) in variables.each() {
@@ -150,26 +146,6 @@ impl PlacedCuts {
             Question::Crossing(..) | Question::Ray(_) | Question::Nearest(..) | Question::Box(..) => {}
         }
         Ok(())
-    }
-
-    /// Adds the intervals of all rays of a beam; `false` if a surface has no exact place.
-    fn chords(&self, variables: &Variables, beam: &mut Beam) -> Result<bool, Error> {
-        let mut sweep = Sweep::default();
-        let mut places = [0; 3];
-        for (i, id) in variables.each() {
-            places[sweep.half_spaces.len()] = i;
-            memory::push(&mut sweep.half_spaces, id)?;
-        }
-        if !sweep.are_known(&self.cells) {
-            return Ok(false);
-        }
-        let table = variables.table;
-        sweep.find(&self.cells, beam, |inside| {
-            let signs =
-                inside.iter().zip(places).fold(0, |signs, (&inside, i)| signs | u32::from(inside) << i);
-            Ok(table.0 >> signs & 1 != 0)
-        })?;
-        Ok(true)
     }
 
     /// Whether a point of the universe (model units) is inside, by exact signs; `None` if nothing is known of it there.
@@ -199,7 +175,9 @@ impl PlacedCuts {
             record = (first + usize::from(child.octant()), record.1 + 1);
         }
         let CellCut::Table { table, .. } = cuts.at(record.0) else { return Ok(None) };
-        let Some(variables) = self.variables(cuts, record.0 as u32, widened(table)) else { return Ok(None) };
+        let Some(variables) = self.variables(cuts, record.0 as u32, Table::widened(table)) else {
+            return Ok(None);
+        };
         let exact = match self.points.get() {
             Some(exact) => exact,
             None => {
@@ -211,7 +189,7 @@ impl PlacedCuts {
             }
         };
         let t = point.map(|c| c / self.around.edge());
-        variables.inside(|id| exact[id].contains_off_lattice(t))
+        function::inside(variables.each(), variables.table, |id| exact[id as usize].contains_off_lattice(t))
     }
 }
 
@@ -224,22 +202,6 @@ struct Variables {
 impl Variables {
     fn each(&self) -> impl Iterator<Item = (usize, u32)> + Clone {
         self.ids.iter().copied().enumerate().filter(|&(i, _)| self.table.depends_on(i))
-    }
-
-    /// The value of the function where surfaces have these sides; `None` if it depends on one that has not.
-    fn inside(&self, side: impl Fn(usize) -> Result<Option<bool>, Error>) -> Result<Option<bool>, Error> {
-        let mut table = self.table;
-        for (i, id) in self.each() {
-            // What was found before may make it not matter.
-            if table.depends_on(i) {
-                table = table.at(i, side(id as usize)?);
-            }
-        }
-        Ok(match table {
-            Table::FULL => Some(true),
-            Table::EMPTY => Some(false),
-            _ => None,
-        })
     }
 }
 
