@@ -1,14 +1,16 @@
 //! Any solid under an affine map.
 
+mod faces;
 mod image;
 mod same;
 mod slabs;
 mod splits;
+mod surfaces;
 
 use super::{
     Ask, AskLayers, AskWhole, Batch, Classifier, Direct, Enclosure, Fingerprint, Fingerprinter,
-    LayersQuestion, Parts, Question, Solid, Verdict, WholeQuestion, Worker, sample_one_by_one,
-    split_one_by_one,
+    LayersQuestion, OCTANTS, OpenSurfaces, Parts, Question, Solid, Verdict, WholeQuestion, Worker,
+    sample_one_by_one, split_one_by_one,
 };
 use crate::control::Control;
 use crate::error::Error;
@@ -22,6 +24,7 @@ use image::{Images, Maps, Point, Target};
 use same::Turn;
 use slabs::Source;
 use splits::{AtOnce, Gathered, Splits};
+use surfaces::Surfaces;
 
 /// A solid, known on a frame of its own, under an affine placement.
 ///
@@ -41,6 +44,11 @@ use splits::{AtOnce, Gathered, Splits};
 ///
 /// What the solid knows of its surface in cells ([`Enclosure`]) is known of the result: one slab a cell, as thin as the
 /// surface is flat there, and where nothing blurs the solid's own enclosure, exactly.
+///
+/// Surfaces that a stored solid keeps ([`build_extended`](crate::build_extended)) are moved exactly. Where one function of up to six of
+/// them is what all the cells are that a cell touches, the result is known as its source is, and splits below any depth; so a tree that
+/// is built from it keeps the same surfaces. So are faces in planes of the solid's own lattice, which cross no cell and which no cell
+/// keeps, if they are few. What the source gave up stays undecided.
 ///
 /// ```
 /// use leafless::{Affine, Control, Csg, Frame, Rule, build, solid::Transform};
@@ -72,6 +80,8 @@ pub struct TransformClassifier<C> {
     bounds: Option<Bounds>,
     placement: Affine,
     proof: Proof,
+    /// Of a stored solid that keeps surfaces.
+    surfaces: Option<Arc<Surfaces>>,
 }
 
 /// A worker on a placed solid: lists of cells of the solid's own frame, one for each PARTIAL cell.
@@ -83,6 +93,7 @@ pub struct TransformWorker<W: Worker> {
     frame: Frame,
     /// What is known of the space around the solid's own universe.
     exterior: Tag,
+    surfaces: Option<Arc<Surfaces>>,
     known: Vec<Known<W::Part>>,
     /// Per list its end among the cells, and the height that the solid's own memory had when it was made.
     lists: Vec<(usize, usize)>,
@@ -90,9 +101,17 @@ pub struct TransformWorker<W: Worker> {
     at_hand: Vec<(Known<W::Part>, u8)>,
 }
 
-/// Where the cells of its own frame that a cell touches lie in the scratch memory.
+/// What is known of a PARTIAL cell.
 #[derive(Debug, Clone, Copy)]
-pub struct TransformPart(usize);
+pub struct TransformPart(What);
+
+#[derive(Debug, Clone, Copy)]
+enum What {
+    /// Where the cells of the solid's own frame that the cell touches lie in the scratch memory.
+    List(usize),
+    /// Which function of the moved surfaces the solid is.
+    Function(OpenSurfaces),
+}
 
 /// What was found before an error, if there was one.
 type SoFar<T> = (T, Result<(), Error>);
@@ -178,7 +197,12 @@ impl<S: Solid> Solid for Transform<S> {
             Some(own) => own,
             None => self.own_frame(frame)?,
         };
-        Ok(TransformClassifier::new(self.solid.on(&own, control)?, &self.placement, frame, self.bounds()))
+        let mut placed =
+            TransformClassifier::new(self.solid.on(&own, control)?, &self.placement, frame, self.bounds());
+        if self.solid.home().is_some() {
+            placed.keep_surfaces(control)?;
+        }
+        Ok(placed)
     }
 
     fn bounds(&self) -> Option<Bounds> {
@@ -222,7 +246,15 @@ impl<C: Classifier> TransformClassifier<C> {
         let maps = Maps::new(placement, &placement.inverse_linear(), frame, &own);
         let proof = inner.proof();
         let proof = proof.moved(placement.stretched(proof.displacement()));
-        TransformClassifier { inner, own, maps, frame: *frame, bounds, placement: *placement, proof }
+        let placement = *placement;
+        TransformClassifier { inner, own, maps, frame: *frame, bounds, placement, proof, surfaces: None }
+    }
+
+    /// Lets cells be decided by the moved surfaces of the solid, if it keeps any. O(surfaces).
+    fn keep_surfaces(&mut self, control: &Control<'_>) -> Result<(), Error> {
+        let surfaces = Surfaces::of(&self.inner, &self.placement, &self.frame, control)?;
+        self.surfaces = surfaces.map(Arc::new);
+        Ok(())
     }
 
     /// Lower corner and edge of a cell of the solid's own frame, in its finest cells.
@@ -276,6 +308,7 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
             placement: self.placement,
             frame: self.frame,
             exterior: self.inner.exterior(),
+            surfaces: self.surfaces.clone(),
             known: Vec::new(),
             lists: Vec::new(),
             at_hand: Vec::new(),
@@ -298,21 +331,25 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
     }
 
     fn kept_bytes(&self) -> u64 {
-        self.inner.kept_bytes()
+        self.inner.kept_bytes() + self.surfaces.as_ref().map_or(0, |surfaces| surfaces.bytes() as u64)
     }
 
     /// Surfaces move along, and so do points.
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         match question {
             WholeQuestion::Surfaces(known) => {
-                if let Some(own) = self.inner.surfaces(control)? {
+                if let Some(surfaces) = &self.surfaces {
+                    *known = Some(memory::collected(surfaces.moved.iter().cloned())?);
+                } else if let Some(own) = self.inner.surfaces(control)? {
                     *known =
                         Some(memory::collected(own.iter().map(|surface| surface.placed(&self.placement)))?);
                 }
                 Ok(())
             }
             WholeQuestion::Layers(known) => {
-                if let Some(own) = self.inner.layers(control)? {
+                if let Some(surfaces) = &self.surfaces {
+                    *known = Some(memory::collected(surfaces.moved.iter().cloned())?);
+                } else if let Some(own) = self.inner.layers(control)? {
                     *known =
                         Some(memory::collected(own.iter().map(|surface| surface.placed(&self.placement)))?);
                 }
@@ -332,10 +369,11 @@ fn extent(frame: &Frame, cell: Cell) -> ([f64; 3], f64) {
 }
 
 impl<W: Worker> TransformWorker<W> {
-    /// Where the list of a part lies.
+    /// Where the list of a part lies; of one that has none nowhere.
     fn range(&self, part: TransformPart) -> Range<usize> {
-        let first = part.0.checked_sub(1).map_or(0, |before| self.lists[before].0);
-        first..self.lists[part.0].0
+        let What::List(list) = part.0 else { return 0..0 };
+        let first = list.checked_sub(1).map_or(0, |before| self.lists[before].0);
+        first..self.lists[list].0
     }
 
     /// Makes a list of the cells at hand that a child (as a bit) touches.
@@ -348,7 +386,31 @@ impl<W: Worker> TransformWorker<W> {
 
     fn close(&mut self) -> Result<TransformPart, Error> {
         memory::push(&mut self.lists, (self.known.len(), self.inner.mark()))?;
-        Ok(TransformPart(self.lists.len() - 1))
+        Ok(TransformPart(What::List(self.lists.len() - 1)))
+    }
+
+    /// What is known of a cell with a list, which is the last: a function of the moved surfaces in its place, if there is one.
+    fn known_of(&mut self, cell: Cell, part: TransformPart) -> Result<Verdict<TransformPart>, Error> {
+        // (What is known of a source is known of its image.)
+        let Some(surfaces) = self.surfaces.clone().filter(|_| self.source(cell, part).is_none()) else {
+            return Ok(Verdict::Partial(part));
+        };
+        let range = self.range(part);
+        let mut sources = memory::with_capacity(range.len() + 6)?;
+        for (source, verdict) in &self.known[range.clone()] {
+            let Some(known) = faces::known(&mut self.inner, *source, verdict)? else {
+                return Ok(Verdict::Partial(part));
+            };
+            let (low, edge) = extent(&self.own, *source);
+            sources.push(surfaces::Source { cell: Some(*source), low, high: low.map(|c| c + edge), known });
+        }
+        let mut target = surfaces::Target::new(&surfaces, &self.maps, &self.frame, cell);
+        sources.extend(target.beyond(self.own.cells() as f64, self.exterior));
+        let Some(known) = target.function(&sources)? else { return Ok(Verdict::Partial(part)) };
+        // (What the solid's own worker remembers is wanted for the cells at hand.)
+        self.known.truncate(range.start);
+        self.lists.pop();
+        Ok(verdict_of(known))
     }
 
     /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their
@@ -401,23 +463,27 @@ impl<W: Worker> TransformWorker<W> {
         gather(&own, &self.known[range], target, grain, splits, &mut self.at_hand)
     }
 
-    /// What the cells at hand say of the first `count` children, whose centres may be asked for if they are
-    /// `finest`.
+    /// What the cells at hand say of the eight children of a cell, or (`count` = 1) of the cell itself. Centres may be asked for of
+    /// finest cells.
     fn verdicts(
         &mut self,
         images: &Images<'_>,
+        cell: Cell,
         count: usize,
-        finest: bool,
     ) -> Result<[Verdict<TransformPart>; 8], Error> {
+        let finest = count == 8 && cell.level + 1 == self.frame.depth();
         let Met { empty, full, undecided, part } = self.met(images.reach_beyond(self.own.cells() as f64));
         let mut verdicts = [const { Verdict::Undecided }; 8];
-        for (k, verdict) in verdicts.iter_mut().enumerate().take(count) {
+        for (k, verdict) in OCTANTS.into_iter().zip(&mut verdicts).take(count) {
             let child = 1 << k;
             *verdict = match [empty, full, undecided, part].map(|met| met & child != 0) {
                 [true, false, false, false] => Verdict::Empty,
                 [false, true, false, false] => Verdict::Full,
                 [false, false, _, false] if !finest => Verdict::Undecided,
-                _ => Verdict::Partial(self.keep(child)?),
+                [_, _, undecided, _] => {
+                    let (cell, part) = (if count == 8 { cell.child(k) } else { cell }, self.keep(child)?);
+                    if undecided { Verdict::Partial(part) } else { self.known_of(cell, part)? }
+                }
             };
         }
         Ok(verdicts)
@@ -431,11 +497,23 @@ impl<W: Worker> TransformWorker<W> {
         }
         for ((cell, verdict), touched) in &self.at_hand {
             match verdict {
-                Verdict::Partial(_) if cell.level < self.own.depth() => met.part |= touched,
+                // (Surfaces are known below any depth.)
+                Verdict::Partial(_) if cell.level < self.own.depth() || self.surfaces.is_some() => {
+                    met.part |= touched;
+                }
                 verdict => met.add(verdict.tag(), *touched),
             }
         }
         met
+    }
+}
+
+/// What a cell is of which a function of surfaces is known.
+fn verdict_of(known: OpenSurfaces) -> Verdict<TransformPart> {
+    match surfaces::settled(&known) {
+        Some(Tag::Full) => Verdict::Full,
+        Some(_) => Verdict::Empty,
+        None => Verdict::Partial(TransformPart(What::Function(known))),
     }
 }
 
@@ -526,6 +604,9 @@ impl<W: Worker> Parts for TransformWorker<W> {
     }
 
     fn hand_over(&mut self, from: &Self, part: &TransformPart) -> Result<TransformPart, Error> {
+        if let What::Function(_) = part.0 {
+            return Ok(*part);
+        }
         let list = &from.known[from.range(*part)];
         self.known.try_reserve(list.len())?;
         for (cell, verdict) in list {
@@ -566,7 +647,7 @@ impl<W: Worker> Batch for TransformWorker<W> {
             if !self.gather_known(*part, images, *grain, &mut splits)? {
                 break;
             }
-            verdicts.push(self.verdicts(images, 8, cell.level + 1 == frame.depth())?);
+            verdicts.push(self.verdicts(images, *cell, 8)?);
         }
         done
     }
@@ -647,18 +728,24 @@ impl<W: Worker> Worker for TransformWorker<W> {
         let (maps, frame) = (self.maps, self.frame);
         let images = Images::new(&maps, &Cube { frame: &frame, cell: Cell::ROOT }, 1);
         self.gather(universe, &images, images.grain)?;
-        let [universe, ..] = self.verdicts(&images, 1, false)?;
+        let [universe, ..] = self.verdicts(&images, Cell::ROOT, 1)?;
         Ok(universe)
     }
 
     fn split(&mut self, cell: Cell, part: &TransformPart) -> Result<[Verdict<TransformPart>; 8], Error> {
+        if let (What::Function(known), Some(surfaces)) = (part.0, &self.surfaces) {
+            return Ok(surfaces.split(cell, &known)?.map(verdict_of));
+        }
         let (maps, frame) = (self.maps, self.frame);
         let images = Images::new(&maps, &Cube { frame: &frame, cell }, 2);
         self.gather(*part, &images, images.grain)?;
-        self.verdicts(&images, 8, cell.level + 1 == frame.depth())
+        self.verdicts(&images, cell, 8)
     }
 
     fn answer(&mut self, cell: Cell, part: &TransformPart, question: Question<'_>) -> Result<(), Error> {
+        if let (What::Function(known), Some(surfaces)) = (part.0, &self.surfaces) {
+            return surfaces.answer(cell, &known, question);
+        }
         match question {
             Question::Centre(inside) => *inside = self.contains_centre(cell, *part)?,
             Question::Enclosure(known) => *known = self.slab(cell, *part)?,

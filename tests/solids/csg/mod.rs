@@ -12,6 +12,7 @@ mod hostile;
 mod in_place;
 mod laws;
 pub mod model;
+mod moved;
 mod oracle;
 mod paper;
 mod passing;

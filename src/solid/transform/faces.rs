@@ -1,0 +1,211 @@
+//! Planes of a solid's own lattice in which pieces of its boundary lie that no surface tells of.
+//!
+//! A surface in a plane of the lattice crosses no cell, so that no cell keeps it: the cells on both sides are just something else.
+//! Once it is moved it crosses cells as any other.
+
+use crate::error::Error;
+use crate::lattice::{Cell, Frame};
+use crate::memory;
+use crate::octree::Tag;
+use crate::solid::half_space::Placed;
+use crate::solid::half_space::bounds::{Octants, Sides, half_edge};
+use crate::solid::half_space::joined::Joined;
+use crate::solid::half_space::table::Table;
+use crate::solid::{OCTANTS, OpenSurfaces, Question, Verdict, Worker};
+use alloc::vec::Vec;
+
+/// A plane of a lattice: its axis, and its place in finest cells.
+pub(super) type LatticePlane = (usize, u32);
+
+/// Most planes that are kept, and most cells that are split to find them. A solid with more is one of cells.
+const MOST_PLANES: usize = 32;
+const MOST_SPLITS: usize = 1 << 14;
+
+/// So many times faces are divided to see whether cells are decided on both sides.
+const MOST_DIVISIONS: u8 = 4;
+
+/// A cell, or all that lies beyond the universe, and what it is, if that is known.
+struct Node<P> {
+    cell: Option<Cell>,
+    verdict: Verdict<P>,
+    known: Option<OpenSurfaces>,
+}
+
+struct Walk<'w, W> {
+    inner: &'w mut W,
+    own: &'w Frame,
+    placed: &'w [Placed],
+    left: usize,
+    found: Vec<LatticePlane>,
+}
+
+/// The planes, in order; none if they are too many. `placed`: the surfaces on the universe of the solid's own frame.
+pub(super) fn lattice_planes<W: Worker>(
+    inner: &mut W,
+    exterior: Tag,
+    placed: &[Placed],
+) -> Result<Vec<LatticePlane>, Error> {
+    let (own, mark) = (*inner.frame(), inner.mark());
+    let root = inner.root()?;
+    let mut walk = Walk { inner, own: &own, placed, left: MOST_SPLITS, found: Vec::new() };
+    let root = walk.node(Cell::ROOT, root)?;
+    walk.within(&root)?;
+    if exterior != Tag::Partial {
+        let inside = exterior == Tag::Full;
+        let verdict = if inside { Verdict::Full } else { Verdict::Empty };
+        let beyond = Node { cell: None, verdict, known: Some(OpenSurfaces::constant(inside)) };
+        for axis in 0..3 {
+            walk.between(&beyond, &root, axis)?;
+            walk.between(&root, &beyond, axis)?;
+        }
+    }
+    let (mut found, left) = (walk.found, walk.left);
+    inner.release(mark);
+    found.sort_unstable();
+    found.dedup();
+    if left == 0 || found.len() > MOST_PLANES {
+        found.clear();
+    }
+    Ok(found)
+}
+
+impl<W: Worker> Walk<'_, W> {
+    fn node(&mut self, cell: Cell, verdict: Verdict<W::Part>) -> Result<Node<W::Part>, Error> {
+        let known = known(self.inner, cell, &verdict)?;
+        Ok(Node { cell: Some(cell), verdict, known })
+    }
+
+    /// The children of a PARTIAL cell; `None` of others, and at the end of the depth or of all splits.
+    fn divided(&mut self, node: &Node<W::Part>) -> Result<Option<Vec<Node<W::Part>>>, Error> {
+        let (Some(cell), Verdict::Partial(part)) = (node.cell, &node.verdict) else { return Ok(None) };
+        if cell.level == self.own.depth() || self.left == 0 {
+            return Ok(None);
+        }
+        self.left -= 1;
+        let mut children = memory::with_capacity(8)?;
+        for (k, verdict) in OCTANTS.into_iter().zip(self.inner.split(cell, part)?) {
+            children.push(self.node(cell.child(k), verdict)?);
+        }
+        Ok(Some(children))
+    }
+
+    /// The same of a cell that is no function of surfaces.
+    fn children(&mut self, node: &Node<W::Part>) -> Result<Option<Vec<Node<W::Part>>>, Error> {
+        if node.known.is_some() { Ok(None) } else { self.divided(node) }
+    }
+
+    fn within(&mut self, node: &Node<W::Part>) -> Result<(), Error> {
+        let Some(children) = self.children(node)? else { return Ok(()) };
+        for child in &children {
+            self.within(child)?;
+        }
+        for axis in 0..3 {
+            for (lower, upper) in pairs(axis) {
+                self.between(&children[lower], &children[upper], axis)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Of two cells beside each other.
+    fn between(&mut self, a: &Node<W::Part>, b: &Node<W::Part>, axis: usize) -> Result<(), Error> {
+        let (lower, upper) = (self.children(a)?, self.children(b)?);
+        if lower.is_none() && upper.is_none() {
+            if self.is_boundary(a, b, axis, MOST_DIVISIONS)? {
+                let shift = |cell: Cell| cell.at[axis] << (self.own.depth() - cell.level);
+                let plane = b.cell.map_or(self.own.cells(), shift);
+                memory::push(&mut self.found, (axis, plane))?;
+            }
+            return Ok(());
+        }
+        for (k, l) in pairs(axis) {
+            let low = lower.as_ref().map_or(a, |children| &children[l]);
+            let high = upper.as_ref().map_or(b, |children| &children[k]);
+            self.between(low, high, axis)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the face between two cells, or a part of it, surely belongs to the boundary.
+    fn is_boundary(
+        &mut self,
+        a: &Node<W::Part>,
+        b: &Node<W::Part>,
+        axis: usize,
+        divisions: u8,
+    ) -> Result<bool, Error> {
+        let is_open = |node: &Node<W::Part>| matches!(node.verdict, Verdict::Partial(_));
+        if self.agree(a, b)? {
+            return Ok(false);
+        }
+        if !is_open(a) && !is_open(b) {
+            return Ok(true);
+        }
+        let (lower, upper) = (self.divided(a)?, self.divided(b)?);
+        if divisions == 0 || lower.is_none() && upper.is_none() {
+            return Ok(false);
+        }
+        for (k, l) in pairs(axis) {
+            let low = lower.as_ref().map_or(a, |children| &children[l]);
+            let high = upper.as_ref().map_or(b, |children| &children[k]);
+            if self.is_boundary(low, high, axis, divisions - 1)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether one function of the surfaces is what both are, or nothing is known of one.
+    fn agree(&mut self, a: &Node<W::Part>, b: &Node<W::Part>) -> Result<bool, Error> {
+        let (Some(of_a), Some(of_b)) = (a.known, b.known) else { return Ok(true) };
+        let (mut all, mut joined, mut agree) = (of_a, Joined::default(), true);
+        let mut places = [0; OpenSurfaces::MOST];
+        for (place, &index) in places.iter_mut().zip(of_b.indices()) {
+            let Some(number) = all.number(index) else { return Ok(true) };
+            *place = number;
+        }
+        let values = [of_a.table(), of_b.table().spread(&places[..of_b.indices().len()])];
+        // (Beyond the universe the same is possible as before its end.)
+        for (value, cell) in values.into_iter().zip([a.cell.or(b.cell), b.cell.or(a.cell)]) {
+            let possible = cell.map_or(Ok(Table::FULL), |cell| self.possible(&all, cell))?;
+            agree &= joined.take(value, possible);
+        }
+        Ok(agree)
+    }
+
+    /// The combinations of signs that are possible in a cell by the sides of the surfaces.
+    fn possible(&self, all: &OpenSurfaces, cell: Cell) -> Result<Table, Error> {
+        let mut possible = Table::FULL;
+        for (i, &index) in all.indices().iter().enumerate() {
+            possible = possible.on_side(i, lone(&self.placed[index as usize], cell)?.side(0));
+        }
+        Ok(possible)
+    }
+}
+
+/// The children on both sides of the middle of an axis.
+fn pairs(axis: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..8usize).filter(move |k| k >> axis & 1 == 0).map(move |k| (k, k | 1 << axis))
+}
+
+/// What a cell of the solid's own frame is; `None` if that is no function of surfaces.
+pub(super) fn known<W: Worker>(
+    inner: &mut W,
+    cell: Cell,
+    verdict: &Verdict<W::Part>,
+) -> Result<Option<OpenSurfaces>, Error> {
+    let mut open = None;
+    match verdict {
+        Verdict::Partial(part) => inner.answer(cell, part, Question::Surfaces(&mut open))?,
+        Verdict::Undecided => {}
+        decided => open = Some(OpenSurfaces::constant(decided.tag() == Tag::Full)),
+    }
+    Ok(open)
+}
+
+/// The sides of a cell alone, as its own first octant.
+pub(super) fn lone(placed: &Placed, cell: Cell) -> Result<Sides, Error> {
+    let half = 2.0 * half_edge(cell);
+    let low = cell.at.map(|at| f64::from(at) * half);
+    placed.sides(&Octants { low, half }, 1, &mut 0)
+}

@@ -1,0 +1,485 @@
+//! The function of the moved surfaces that a solid is in a cell, from what the cells of its own frame say that the cell touches.
+//!
+//! Each of these cells knows a function of the surfaces that cross it. One function of up to six surfaces is looked for that has the
+//! value of each of them for all combinations of signs that are possible where it meets the target. What is possible there is told
+//! by the sides on which the target and the cell itself lie, exactly, and by bounds over a box around the piece that they have in
+//! common, in the target's coordinates and in those of the cell. Only where that does not suffice it is told by bounds of pairs, too.
+//!
+//! Signs are those of the surfaces, so nothing is rounded that counts. From there on the cells below know nothing but the function.
+
+use super::faces::{LatticePlane, lattice_planes, lone};
+use super::image::Maps;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::exact::Dyadic;
+use crate::lattice::{Affine, Cell, Frame, axes};
+use crate::memory;
+use crate::octree::Tag;
+use crate::solid::half_space::bounds::{Octants, centre, half_edge};
+use crate::solid::half_space::function;
+use crate::solid::half_space::joined::Joined;
+use crate::solid::half_space::literals::Literals;
+use crate::solid::half_space::possible::possible;
+use crate::solid::half_space::table::Table;
+use crate::solid::half_space::{Placed, tangent::Tangent};
+use crate::solid::{
+    AskWhole, Batch, Classifier, HalfSpace, LayersQuestion, OpenSurfaces, PlacedHalfSpace, Question,
+};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+/// The surfaces of a solid that is moved: where they are, and where they are moved to.
+#[derive(Default)]
+pub(super) struct Surfaces {
+    pub(super) moved: Vec<PlacedHalfSpace>,
+    /// On the universe of the solid's own frame.
+    before: Vec<Placed>,
+    /// On that of the frame.
+    after: Vec<Placed>,
+    /// The last of them, if they are planes of the solid's own lattice.
+    planes: Vec<LatticePlane>,
+}
+
+impl core::fmt::Debug for Surfaces {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Surfaces").field("moved", &self.moved.len()).finish_non_exhaustive()
+    }
+}
+
+/// A cell of the solid's own frame that a target touches, or a piece of what lies beyond the universe.
+pub(super) struct Source {
+    pub(super) cell: Option<Cell>,
+    /// Corners, in finest cells.
+    pub(super) low: [f64; 3],
+    pub(super) high: [f64; 3],
+    /// What the solid is there.
+    pub(super) known: OpenSurfaces,
+}
+
+impl Source {
+    /// What is decided.
+    pub(super) fn constant(tag: Tag) -> OpenSurfaces {
+        OpenSurfaces::constant(tag == Tag::Full)
+    }
+}
+
+impl Surfaces {
+    /// Those of a classifier, and the planes of its lattice in which its boundary lies; `None` if there are none, or one has no exact
+    /// place. O(surfaces), and some thousand cells are split.
+    pub(super) fn of<C: Classifier>(
+        inner: &C,
+        placement: &Affine,
+        frame: &Frame,
+        control: &Control<'_>,
+    ) -> Result<Option<Surfaces>, Error> {
+        let list = inner.surfaces(control)?.unwrap_or_default();
+        let mut worker = inner.worker()?;
+        // (What likes many questions at once does not like those that this takes.)
+        if worker.likes_many() {
+            return Ok(None);
+        }
+        let mut own = Surfaces::default();
+        let place = |own: &mut Surfaces, surface: &PlacedHalfSpace| {
+            control.check()?;
+            let moved = surface.placed(placement);
+            memory::push(&mut own.before, surface.on(inner.frame())?)?;
+            memory::push(&mut own.after, moved.on(frame)?)?;
+            memory::push(&mut own.moved, moved)
+        };
+        let mut place_all = || {
+            list.iter().try_for_each(|surface| place(&mut own, surface))?;
+            let planes = lattice_planes(&mut worker, inner.exterior(), &own.before)?;
+            for &plane in &planes {
+                place(&mut own, &plane_of(inner.frame(), plane))?;
+            }
+            own.planes = planes;
+            Ok(())
+        };
+        match place_all() {
+            Ok(()) => Ok((!own.moved.is_empty()).then_some(own)),
+            // (Without its surfaces the solid is moved all the same.)
+            Err(Error::Limit { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn first_plane(&self) -> usize {
+        self.moved.len() - self.planes.len()
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        let placed =
+            |list: &Vec<Placed>| memory::bytes_of(list) + list.iter().map(Placed::heap_bytes).sum::<usize>();
+        memory::bytes_of(&self.moved) + placed(&self.before) + placed(&self.after)
+    }
+
+    /// The children of a cell with a function.
+    pub(super) fn split(&self, cell: Cell, known: &OpenSurfaces) -> Result<[OpenSurfaces; 8], Error> {
+        let at = Octants::of(cell);
+        let mut tables = [known.table(); 8];
+        for (i, index) in variables(known) {
+            let sides = self.after[index as usize].sides(&at, 0xFF, &mut 0)?;
+            for (k, table) in (0..).zip(&mut tables) {
+                *table = table.known(i, sides, k);
+            }
+        }
+        Ok(tables.map(|table| shortened(known.with_table(table))))
+    }
+
+    /// What a cell with a function knows.
+    pub(super) fn answer(
+        &self,
+        cell: Cell,
+        known: &OpenSurfaces,
+        question: Question<'_>,
+    ) -> Result<(), Error> {
+        let (table, all) = (known.table(), &self.after);
+        match question {
+            Question::Centre(inside) => {
+                let side = |index| all[index as usize].contains(centre(cell));
+                *inside = function::inside(variables(known), table, side)?;
+            }
+            Question::Enclosure(enclosure) => {
+                let literals = Literals::of_table(variables(known), table);
+                *enclosure = literals.and_then(|own| own.enclosure(all, cell));
+            }
+            Question::Moments(moments) => *moments = function::moments(variables(known), table, all, cell),
+            Question::Area(area) => *area = function::area(variables(known), table, all, cell),
+            Question::Chords(chords) => {
+                *chords.found = function::chords(variables(known), table, all, chords.beam)?;
+            }
+            Question::Surfaces(to) | Question::Layers(LayersQuestion { known: to, .. }) => *to = Some(*known),
+            Question::Crossing(..) | Question::Ray(_) | Question::Nearest(..) | Question::Box(..) => {}
+        }
+        Ok(())
+    }
+}
+
+/// A plane of a lattice as a half-space, which lies above it.
+fn plane_of(frame: &Frame, (axis, at): LatticePlane) -> PlacedHalfSpace {
+    let step = &Dyadic::new(f64::from(at)) * &Dyadic::new(frame.cell_size());
+    let place = &Dyadic::new(frame.origin()[axis]) + &step;
+    let [x, y, z] = axes(|i| Dyadic::new(if i == axis { 1.0 } else { 0.0 }));
+    PlacedHalfSpace { half_space: HalfSpace::linear([x, y, z, -&place]), placements: Arc::new([]) }
+}
+
+/// The tag of a function that depends on no surface.
+pub(super) fn settled(known: &OpenSurfaces) -> Option<Tag> {
+    match known.table() {
+        Table::FULL => Some(Tag::Full),
+        Table::EMPTY => Some(Tag::Empty),
+        _ => None,
+    }
+}
+
+/// The surfaces on which a function depends, with their numbers in the table.
+fn variables(known: &OpenSurfaces) -> impl Iterator<Item = (usize, u32)> + Clone {
+    let table = known.table();
+    known.indices().iter().copied().enumerate().filter(move |&(i, _)| table.depends_on(i))
+}
+
+/// The same function of those surfaces alone on which it depends.
+fn shortened(known: OpenSurfaces) -> OpenSurfaces {
+    let mut own = OpenSurfaces::constant(false);
+    let mut table = known.table();
+    for (i, index) in variables(&known) {
+        // (Numbers ascend, so that none is taken that is still to come.)
+        if let Some(to) = own.number(index) {
+            table = table.renamed(i, to, false);
+        }
+    }
+    own.with_table(table)
+}
+
+/// A cell for which a function is looked for.
+pub(super) struct Target<'s> {
+    surfaces: &'s Surfaces,
+    maps: &'s Maps,
+    cell: Cell,
+    /// Its centre, half its edge, and the image of the centre, rounded: in finest cells.
+    centre: [f64; 3],
+    half: f64,
+    image: [f64; 3],
+    /// A box around its inverse image.
+    low: [f64; 3],
+    high: [f64; 3],
+    /// What was found out of surfaces.
+    met: Vec<Met>,
+}
+
+/// A surface in a target.
+#[derive(Clone, Copy)]
+struct Met {
+    index: u32,
+    /// The side on which all of the target lies.
+    side: Option<bool>,
+    bounds: Option<Bounds>,
+}
+
+/// Bounds of a function over a target, from its centre in half edges.
+#[derive(Clone, Copy)]
+struct Bounds {
+    gradient: [f64; 3],
+    /// xx, yy, zz, xy, xz, yz.
+    squares: [f64; 6],
+    low: f64,
+    high: f64,
+}
+
+/// What a source has in common with a target: boxes around that.
+struct Piece<'p> {
+    source: &'p Source,
+    /// From the target's centre, in its half edges.
+    low: [f64; 3],
+    high: [f64; 3],
+    /// From the centre's image, in finest cells of the solid's own frame.
+    own_low: [f64; 3],
+    own_high: [f64; 3],
+}
+
+/// More than the roundings of a sum of two dozen products, relative to the sum of their magnitudes.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+impl<'s> Target<'s> {
+    pub(super) fn new(surfaces: &'s Surfaces, maps: &'s Maps, frame: &Frame, cell: Cell) -> Target<'s> {
+        let (corner, edge) = super::extent(frame, cell);
+        let half = 0.5 * edge;
+        let centre = corner.map(|c| c + half);
+        let (image, _) = maps.inward.image(centre, 0.0);
+        let (low, high) = maps.inward.around(corner, edge);
+        Target { surfaces, maps, cell, centre, half, image, low, high, met: Vec::new() }
+    }
+
+    /// What lies beyond the universe of `cells` finest cells, as pieces that may overlap.
+    pub(super) fn beyond(&self, cells: f64, exterior: Tag) -> impl Iterator<Item = Source> {
+        let (low, high) = (self.low, self.high);
+        let known = Source::constant(exterior);
+        (0..6).filter_map(move |side: usize| {
+            let (axis, mut ends) = (side / 2, (low, high));
+            if side.is_multiple_of(2) {
+                ends.1[axis] = high[axis].min(0.0);
+            } else {
+                ends.0[axis] = low[axis].max(cells);
+            }
+            // (A number that is none may be anywhere.)
+            let is_within = ends.0[axis] >= ends.1[axis];
+            (!is_within).then_some(Source { cell: None, low: ends.0, high: ends.1, known })
+        })
+    }
+
+    /// One function of up to six surfaces that is what all sources are, each where it meets the target; `None` if there is none.
+    pub(super) fn function(&mut self, sources: &[Source]) -> Result<Option<OpenSurfaces>, Error> {
+        let mut pieces = memory::with_capacity(sources.len())?;
+        pieces.extend(sources.iter().filter_map(|source| self.piece(source)));
+        // What is known of each piece by the sides of its own surfaces alone.
+        let mut all = OpenSurfaces::constant(false);
+        let mut values = memory::with_capacity(pieces.len())?;
+        for piece in &pieces {
+            let mut value = piece.source.known;
+            for (i, index) in variables(&piece.source.known) {
+                if let Some(inside) = self.side(piece, index)? {
+                    value = value.with_table(value.table().with(i, inside));
+                }
+            }
+            let value = shortened(value);
+            for &index in value.indices() {
+                if all.number(index).is_none() {
+                    return Ok(None);
+                }
+            }
+            values.push(value);
+        }
+        for with_planes in [false, true] {
+            if with_planes && !self.add_planes(&mut all) {
+                break;
+            }
+            for closely in [false, true] {
+                if let Some((table, known)) = self.joined(&all, &pieces, &values, closely)? {
+                    // (Where nothing at all is possible, rounding is at work.)
+                    let found = (known != Table::EMPTY).then(|| table.simplified(known));
+                    return Ok(found.map(|table| shortened(all.with_table(table))));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Adds the planes of the solid's own lattice that the target's image reaches on both sides of; `false` if there are none, or too
+    /// many.
+    fn add_planes(&self, all: &mut OpenSurfaces) -> bool {
+        let before = all.indices().len();
+        let first = self.surfaces.first_plane();
+        for (index, &(axis, at)) in (first as u32..).zip(&self.surfaces.planes) {
+            let at = f64::from(at);
+            if self.low[axis] < at && at < self.high[axis] && all.number(index).is_none() {
+                return false;
+            }
+        }
+        all.indices().len() > before
+    }
+
+    /// A function that has the values of all pieces, and the combinations for which it has; `None` if two differ. Bounds of pairs
+    /// count if it is to be found out `closely`.
+    fn joined(
+        &mut self,
+        all: &OpenSurfaces,
+        pieces: &[Piece<'_>],
+        values: &[OpenSurfaces],
+        closely: bool,
+    ) -> Result<Option<(Table, Table)>, Error> {
+        let possible = |placed: &[Placed], cell: Cell| {
+            possible(all.indices().iter().map(|&index| &placed[index as usize]), cell)
+        };
+        let around = if closely { possible(&self.surfaces.after, self.cell) } else { Table::FULL };
+        let mut joined = Joined::default();
+        for (piece, value) in pieces.iter().zip(values) {
+            let mut places = [0; OpenSurfaces::MOST];
+            for (place, index) in places.iter_mut().zip(value.indices()) {
+                *place = all.indices().iter().position(|known| known == index).unwrap_or(0);
+            }
+            let mut here = around;
+            for (i, &index) in all.indices().iter().enumerate() {
+                here = here.on_side(i, self.side(piece, index)?);
+            }
+            if let (true, Some(cell)) = (closely, piece.source.cell) {
+                here.0 &= possible(&self.surfaces.before, cell).0;
+            }
+            if !joined.take(value.table().spread(&places[..value.indices().len()]), here) {
+                return Ok(None);
+            }
+        }
+        Ok(Some(joined.tables()))
+    }
+
+    /// What a source has in common with the target; `None` if they only touch.
+    fn piece<'p>(&self, source: &'p Source) -> Option<Piece<'p>> {
+        let own_low = axes(|axis| source.low[axis].max(self.low[axis]) - self.image[axis]);
+        let own_high = axes(|axis| source.high[axis].min(self.high[axis]) - self.image[axis]);
+        let (mut low, mut high) = ([-1.0; 3], [1.0; 3]);
+        if source.cell.is_some() {
+            let (from, to) = self.maps.outward.around(source.low, source.high[0] - source.low[0]);
+            for axis in 0..3 {
+                let slack = ROUNDING * (1.0 + self.centre[axis].abs() / self.half);
+                low[axis] = ((from[axis] - self.centre[axis]) / self.half - slack).max(-1.0);
+                high[axis] = ((to[axis] - self.centre[axis]) / self.half + slack).min(1.0);
+            }
+        }
+        // (A number that is none separates nothing.)
+        let apart = |low: &[f64; 3], high: &[f64; 3]| (0..3).any(|axis| low[axis] >= high[axis]);
+        let are_apart = apart(&low, &high) || apart(&own_low, &own_high);
+        (!are_apart).then_some(Piece { source, low, high, own_low, own_high })
+    }
+
+    /// The side of a surface on which all of a piece lies, if that is known.
+    fn side(&mut self, piece: &Piece<'_>, index: u32) -> Result<Option<bool>, Error> {
+        let plane = (index as usize).checked_sub(self.surfaces.first_plane());
+        if let Some(&(axis, at)) = plane.and_then(|plane| self.surfaces.planes.get(plane)) {
+            let (above, below) =
+                (piece.source.low[axis] >= f64::from(at), piece.source.high[axis] <= f64::from(at));
+            return Ok((above || below).then_some(above));
+        }
+        let met = self.met(index)?;
+        if met.side.is_some() {
+            return Ok(met.side);
+        }
+        if let Some(side) = met.bounds.and_then(|bounds| self.side_by(&bounds, piece)) {
+            return Ok(Some(side));
+        }
+        Ok(match piece.source.cell {
+            Some(cell) => lone(&self.surfaces.before[index as usize], cell)?.side(0),
+            None => None,
+        })
+    }
+
+    /// What is known of a surface in the target.
+    fn met(&mut self, index: u32) -> Result<Met, Error> {
+        if let Some(met) = self.met.iter().find(|met| met.index == index) {
+            return Ok(*met);
+        }
+        let placed = &self.surfaces.after[index as usize];
+        let side = lone(placed, self.cell)?.side(0);
+        let bounds = if side.is_none() { Bounds::of(placed, self.cell) } else { None };
+        let met = Met { index, side, bounds };
+        memory::push(&mut self.met, met)?;
+        Ok(met)
+    }
+
+    /// The side by bounds over the boxes around a piece.
+    fn side_by(&self, bounds: &Bounds, piece: &Piece<'_>) -> Option<bool> {
+        let Bounds { gradient, squares, low, high } = *bounds;
+        let size =
+            gradient.iter().chain(&squares).map(|c| 2.0 * c.abs()).sum::<f64>() + low.abs() + high.abs();
+        let (mut here, mut bent) = ((0.0, 0.0), (0.0, 0.0));
+        for axis in 0..3 {
+            let ends = (piece.low[axis], piece.high[axis]);
+            here = sum(here, parabola(gradient[axis], squares[axis], ends));
+            bent = sum(bent, parabola(0.0, squares[axis], ends));
+        }
+        for (i, (a, b)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+            let factor = 2.0 * squares[3 + i];
+            let corners =
+                [piece.low[a], piece.high[a]].map(|x| [piece.low[b], piece.high[b]].map(|y| factor * x * y));
+            let corners = corners.as_flattened();
+            let ends = (
+                corners.iter().copied().fold(f64::INFINITY, f64::min),
+                corners.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            );
+            (here, bent) = (sum(here, ends), sum(bent, ends));
+        }
+        // Along the axes of the solid's own frame.
+        let rows = &self.maps.outward.linear;
+        let mut slack = ROUNDING * size;
+        let (mut there, mut far) = (bent, 0.0);
+        for axis in 0..3 {
+            let parts = axes(|i| gradient[i] * rows[i][axis] / self.half);
+            let (slope, steep) = ((parts[0] + parts[1]) + parts[2], parts.map(f64::abs).iter().sum::<f64>());
+            let ends = (piece.own_low[axis], piece.own_high[axis]);
+            there = sum(there, parabola(slope, 0.0, ends));
+            let reach = ends.0.abs().max(ends.1.abs()) + self.image[axis].abs();
+            far += steep * (ROUNDING * reach + 4.0 * self.maps.inward.error[axis]);
+        }
+        slack += far;
+        let (least, most) = (here.0.max(there.0 - far), here.1.min(there.1 + far));
+        // (What is no number proves nothing.)
+        if least + low - slack >= 0.0 {
+            Some(true)
+        } else if most + high + slack <= 0.0 {
+            Some(false)
+        } else {
+            None
+        }
+    }
+}
+
+fn sum(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    (a.0 + b.0, a.1 + b.1)
+}
+
+/// The least and the greatest value of slope x + bend x² between two ends.
+fn parabola(slope: f64, bend: f64, ends: (f64, f64)) -> (f64, f64) {
+    let at = |x: f64| x * (slope + bend * x);
+    let (a, b) = (at(ends.0), at(ends.1));
+    let (mut least, mut most) = (a.min(b), a.max(b));
+    let top = -0.5 * slope / bend;
+    if ends.0 < top && top < ends.1 {
+        (least, most) = (least.min(at(top)), most.max(at(top)));
+    }
+    (least, most)
+}
+
+impl Bounds {
+    /// `None` of functions of the host.
+    fn of(placed: &Placed, cell: Cell) -> Option<Bounds> {
+        let (centre, half) = (centre(cell), half_edge(cell));
+        Some(match placed.taylor(centre, half) {
+            Some(taylor) => {
+                let (low, high) = (taylor.f.value - taylor.f.error, taylor.f.value + taylor.f.error);
+                Bounds { gradient: taylor.f.gradient, squares: taylor.f.squares, low, high }
+            }
+            None => {
+                let Tangent { gradient, low, high } = placed.tangent(centre, half)?;
+                Bounds { gradient, squares: [0.0; 6], low, high }
+            }
+        })
+    }
+}
