@@ -141,6 +141,13 @@ impl<W: Worker> Walk<'_, W> {
         if !is_open(a) && !is_open(b) {
             return Ok(true);
         }
+        if let Some((is_lower, octant)) = beside(a, b, axis) {
+            // Of the larger cell only that child counts which the other lies beside.
+            let Some(children) = self.divided(if is_lower { a } else { b })? else { return Ok(false) };
+            let child = &children[usize::from(octant)];
+            let (a, b) = if is_lower { (child, b) } else { (a, child) };
+            return self.is_boundary(a, b, axis, divisions);
+        }
         let (lower, upper) = (self.divided(a)?, self.divided(b)?);
         if divisions == 0 || lower.is_none() && upper.is_none() {
             return Ok(false);
@@ -181,6 +188,17 @@ impl<W: Worker> Walk<'_, W> {
         }
         Ok(possible)
     }
+}
+
+/// Of two cells the larger, if that is PARTIAL: whether it is the lower, and its octant that the other lies beside.
+fn beside<P>(a: &Node<P>, b: &Node<P>, axis: usize) -> Option<(bool, u8)> {
+    let (lower, upper) = (a.cell?, b.cell?);
+    let is_open = |node: &Node<P>| matches!(node.verdict, Verdict::Partial(_));
+    if lower.level < upper.level && is_open(a) {
+        return Some((true, upper.ancestor(lower.level + 1).octant() | 1 << axis));
+    }
+    let is_larger = upper.level < lower.level && is_open(b);
+    is_larger.then(|| (false, lower.ancestor(upper.level + 1).octant() & !(1 << axis)))
 }
 
 /// The children on both sides of the middle of an axis.

@@ -417,8 +417,10 @@ impl<W: Worker> TransformWorker<W> {
     /// children. Where rounding makes a target so large that too many cells touch it, they stay larger.
     fn gather(&mut self, part: TransformPart, target: &impl Target, grain: f64) -> Result<(), Error> {
         let (range, own) = (self.range(part), self.own);
+        // (Points need the smallest cells, and where cells are the images of cells these are wanted.)
+        let all = self.surfaces.is_none() || grain == 0.0 || self.maps.inward.is_exact();
         let TransformWorker { known, at_hand, inner, .. } = self;
-        let is_complete = gather(&own, &known[range], target, grain, &mut AtOnce(inner), at_hand)?;
+        let is_complete = gather(&own, &known[range], target, grain, &mut AtOnce(inner, all), at_hand)?;
         debug_assert!(is_complete);
         Ok(())
     }
@@ -523,8 +525,14 @@ const MOST_AT_HAND: usize = 1024;
 
 /// Whether a cell is to be split.
 #[inline(always)]
-fn is_large<P>(own: &Frame, (cell, verdict): &Known<P>, grain: f64) -> bool {
-    matches!(verdict, Verdict::Partial(_)) && cell.level < own.depth() && extent(own, *cell).1 > grain
+fn is_to_be_split<P>(
+    own: &Frame,
+    (cell, verdict): &Known<P>,
+    grain: f64,
+    splits: &mut impl Splits<P>,
+) -> Result<bool, Error> {
+    let Verdict::Partial(part) = verdict else { return Ok(false) };
+    Ok(cell.level < own.depth() && extent(own, *cell).1 > grain && !splits.is_function(*cell, part)?)
 }
 
 /// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their children; `false` if some of
@@ -541,7 +549,7 @@ fn gather<P: Clone>(
     at_hand.try_reserve(list.len())?;
     let mut is_complete = true;
     for known in list {
-        if is_large(own, known, grain) && at_hand.len() < MOST_AT_HAND {
+        if at_hand.len() < MOST_AT_HAND && is_to_be_split(own, known, grain, splits)? {
             is_complete &= replace(own, known, splits, target, at_hand)?;
             continue;
         }
@@ -554,7 +562,7 @@ fn gather<P: Clone>(
     // Mostly one step is all; the first, and that to a point, may take more.
     let mut i = 0;
     while let Some((known, _)) = at_hand.get(i) {
-        if is_large(own, known, grain) && at_hand.len() < MOST_AT_HAND {
+        if at_hand.len() < MOST_AT_HAND && is_to_be_split(own, known, grain, splits)? {
             let (known, _) = at_hand.swap_remove(i);
             is_complete &= replace(own, &known, splits, target, at_hand)?;
         } else {

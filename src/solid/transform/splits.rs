@@ -4,7 +4,7 @@
 use crate::error::Error;
 use crate::lattice::Cell;
 use crate::memory;
-use crate::solid::{Verdict, Worker};
+use crate::solid::{Ask, Verdict, Worker};
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
@@ -12,15 +12,25 @@ use hashbrown::HashMap;
 pub(super) trait Splits<P> {
     /// The children of a cell; `None` if they are not known yet.
     fn children(&mut self, cell: Cell, part: &P) -> Result<Option<[Verdict<P>; 8]>, Error>;
+
+    /// Whether a cell is not to be split, because it is a function of surfaces: some of these may lie in faces of its children.
+    fn is_function(&mut self, _: Cell, _: &P) -> Result<bool, Error> {
+        Ok(false)
+    }
 }
 
-/// Splits at once.
-pub(super) struct AtOnce<'w, W>(pub(super) &'w mut W);
+/// Splits at once, all cells or (`false`) those alone that are no functions of surfaces.
+pub(super) struct AtOnce<'w, W>(pub(super) &'w mut W, pub(super) bool);
 
 impl<W: Worker> Splits<W::Part> for AtOnce<'_, W> {
     #[inline(always)]
     fn children(&mut self, cell: Cell, part: &W::Part) -> Result<Option<[Verdict<W::Part>; 8]>, Error> {
         self.0.split(cell, part).map(Some)
+    }
+
+    #[inline(always)]
+    fn is_function(&mut self, cell: Cell, part: &W::Part) -> Result<bool, Error> {
+        Ok(!self.1 && self.0.surfaces(cell, part)?.is_some())
     }
 }
 

@@ -341,3 +341,34 @@ fn maps_of_the_lattice_move_cells_one_to_one() {
         }
     }
 }
+
+/// Faces in planes of the lattice cross no cell, so that no cell keeps them. They are found for a map that turns them.
+#[test]
+fn faces_in_planes_of_the_lattice_are_moved() {
+    let aligned = Frame::new([0.0; 3], 128.0, 14).unwrap();
+    let filled = Frame::new([0.0; 3], 64.0, 14).unwrap();
+    let plate = Csg::cuboid([0.0; 3], [64.0, 64.0, 16.0]).unwrap();
+    let bore = Csg::cylinder(7.3, -1.0, 80.0).unwrap();
+    let bore = bore.placed(&Affine::translation([30.0, 34.0, 0.0]).unwrap()).unwrap();
+    for (name, csg, frame) in [
+        ("block", plate.clone(), aligned),
+        ("block at the end", plate.clone(), filled),
+        ("bored", plate.difference(&bore).unwrap(), aligned),
+        ("bored at the end", plate.difference(&bore).unwrap(), filled),
+    ] {
+        let middle = [32.0, 32.0, 8.0];
+        let room = Frame::around([-20.0; 3], [84.0; 3], 14).unwrap();
+        let map = turn([1.0, 2.0, 3.0], 20.0, middle);
+        let tree = extended(&csg, &frame);
+        let moved = extended(&placed(&tree, &map), &room);
+        let direct = extended(&csg.placed(&map).unwrap(), &room);
+        let counts = moved.view().cuts();
+        println!("{name}: {counts:?}, directly {:?}", direct.view().cuts());
+        assert!(counts.is_some_and(|counts| counts.given_up == 0), "{name}");
+        assert!(moved.statistics().nodes() <= 2 * direct.statistics().nodes() + 8, "{name}");
+        let truth = csg.placed(&map).unwrap();
+        let points = points_of(&truth, &room, &mut Random(3));
+        let known = compared(name, &moved, &room, &truth, &points);
+        assert_eq!(known, compared(name, &direct, &room, &truth, &points), "{name}");
+    }
+}
