@@ -1,19 +1,23 @@
 //! `leafless convert`: from each kind of solid to the others.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Of};
 use crate::making::dexels::{self, Storing};
 use crate::making::job::Job;
+use crate::making::octree_of_mesh::{self, Voxelizing};
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
 use crate::making::surface::{self, Wanted};
-use crate::making::{octree_from_dexels, octree_of_mesh, plain};
+use crate::making::surfaces::Surfaces;
+use crate::making::{octree_from_dexels, plain};
 use crate::options::{ResolveName, bounds, resolution, threads};
 use crate::sink::Output;
 use crate::source::content::Content;
 use crate::source::file::{Found, Stored, Taking};
 use crate::source::input::Input;
+use crate::source::moved::Onto;
+use crate::{making, source};
 use clap::{Args, ValueEnum};
 use leafless::exchange::MeshFormat;
-use leafless::{Frame, Rule};
+use leafless::{Frame, Octree, Rule, TriDexel};
 use std::ffi::OsString;
 use std::time::Instant;
 
@@ -23,7 +27,11 @@ use std::time::Instant;
 /// Of a tri-dexel model an octree has the cells whose centres lie inside. Of an octree a tri-dexel model has just
 /// the cells, exactly; undecided ones count as --resolve says. An octree of a mesh or a scene is certified, and its
 /// undecided cells stay so without --resolve. Of an octree whose cells keep surfaces, an octree without them has the cells that the
-/// surfaces decide.
+/// surfaces decide. A mesh that becomes a mesh keeps its triangles, unless --resolution, --bounds or --resolve asks for samples.
+///
+/// With --translate, --rotate, --scale and --place all of them are moved. Without --to an octree or a tri-dexel model then stays what it
+/// is, surfaces and channels included: on the image of its own cube, or, if that is not along the axes, on a cube around its
+/// image. Moved by whole cells and quarter turns, an octree stays exact; otherwise its cells blur by about one.
 #[derive(Args)]
 // Of meshes, `--to` says the unit everywhere else.
 #[command(mut_arg("to", |unit| unit.long("to-unit")))]
@@ -36,16 +44,17 @@ pub struct Arguments {
     #[arg(short, long, value_name = "OUT")]
     output: OsString,
     /// What to make. The extension .ply, .stl, .obj, .off or .3mf of the output says that it is a mesh; .lfl says nothing,
-    /// as octrees and tri-dexel models both have it
+    /// as octrees and tri-dexel models both have it. What is moved stays what it is without it
     #[arg(id = "target", long = "to", value_enum, value_name = "KIND")]
     kind: Option<KindName>,
     /// What cells count as that the surface passes through, or that are undecided
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
-    /// Cells to an axis of the cube around a mesh or scene, a power of two. Without it: 256, and of a volume the voxels
+    /// Cells to an axis of the cube around a mesh or scene, a power of two. Without it: 256, and of a volume the voxels; a mesh that
+    /// becomes a mesh keeps its triangles
     #[arg(long, value_name = "N", value_parser = resolution)]
     resolution: Option<u8>,
-    /// Lower corner and edge length of the cube, for a mesh or scene. Without it: the cube around it
+    /// Lower corner and edge length of the cube, for a mesh, a scene, or what is moved. Without it: the cube around it
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]
@@ -79,13 +88,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     let taking = &arguments.taking;
-    match kind(arguments, &job.output)? {
+    let Some(kind) = kind(arguments, &job)? else { return moved(&job, taking, resolve) };
+    match kind {
         KindName::Mesh => {
             let resolve = resolve.map(|resolve| match resolve {
                 ResolveName::Inner => surface::ResolveName::Inner,
                 ResolveName::Outer => surface::ResolveName::Outer,
             });
-            surface::make(&job, taking, &Wanted { resolve, lossy, ..Default::default() })
+            let copy = job.depth.is_none() && bounds.is_none() && resolve.is_none();
+            surface::make(&job, taking, &Wanted { resolve, lossy, copy, ..Default::default() })
         }
         KindName::Dexels => {
             let rule = resolve.map_or(Rule::Sampled, Rule::from);
@@ -95,12 +106,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// What to make.
-fn kind(arguments: &Arguments, output: &Output) -> Result<KindName, Failure> {
+/// What to make; `None` is what the file is already, in another place.
+fn kind(arguments: &Arguments, job: &Job) -> Result<Option<KindName>, Failure> {
+    let Job { input, output, .. } = job;
     let extension = output.path().and_then(|path| path.extension()?.to_str());
     let is_mesh = extension.is_some_and(|extension| MeshFormat::from_extension(extension).is_some());
     match arguments.kind {
-        None if is_mesh => Ok(KindName::Mesh),
+        None if is_mesh => Ok(Some(KindName::Mesh)),
+        None if arguments.taking.placing.map().is_some() && input.begins_as_solid() => Ok(None),
         None => {
             let choices = "--to octree, --to dexels or --to mesh";
             let problem = "its name does not say what it is to be";
@@ -110,8 +123,87 @@ fn kind(arguments: &Arguments, output: &Output) -> Result<KindName, Failure> {
             let problem = "its name is that of a mesh, which neither an octree nor a tri-dexel model is";
             Err(Failure::Usage(format!("{output}: {problem}")))
         }
-        Some(kind) => Ok(kind),
+        kind => Ok(kind),
     }
+}
+
+/// A stored solid in another place.
+fn moved(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result<(), Failure> {
+    let Job { input, output, .. } = job;
+    output.check()?;
+    output.check_spares(input, "input")?;
+    taking.refuse(input, "a solid")?;
+    if resolve.is_some() {
+        return Err(Failure::Usage(format!(
+            "--resolve is not for {input}: it stays what it is, but for its place"
+        )));
+    }
+    let stored = Stored::read(input, true)?.0;
+    let own = match &stored {
+        Stored::Octree(octree) => octree.frame(),
+        Stored::Dexels(model) => model.frame(),
+    };
+    let depth = job.depth.unwrap_or(own.depth());
+    let frame = job.bounds.map(|bounds| bounds.with_depth(depth)).transpose().of(input)?;
+    let onto = match (&frame, job.depth) {
+        (Some(frame), _) => Onto::Frame(frame),
+        (None, None) => Onto::Image,
+        (None, Some(_)) => {
+            return Err(Failure::Usage(format!("--resolution needs --bounds where {input} is moved")));
+        }
+    };
+    making::moved::save(job, &source::moved::stored(input, stored, &taking.placing, onto, job.threads)?)
+}
+
+fn from_octree(
+    job: &Job,
+    taking: &Taking,
+    octree: Octree,
+    resolve: Option<ResolveName>,
+) -> Result<(), Failure> {
+    let Job { input, output, .. } = job;
+    if octree.view().cuts().is_none() {
+        return match taking.placing.map() {
+            Some(_) => moved(job, taking, resolve),
+            None => Err(Failure::of(input, "is an octree already")),
+        };
+    }
+    output.check()?;
+    output.check_spares(input, "input")?;
+    taking.refuse(input, "an octree")?;
+    if job.bounds.is_some() {
+        return Err(Failure::Usage(format!("--bounds is not for {input}: an octree has its own")));
+    }
+    let octree = match taking.placing.map() {
+        Some(map) => source::moved::octree(input, octree, map, Onto::Image, job.threads)?,
+        None => octree,
+    };
+    plain::make(job, &octree, job.depth.unwrap_or(DEPTH), resolve.map_or(Rule::Certified, Rule::from))
+}
+
+fn from_dexels(
+    job: &Job,
+    taking: &Taking,
+    model: TriDexel,
+    resolve: Option<ResolveName>,
+) -> Result<(), Failure> {
+    let Job { input, output, .. } = job;
+    output.check()?;
+    taking.refuse(input, "a tri-dexel model")?;
+    let given = [
+        ("--resolve", resolve.is_some()),
+        ("--resolution", job.depth.is_some()),
+        ("--bounds", job.bounds.is_some()),
+    ];
+    if let Some((option, _)) = given.into_iter().find(|option| option.1) {
+        let problem = "is a tri-dexel model, whose cells are decided by their centres";
+        return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
+    }
+    let model = match taking.placing.map() {
+        Some(map) => source::moved::dexels(input, &model, map, Onto::Image, job.threads)?,
+        None => model,
+    };
+    octree_from_dexels::make(job, &model)
 }
 
 fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result<(), Failure> {
@@ -123,34 +215,10 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
     }
     if input.begins_as_solid() {
         // A damaged file is told to be damaged.
-        let model = match Stored::read(input, true)?.0 {
-            Stored::Dexels(model) => model,
-            Stored::Octree(octree) if octree.view().cuts().is_some() => {
-                output.check()?;
-                output.check_spares(input, "input")?;
-                taking.refuse(input, "an octree")?;
-                if job.bounds.is_some() {
-                    return Err(Failure::Usage(format!(
-                        "--bounds is not for {input}: an octree has its own"
-                    )));
-                }
-                let rule = resolve.map_or(Rule::Certified, Rule::from);
-                return plain::make(job, &octree, job.depth.unwrap_or(DEPTH), rule);
-            }
-            Stored::Octree(_) => return Err(Failure::of(input, "is an octree already")),
+        return match Stored::read(input, true)?.0 {
+            Stored::Octree(octree) => from_octree(job, taking, octree, resolve),
+            Stored::Dexels(model) => from_dexels(job, taking, model, resolve),
         };
-        output.check()?;
-        taking.refuse(input, "a tri-dexel model")?;
-        let given = [
-            ("--resolve", resolve.is_some()),
-            ("--resolution", job.depth.is_some()),
-            ("--bounds", job.bounds.is_some()),
-        ];
-        if let Some((option, _)) = given.into_iter().find(|option| option.1) {
-            let problem = "is a tri-dexel model, whose cells are decided by their centres";
-            return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
-        }
-        return octree_from_dexels::make(job, &model);
     }
     let found = Found::look(input, taking.reading.told())?;
     let rule = resolve.map_or(Rule::Certified, Rule::from);
@@ -159,12 +227,14 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
         taking.reading.refuse(input, "a scene")?;
         output.check()?;
         output.check_spares(input, "scene")?;
-        let splitting = Splitting { rule, adaptive: None, surfaces: None, touch: TouchName::Exact };
+        let splitting = Splitting { rule, adaptive: None, surfaces: Surfaces::NONE, touch: TouchName::Exact };
         let job = &Job { depth: Some(depth), ..job.clone() };
-        return octree_of_scene::make(job, found, &taking.drawing, splitting);
+        return octree_of_scene::make(job, found, (&taking.drawing, &taking.placing), splitting);
     }
     taking.drawing.refuse(input, "no scene")?;
     output.check()?;
     output.check_spares(input, "mesh")?;
-    octree_of_mesh::make(&Job { depth: Some(depth), ..job.clone() }, found, &taking.reading, rule)
+    let Taking { reading, placing, .. } = taking;
+    let wanted = Voxelizing { reading, placing, rule, surfaces: Surfaces::NONE };
+    octree_of_mesh::make(&Job { depth: Some(depth), ..job.clone() }, found, &wanted)
 }

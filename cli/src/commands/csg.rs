@@ -3,10 +3,12 @@
 use crate::failure::Failure;
 use crate::making::job::Job;
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
+use crate::making::surfaces::Surfaces;
 use crate::options::{bounds, number, octree_rules, threads};
 use crate::sink::Output;
 use crate::source::file::Found;
 use crate::source::input::Input;
+use crate::source::placing::Placing;
 use crate::source::scene::Drawing;
 use clap::Args;
 use leafless::{Frame, Rule};
@@ -46,11 +48,8 @@ pub struct Arguments {
     /// undecided
     #[arg(long, value_name = "T", value_parser = thickness, allow_hyphen_values = true)]
     adaptive: Option<f64>,
-    /// Keep the surfaces that cross undecided cells: the file is small, and as exact as the scene. Cells end where three
-    /// surfaces are left, at any size; the depth bounds where more meet. Of meshes the surface is kept within layers of this
-    /// thickness, as a part of the longest side of the scene; without it exact surfaces alone are kept
-    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, require_equals = true, value_parser = tolerance)]
-    surfaces: Option<Option<f64>>,
+    #[command(flatten)]
+    surfaces: Surfaces,
     /// What counts as touching
     #[arg(long, value_enum, default_value_t = TouchName::Exact)]
     touch: TouchName,
@@ -63,6 +62,8 @@ pub struct Arguments {
     bounds: Option<Frame>,
     #[command(flatten)]
     drawing: Drawing,
+    #[command(flatten)]
+    placing: Placing,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
@@ -76,24 +77,20 @@ fn thickness(text: &str) -> Result<f64, String> {
     number(text, "a length not below 0", |thickness| thickness >= 0.0)
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
-    number(text, "a part of the longest side, above 0 and below 1", |part| part > 0.0 && part < 1.0)
-}
-
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { depth, rule, adaptive, surfaces, touch, bounds, threads, json, .. } = *arguments;
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     job.output.check()?;
-    if surfaces.is_some() {
-        let useless = match (rule, touch, adaptive) {
-            (Rule::Certified, TouchName::Exact, None) => None,
-            (.., Some(_)) => Some("--adaptive: cells end where few surfaces are left"),
-            (Rule::Certified, ..) => Some("--touch paper, by which no surfaces are known"),
-            _ => Some("a --rule but certified: undecided cells keep them"),
+    surfaces.check_rule(rule)?;
+    if surfaces.are_kept() {
+        let useless = match (touch, adaptive) {
+            (TouchName::Exact, None) => None,
+            (_, Some(_)) => Some("--adaptive: cells end where few surfaces are left"),
+            _ => Some("--touch paper, by which no surfaces are known"),
         };
         if let Some(useless) = useless {
-            return Err(Failure::Usage(format!("--surfaces does not go with {useless}")));
+            return Err(surfaces.refusal(useless));
         }
     }
     if adaptive.is_some() {
@@ -108,5 +105,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     job.output.check_spares(&job.input, "scene")?;
     let found = Found::look(&job.input, None)?;
-    octree_of_scene::make(&job, found, &arguments.drawing, Splitting { rule, adaptive, surfaces, touch })
+    let splitting = Splitting { rule, adaptive, surfaces, touch };
+    octree_of_scene::make(&job, found, (&arguments.drawing, &arguments.placing), splitting)
 }

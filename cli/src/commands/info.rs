@@ -28,12 +28,16 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (input, taking, as_json) = (&Input::from(&*arguments.file), &arguments.taking, arguments.json);
-    let Taking { reading, drawing } = taking;
+    let Taking { reading, drawing, placing } = taking;
     let found = Found::look(input, reading.told())?;
     let bytes = found.length();
     match found.content {
         Content::Solid => {
             taking.refuse(input, "a solid")?;
+            placing.refuse(
+                input,
+                "what is told is what the file says; `leafless convert` makes a moved solid",
+            )?;
             match found.stored(false)? {
                 (Stored::Octree(octree), bytes) => {
                     print_told(as_json, &octree::Info::new(&octree, bytes), octree::Info::text)
@@ -45,16 +49,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Content::Scene => {
             reading.refuse(input, "a scene")?;
-            let info = scene::Info::new(input, &found.scene(drawing)?, bytes)?;
+            let info = scene::Info::new(input, &found.scene(drawing, placing)?, bytes)?;
             print_told(as_json, &info, scene::Info::text)
         }
         Content::Volume => {
             drawing.refuse(input, "a volume")?;
-            print_told(as_json, &volume::Info::new(&found.volume(reading)?), volume::Info::text)
+            print_told(as_json, &volume::Info::new(&found.volume(reading, placing)?), volume::Info::text)
         }
         Content::Mesh => {
             drawing.refuse(input, "a mesh")?;
-            let (file, fill) = found.mesh(reading)?;
+            let (file, fill) = found.mesh(reading, placing)?;
             let (info, report) = (mesh::Info::new(input, &file, fill, bytes)?, file.mesh.report().of(input)?);
             print_told(as_json, &info, |info| info.text(&report))
         }

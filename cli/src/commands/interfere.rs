@@ -29,17 +29,14 @@ use std::ffi::OsString;
 /// intervals that hold the true ones. An upper bound of the clearance needs cells that are proven to be
 /// inside. What is not known is null in JSON.
 #[derive(Args)]
+#[command(mut_arg("place", |place| place.visible_alias("place-b")))]
 pub struct Arguments {
     /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
     #[arg(value_name = "A")]
     a: OsString,
-    /// Second solid, mesh or scene
+    /// Second solid, mesh or scene; --translate, --rotate, --scale and --place move it
     #[arg(value_name = "B")]
     b: OsString,
-    /// Where the second solid is moved to first: the rows of the matrix [M | t], 12 numbers, or 16 with a
-    /// last row 0 0 0 1, in brackets or not
-    #[arg(long, value_name = "MATRIX", value_parser = matrix, allow_hyphen_values = true)]
-    place_b: Option<Affine>,
     /// Levels to look at, 1 to 20. Without it: as many as the first solid has, or 10 for a mesh or scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
     depth: Option<u8>,
@@ -58,18 +55,6 @@ pub struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-}
-
-fn matrix(text: &str) -> Result<Affine, String> {
-    let words = text.split(|c: char| c.is_whitespace() || "[],;".contains(c)).filter(|word| !word.is_empty());
-    let numbers: Result<Vec<f64>, _> = words.map(str::parse).collect();
-    let m = match numbers.as_deref() {
-        Ok(m @ [.., a, b, c, d]) if m.len() == 16 && [*a, *b, *c, *d] == [0.0, 0.0, 0.0, 1.0] => &m[..12],
-        Ok(m) if m.len() == 12 => m,
-        _ => return Err("expected 12 numbers, the rows of [M | t], or 16 with a last row 0 0 0 1".into()),
-    };
-    let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]];
-    Affine::new([row(0), row(1), row(2)]).map_err(|error| error.to_string())
 }
 
 /// A cell in the units of the model.
@@ -163,11 +148,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Usage("only one of the solids can be standard input".into()));
     }
     let [a, b] = &inputs;
-    let placement = arguments.place_b.unwrap_or(Affine::IDENTITY);
-    let (first, second) = (
-        Source::read(a, &arguments.taking)?.taken(arguments.cells),
-        Source::read(b, &arguments.taking)?.taken(arguments.cells),
-    );
+    let placement = arguments.taking.placing.map().copied().unwrap_or(Affine::IDENTITY);
+    // What is moved as a solid blurs no more than its cells, and keeps what is known of a mesh.
+    let taking = arguments.taking.unmoved();
+    let [first, second] =
+        [Source::read(a, &taking)?, Source::read(b, &taking)?].map(|source| source.taken(arguments.cells));
     let frame = match &arguments.bounds {
         Some(bounds) => bounds.with_depth(arguments.depth.unwrap_or(10)).of(a)?,
         None => {
@@ -338,30 +323,4 @@ fn text(found: &Interference, report: &Report, reason: Option<&str>) -> String {
         line("bounds", "a solid may go on outside of the cube that was looked at".into());
     }
     text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn matrices_as_people_write_them() {
-        let expected = Affine::translation([1.0, -2.5, 3.0]).unwrap();
-        for text in [
-            "1,0,0,1,0,1,0,-2.5,0,0,1,3",
-            "1 0 0 1  0 1 0 -2.5  0 0 1 3",
-            "[[1, 0, 0, 1], [0, 1, 0, -2.5], [0, 0, 1, 3], [0, 0, 0, 1]]",
-        ] {
-            assert_eq!(matrix(text), Ok(expected));
-        }
-        for text in [
-            "",
-            "1 2 3",
-            "1 0 0 1 0 1 0 0 0 0 1 x",
-            "1 0 0 0 1 0 0 0 0 0 1 0",
-            "1 0 0 1 0 1 0 1 0 0 1 1 0 0 0 2",
-        ] {
-            assert!(matrix(text).is_err(), "{text}");
-        }
-    }
 }

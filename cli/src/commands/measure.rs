@@ -8,6 +8,8 @@ use crate::report::scene::Curves;
 use crate::sink;
 use crate::source::file::Taking;
 use crate::source::input::Input;
+use crate::source::moved::frame_of;
+use crate::source::placing::image;
 use crate::source::solid::{Source, evaluations};
 use crate::words::{count, measured, put_line};
 use clap::Args;
@@ -156,14 +158,14 @@ struct Report {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = Input::from(&*arguments.file);
-    let source = Source::read(&input, &arguments.taking)?.taken(arguments.cells);
+    let source = Source::before_moving(&input, &arguments.taking)?.taken(arguments.cells);
     let curves = match &source {
         Source::Scene(scene) => Some(Curves::from(scene.report())),
         _ => None,
     };
     let is_stored = source.own_frame().is_some();
-    let frame = source.frame_in(&input, arguments.bounds.as_ref(), arguments.depth)?;
-    let solid = Prepared::new(source.placed(&input, &Affine::IDENTITY, &frame)?);
+    let (placement, frame) = place(arguments, &input, &source)?;
+    let solid = Prepared::new(source.placed(&input, &placement, &frame)?);
     let asked = arguments.tolerance.is_some() || arguments.splits.is_some();
     let relative = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
     // What is flat or empty has no volume to be relative to.
@@ -194,6 +196,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         text(&mass, &surface, &extent, curves.as_ref(), is_stored, inexact.as_ref())
     };
     sink::print(text.as_bytes())
+}
+
+/// What is left to move, and the frame to look at. A solid from a file is moved as a solid: cells of any size tell of it what its own
+/// ones tell.
+fn place(arguments: &Arguments, input: &Input, source: &Source) -> Result<(Affine, Frame), Failure> {
+    let (bounds, depth) = (arguments.bounds.as_ref(), arguments.depth);
+    let (Source::Octree(octree), Some(map)) = (source, arguments.taking.placing.map()) else {
+        return Ok((Affine::IDENTITY, source.frame_in(input, bounds, depth)?));
+    };
+    let frame = match bounds {
+        Some(bounds) => *bounds,
+        None => frame_of(octree, map).of(input)?,
+    };
+    let is_image = bounds.is_none() && image(octree.frame(), map).is_some();
+    let depth = depth.unwrap_or(if is_image { frame.depth() } else { MAX_DEPTH });
+    Ok((*map, frame.with_depth(depth).of(input)?))
 }
 
 /// Why a mesh's moments were not known without splitting cells; `None` if they were.

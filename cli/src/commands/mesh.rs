@@ -83,6 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments {
         method, snap, vertices, resolve, text, normals, lossy, intersections, write: format, ..
     } = *arguments;
-    let wanted = Wanted { method, snap, vertices, resolve, format, text, normals, lossy, intersections };
+    let wanted =
+        Wanted { method, snap, vertices, resolve, format, text, normals, lossy, intersections, copy: false };
     make(&job, &arguments.taking, &wanted)
 }

@@ -2,12 +2,14 @@
 
 use crate::failure::Failure;
 use crate::making::job::Job;
-use crate::making::octree_of_mesh;
+use crate::making::octree_of_mesh::{self, Voxelizing};
+use crate::making::surfaces::Surfaces;
 use crate::options::{bounds, octree_rules, threads};
 use crate::sink::Output;
 use crate::source::file::Found;
 use crate::source::input::Input;
 use crate::source::mesh::Reading;
+use crate::source::placing::Placing;
 use clap::Args;
 use leafless::{Frame, Rule};
 use std::ffi::OsString;
@@ -34,16 +36,20 @@ pub struct Arguments {
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
-    /// times as long. A volume can do without it: then its voxels are the finest cells
+    /// times as long. With --surfaces it may be left out, and so may it for a volume: then its voxels are the finest cells
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_parser = octree_rules(), default_value = "certified")]
     rule: Rule,
     #[command(flatten)]
+    surfaces: Surfaces,
+    #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    placing: Placing,
     /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is
-    /// converted and scaled. Solids can be combined if they were given the same bounds and depth. What sticks
+    /// converted and moved. Solids can be combined if they were given the same bounds and depth. What sticks
     /// out is cut off, and reported. Without it: a cube around the mesh whose edge and cells are powers of two,
     /// so that faces at round numbers lie between cells; if the mesh's bounds are no round numbers, the cube
     /// around its middle, its edge 33/32 of its longest extent
@@ -59,12 +65,13 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { rule, depth, bounds, threads, json, .. } = *arguments;
+    let Arguments { rule, surfaces, placing, depth, bounds, threads, json, .. } = *arguments;
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     let (input, reading) = (&job.input, &arguments.reading);
+    surfaces.check_rule(rule)?;
     job.output.check()?;
     job.output.check_spares(input, "mesh")?;
     let found = Found::look(input, reading.told())?;
-    octree_of_mesh::make(&job, found, reading, rule)
+    octree_of_mesh::make(&job, found, &Voxelizing { reading, placing: &placing, rule, surfaces })
 }

@@ -48,7 +48,7 @@ pub struct Arguments {
     write: Option<WriteName>,
     /// Make a solid of records
     #[arg(long, conflicts_with_all = ["write", "coarse", "fine", "tolerance", "boundary_depth", "outside", "refined",
-        "boundary", "triangles", "depth", "bounds", "format", "unit", "to", "scale", "fill", "facets", "threshold", "extents",
+        "boundary", "triangles", "depth", "bounds", "format", "unit", "to", "translate", "rotate", "scale", "place", "fill", "facets", "threshold", "extents",
         "kind", "spacing", "corner", "skip", "big_endian"])]
     import: bool,
     /// What boundary voxels become in the solid

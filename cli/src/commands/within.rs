@@ -25,7 +25,8 @@ use std::ffi::OsString;
 #[derive(Args)]
 #[command(group = clap::ArgGroup::new("region").required(true))]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input;
+    /// --translate, --rotate, --scale and --place move it, and not the region
     file: OsString,
     /// The region is a ball: its centre and its radius
     #[arg(long, group = "region", value_name = "X,Y,Z,R", value_parser = ball, allow_hyphen_values = true)]
@@ -183,6 +184,6 @@ fn region(arguments: &Arguments, frame: &Frame) -> Result<(AnySolid, String), Fa
         return Err(Failure::Usage("one of --ball, --box and --in is needed".into()));
     };
     let input = Input::from(&**other);
-    let source = Source::read(&input, &arguments.taking)?.taken(arguments.cells);
+    let source = Source::read(&input, &arguments.taking.unmoved())?.taken(arguments.cells);
     Ok((source.placed(&input, &Affine::IDENTITY, frame)?, input.to_string()))
 }

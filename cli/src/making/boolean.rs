@@ -1,18 +1,20 @@
 //! The set operations on solids of either kind.
 
-use crate::failure::{Failure, Of};
-use crate::making::octree_of_volume::of_voxels;
+use crate::failure::{Failure, Of, complain};
+use crate::making::octree_of_volume::{of_voxels, on, voxels};
 use crate::making::operands::{Operation, Place, check_places, facts, warn_of_units};
 use crate::progress::watched;
 use crate::report::{dexels, octree};
 use crate::sink::Output;
 use crate::source::file::Stored;
 use crate::source::input::Input;
+use crate::source::moved::{self, Onto};
+use crate::source::placing::Placing;
 use crate::source::volume::Sampling;
 use crate::words::{count, counted, seconds, short};
 use leafless::attribute::{CarryRule, carry_channels};
 use leafless::exchange::VolumeFormat;
-use leafless::{Control, Error, Octree, OctreeRef, Rule, TriDexel};
+use leafless::{Control, Error, Frame, Octree, OctreeRef, Rule, TriDexel};
 use std::time::Instant;
 
 /// What is made of solids.
@@ -27,11 +29,13 @@ pub struct Combining<'a> {
     pub threads: usize,
 }
 
-/// Reads the operands, at least one (a difference has two), combines them, saves the result.
-pub fn combine(combining: &Combining, inputs: &[Input], output: &Output) -> Result<(), Failure> {
+/// Reads the operands, at least one (a difference has two), moves them, combines them, saves the result.
+pub fn combine(combining: &Combining, files: &[(Input, Placing)], output: &Output) -> Result<(), Failure> {
     let (start, operation) = (Instant::now(), combining.operation);
     output.check()?;
-    let operands = operands(inputs, combining)?;
+    let operands = operands(files, combining)?;
+    let inputs: Vec<Input> = files.iter().map(|file| file.0.clone()).collect();
+    let inputs = &inputs[..];
     let (places, depth): (Vec<Place>, _) = match &operands {
         Operands::Octrees(octrees) => {
             (octrees.iter().map(|octree| Place::new(octree.frame(), octree.metadata())).collect(), "--depth")
@@ -50,6 +54,7 @@ pub fn combine(combining: &Combining, inputs: &[Input], output: &Output) -> Resu
             let result = carried(result, octrees, combining).of(name)?;
             let result = result.with_metadata(facts(&places)?);
             warn_of_units(inputs, &places);
+            warn_of_clipping(files, octrees, &result);
             let bytes = output.save(&result)?;
             // What is told of the result may take longer than to make it.
             let time = start.elapsed();
@@ -83,6 +88,21 @@ fn plain(result: Octree, combining: &Combining) -> Result<Octree, String> {
         Some(Some(depth)) => watched("cells", combining.threads, |control| {
             leafless::op::plain(&result, depth, Rule::Certified, control)
         }),
+    }
+}
+
+/// Complains of what was moved out of the frame, if that is missing in the result.
+fn warn_of_clipping(files: &[(Input, Placing)], octrees: &[Octree], result: &Octree) {
+    if !result.view().is_clipped() {
+        return;
+    }
+    for ((input, placing), octree) in files.iter().zip(octrees) {
+        if placing.map().is_some() && octree.view().is_clipped() {
+            let first = &files[0].0;
+            complain(&format!(
+                "{input}: warning: where it was moved to it may reach beyond the frame of {first}, and was cut off"
+            ));
+        }
     }
 }
 
@@ -120,17 +140,18 @@ enum Operands {
 
 /// Reads all operands, of which there is one at least. What is proven of the result is proven only if the operands are
 /// what their makers wrote.
-fn operands(inputs: &[Input], combining: &Combining) -> Result<Operands, Failure> {
+fn operands(files: &[(Input, Placing)], combining: &Combining) -> Result<Operands, Failure> {
     let (mut octrees, mut models) = (Vec::new(), Vec::new());
-    for (i, input) in inputs.iter().enumerate() {
-        match operand(input, combining)? {
+    let mut frame = None;
+    for (i, (input, placing)) in files.iter().enumerate() {
+        match operand(input, placing, &mut frame, combining)? {
             Stored::Octree(octree) => octrees.push(octree),
             Stored::Dexels(model) => models.push(model),
         }
         if !octrees.is_empty() && !models.is_empty() {
             let kinds = ["an octree", "a tri-dexel model"];
             let [this, first] = if models.len() == i { kinds } else { [kinds[1], kinds[0]] };
-            let problem = format!("is {this}, and {} is {first}: `leafless convert`", inputs[0]);
+            let problem = format!("is {this}, and {} is {first}: `leafless convert`", files[0].0);
             return Err(Failure::of(input, format!("{problem} makes one of the other's kind")));
         }
     }
@@ -146,17 +167,40 @@ fn operands(inputs: &[Input], combining: &Combining) -> Result<Operands, Failure
     Ok(Operands::Dexels(models))
 }
 
-/// A solid from a file, or the voxels of a volume that are inside.
-fn operand(input: &Input, combining: &Combining) -> Result<Stored, Failure> {
-    if input.begins_as_solid() {
-        return Ok(Stored::read(input, true)?.0);
-    }
-    let bytes = input.read()?;
-    if combining.sampling.is_raw() || VolumeFormat::detect(&bytes).is_some() {
-        let volume = combining.sampling.read(input, &bytes)?;
-        return Ok(Stored::Octree(of_voxels(&volume, input, combining.threads)?));
-    }
-    Stored::of_bytes(input, &bytes)
+/// A solid from a file, or the voxels of a volume that are inside. It is moved onto the frame of the first one, which is found out
+/// where it is not known yet.
+fn operand(
+    input: &Input,
+    placing: &Placing,
+    first: &mut Option<Frame>,
+    combining: &Combining,
+) -> Result<Stored, Failure> {
+    let threads = combining.threads;
+    let bytes = if input.begins_as_solid() { None } else { Some(input.read()?) };
+    let stored = match bytes {
+        None => Stored::read(input, true)?.0,
+        Some(bytes) if combining.sampling.is_raw() || VolumeFormat::detect(&bytes).is_some() => {
+            let volume = combining.sampling.read(input, &bytes)?;
+            let Some(map) = placing.map() else {
+                let octree = of_voxels(&volume, input, threads)?;
+                first.get_or_insert(*octree.frame());
+                return Ok(Stored::Octree(octree));
+            };
+            let frame = match first {
+                Some(frame) => *frame,
+                None => *first.insert(*voxels(&volume, input)?),
+            };
+            let moved = volume.placed(map).of(input)?;
+            return Ok(Stored::Octree(on(&moved, input, &frame, Rule::Sampled, threads)?));
+        }
+        Some(bytes) => Stored::of_bytes(input, &bytes)?,
+    };
+    let own = match &stored {
+        Stored::Octree(octree) => octree.frame(),
+        Stored::Dexels(model) => model.frame(),
+    };
+    let frame = *first.get_or_insert(*own);
+    moved::stored(input, stored, placing, Onto::Frame(&frame), threads)
 }
 
 fn of(operation: Operation, trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {

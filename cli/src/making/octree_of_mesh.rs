@@ -3,6 +3,7 @@
 use crate::failure::{Failure, Of, complain};
 use crate::making::job::{Job, Timings, facts};
 use crate::making::octree_of_volume;
+use crate::making::surfaces::{Surfaces, deep_enough};
 use crate::options::rule_name;
 use crate::progress::watched;
 use crate::report::mesh::Mesh;
@@ -11,11 +12,13 @@ use crate::sink::json;
 use crate::source::content::Content;
 use crate::source::file::Found;
 use crate::source::mesh::{Reading, fill_name, format_name, frame_around, in_words, warn_of_openness};
+use crate::source::placing::Placing;
 use crate::words::{counted, number};
 use leafless::error::MeshError;
 use leafless::exchange::{LengthUnit, MeshFile};
+use leafless::lattice::MAX_DEPTH;
 use leafless::mesh::MeshReport;
-use leafless::{Frame, MeshSolid, Rule, build};
+use leafless::{Frame, MeshSolid, Rule, SurfaceOptions, build, build_extended};
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Instant;
@@ -26,6 +29,8 @@ struct Report {
     output: String,
     rule: &'static str,
     fill: &'static str,
+    /// The thickness of layers that stand for the surface in the cells that keep it; absent (null) if none do.
+    surfaces: Option<f64>,
     format: &'static str,
     /// Absent (null) where nobody knows it.
     unit: Option<&'static str>,
@@ -41,13 +46,25 @@ struct Report {
     info: Info,
 }
 
+/// How a mesh or a volume is taken, and what is kept of it.
+pub struct Voxelizing<'a> {
+    pub reading: &'a Reading,
+    pub placing: &'a Placing,
+    pub rule: Rule,
+    pub surfaces: Surfaces,
+}
+
 /// Makes an octree of a mesh or a volume, and saves it.
-pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: Rule) -> Result<(), Failure> {
+pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
+    let Voxelizing { reading, placing, rule, surfaces } = *wanted;
     if found.content == Content::Volume {
-        return octree_of_volume::make(job, rule, &found.volume(reading)?);
+        if surfaces.are_kept() {
+            return Err(surfaces.refusal(&format!("a volume, which {input} is")));
+        }
+        return octree_of_volume::make(job, rule, &found.volume(reading, placing)?);
     }
-    let Some(depth) = job.depth else {
+    if job.depth.is_none() && !surfaces.are_kept() {
         let problem =
             "the following required arguments were not provided: --depth <N> (see `leafless --help`)";
         return Err(Failure::Usage(problem.into()));
@@ -57,8 +74,13 @@ pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: Rule) -> Resul
         Content::Scene => return Err(Failure::of(input, "is a scene, not a mesh: use `leafless csg`")),
         Content::Mesh | Content::Volume => {}
     }
+    if surfaces.are_kept() && surfaces.part().is_none() {
+        let problem = "no surface of a mesh is known exactly: say how thick the layers around it may be, as a part of its \
+                       longest side: --surfaces=1e-4";
+        return Err(Failure::Usage(format!("--surfaces: {input} is a mesh, and {problem}")));
+    }
     let fingerprint = found.fingerprint();
-    let (file, fill) = found.mesh(reading)?;
+    let (file, fill) = found.mesh(reading, placing)?;
     let MeshFile { mesh, format, unit, skipped, warnings, .. } = file;
     let mesh_report = mesh.report().of(input)?;
     if mesh_report.triangles == 0 {
@@ -67,17 +89,29 @@ pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: Rule) -> Resul
     // The mesh is about to be taken over.
     let told = if job.json { Some(Mesh::new(&mesh).of(input)?) } else { None };
     let (min, max) = mesh.bounds();
+    let tolerance = surfaces.tolerance((min, max));
+    let depth = job.depth.unwrap_or(MAX_DEPTH);
     let frame = match &job.bounds {
         Some(bounds) => bounds.with_depth(depth),
         None => frame_around(&mesh, depth),
     };
-    let frame = frame.of(input)?;
+    let frame = match (job.depth, tolerance) {
+        (None, Some(tolerance)) => deep_enough(frame.of(input)?, tolerance),
+        _ => frame.of(input)?,
+    };
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
     let solid = MeshSolid::new(mesh, fill).of(input)?;
-    let octree = watched("voxelize", job.threads, |control| build(&solid, &frame, rule, control));
-    let octree = octree.of(input)?.with_metadata(facts(input, fingerprint, rule, unit));
+    let octree = watched("voxelize", job.threads, |control| match tolerance {
+        Some(_) => build_extended(&solid, &frame, &SurfaceOptions { tolerance }, control),
+        None => build(&solid, &frame, rule, control),
+    });
+    let mut metadata = facts(input, fingerprint, rule, unit);
+    if let Some(tolerance) = tolerance {
+        metadata.insert("surfaces", number(tolerance));
+    }
+    let octree = octree.of(input)?.with_metadata(metadata);
     let build = building.elapsed().as_secs_f64();
 
     let saving = Instant::now();
@@ -92,13 +126,15 @@ pub fn make(job: &Job, found: Found<'_>, reading: &Reading, rule: Rule) -> Resul
     let info = Info::new(&octree, bytes);
     let Some(mesh) = told else {
         let head = head(job, &mesh_report, skipped);
-        return output.report(&(head + &job.summary(rule_name(rule), &octree, &info, "", &timings)));
+        let keeps = info.keeps();
+        return output.report(&(head + &job.summary(rule_name(rule), &octree, &info, &keeps, &timings)));
     };
     let report = Report {
         input: input.to_string(),
         output: output.to_string(),
         rule: rule_name(rule),
         fill: fill_name(fill),
+        surfaces: tolerance,
         format: format_name(format),
         unit: unit.map(LengthUnit::symbol),
         skipped,

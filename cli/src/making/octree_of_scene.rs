@@ -2,20 +2,20 @@
 
 use crate::failure::{Failure, Of, complain};
 use crate::making::job::{Job, Timings, facts};
+use crate::making::surfaces::{Surfaces, deep_enough};
 use crate::options::{name_of, rule_name};
 use crate::progress::watched;
 use crate::report::octree::Info;
 use crate::report::scene::Curves;
 use crate::source::content::Content;
 use crate::source::file::Found;
-use crate::source::input::Input;
+use crate::source::placing::Placing;
 use crate::source::scene::{Drawing, bounds_of, frame_of};
 use crate::words::{count, number};
 use clap::ValueEnum;
 use leafless::lattice::MAX_DEPTH;
-use leafless::scene::Scene;
 use leafless::solid::{Adaptive, SplitCounter, Touch};
-use leafless::{Frame, Rule, SurfaceOptions, build, build_extended};
+use leafless::{Rule, SurfaceOptions, build, build_extended};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -32,9 +32,7 @@ pub struct Splitting {
     pub rule: Rule,
     /// The thickness of layers that are not split. Without it all are.
     pub adaptive: Option<f64>,
-    /// Whether surfaces are kept, and how thick the layers may be that stand for them where they are not exact, as a part of the
-    /// longest side.
-    pub surfaces: Option<Option<f64>>,
+    pub surfaces: Surfaces,
     pub touch: TouchName,
 }
 
@@ -62,14 +60,13 @@ struct Report {
     info: Info,
 }
 
-/// The longest side of the box around a scene.
-fn longest_side(input: &Input, scene: &Scene) -> Result<f64, Failure> {
-    let (min, max) = bounds_of(input, scene)?;
-    Ok((0..3).map(|axis| max[axis] - min[axis]).fold(0.0, f64::max))
-}
-
 /// Makes an octree of a scene, and saves it.
-pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting) -> Result<(), Failure> {
+pub fn make(
+    job: &Job,
+    found: Found<'_>,
+    (drawing, placing): (&Drawing, &Placing),
+    splitting: Splitting,
+) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
     let Splitting { rule, adaptive, surfaces, touch } = splitting;
     let problem = match found.content {
@@ -81,20 +78,16 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
     if let Some(problem) = problem {
         return Err(Failure::of(input, problem));
     }
-    let (scene, fingerprint) = (found.scene(drawing)?, found.fingerprint());
+    let (scene, fingerprint) = (found.scene(drawing, placing)?, found.fingerprint());
     // The text is not needed any more.
     drop(found);
     let frame = frame_of(input, &scene, job.bounds.as_ref(), job.depth.unwrap_or(MAX_DEPTH))?;
-    let tolerance = match surfaces.flatten() {
-        Some(part) => Some(part * longest_side(input, &scene)?),
+    let tolerance = match surfaces.part() {
+        Some(_) => surfaces.tolerance(bounds_of(input, &scene)?),
         None => None,
     };
-    // Cells are no finer than the layers need to be.
     let frame = match (job.depth, tolerance) {
-        (None, Some(tolerance)) => {
-            let is_fine = |frame: &Frame| frame.cell_size() <= tolerance;
-            (1..MAX_DEPTH).find_map(|depth| frame.with_depth(depth).ok().filter(is_fine)).unwrap_or(frame)
-        }
+        (None, Some(tolerance)) => deep_enough(frame, tolerance),
         _ => frame,
     };
     let solid = scene.solid(&frame).of(input)?.with_touch(match touch {
@@ -108,8 +101,8 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
     let building = Instant::now();
     let options = SurfaceOptions { tolerance };
     let octree = watched("csg", job.threads, |control| match (&counted, adaptive) {
-        (Some(counted), None) if surfaces.is_some() => build_extended(counted, &frame, &options, control),
-        (None, None) if surfaces.is_some() => build_extended(&solid, &frame, &options, control),
+        (Some(counted), None) if surfaces.are_kept() => build_extended(counted, &frame, &options, control),
+        (None, None) if surfaces.are_kept() => build_extended(&solid, &frame, &options, control),
         (Some(counted), Some(t)) => build(&Adaptive::new(counted, t)?, &frame, rule, control),
         (Some(counted), None) => build(counted, &frame, rule, control),
         (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule, control),
@@ -147,7 +140,7 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
         rule: rule_name(rule),
         touch: name_of(touch),
         adaptive,
-        surfaces: surfaces.map(|_| tolerance.unwrap_or(0.0)),
+        surfaces: surfaces.are_kept().then_some(tolerance.unwrap_or(0.0)),
         timings: Timings { read, build, save, total: start.elapsed().as_secs_f64() },
         splits: splits.map(|splits| splits.iter().sum()),
         evaluations: solid.evaluations(),
@@ -159,7 +152,7 @@ pub fn make(job: &Job, found: Found<'_>, drawing: &Drawing, splitting: Splitting
         let more = format!(
             "{}{}splits  {}{} evaluations of half-spaces\n",
             report.curves.text().map_or(String::new(), |curves| format!("curves  {curves}\n")),
-            report.info.cuts_text().map_or(String::new(), |cuts| format!("keeps   {cuts}\n")),
+            report.info.keeps(),
             report.splits.map_or(String::new(), |splits| count(splits) + ", "),
             count(report.evaluations),
         );

@@ -62,15 +62,26 @@ pub fn make(job: &Job, rule: Rule, volume: &Voxels) -> Result<(), Failure> {
 
 /// The octree whose finest cells are the voxels.
 pub fn of_voxels(volume: &Voxels, input: &Input, threads: usize) -> Result<Octree, Failure> {
-    let frame = volume.frame.as_ref().ok_or_else(|| {
+    on(volume, input, voxels(volume, input)?, Rule::Sampled, threads)
+}
+
+/// The frame whose finest cells are the voxels.
+pub fn voxels<'a>(volume: &'a Voxels, input: &Input) -> Result<&'a Frame, Failure> {
+    volume.frame.as_ref().ok_or_else(|| {
         let problem = "its voxels are no cubes along the axes, so that its cells need --bounds and --depth of \
                        `leafless voxelize`";
         Failure::of(input, problem)
-    })?;
-    on(volume, input, frame, Rule::Sampled, threads)
+    })
 }
 
-fn on(volume: &Voxels, input: &Input, frame: &Frame, rule: Rule, threads: usize) -> Result<Octree, Failure> {
+/// The octree on a frame.
+pub fn on(
+    volume: &Voxels,
+    input: &Input,
+    frame: &Frame,
+    rule: Rule,
+    threads: usize,
+) -> Result<Octree, Failure> {
     let octree =
         watched("voxelize", threads, |control| build(&volume.solid, frame, rule, control)).of(input)?;
     let mut metadata = named(input);

@@ -45,6 +45,8 @@ pub struct Wanted {
     pub normals: bool,
     pub lossy: bool,
     pub intersections: bool,
+    /// Whether a mesh is written as it is.
+    pub copy: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default, ValueEnum)]
@@ -111,11 +113,18 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
             "--normals is for PLY and OBJ: {name} has no normals at vertices"
         )));
     }
-    let (unit, mesh, followed) = match Shape::read(input, taking)?.0 {
+    let shape = Shape::before_moving(input, taking)?.0;
+    let is_stored = shape.is_stored();
+    let mut is_copy = false;
+    let (unit, mesh, followed) = match shape {
         Shape::Dexels(model) => {
             let unit = model.metadata().get("units").and_then(|unit| unit.parse().ok());
             let (mesh, followed) = of_dexels(&model, job, wanted)?;
             (unit, mesh, Some(followed))
+        }
+        Shape::Source(Source::Mesh(mesh, _, unit)) if wanted.copy => {
+            is_copy = true;
+            (unit, mesh, None)
         }
         Shape::Source(source) if asks_rays(&source, wanted) => {
             let unit = source.unit();
@@ -124,6 +133,8 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
         }
         Shape::Source(source) => (source.unit(), extract(source, job, wanted)?, None),
     };
+    // The surface of a stored solid is sharper than that of what would be made of the solid in another place.
+    let mesh = if is_stored { taking.placing.mesh(mesh).of(input)? } else { mesh };
     let options = WriteOptions { text: wanted.text, unit, normals: wanted.normals };
     let (kept, losses) = written::kept(&mesh, format, &options, wanted.lossy, output)?;
     let bytes = write_mesh(&mesh, format, &options).of(output)?;
@@ -140,7 +151,7 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     let told = Report {
         input: input.to_string(),
         output: output.to_string(),
-        method: name_of(wanted.method),
+        method: if is_copy { "copy".into() } else { name_of(wanted.method) },
         format: format_name(format),
         unit: unit.filter(|_| format == MeshFormat::ThreeMf).map(LengthUnit::symbol),
         vertices: report.vertices,

@@ -160,6 +160,11 @@ impl Info {
         self.cuts.as_ref().map(Cuts::text)
     }
 
+    /// The same as a line, if there is one.
+    pub fn keeps(&self) -> String {
+        self.cuts_text().map_or(String::new(), |cuts| format!("keeps   {cuts}\n"))
+    }
+
     /// The same in a few words.
     pub fn kept_text(&self) -> Option<String> {
         self.cuts.as_ref().map(Cuts::short_text)

@@ -4,6 +4,7 @@ use crate::failure::{Failure, Of};
 use crate::source::content::Content;
 use crate::source::input::{Input, map_dexels};
 use crate::source::mesh::Reading;
+use crate::source::placing::Placing;
 use crate::source::scene::{Drawing, scene_of};
 use crate::source::volume::Voxels;
 use clap::Args;
@@ -18,10 +19,17 @@ pub struct Taking {
     pub reading: Reading,
     #[command(flatten)]
     pub drawing: Drawing,
+    #[command(flatten)]
+    pub placing: Placing,
 }
 
 impl Taking {
-    /// Refuses the options where a stored solid is read: `what` it is.
+    /// The same of what stays where it is.
+    pub fn unmoved(&self) -> Taking {
+        Taking { placing: Placing::default(), ..self.clone() }
+    }
+
+    /// Refuses the options of reading where a stored solid is read: `what` it is.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
         self.reading.refuse(input, what)?;
         self.drawing.refuse(input, what)
@@ -112,17 +120,25 @@ impl Found<'_> {
     }
 
     /// The mesh, and the rule by which points count as inside.
-    pub fn mesh(self, reading: &Reading) -> Result<(MeshFile, FillRule), Failure> {
-        reading.mesh(self.input, self.bytes.unwrap_or_default())
+    pub fn mesh(self, reading: &Reading, placing: &Placing) -> Result<(MeshFile, FillRule), Failure> {
+        reading.mesh(self.input, self.bytes.unwrap_or_default(), placing)
     }
 
     /// The scene.
-    pub fn scene(&self, drawing: &Drawing) -> Result<Scene, Failure> {
-        scene_of(self.input, self.bytes(), drawing)
+    pub fn scene(&self, drawing: &Drawing, placing: &Placing) -> Result<Scene, Failure> {
+        let scene = scene_of(self.input, self.bytes(), drawing)?;
+        match placing.map() {
+            Some(map) => scene.placed(map).of(self.input),
+            None => Ok(scene),
+        }
     }
 
     /// The volume.
-    pub fn volume(&self, reading: &Reading) -> Result<Voxels, Failure> {
-        reading.volume(self.input, self.bytes())
+    pub fn volume(&self, reading: &Reading, placing: &Placing) -> Result<Voxels, Failure> {
+        let volume = reading.volume(self.input, self.bytes())?;
+        match placing.map() {
+            Some(map) => volume.placed(map).of(self.input),
+            None => Ok(volume),
+        }
     }
 }

@@ -1,9 +1,10 @@
 //! Meshes from files of any format: the options of reading them.
 
 use crate::failure::{Failure, Of, complain};
-use crate::options::{formats, number};
+use crate::options::formats;
 use crate::source::content::Content;
 use crate::source::input::Input;
+use crate::source::placing::Placing;
 use crate::source::volume::{Sampling, Voxels};
 use crate::words::counted;
 use clap::{Args, ValueEnum};
@@ -25,9 +26,6 @@ pub struct Reading {
     /// Unit to convert the mesh to
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     to: Option<LengthUnit>,
-    /// Factor to scale the mesh by besides. Without it: 1
-    #[arg(long, value_name = "FACTOR", value_parser = scale, allow_hyphen_values = true)]
-    scale: Option<f64>,
     /// Which points count as inside a mesh. Without it: positive for 3MF, as that format demands, and nonzero for
     /// all others
     #[arg(long, value_enum)]
@@ -71,10 +69,6 @@ fn unit(text: &str) -> Result<LengthUnit, String> {
     text.parse().map_err(|_| "expected um, mm, cm, m, in or ft".into())
 }
 
-fn scale(text: &str) -> Result<f64, String> {
-    number(text, "a positive number", |factor| factor > 0.0)
-}
-
 impl Reading {
     /// What the user calls the file.
     pub fn told(&self) -> Option<Content> {
@@ -101,7 +95,6 @@ impl Reading {
             ("--format", self.format.is_some()),
             ("--unit", self.unit.is_some()),
             ("--to", self.to.is_some()),
-            ("--scale", self.scale.is_some()),
             ("--fill", self.fill.is_some()),
         ];
         match given.into_iter().find(|option| option.1) {
@@ -125,12 +118,19 @@ impl Reading {
         self.format.or_else(|| MeshFormat::detect(bytes, extension))
     }
 
-    /// The mesh in these bytes of a file, hair cracks closed, and the rule by which points count as inside. A mesh that
+    /// The mesh in these bytes of a file, hair cracks closed, in its place, and the rule by which points count as inside. A mesh that
     /// is open is refused where the rule needs a closed one.
-    pub fn mesh(&self, input: &Input, bytes: Vec<u8>) -> Result<(MeshFile, FillRule), Failure> {
+    pub fn mesh(
+        &self,
+        input: &Input,
+        bytes: Vec<u8>,
+        placing: &Placing,
+    ) -> Result<(MeshFile, FillRule), Failure> {
         self.sampling.refuse(input, "a mesh")?;
         let (format, unit, target) = (self.format_of(input, &bytes), self.unit, self.to);
-        let options = MeshOptions { format, unit, target, scale: self.scale.unwrap_or(1.0) };
+        // Together with the unit a factor is rounded once.
+        let factor = placing.factor();
+        let options = MeshOptions { format, unit, target, scale: factor.unwrap_or(1.0) };
         let mut file = exchange::read_mesh(&bytes, &options).of(input)?;
         for warning in &file.warnings {
             complain(&format!("{input}: warning: {warning}"));
@@ -138,6 +138,9 @@ impl Reading {
         // Sewing needs memory of its own.
         drop(bytes);
         file.mesh = file.mesh.sewn().of(input)?;
+        if factor.is_none() {
+            file.mesh = placing.mesh(file.mesh).of(input)?;
+        }
         let fill = self.fill(file.format);
         check_closed(input, &file.mesh, fill)?;
         Ok((file, fill))

@@ -5,6 +5,8 @@ use crate::source::content::Content;
 use crate::source::file::{Found, Stored, Taking};
 use crate::source::input::Input;
 use crate::source::mesh::{ends_at_vertices, frame_around, warn_of_openness};
+use crate::source::moved::{self, Onto};
+use crate::source::placing::Placing;
 use crate::source::scene::{bounds_of, frame_of};
 use crate::source::volume::Voxels;
 use leafless::exchange::{LengthUnit, MeshFile};
@@ -45,6 +47,12 @@ pub enum Shape {
 impl Shape {
     /// Reads a file of any kind; of one that holds no solid yet, a fingerprint, too. Files of solids are verified.
     pub fn read(input: &Input, taking: &Taking) -> Result<(Shape, Option<String>), Failure> {
+        let (shape, fingerprint) = Shape::before_moving(input, taking)?;
+        Ok((shape.moved(input, &taking.placing)?, fingerprint))
+    }
+
+    /// The same, but that a stored solid lies where its file says.
+    pub fn before_moving(input: &Input, taking: &Taking) -> Result<(Shape, Option<String>), Failure> {
         let found = Found::look(input, taking.reading.told())?;
         if found.content != Content::Solid {
             let fingerprint = found.fingerprint();
@@ -57,16 +65,46 @@ impl Shape {
         };
         Ok((shape, None))
     }
+
+    /// Whether it is a stored solid.
+    pub fn is_stored(&self) -> bool {
+        matches!(self, Shape::Dexels(_) | Shape::Source(Source::Octree(_)))
+    }
+
+    /// The shape, if it is a stored solid, moved.
+    fn moved(self, input: &Input, placing: &Placing) -> Result<Shape, Failure> {
+        match (self, placing.map()) {
+            (Shape::Dexels(model), Some(map)) => {
+                Ok(Shape::Dexels(Box::new(moved::dexels(input, &model, map, Onto::Image, 0)?)))
+            }
+            (Shape::Source(source), _) => Ok(Shape::Source(source.moved(input, placing)?)),
+            (shape, None) => Ok(shape),
+        }
+    }
 }
 
 impl Source {
     /// Reads a solid, a mesh, a scene or a volume. Answers about a solid are proven, so its file is verified.
     pub fn read(input: &Input, taking: &Taking) -> Result<Source, Failure> {
+        Source::before_moving(input, taking)?.moved(input, &taking.placing)
+    }
+
+    /// The same, but that a solid from a file lies where the file says.
+    pub fn before_moving(input: &Input, taking: &Taking) -> Result<Source, Failure> {
         Source::of(input, Found::look(input, taking.reading.told())?, taking)
     }
 
+    fn moved(self, input: &Input, placing: &Placing) -> Result<Source, Failure> {
+        match (self, placing.map()) {
+            (Source::Octree(octree), Some(map)) => {
+                Ok(Source::Octree(Box::new(moved::octree(input, *octree, map, Onto::Image, 0)?)))
+            }
+            (source, _) => Ok(source),
+        }
+    }
+
     fn of(input: &Input, found: Found<'_>, taking: &Taking) -> Result<Source, Failure> {
-        let Taking { reading, drawing } = taking;
+        let Taking { reading, drawing, placing } = taking;
         match found.content {
             Content::Solid => {
                 taking.refuse(input, SOLID)?;
@@ -74,15 +112,15 @@ impl Source {
             }
             Content::Scene => {
                 reading.refuse(input, "a scene")?;
-                Ok(Source::Scene(found.scene(drawing)?))
+                Ok(Source::Scene(found.scene(drawing, placing)?))
             }
             Content::Volume => {
                 drawing.refuse(input, "a volume")?;
-                Ok(Source::Volume(Box::new(found.volume(reading)?)))
+                Ok(Source::Volume(Box::new(found.volume(reading, placing)?)))
             }
             Content::Mesh => {
                 drawing.refuse(input, "a mesh")?;
-                let (MeshFile { mesh, unit, .. }, fill) = found.mesh(reading)?;
+                let (MeshFile { mesh, unit, .. }, fill) = found.mesh(reading, placing)?;
                 warn_of_openness(input, &mesh.report().of(input)?, fill);
                 Ok(Source::Mesh(mesh, fill, unit))
             }

@@ -3,6 +3,7 @@
 use crate::failure::{Failure, Of, Problem, complain};
 use crate::options::{list, number, numbers};
 use crate::source::input::Input;
+use crate::source::placing::{after, image};
 use crate::words::counted;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -165,6 +166,17 @@ fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {
 }
 
 impl Voxels {
+    /// The volume under a map.
+    pub fn placed(self, map: &Affine) -> Result<Voxels, Error> {
+        let placement = match &self.placement {
+            Some(own) => after(map, own)?,
+            None => *map,
+        };
+        let solid = AnySolid::new(self.volume.clone()).placed(&placement)?;
+        let frame = self.frame.and_then(|frame| image(&frame, map));
+        Ok(Voxels { solid, frame, placement: Some(placement), ..self })
+    }
+
     /// The samples as values at points.
     pub fn attribute(&self, interpolation: Interpolation) -> Result<Box<dyn Attribute>, Error> {
         let samples = VolumeAttribute::new(self.volume.clone(), interpolation);

@@ -171,12 +171,15 @@ const VALUES: [&str; 46] = [
 ];
 
 /// Values that some options take.
-const FITTING: [(&str, &str); 24] = [
+const FITTING: [(&str, &str); 27] = [
     ("--bounds", "-2,-2,-2,4"),
     ("--threads", "1"),
     ("--threshold", "0.5"),
     ("--unit", "mm"),
     ("--scale", "2"),
+    ("--translate", "0.5,0,-1"),
+    ("--rotate", "1,1,0,30"),
+    ("--place", "0,-1,0,0.5,1,0,0,0,0,0,1,0"),
     ("--tolerance", "0.01"),
     ("--splits", "1000"),
     ("--level", "2"),

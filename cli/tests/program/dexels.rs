@@ -318,7 +318,7 @@ fn what_does_not_go_together_is_refused() {
     }
     place.run("dexelize cube.stl -o cube.stl").bad(1, &["cube.stl", "not overwritten"]);
     place.run("dexelize none.stl -o no.lfl").bad(1, &["none.stl"]);
-    place.run("dexelize cube.lfl -o no.lfl --scale 2").bad(2, &["--scale", "cube.lfl is a solid"]);
+    place.run("dexelize cube.lfl -o no.lfl --unit in").bad(2, &["--unit", "cube.lfl is a solid"]);
     assert_eq!(place.files(), before);
 }
 
@@ -457,7 +457,10 @@ fn conversions_that_mean_nothing_are_refused() {
             .run(&format!("convert cube.lfl -o no.lfl --to octree {option}"))
             .bad(2, &[name, "cube.lfl", "tri-dexel model"]);
     }
-    place.run("convert cube.lfl -o no.lfl --to octree --scale 2").bad(2, &["--scale", "cube.lfl"]);
+    place.run("convert cube.lfl -o no.lfl --to octree --unit in").bad(2, &["--unit", "cube.lfl"]);
+    place
+        .run("convert octree.lfl -o no.lfl --to octree --unit in --scale 2")
+        .bad(2, &["--unit", "octree.lfl"]);
     let mut damaged = place.bytes("cube.lfl");
     let end = damaged.len() - 1;
     damaged[end] ^= 1;

@@ -13,6 +13,7 @@ mod dexels;
 mod heights;
 mod interfere;
 mod limits;
+mod moves;
 mod near;
 mod pictures;
 mod place;

@@ -66,10 +66,10 @@ fn wrong_usage_is_one_line_and_code_2() {
         ("voxelize cube.stl -o out.lfl --depth 5 --format step", &["--format", "step", "3mf"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --unit yard", &["--unit", "yard", "mm"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --to parsec", &["--to", "parsec", "mm"]),
-        ("voxelize cube.stl -o out.lfl --depth 5 --scale 0", &["--scale", "positive"]),
-        ("voxelize cube.stl -o out.lfl --depth 5 --scale -2", &["--scale", "positive"]),
-        ("voxelize cube.stl -o out.lfl --depth 5 --scale inf", &["--scale", "positive"]),
-        ("info cube.stl --scale nan", &["--scale", "positive"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --scale 0", &["--scale", "none of them is 0"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --scale 1,2", &["--scale", "or three"]),
+        ("voxelize cube.stl -o out.lfl --depth 5 --scale inf", &["--scale", "a factor"]),
+        ("info cube.stl --scale nan", &["--scale", "a factor"]),
         ("voxelize cube.stl -o out.lfl --depth 5 --threads -1", &["-1"]),
         ("csg part.csg -o out.lfl", &["--depth"]),
         ("csg part.csg --depth 5", &["--output"]),
@@ -289,7 +289,7 @@ fn meshes_that_are_refused() {
     let words = ["open.stl", "unit"];
     place.run("voxelize open.stl -o out.lfl --depth 4 --to mm").bad(1, &words);
     place.run("voxelize cube.stl -o out.lfl --depth 4 --format 3mf").bad(1, &["cube.stl", "ZIP"]);
-    place.run("voxelize cube.stl -o out.lfl --depth 4 --scale 1e77").bad(1, &["cube.stl", "2^256"]);
+    place.run("voxelize cube.stl -o out.lfl --depth 4 --scale 1e77").bad(2, &["--scale", "2^64"]);
     assert_eq!(place.files(), before);
     // By the even-odd rule orientation does not matter.
     place.run("voxelize turned.stl -o out.lfl --depth 4 --fill evenodd").good();

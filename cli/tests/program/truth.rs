@@ -74,7 +74,7 @@ fn content_decides_what_a_file_is() {
 fn options_of_meshes_are_refused_elsewhere() {
     let place = solids();
     place.write("part.csg", PLATE);
-    for option in ["--scale 2", "--unit in", "--to mm"] {
+    for option in ["--fill positive", "--unit in", "--to mm"] {
         let name = option.split(' ').next().unwrap();
         for (command, file) in [
             ("measure part.csg", "part.csg is a scene"),
@@ -87,9 +87,9 @@ fn options_of_meshes_are_refused_elsewhere() {
             place.run(&format!("{command} {option}")).bad(2, &[name, "is for meshes", file]);
         }
     }
-    place.run("interfere cube.stl part.csg --scale 2").bad(2, &["--scale", "part.csg is a scene"]);
+    place.run("interfere cube.stl part.csg --unit in").bad(2, &["--unit", "part.csg is a scene"]);
     place.run("measure cube.lfl --format stl").bad(2, &["--format"]);
-    place.run_with("measure - --scale 2", PLATE.as_bytes()).bad(2, &["--scale", "standard input is a scene"]);
+    place.run_with("measure - --unit in", PLATE.as_bytes()).bad(2, &["--unit", "standard input is a scene"]);
     let twice = place.run("measure cube.stl --scale 2 --json").good().json();
     assert!(near(&twice["volume"], 64.0), "{twice}");
 }
@@ -104,7 +104,8 @@ fn info_says_what_a_scene_is() {
     assert_eq!(line(run.text(), "z"), "0 to 30");
     let told = place.run("info part.csg --json").good().json();
     assert_eq!((&told["format"], &told["max"]), (&"scene".into(), &vec![100.0, 60.0, 30.0].into()));
-    place.run("info part.csg --scale 2").bad(2, &["--scale"]);
+    let twice = place.run("info part.csg --scale 2 --json").good().json();
+    assert_eq!(twice["max"], serde_json::json!([200.0, 120.0, 60.0]));
 }
 
 #[test]
