@@ -4,7 +4,8 @@
 use leafless::query::{DistanceTo, Obstacle, distances, line_of_sight, ray_spans};
 use leafless::query::{RaySpans, Sight};
 use leafless::{
-    Affine, Control, FillRule, Frame, Interval, Membership, MeshSolid, Ray, TriangleMesh, cast_rays, contains,
+    Affine, Cell, Control, Csg, FillRule, Frame, Interval, Membership, MeshSolid, Octree, Ray,
+    SurfaceOptions, TriangleMesh, build_extended, cast_rays, contains, difference,
 };
 use num_bigint::{BigInt, Sign};
 
@@ -508,6 +509,82 @@ pub fn direct(data: &[u8]) {
         }
         ask_ray(bytes, &scene, &corners);
         ask_point(bytes, &scene, &corners);
+    }
+}
+
+// ---- stored --------------------------------------------------------------------------------------------------
+
+/// What another fuzz target does: the same meshes, stored with the planes of their facets, alone and less a block. No point is told
+/// wrong, and none is left undecided far from the surface, unless its cell was given up.
+pub fn layers(data: &[u8]) {
+    let mut bytes = Bytes(data);
+    let bytes = &mut bytes;
+    let Some(scene) = scene(bytes) else { return };
+    let scale = scene.frame.edge() / 8.0;
+    let code = bytes.byte();
+    let tolerance = scene.frame.edge() / f64::from(8u32 << (code % 12));
+    let frame = scene.frame.with_depth(3 + (code / 12 % 6) as u8).expect("a depth");
+    let options = SurfaceOptions { tolerance: Some(tolerance) };
+    let control = Control { max_nodes: Some(1 << 13), ..CONTROL };
+    let Ok(tree) = build_extended(&scene.solid, &frame, &options, &control) else { return };
+    tree.view().check().expect("what is built is sound");
+    let own = Corners { is_plain: true, scale, offset: scene.frame.origin().map(|c| c + 4.0 * scale) };
+    let [a, b] = [0; 2].map(|_| own.corner(bytes));
+    let (low, high) = (at(|k| a[k].min(b[k])), at(|k| a[k].max(b[k])));
+    let rest = Csg::cuboid(low, high).ok().and_then(|block| {
+        let block = build_extended(&block, &frame, &options, &control).ok()?;
+        difference(tree.view(), block.view(), &control).ok()
+    });
+    let mut points = Vec::new();
+    for _ in 0..4 * MOST {
+        let Some(facet) = scene.moved.get(bytes.byte() % scene.moved.len().max(1)) else { return };
+        let [u, v] = [0; 2].map(|_| [0.0, 0.5, bytes.fraction(), 1.0 / 3.0][bytes.below(4)]);
+        let off = scene.size * 10f64.powi(-(bytes.below(18) as i32));
+        let way = [0; 3].map(|_| off * bytes.fraction());
+        points.push(at(|k| {
+            let [a, b, c] = facet.map(|p| p[k]);
+            a + u * (b - a) + v * (c - a) + way[k]
+        }));
+    }
+    points.extend((0..MOST).map(|_| point(bytes, &scene, &own)));
+    let ask = |tree: &Octree| {
+        let mut answers = vec![Membership::Undecided; points.len()];
+        contains(tree, &frame, &points, &mut answers, &CONTROL).expect("points");
+        answers
+    };
+    let (answers, rests) = (ask(&tree), rest.as_ref().map(ask));
+    for (i, &p) in points.iter().enumerate() {
+        let place = Place::new(p);
+        let truth = scene.holds(&place);
+        let told = || format!("{p:?} {tolerance} {frame:?} {:?} {:?}", scene.facets, scene.fill);
+        match (answers[i], truth) {
+            (Membership::Inside, Some(truth)) => assert!(truth, "not inside: {}", told()),
+            (Membership::Outside, Some(truth)) => assert!(!truth, "not outside: {}", told()),
+            (Membership::Undecided, _) => {
+                let finest = frame.cell_of(p).map(|at| Cell { level: frame.depth(), at });
+                let is_known = finest.is_some_and(|cell| tree.view().cell_function(cell).is_some());
+                let all =
+                    scene.moved.iter().map(|facet| from_triangle(*facet, p)).fold(f64::INFINITY, f64::min);
+                let is_far = all > 2.0 * tolerance + 1e-9 * (scene.size + place.size);
+                // (A facet without thickness, whose plane goes on beyond it, may be taken for a body.)
+                let is_beside = || scene.is_near_to_a_plane(p, 1e-9 * (scene.size + place.size));
+                assert!(!is_known || !is_far || is_beside(), "undecided {all} from the surface: {}", told());
+            }
+            _ => {}
+        }
+        let Some(rests) = &rests else { continue };
+        let is_within = (0..3).all(|k| low[k] <= p[k] && p[k] <= high[k]);
+        let is_inside = (0..3).all(|k| low[k] < p[k] && p[k] < high[k]);
+        let told = || format!("less {low:?} {high:?}: {}", told());
+        match (rests[i], truth) {
+            (Membership::Inside, truth) => {
+                assert!(truth != Some(false) && !is_inside, "not inside {}", told())
+            }
+            (Membership::Outside, truth) => {
+                assert!(truth != Some(true) || is_within, "not outside {}", told())
+            }
+            _ => {}
+        }
     }
 }
 

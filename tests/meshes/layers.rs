@@ -1,7 +1,7 @@
 //! Extended octrees of meshes: which planes bound the solid in a cell, and which function of their sides it is.
 
 use crate::attributes::distance;
-use crate::common::{Random, alone, model};
+use crate::common::{Random, alone, model, on_all_processors};
 use crate::oracle::{Oracle, PointOracle};
 use crate::shapes::{self, Soup};
 
@@ -279,5 +279,40 @@ fn machined_parts_take_few_cells() {
                 .unwrap();
         assert!(found.volume.contains(volume), "{name}: {:?}", found.volume);
         assert!(found.volume.width() < width * volume, "{name}: {:e}", found.volume.width() / volume);
+    }
+}
+
+/// A million points around the surface of a model, and as many of ten set operations of it.
+fn million(name: &str, tolerance: f64) {
+    let Some((mesh, size)) = opened(name) else { return };
+    let triangles = mesh.triangles().len();
+    let trial = Trial::new(mesh, FillRule::NonZero, tolerance * size, 20);
+    let cuts = trial.tree.view().cuts().unwrap();
+    let seeds: Vec<u64> = (0..100).collect();
+    let known: usize = on_all_processors(&seeds, |&seed| {
+        let points = trial.points(&mut Random(seed), 10_000);
+        trial.check(name, &points)
+    })
+    .iter()
+    .sum();
+    println!(
+        "{name}, {triangles} triangles, to {tolerance:e}: {known} of a million points are told, {cuts:?}"
+    );
+    check_booleans(name, &trial, &mut Random(1), 100_000);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn a_million_points_of_machined_parts() {
+    for name in ["featuretype.STL", "angle_block.STL", "plate_holes.STL"] {
+        million(name, 1e-6);
+    }
+}
+
+#[test]
+#[ignore = "minutes"]
+fn a_million_points_of_smooth_parts() {
+    for name in ["fandisk.obj", "bunny-closed.stl", "busted.STL"] {
+        million(name, 1e-3);
     }
 }
