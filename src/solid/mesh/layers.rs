@@ -33,6 +33,10 @@ const MOST_TRIANGLES: usize = 256;
 /// The surface may lie that far from the mesh, in half edges.
 const THICK: f64 = 0.25;
 
+/// How wide a layer around facets may be, as a share of the tolerance. Next to a wall of the cell a point in it is up to 1 + √3 of its
+/// widths away from the surface, which is to be less than twice the tolerance.
+const SHARE: f64 = 0.7;
+
 /// More than the length of a way in the cell, with what is rounded.
 const FAR: f64 = 3.5;
 
@@ -264,7 +268,7 @@ impl<'v> Layering<'v> {
         let margin = 4.0 * range * self.slack + 64.0 * UNIT;
         let slab = Slab { normal, inner: inner - margin, outer: outer + margin };
         // (What is no number is not less.)
-        if !(self.width(&slab) <= self.tolerance) {
+        if !(self.width(&slab) <= SHARE * self.tolerance) {
             return None;
         }
         // Nothing lies beyond the cell's corners.
