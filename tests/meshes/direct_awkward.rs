@@ -133,6 +133,19 @@ fn a_mesh_that_begins_before_the_universe() {
     }
 }
 
+/// Back to back they bound nothing: the ray is inside before, and comes in by the universe's face.
+#[test]
+fn triangles_back_to_back_in_the_face_of_the_universe() {
+    let [a, b, c] = [[1.0, 1.0, 1.0], [-3.0, 1.0, -3.0], [1.0, 0.0, 1.0]];
+    let mut soup = shapes::block([-3.0; 3], [3.0, 3.0, 4.0]);
+    soup.extend([[a, b, c], [c, b, a]]);
+    let frame = Frame::new([-2.0, -1.5, -3.0], 4.0, 5).unwrap();
+    for fill in [FillRule::NonZero, FillRule::Positive] {
+        let hit = first(&solid(&soup, fill), &frame, ray([9.0, 3.0, 3.0], [-2.0, -0.5, -0.5])).unwrap();
+        assert!(hit.t.contains(4.0) && hit.surface.is_none() && hit.normal == [0.0, 0.0, 1.0], "{hit:?}");
+    }
+}
+
 /// A block in all sizes and places, asked with directions of all lengths from all distances.
 #[test]
 fn meshes_rays_and_points_of_all_sizes() {

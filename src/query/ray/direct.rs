@@ -18,7 +18,7 @@ struct Piece {
     is_inside: Option<bool>,
     /// Whether it is proven to be inside at some time.
     is_met: bool,
-    /// The outward normal, and the number, of the surface by which it goes in.
+    /// The outward normal, and the number, of the surface by which it goes in from outside.
     entry: Option<([f64; 3], Option<u32>)>,
 }
 
@@ -33,7 +33,8 @@ fn each_piece(trace: &RayTrace, mut visit: impl FnMut(Piece) -> bool) {
             to: crossing.t.upper,
             is_inside: None,
             is_met: crossing.is_met,
-            entry: Some((crossing.normal, crossing.surface)),
+            // What it leaves by, even if for no time, is not where it goes in.
+            entry: (now.is_inside == Some(false)).then_some((crossing.normal, crossing.surface)),
         };
         if !visit(now) || !visit(within) {
             return;
