@@ -1,5 +1,5 @@
-/* Single questions to a mesh's solid through the C interface, one call for each: what benches/mesh_queries.rs asks from Rust,
- * on the same frame. One thread, processor time, medians of five rounds.
+/* Questions to a mesh's solid through the C interface, one call for each and one for all: what benches/mesh_queries.rs asks from
+ * Rust, on the same frame. One thread, processor time, medians of five rounds.
  *
  *     mesh_queries_c MESH.stl [QUESTIONS]
  *
@@ -40,67 +40,105 @@ static void report(const char *name, double *times, size_t count, const sums *al
            (unsigned long)all->count, all->sum, (unsigned long)all->undecided, all->widest);
 }
 
+static void *room_for(size_t count, size_t size) {
+    void *room = malloc(count * size);
+    if (room == NULL) {
+        fprintf(stderr, "no memory\n");
+        exit(1);
+    }
+    return room;
+}
+
+static void add_hit(sums *all, const leafless_ray_hit *hit) {
+    if (hit->is_hit && hit->t.upper == INFINITY) {
+        all->undecided += 1;
+    } else if (hit->is_hit) {
+        all->count += 1;
+        add(all, hit->t);
+    }
+}
+
+/* `size` questions a call. */
 static void ask_rays(const char *name, const leafless_solid *solid, const leafless_frame *frame,
-                     const question_ray *rays, size_t count, const leafless_options *options) {
+                     const leafless_ray *rays, size_t count, size_t size, const leafless_options *options) {
     double times[ROUNDS];
+    leafless_ray_hit *hits = (leafless_ray_hit *)room_for(size, sizeof *hits);
     sums all;
-    size_t i;
-    int round, axis;
+    size_t i, k;
+    int round;
     for (round = 0; round < ROUNDS; round++) {
         const double start = now();
         memset(&all, 0, sizeof all);
-        for (i = 0; i < count; i++) {
-            leafless_ray ray;
-            leafless_ray_hit hit;
-            for (axis = 0; axis < 3; axis++) {
-                ray.origin_model[axis] = rays[i].from[axis];
-                ray.direction_model[axis] = rays[i].along[axis];
-            }
-            ray.t_last = INFINITY;
-            check(leafless_solid_cast_rays(solid, frame, &ray, 1, LEAFLESS_OBSTACLE_UPPER, options, &hit));
-            if (hit.is_hit && hit.t.upper == INFINITY) {
-                all.undecided += 1;
-            } else if (hit.is_hit) {
-                all.count += 1;
-                add(&all, hit.t);
+        for (i = 0; i < count; i += size) {
+            check(leafless_solid_cast_rays(solid, frame, &rays[i], size, LEAFLESS_OBSTACLE_UPPER, options, hits));
+            for (k = 0; k < size; k++) {
+                add_hit(&all, &hits[k]);
             }
         }
         times[round] = now() - start;
     }
     report(name, times, count, &all);
+    free(hits);
 }
 
-static void ask_points(const leafless_solid *solid, const leafless_frame *frame, const question_point *points,
-                       size_t count, double tolerance, const leafless_options *options) {
-    double times[2][ROUNDS];
-    sums far, inside;
-    size_t i;
+static void ask_distances(const char *name, const leafless_solid *solid, const leafless_frame *frame,
+                          const double *points, size_t count, size_t size, double tolerance,
+                          const leafless_options *options) {
+    double times[ROUNDS];
+    leafless_point_distance *found = (leafless_point_distance *)room_for(size, sizeof *found);
+    sums all;
+    size_t i, k;
     int round;
     for (round = 0; round < ROUNDS; round++) {
-        double start = now();
-        memset(&far, 0, sizeof far);
-        memset(&inside, 0, sizeof inside);
-        for (i = 0; i < count; i++) {
-            const double point[3] = {points[i].at[0], points[i].at[1], points[i].at[2]};
-            leafless_point_distance found;
-            check(leafless_solid_distances(solid, frame, point, 1, LEAFLESS_DISTANCE_TO_BOUNDARY, tolerance, options,
-                                           &found));
-            far.undecided += found.measured != LEAFLESS_STOP_REASON_TOLERANCE;
-            add(&far, found.distance_model);
+        const double start = now();
+        memset(&all, 0, sizeof all);
+        for (i = 0; i < count; i += size) {
+            check(leafless_solid_distances(solid, frame, &points[3 * i], size, LEAFLESS_DISTANCE_TO_BOUNDARY, tolerance,
+                                           options, found));
+            for (k = 0; k < size; k++) {
+                all.undecided += found[k].measured != LEAFLESS_STOP_REASON_TOLERANCE;
+                add(&all, found[k].distance_model);
+            }
         }
-        times[0][round] = now() - start;
-        start = now();
-        for (i = 0; i < count; i++) {
-            const double point[3] = {points[i].at[0], points[i].at[1], points[i].at[2]};
-            leafless_membership answer;
-            check(leafless_solid_contains_many(solid, frame, point, 1, options, &answer));
-            inside.count += answer == LEAFLESS_MEMBERSHIP_INSIDE;
-            inside.undecided += answer == LEAFLESS_MEMBERSHIP_UNDECIDED;
-        }
-        times[1][round] = now() - start;
+        times[round] = now() - start;
     }
-    report("distances, one by one", times[0], count, &far);
-    report("points, one by one", times[1], count, &inside);
+    report(name, times, count, &all);
+    free(found);
+}
+
+static void ask_points(const char *name, const leafless_solid *solid, const leafless_frame *frame,
+                       const double *points, size_t count, size_t size, const leafless_options *options) {
+    double times[ROUNDS];
+    leafless_membership *answers = (leafless_membership *)room_for(size, sizeof *answers);
+    sums all;
+    size_t i, k;
+    int round;
+    for (round = 0; round < ROUNDS; round++) {
+        const double start = now();
+        memset(&all, 0, sizeof all);
+        for (i = 0; i < count; i += size) {
+            check(leafless_solid_contains_many(solid, frame, &points[3 * i], size, options, answers));
+            for (k = 0; k < size; k++) {
+                all.count += answers[k] == LEAFLESS_MEMBERSHIP_INSIDE;
+                all.undecided += answers[k] == LEAFLESS_MEMBERSHIP_UNDECIDED;
+            }
+        }
+        times[round] = now() - start;
+    }
+    report(name, times, count, &all);
+    free(answers);
+}
+
+static void as_asked(const question_ray *rays, size_t count, leafless_ray *asked) {
+    size_t i;
+    int axis;
+    for (i = 0; i < count; i++) {
+        for (axis = 0; axis < 3; axis++) {
+            asked[i].origin_model[axis] = rays[i].from[axis];
+            asked[i].direction_model[axis] = rays[i].along[axis];
+        }
+        asked[i].t_last = INFINITY;
+    }
 }
 
 int main(int argc, char **argv) {
@@ -111,10 +149,13 @@ int main(int argc, char **argv) {
     leafless_frame frame;
     leafless_source file;
     double min[3], max[3], extent[3];
-    question_ray *rays = (question_ray *)malloc(count * sizeof *rays);
-    question_point *points = (question_point *)malloc(count * sizeof *points);
+    question_ray *rays = (question_ray *)room_for(count, sizeof *rays);
+    question_point *points = (question_point *)room_for(count, sizeof *points);
+    leafless_ray *asked = (leafless_ray *)room_for(count, sizeof *asked);
+    double *places = (double *)room_for(count, 3 * sizeof *places), tolerance;
+    size_t i;
     int axis;
-    if (argc < 2 || count == 0 || rays == NULL || points == NULL) {
+    if (argc < 2 || count == 0) {
         fprintf(stderr, "which mesh?\n");
         return 1;
     }
@@ -137,15 +178,31 @@ int main(int argc, char **argv) {
            (unsigned long long)sum_of_bits(points, count * sizeof *points));
 
     rays_from_afar(min, max, count, rays);
-    ask_rays("rays from afar, one by one", solid, &frame, rays, count, &options);
+    as_asked(rays, count, asked);
+    ask_rays("rays from afar, one by one", solid, &frame, asked, count, 1, &options);
+    ask_rays("rays from afar, in a batch", solid, &frame, asked, count, count, &options);
     rays_from_within(min, max, count, rays);
-    ask_rays("rays from within, one by one", solid, &frame, rays, count, &options);
-    ask_points(solid, &frame, points, count, 1e-9 * length_of(extent), &options);
+    as_asked(rays, count, asked);
+    ask_rays("rays from within, one by one", solid, &frame, asked, count, 1, &options);
+    ask_rays("rays from within, in a batch", solid, &frame, asked, count, count, &options);
+
+    for (i = 0; i < count; i++) {
+        for (axis = 0; axis < 3; axis++) {
+            places[3 * i + axis] = points[i].at[axis];
+        }
+    }
+    tolerance = 1e-9 * length_of(extent);
+    ask_distances("distances, one by one", solid, &frame, places, count, 1, tolerance, &options);
+    ask_distances("distances, in a batch", solid, &frame, places, count, count, tolerance, &options);
+    ask_points("points, one by one", solid, &frame, places, count, 1, &options);
+    ask_points("points, in a batch", solid, &frame, places, count, count, &options);
 
     leafless_solid_free(solid);
     leafless_mesh_free(sewn);
     leafless_mesh_free(mesh);
     free(rays);
     free(points);
+    free(asked);
+    free(places);
     return 0;
 }
