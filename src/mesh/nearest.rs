@@ -192,10 +192,12 @@ impl TriangleTree<'_> {
             point,
             scaled,
             single: Single::new(&scaled),
+            // The mesh lies within 2 of the centre. (Sums of three ways are at most three times as long as the longest.)
+            rounding: ROUNDING * 20.0 * (4.0 + dot(&scaled, &scaled)),
             wanted,
             is_certified,
             best: None,
-            until: f32::INFINITY,
+            until: key(f32::MAX, LAST),
             lower: f64::INFINITY,
         };
         if let Some(triangle) = hint {
@@ -285,12 +287,14 @@ struct Search<'a, W> {
     scaled: Point,
     /// The same, unless it is far away.
     single: Option<Single>,
+    /// More than rounding can change in a product of sums of ways to a triangle's corners, and in a square of a distance.
+    rounding: f64,
     wanted: W,
     /// Whether bounds of true distances are asked for.
     is_certified: bool,
     best: Option<NearestPoint>,
-    /// No less than the square of the best one's distance.
-    until: f32,
+    /// The [`key`] of parts that are no nearer than the best one, or of the furthest ones.
+    until: u32,
     /// No triangle that was looked at is nearer; those that were left out are not nearer than the best.
     lower: f64,
 }
@@ -322,51 +326,35 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
         })
     }
 
-    #[inline(always)]
-    fn may_hold_better(&self, bound: f32) -> bool {
-        bound <= self.until
-    }
-
     /// Looks at nearer parts first.
     fn run(&mut self) {
-        let mut later = [(0.0, Place { level: 0, number: 0 }); LATER];
+        // (What is too far away is written, too, and then written over.)
+        let mut later = [(0, Place { level: 0, number: 0 }); LATER + 1];
         let mut count = 0;
         let mut next = self.tree.root();
         while let Some(place) = next {
             let bounds = self.bounds(self.tree.node(place));
-            let mut near = [(0.0, 0); WIDTH];
-            let mut parts = 0;
-            for (k, &bound) in bounds.iter().enumerate() {
-                if bound < f32::INFINITY && self.may_hold_better(bound) {
-                    // The nearest last.
-                    let mut at = parts;
-                    while at > 0 && near[at - 1].0 < bound {
-                        near[at] = near[at - 1];
-                        at -= 1;
-                    }
-                    near[at] = (bound, k);
-                    parts += 1;
-                }
-            }
+            // Without branches, which nobody can foretell: the nearest last.
+            let keys = descending(array(|k| key(bounds[k], k as u32)));
             if place.level == 0 {
-                for &(bound, k) in near[..parts].iter().rev() {
-                    if self.may_hold_better(bound)
-                        && let Some(triangle) = self.tree.triangle(place, k)
+                for key in keys.into_iter().rev() {
+                    if key <= self.until
+                        && let Some(triangle) = self.tree.triangle(place, part(key))
                     {
                         self.look_at(triangle);
                     }
                 }
             } else {
-                for &(bound, k) in &near[..parts] {
-                    later[count] = (bound, place.child(k));
-                    count += 1;
+                for key in keys {
+                    later[count] = (key, place.child(part(key)));
+                    count += usize::from(key <= self.until);
                 }
             }
             next = loop {
                 let Some(last) = count.checked_sub(1) else { return };
                 count = last;
-                let (bound, place) = later[last];
-                if self.may_hold_better(bound) {
+                let (key, place) = later[last];
+                if key <= self.until {
                     break Some(place);
                 }
             };
@@ -381,17 +369,17 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
         let scale = self.tree.grid.scale();
         let from: [Point; 3] = corners(self.mesh, triangle)
             .map(|corner| array(|axis| (self.point[axis] - corner[axis]) * scale));
-        if self.best.is_some_and(|best| is_beyond(&from, best.square)) {
+        if self.best.is_some_and(|best| is_beyond(&from, best.square, self.rounding)) {
             return;
         }
         let corners = Corners::of(self.mesh, triangle, scale);
-        let from = corners.from(&self.point);
-        let (square, weights) = corners.nearest_to(&from);
+        let (square, weights) = corners.nearest_to(&corners.corners.map(|corner| from[corner]));
         let is_better = |best: &NearestPoint| (square, triangle) < (best.square, best.triangle);
         if self.best.as_ref().is_none_or(is_better) {
             self.best = Some(NearestPoint { triangle, weights, square, lower: 0.0 });
             // (Rounded up.)
-            self.until = (square * (1.0 + 1.0 / (1 << 20) as f64)) as f32;
+            let until = square * (1.0 + 1.0 / (1 << 20) as f64);
+            self.until = key(until.min(LARGEST) as f32, LAST);
         }
         if self.is_certified {
             let distance = sqrt(square);
@@ -400,16 +388,39 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
     }
 }
 
-/// Whether a plane across the way to a triangle's centroid tells that its computed distance is greater than the
-/// root of `square`; `from` leads from the corners to the point.
+/// The number of a node's last part.
+const LAST: u32 = WIDTH as u32 - 1;
+
+/// A part of a node with a bound that is not negative, as a number: first by the bound, rounded down, then by the part.
 #[inline(always)]
-fn is_beyond(from: &[Point; 3], square: f64) -> bool {
+fn key(bound: f32, part: u32) -> u32 {
+    bound.to_bits() & !LAST | part
+}
+
+/// The part that a key is of.
+#[inline(always)]
+fn part(key: u32) -> usize {
+    (key & LAST) as usize
+}
+
+/// Four numbers in descending order.
+#[inline(always)]
+fn descending(mut numbers: [u32; WIDTH]) -> [u32; WIDTH] {
+    for [i, j] in [[0, 1], [2, 3], [0, 2], [1, 3], [1, 2]] {
+        let (a, b) = (numbers[i], numbers[j]);
+        (numbers[i], numbers[j]) = (a.max(b), a.min(b));
+    }
+    numbers
+}
+
+/// Whether a plane across the way to a triangle's centroid tells that its computed distance is greater than the
+/// root of `square`; `from` leads from the corners to the point. `rounding` is more than rounding changes in squares of lengths.
+#[inline(always)]
+fn is_beyond(from: &[Point; 3], square: f64, rounding: f64) -> bool {
     let [a, b, c] = from;
     let way: Point = array(|axis| a[axis] + b[axis] + c[axis]);
     let length = dot(&way, &way);
     let nearest = dot(&way, a).min(dot(&way, b)).min(dot(&way, c));
-    // More than rounding can change here and in a computed distance, both times the length of the way.
-    let rounding = ROUNDING * (length + dot(a, a).max(dot(b, b)).max(dot(c, c)));
     let nearest = nearest - rounding;
     nearest > 0.0 && nearest * nearest * (1.0 - 1e-9) > square * length
 }
@@ -420,6 +431,11 @@ struct Corners {
     /// Which corners of the triangle they are.
     corners: [usize; 3],
     scale: f64,
+    /// From the first corner to the second and third one, and from the second to the third one.
+    edges: [Edge; 3],
+    base: Base,
+    /// The square of the base times the height.
+    area: f64,
 }
 
 impl Corners {
@@ -432,8 +448,14 @@ impl Corners {
                 corners.swap(a, b);
             }
         }
-        let at = corners.map(|corner| mesh.vertices()[vertices[corner] as usize]);
-        Corners { at, corners, scale }
+        let at: [Point; 3] = corners.map(|corner| mesh.vertices()[vertices[corner] as usize]);
+        let edges = EDGES.map(|[from, to]| {
+            let way = array(|axis| (at[to][axis] - at[from][axis]) * scale);
+            Edge { way, square: dot(&way, &way) }
+        });
+        let base = Base::of(&edges);
+        let area = dot(&base.normal, &base.normal);
+        Corners { at, corners, scale, edges, base, area }
     }
 
     /// The ways from the corners to a point.
@@ -442,21 +464,11 @@ impl Corners {
         self.at.map(|corner| array(|axis| (point[axis] - corner[axis]) * self.scale))
     }
 
-    /// The edges from the first corner to the second and third one, and from the second to the third one.
-    #[inline(always)]
-    fn edges(&self) -> [Edge; 3] {
-        EDGES.map(|[from, to]| {
-            let way = array(|axis| (self.at[to][axis] - self.at[from][axis]) * self.scale);
-            Edge { way, square: dot(&way, &way) }
-        })
-    }
-
     /// How much more than the true distance the computed one may be, for points whose computed distance is at
     /// most this; and what a computed one may be less besides.
+    #[inline(always)]
     fn error(&self, distance: f64) -> f64 {
-        let edges = self.edges();
-        let Base { square, normal, .. } = Base::of(&edges);
-        let area = dot(&normal, &normal);
+        let (area, square) = (self.area, self.base.square);
         let length = sqrt(square);
         let height = sqrt(area) / length;
         let rounding = ROUNDING * (distance + 3.0 * length);
@@ -467,17 +479,15 @@ impl Corners {
 
     /// How much less than the true distance to the triangle the computed one may be.
     fn excess(&self, distance: f64) -> f64 {
-        let longest = self.edges().iter().fold(0.0, |most: f64, edge| most.max(edge.square));
-        ROUNDING * (distance + 3.0 * sqrt(longest))
+        ROUNDING * (distance + 3.0 * sqrt(self.base.square))
     }
 
     /// The square of the distance of the point to which these ways lead from the corners, and the weights of the
     /// triangle's corners in the nearest point.
     #[inline(always)]
     fn nearest_to(&self, from: &[Point; 3]) -> (f64, [f64; 3]) {
-        let edges = self.edges();
-        let Base { corners: [start, end, apex], way: base, square: length, side, normal } = Base::of(&edges);
-        let area = dot(&normal, &normal);
+        let Corners { edges, area, .. } = *self;
+        let Base { corners: [start, end, apex], way: base, square: length, side, normal } = self.base;
         let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);
         if area > LOST {
             let offset = &from[start];
@@ -536,6 +546,7 @@ struct Edge {
 }
 
 /// The longest edge of a triangle; of equal ones the first.
+#[derive(Clone, Copy)]
 struct Base {
     /// Its start, its end, and the corner that is not on it.
     corners: [usize; 3],
