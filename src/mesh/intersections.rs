@@ -2,12 +2,16 @@
 //!
 //! Two triangles of a surface may have a vertex or an edge in common. They *intersect* if they have any other point
 //! in common. All decisions are exact signs. Triangles without area are left out.
+//!
+//! Neighbours in one plane, or nearly so, are told apart by a line or plane between them as a rule: exact signs would have to find
+//! out that they are zero.
 
-use super::signs::{Point, cross_sign, volume_sign};
+use super::signs::{Point, cross_sign, sure_volume_sign, volume_sign};
 use super::tree::{Search, Steps};
 use super::triangle_mesh::TriangleMesh;
 use crate::control::Control;
 use crate::error::Error;
+use crate::lattice::exact::sign;
 use crate::memory;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
@@ -108,32 +112,108 @@ pub(super) fn corners(mesh: &TriangleMesh, triangle: u32) -> [Point; 3] {
 
 /// Whether two triangles with area intersect.
 fn intersect(mesh: &TriangleMesh, a: u32, b: u32) -> bool {
-    let [of_a, of_b] = [a, b].map(|t| mesh.triangles()[t as usize]);
+    let [a, b] = [a, b].map(|t| Facet { vertices: mesh.triangles()[t as usize], at: corners(mesh, t) });
+    let (of_a, of_b) = (a.vertices, b.vertices);
     // For each corner of `b` that of `a` which it is.
     let same: [Option<usize>; 3] = array(|k| of_a.iter().position(|&vertex| vertex == of_b[k]));
-    let (a, b) = (corners(mesh, a), corners(mesh, b));
     match same {
         [None, None, None] => meet(&a, &b),
         [Some(i), None, None] => meet_beyond_vertex(&a, i, &b, 0),
         [None, Some(i), None] => meet_beyond_vertex(&a, i, &b, 1),
         [None, None, Some(i)] => meet_beyond_vertex(&a, i, &b, 2),
-        [Some(i), Some(j), None] => fold(&a, 3 - i - j, &b[2]),
-        [Some(i), None, Some(j)] => fold(&a, 3 - i - j, &b[1]),
-        [None, Some(i), Some(j)] => fold(&a, 3 - i - j, &b[0]),
+        [Some(i), Some(j), None] => fold(&a, 3 - i - j, &b, 2),
+        [Some(i), None, Some(j)] => fold(&a, 3 - i - j, &b, 1),
+        [None, Some(i), Some(j)] => fold(&a, 3 - i - j, &b, 0),
         [Some(_), Some(_), Some(_)] => true,
     }
 }
 
+/// A triangle: its vertices, and where they are.
+struct Facet {
+    vertices: [u32; 3],
+    at: [Point; 3],
+}
+
+/// What rounding may change in a sum of two or three products of differences, as a part of the magnitudes.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Whether two triangles surely have nothing in common but vertices, or an edge, of both: seen along an axis there is a line
+/// between them. It runs along an edge, and of the other triangle at most common vertices lie on it. Not told where rounding may
+/// decide it.
+fn is_line_between(a: &Facet, b: &Facet) -> bool {
+    let [p, q, r] = &a.at;
+    let [u, v]: [Point; 2] = [q, r].map(|x| array(|axis| x[axis] - p[axis]));
+    let normal: Point = array(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        (u[i] * v[j] - u[j] * v[i]).abs()
+    });
+    // Along the axis along which the first is seen best.
+    let axes = if normal[0] > normal[1] && normal[0] > normal[2] {
+        [1, 2]
+    } else if normal[1] > normal[2] {
+        [2, 0]
+    } else {
+        [0, 1]
+    };
+    let [seen_a, seen_b] = [a, b].map(|facet| facet.at.map(|p| axes.map(|axis| p[axis])));
+    let (a, b) = ((a.vertices, &seen_a), (b.vertices, &seen_b));
+    is_edge_between(a, b) || is_edge_between(b, a)
+}
+
+/// The same of the lines along the first one's edges.
+fn is_edge_between((of_a, a): ([u32; 3], &[[f64; 2]; 3]), (of_b, b): ([u32; 3], &[[f64; 2]; 3])) -> bool {
+    (0..3).any(|k| {
+        let [from, to, lone] = [k, (k + 1) % 3, (k + 2) % 3];
+        let side = turn(&a[from], &a[to], &a[lone]);
+        let is_on_edge = |vertex: u32| vertex == of_a[from] || vertex == of_a[to];
+        side != 0 && (0..3).all(|n| is_on_edge(of_b[n]) || turn(&a[from], &a[to], &b[n]) == -side)
+    })
+}
+
+/// On which side of a line through two points a third one lies; 0 if rounding may decide it.
+#[inline(always)]
+fn turn(s: &[f64; 2], t: &[f64; 2], x: &[f64; 2]) -> i32 {
+    let (left, right) = ((t[0] - s[0]) * (x[1] - s[1]), (t[1] - s[1]) * (x[0] - s[0]));
+    let value = left - right;
+    if value.abs() > ROUNDING * (left.abs() + right.abs()) { sign(value) } else { 0 }
+}
+
+/// Whether two cones at `v` surely have no direction in common: the plane across the way from the middle of one to that of the
+/// other lies between them. Not told where rounding may decide it.
+fn is_plane_between(v: &Point, a: [&Point; 2], b: [&Point; 2]) -> bool {
+    let [a, b]: [[Point; 2]; 2] = [a, b].map(|ends| ends.map(|p| array(|axis| p[axis] - v[axis])));
+    let way: Point = array(|axis| (a[0][axis] + a[1][axis]) - (b[0][axis] + b[1][axis]));
+    let is_ahead = |p: &Point, sign: f64| {
+        let products: Point = array(|axis| way[axis] * p[axis]);
+        let [x, y, z] = products.map(f64::abs);
+        sign * (products[0] + products[1] + products[2]) > ROUNDING * (x + y + z)
+    };
+    a.iter().all(|p| is_ahead(p, 1.0)) && b.iter().all(|p| is_ahead(p, -1.0))
+}
+
 /// Whether two triangles with a common edge meet beyond it. `lone` is the corner of the first that is not on the
-/// edge, `p` that of the second one.
-fn fold(a: &[Point; 3], lone: usize, p: &Point) -> bool {
-    let [c, d, e] = array(|k| &a[(lone + k) % 3]);
-    if volume_sign(c, d, e, p) != 0 {
+/// edge, `other` that of the second one.
+fn fold(a: &Facet, lone: usize, b: &Facet, other: usize) -> bool {
+    let ([c, d, e], p) = (array(|k| &a.at[(lone + k) % 3]), &b.at[other]);
+    if sides([c, d, e], [p], || is_line_between(a, b)) != Some([0]) {
         return false;
     }
     // In one plane: both on the same side of the edge.
-    let axis = axis_of(a);
+    let axis = axis_of(&a.at);
     cross_sign([d, e], [d, c], axis) == cross_sign([d, e], [d, p], axis)
+}
+
+/// On which sides of the plane through three points others lie. Nothing where rounding may decide it, and the triangles `are_apart`.
+fn sides<const N: usize>(
+    [a, b, c]: [&Point; 3],
+    points: [&Point; N],
+    are_apart: impl FnOnce() -> bool,
+) -> Option<[i32; N]> {
+    let sure = points.map(|p| sure_volume_sign(a, b, c, p));
+    if sure.contains(&None) && are_apart() {
+        return None;
+    }
+    Some(array(|k| sure[k].unwrap_or_else(|| volume_sign(a, b, c, points[k]))))
 }
 
 /// An axis along which the triangle is seen with an area.
@@ -145,16 +225,17 @@ pub(super) fn axis_of([a, b, c]: &[Point; 3]) -> usize {
 ///
 /// Each triangle begins, at the vertex, as a cone between two edges. They meet beyond the vertex if and only if the
 /// cones have a direction in common.
-fn meet_beyond_vertex(a: &[Point; 3], i: usize, b: &[Point; 3], k: usize) -> bool {
-    let [v, p, q] = array(|n| &a[(i + n) % 3]);
-    let [r, s] = array(|n| &b[(k + 1 + n) % 3]);
+fn meet_beyond_vertex(a: &Facet, i: usize, b: &Facet, k: usize) -> bool {
+    let [v, p, q] = array(|n| &a.at[(i + n) % 3]);
+    let [r, s] = array(|n| &b.at[(k + 1 + n) % 3]);
     // On which side of the first plane the second cone's edges lie, and the other way round.
-    let of_first = [r, s].map(|x| volume_sign(v, p, q, x));
+    let are_apart = || is_plane_between(v, [p, q], [r, s]) || is_line_between(a, b);
+    let Some(of_first) = sides([v, p, q], [r, s], are_apart) else { return false };
     if of_first[0] * of_first[1] > 0 {
         return false;
     }
     if of_first == [0, 0] {
-        return cones_overlap(v, [p, q], [r, s], axis_of(a));
+        return cones_overlap(v, [p, q], [r, s], axis_of(&a.at));
     }
     let of_second = [p, q].map(|x| volume_sign(v, r, s, x));
     if of_second[0] * of_second[1] > 0 {
@@ -180,16 +261,14 @@ fn cones_overlap(v: &Point, a: [&Point; 2], b: [&Point; 2], axis: usize) -> bool
 }
 
 /// Whether two triangles meet.
-fn meet(a: &[Point; 3], b: &[Point; 3]) -> bool {
-    let sides = |of: &[Point; 3], points: &[Point; 3]| -> [i32; 3] {
-        array(|k| volume_sign(&of[0], &of[1], &of[2], &points[k]))
-    };
+fn meet(a: &Facet, b: &Facet) -> bool {
     let is_apart = |sides: [i32; 3]| sides[0] != 0 && sides == [sides[0]; 3];
-    let of_b = sides(a, b);
+    let Some(of_b) = sides(a.at.each_ref(), b.at.each_ref(), || is_line_between(a, b)) else { return false };
     if is_apart(of_b) {
         return false;
     }
-    let of_a = sides(b, a);
+    let (a, b) = (&a.at, &b.at);
+    let of_a = a.each_ref().map(|p| volume_sign(&b[0], &b[1], &b[2], p));
     if is_apart(of_a) {
         return false;
     }
