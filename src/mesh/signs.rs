@@ -12,8 +12,8 @@ pub(super) fn volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> i32 {
     sure_volume_sign(a, b, c, d).unwrap_or_else(|| exact_volume_sign(a, [b, c, d]))
 }
 
-/// The same, unless rounding may decide it. (Not inlined: within other functions its loop stays one.)
-#[inline(never)]
+/// The same, unless rounding may decide it.
+#[inline]
 pub(super) fn sure_volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> Option<i32> {
     let [u, v, w]: [Point; 3] = [b, c, d].map(|p| array(|axis| p[axis] - a[axis]));
     let (mut value, mut magnitude) = (0.0, 0.0);
