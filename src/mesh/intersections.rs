@@ -106,32 +106,29 @@ pub(super) fn intersections(
     })
 }
 
+#[inline(always)]
 pub(super) fn corners(mesh: &TriangleMesh, triangle: u32) -> [Point; 3] {
     mesh.triangles()[triangle as usize].map(|v| mesh.vertices()[v as usize])
 }
 
 /// Whether two triangles with area intersect.
 fn intersect(mesh: &TriangleMesh, a: u32, b: u32) -> bool {
-    let [a, b] = [a, b].map(|t| Facet { vertices: mesh.triangles()[t as usize], at: corners(mesh, t) });
-    let (of_a, of_b) = (a.vertices, b.vertices);
+    let both = [a, b];
+    let [of_a, of_b] = both.map(|t| mesh.triangles()[t as usize]);
     // For each corner of `b` that of `a` which it is.
     let same: [Option<usize>; 3] = array(|k| of_a.iter().position(|&vertex| vertex == of_b[k]));
+    let (a, b) = (corners(mesh, a), corners(mesh, b));
+    let is_line_between = || is_line_between(mesh, both);
     match same {
-        [None, None, None] => meet(&a, &b),
-        [Some(i), None, None] => meet_beyond_vertex(&a, i, &b, 0),
-        [None, Some(i), None] => meet_beyond_vertex(&a, i, &b, 1),
-        [None, None, Some(i)] => meet_beyond_vertex(&a, i, &b, 2),
-        [Some(i), Some(j), None] => fold(&a, 3 - i - j, &b, 2),
-        [Some(i), None, Some(j)] => fold(&a, 3 - i - j, &b, 1),
-        [None, Some(i), Some(j)] => fold(&a, 3 - i - j, &b, 0),
+        [None, None, None] => meet(&a, &b, is_line_between),
+        [Some(i), None, None] => meet_beyond_vertex(&a, i, &b, 0, is_line_between),
+        [None, Some(i), None] => meet_beyond_vertex(&a, i, &b, 1, is_line_between),
+        [None, None, Some(i)] => meet_beyond_vertex(&a, i, &b, 2, is_line_between),
+        [Some(i), Some(j), None] => fold(&a, 3 - i - j, &b[2], is_line_between),
+        [Some(i), None, Some(j)] => fold(&a, 3 - i - j, &b[1], is_line_between),
+        [None, Some(i), Some(j)] => fold(&a, 3 - i - j, &b[0], is_line_between),
         [Some(_), Some(_), Some(_)] => true,
     }
-}
-
-/// A triangle: its vertices, and where they are.
-struct Facet {
-    vertices: [u32; 3],
-    at: [Point; 3],
 }
 
 /// What rounding may change in a sum of two or three products of differences, as a part of the magnitudes.
@@ -139,9 +136,13 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Whether two triangles surely have nothing in common but vertices, or an edge, of both: seen along an axis there is a line
 /// between them. It runs along an edge, and of the other triangle at most common vertices lie on it. Not told where rounding may
-/// decide it.
-fn is_line_between(a: &Facet, b: &Facet) -> bool {
-    let [p, q, r] = &a.at;
+/// decide it. (Most pairs never come here: what it needs is fetched again, so that they do not carry it along.)
+#[cold]
+#[inline(never)]
+fn is_line_between(mesh: &TriangleMesh, both: [u32; 2]) -> bool {
+    let [of_a, of_b] = both.map(|t| mesh.triangles()[t as usize]);
+    let (a, b) = (corners(mesh, both[0]), corners(mesh, both[1]));
+    let [p, q, r] = &a;
     let [u, v]: [Point; 2] = [q, r].map(|x| array(|axis| x[axis] - p[axis]));
     let normal: Point = array(|k| {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
@@ -155,8 +156,8 @@ fn is_line_between(a: &Facet, b: &Facet) -> bool {
     } else {
         [0, 1]
     };
-    let [seen_a, seen_b] = [a, b].map(|facet| facet.at.map(|p| axes.map(|axis| p[axis])));
-    let (a, b) = ((a.vertices, &seen_a), (b.vertices, &seen_b));
+    let [seen_a, seen_b] = [a, b].map(|corners| corners.map(|p| axes.map(|axis| p[axis])));
+    let (a, b) = ((of_a, &seen_a), (of_b, &seen_b));
     is_edge_between(a, b) || is_edge_between(b, a)
 }
 
@@ -180,6 +181,7 @@ fn turn(s: &[f64; 2], t: &[f64; 2], x: &[f64; 2]) -> i32 {
 
 /// Whether two cones at `v` surely have no direction in common: the plane across the way from the middle of one to that of the
 /// other lies between them. Not told where rounding may decide it.
+#[cold]
 fn is_plane_between(v: &Point, a: [&Point; 2], b: [&Point; 2]) -> bool {
     let [a, b]: [[Point; 2]; 2] = [a, b].map(|ends| ends.map(|p| array(|axis| p[axis] - v[axis])));
     let way: Point = array(|axis| (a[0][axis] + a[1][axis]) - (b[0][axis] + b[1][axis]));
@@ -192,18 +194,19 @@ fn is_plane_between(v: &Point, a: [&Point; 2], b: [&Point; 2]) -> bool {
 }
 
 /// Whether two triangles with a common edge meet beyond it. `lone` is the corner of the first that is not on the
-/// edge, `other` that of the second one.
-fn fold(a: &Facet, lone: usize, b: &Facet, other: usize) -> bool {
-    let ([c, d, e], p) = (array(|k| &a.at[(lone + k) % 3]), &b.at[other]);
-    if sides([c, d, e], [p], || is_line_between(a, b)) != Some([0]) {
+/// edge, `p` that of the second one.
+fn fold(a: &[Point; 3], lone: usize, p: &Point, is_line_between: impl FnOnce() -> bool) -> bool {
+    let [c, d, e] = array(|k| &a[(lone + k) % 3]);
+    if sides([c, d, e], [p], is_line_between) != Some([0]) {
         return false;
     }
     // In one plane: both on the same side of the edge.
-    let axis = axis_of(&a.at);
+    let axis = axis_of(a);
     cross_sign([d, e], [d, c], axis) == cross_sign([d, e], [d, p], axis)
 }
 
 /// On which sides of the plane through three points others lie. Nothing where rounding may decide it, and the triangles `are_apart`.
+#[inline(always)]
 fn sides<const N: usize>(
     [a, b, c]: [&Point; 3],
     points: [&Point; N],
@@ -225,17 +228,23 @@ pub(super) fn axis_of([a, b, c]: &[Point; 3]) -> usize {
 ///
 /// Each triangle begins, at the vertex, as a cone between two edges. They meet beyond the vertex if and only if the
 /// cones have a direction in common.
-fn meet_beyond_vertex(a: &Facet, i: usize, b: &Facet, k: usize) -> bool {
-    let [v, p, q] = array(|n| &a.at[(i + n) % 3]);
-    let [r, s] = array(|n| &b.at[(k + 1 + n) % 3]);
+fn meet_beyond_vertex(
+    a: &[Point; 3],
+    i: usize,
+    b: &[Point; 3],
+    k: usize,
+    is_line_between: impl FnOnce() -> bool,
+) -> bool {
+    let [v, p, q] = array(|n| &a[(i + n) % 3]);
+    let [r, s] = array(|n| &b[(k + 1 + n) % 3]);
     // On which side of the first plane the second cone's edges lie, and the other way round.
-    let are_apart = || is_plane_between(v, [p, q], [r, s]) || is_line_between(a, b);
+    let are_apart = || is_plane_between(v, [p, q], [r, s]) || is_line_between();
     let Some(of_first) = sides([v, p, q], [r, s], are_apart) else { return false };
     if of_first[0] * of_first[1] > 0 {
         return false;
     }
     if of_first == [0, 0] {
-        return cones_overlap(v, [p, q], [r, s], axis_of(&a.at));
+        return cones_overlap(v, [p, q], [r, s], axis_of(a));
     }
     let of_second = [p, q].map(|x| volume_sign(v, r, s, x));
     if of_second[0] * of_second[1] > 0 {
@@ -261,13 +270,12 @@ fn cones_overlap(v: &Point, a: [&Point; 2], b: [&Point; 2], axis: usize) -> bool
 }
 
 /// Whether two triangles meet.
-fn meet(a: &Facet, b: &Facet) -> bool {
+fn meet(a: &[Point; 3], b: &[Point; 3], is_line_between: impl FnOnce() -> bool) -> bool {
     let is_apart = |sides: [i32; 3]| sides[0] != 0 && sides == [sides[0]; 3];
-    let Some(of_b) = sides(a.at.each_ref(), b.at.each_ref(), || is_line_between(a, b)) else { return false };
+    let Some(of_b) = sides(a.each_ref(), b.each_ref(), is_line_between) else { return false };
     if is_apart(of_b) {
         return false;
     }
-    let (a, b) = (&a.at, &b.at);
     let of_a = a.each_ref().map(|p| volume_sign(&b[0], &b[1], &b[2], p));
     if is_apart(of_a) {
         return false;
