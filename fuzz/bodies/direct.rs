@@ -735,9 +735,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         (Membership::Outside, Some(truth)) => assert!(!truth, "not outside: {told}"),
         (Membership::Undecided, _) => {
             let is_in = scene.is_in_universe(&place) == Some(true);
-            // (Of a moved mesh nothing is known where a way out passes an edge; then the cells are asked.)
-            let is_known = is_in && scene.motion.is_none();
-            assert!(!is_known || all <= margin, "undecided: {told}");
+            assert!(!is_in || all <= margin, "undecided: {told}");
         }
         _ => {}
     }
@@ -751,12 +749,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         let size = distance.lower.abs().max(distance.upper.abs());
         let way = length(minus(near.point, p));
         assert!(from_triangle(facet, near.point) <= margin, "beside the triangle: {told}");
-        // (Where triangles intersect, the other side may be found only a little behind the nearest point.)
-        let depth = (distance.upper - distance.lower).min(1e-8 * (scene.size + size));
-        assert!(
-            to != DistanceTo::Boundary || (way - size).abs() <= margin + depth,
-            "beside the distance: {told}"
-        );
+        assert!(to != DistanceTo::Boundary || (way - size).abs() <= margin, "beside the distance: {told}");
         assert!(to != DistanceTo::Boundary || size >= all - margin, "nearer than any: {all} {told}");
         if let Some(truth) = truth {
             let (outside, inside) = match to {
@@ -766,8 +759,7 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             };
             assert!(!outside || !truth, "not outside: {told}");
             assert!(!inside || truth, "not inside: {told}");
-            // (Of a moved mesh nothing is known where a way out passes an edge.)
-            assert!(outside || inside || all <= margin || scene.motion.is_some(), "no side told: {told}");
+            assert!(outside || inside || all <= margin, "no side told: {told}");
         }
         // (From far away many points are as near, but for rounding.)
         if to == DistanceTo::Boundary && size < 1e6 * scene.size {
@@ -777,17 +769,13 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     }
 }
 
-/// Next to a nearest point, a little towards the middle of its triangle, the solid lies on one side; or, where the first of
-/// several triangles was named, next to another one of them.
-fn bounds_the_solid(scene: &Scene, point: Point, named: Facet, told: &str) {
-    let sides_of = |facet: Facet| {
-        let middle = at(|k| (facet[0][k] / 3.0 + facet[1][k] / 3.0) + facet[2][k] / 3.0);
-        sides(scene, at(|k| point[k] + 1e-3 * (middle[k] - point[k])), facet)
-    };
-    let may_bound = |facet: Facet| sides_of(facet).is_none_or(|sides| sides[0] != sides[1]);
-    let is_met = |facet: &&Facet| from_triangle(**facet, point) <= 1e-9 * scene.size;
-    let may_any = || scene.moved.iter().filter(is_met).any(|facet| *facet != named && may_bound(*facet));
-    assert!(may_bound(named) || may_any(), "no boundary: {:?} {told}", sides_of(named));
+/// Next to a nearest point, a little towards the middle of its triangle, the solid lies on one side.
+fn bounds_the_solid(scene: &Scene, point: Point, facet: Facet, told: &str) {
+    let middle = at(|k| (facet[0][k] / 3.0 + facet[1][k] / 3.0) + facet[2][k] / 3.0);
+    let inner = at(|k| point[k] + 1e-3 * (middle[k] - point[k]));
+    if let Some(sides) = sides(scene, inner, facet) {
+        assert!(sides[0] != sides[1], "no boundary: {sides:?} {told}");
+    }
 }
 
 /// Whether the solid lies on either side of a point of a triangle, if nothing else is near.

@@ -56,7 +56,7 @@ pub(crate) struct NearestPoint {
     /// Of the triangle's corners; none is negative.
     pub weights: [f64; 3],
     /// The square of the computed distance, in the scale of the tree.
-    square: f64,
+    pub square: f64,
     /// No triangle is nearer than that, in the scale of the tree.
     lower: f64,
 }

@@ -143,6 +143,10 @@ impl TriangleTree<'_> {
         })
     }
 
+    pub(crate) fn corners(&self, triangle: u32) -> [Point; 3] {
+        corners(self.mesh, triangle)
+    }
+
     /// Whether two triangles with area lie in one plane.
     pub(crate) fn are_coplanar(&self, one: u32, other: u32) -> bool {
         let [a, b, c] = corners(self.mesh, one);

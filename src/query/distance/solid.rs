@@ -38,7 +38,8 @@ pub struct PointDistance {
 pub struct NearPoint {
     /// The point (model units), but for rounding: the nearest, or one whose distance lies in the interval as well.
     pub point: [f64; 3],
-    /// The number of its surface: of a mesh, the triangle's.
+    /// The number of its surface: of a mesh, the triangle's. Of several on which the point lies, one that bounds the solid next to
+    /// it, if one is found.
     pub surface: Option<u32>,
 }
 
@@ -82,7 +83,8 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// A closed mesh in the universe answers each point from a tree over its triangles, in microseconds and to the rounding of
 /// doubles (some 10^-12 of the distance and of the triangle), and tells the nearest point and its triangle. The first question
 /// makes the tree, and finds out which triangles bound the solid ([`MeshSolid`](crate::MeshSolid)). Where the nearest triangle
-/// intersects another one and lies within the solid or outside of it, cells are asked.
+/// intersects another one, the interval is up to 2^-31 of the mesh's extent wide; where it then lies within the solid or outside of
+/// it, cells are asked.
 ///
 /// A point takes some dozen splits a level as a rule. It takes more the more of the surface is about as near: a ball's
 /// centre has no better bounds than cells as large as the budget allows. The answers are the same for any number of

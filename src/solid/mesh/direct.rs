@@ -17,7 +17,7 @@ use super::rim::{DIRECTIONS, Rim};
 use crate::error::Error;
 use crate::lattice::{Bounds, Interval, Ray, axes, valid};
 use crate::memory;
-use crate::mesh::{FillRule, Hit, Loops, Shift, Sides, TriangleMesh, TriangleTree, Wanted};
+use crate::mesh::{FillRule, Hit, Loops, NearestPoint, Shift, Sides, TriangleMesh, TriangleTree, Wanted};
 use crate::solid::{BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrace};
 use alloc::vec::Vec;
 use glam::DVec3;
@@ -195,9 +195,26 @@ impl Tracer<'_> {
             let is_apart = near.is_some_and(|(_, distance)| distance.lower > apart);
             return if is_apart { self.is_inside(direct, &at) } else { Ok(None) };
         }
-        let ray = Ray::along_axis(*point, axis, sign);
+        let shortest = Ray::along_axis(*point, axis, sign);
+        let found = self.is_inside_by(direct, &shortest)?;
+        if found.is_some() || self.tree.displacement() == 0.0 {
+            return Ok(found);
+        }
+        // Of a moved mesh nothing is known where a way out comes near to an edge. Another one may pass none.
+        for way in DIRECTIONS {
+            let ray = Ray { from: *point, direction: way.to_array().map(|c| [c, 0.0]), last: f64::INFINITY };
+            let found = self.is_inside_by(direct, &ray)?;
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether the solid holds the point at which a ray begins; nothing if that may lie on the surface, or the ray does not tell.
+    fn is_inside_by(&self, direct: &mut Direct, ray: &Ray) -> Result<Option<bool>, Error> {
         let hits = &mut direct.hits;
-        if !self.tree.pierced(&ray, Wanted::All, Shift::ALL[0], hits)?
+        if !self.tree.pierced(ray, Wanted::All, Shift::ALL[0], hits)?
             || hits.iter().any(|hit| hit.t.lower <= 0.0)
         {
             return Ok(None);
@@ -304,16 +321,22 @@ impl Tracer<'_> {
     ) -> Result<Option<NearestSurface>, Error> {
         let (tree, displacement) = (&self.tree, self.tree.displacement());
         let may_bound = |triangle: u32| !sides.is_flat(triangle) && sides.of(triangle) != Some(0);
-        let Some((near, mut distance)) = tree.nearest_of(point, may_bound) else { return Ok(None) };
-        let found = tree.point_of(&near);
+        let Some((mut near, mut distance)) = tree.nearest_of(point, may_bound) else { return Ok(None) };
         let is_inside = self.is_inside(direct, point)?;
         if sides.of(near.triangle).is_none() {
             // It may lie within the solid, or outside of it.
-            match self.across(direct, point, is_inside, &found)? {
-                Some(most) if most >= distance.lower => distance = Interval::between(distance.lower, most),
+            let lower = distance.lower;
+            (near, distance) = self.bounding(direct, sides, point, may_bound, (near, distance))?;
+            let most = match sides.of(near.triangle) {
+                Some(_) => Some(distance.upper),
+                None => self.across(direct, point, is_inside, &near)?,
+            };
+            match most {
+                Some(most) if most >= lower => distance = Interval::between(lower, most),
                 _ => return Ok(None),
             }
         }
+        let found = tree.point_of(&near);
         if displacement > 0.0 {
             // Along each axis the surface may lie that far from the mesh.
             let moved = Interval::exactly(3.0).root().times(Interval::exactly(displacement)).upper;
@@ -323,6 +346,48 @@ impl Tracer<'_> {
         Ok(Some(NearestSurface { distance, is_inside, point: found, surface: Some(near.triangle) }))
     }
 
+    /// Of the triangles that are as near as the first one: the first that bounds the solid all over, or next to which points on
+    /// both sides of the boundary are found. If there is none, the first.
+    fn bounding(
+        &self,
+        direct: &mut Direct,
+        sides: &Sides,
+        point: &[f64; 3],
+        may_bound: impl Fn(u32) -> bool,
+        first: (NearestPoint, Interval),
+    ) -> Result<(NearestPoint, Interval), Error> {
+        /// Triangles that are looked at.
+        const MOST: usize = 8;
+        let (mut seen, mut found) = ([u32::MAX; MOST], first);
+        for count in 0..MOST {
+            let (near, _) = &found;
+            if sides.of(near.triangle).is_some() || self.parts_the_solid(direct, near)? {
+                return Ok(found);
+            }
+            seen[count] = near.triangle;
+            let is_new = |triangle: u32| may_bound(triangle) && !seen[..=count].contains(&triangle);
+            match self.tree.nearest_of(point, is_new) {
+                Some(next) if next.0.square == first.0.square => found = next,
+                _ => break,
+            }
+        }
+        Ok(first)
+    }
+
+    /// Whether the solid surely lies on one side only of a triangle, next to one of its points, a little towards its middle.
+    fn parts_the_solid(&self, direct: &mut Direct, near: &NearestPoint) -> Result<bool, Error> {
+        let mut inner = *near;
+        inner.weights = near.weights.map(|w| w + (1.0 / 3.0 - w) / 1024.0);
+        let (inner, normal) = (self.tree.point_of(&inner), self.tree.normal(near.triangle));
+        let size = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let off = self.tree.extent() / (1 << 22) as f64;
+        let mut sides = [None; 2];
+        for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+            *side = self.is_inside(direct, &axes(|axis| inner[axis] + sign * off * (normal[axis] / size)))?;
+        }
+        Ok(matches!(sides, [Some(one), Some(other)] if one != other))
+    }
+
     /// A distance from a point within which there surely is a point on the other side of the boundary: hardly more than that of
     /// the surface's point `near`. Nothing if none is found.
     fn across(
@@ -330,20 +395,33 @@ impl Tracer<'_> {
         direct: &mut Direct,
         point: &[f64; 3],
         is_inside: Option<bool>,
-        near: &[f64; 3],
+        near: &NearestPoint,
     ) -> Result<Option<f64>, Error> {
         let Some(is_inside) = is_inside else { return Ok(None) };
-        let way = axes(|axis| near[axis] - point[axis]);
-        let length = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let size = near.iter().fold(self.tree.extent(), |most, c| most.max(c.abs()));
-        for digits in [44, 36, 28] {
-            let further = size / (1u64 << digits) as f64 / length;
-            let beyond = axes(|axis| near[axis] + further * way[axis]);
-            if self.is_inside(direct, &beyond)?.is_some_and(|inside| inside != is_inside) {
-                let exactly =
-                    |axis: usize| Interval::exactly(beyond[axis]).minus(Interval::exactly(point[axis]));
-                let [x, y, z] = axes(|axis| exactly(axis).square());
-                return Ok(Some(x.plus(y).plus(z).root().upper));
+        let ([a, b, c], normal) = (self.tree.corners(near.triangle), self.tree.normal(near.triangle));
+        let near = self.tree.point_of(near);
+        let longest = |way: &[f64; 3]| way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let unit = |way: [f64; 3]| {
+            let length = longest(&way);
+            way.map(|c| c / length)
+        };
+        let onward = unit(axes(|axis| near[axis] - point[axis]));
+        // Straight on behind a sharp edge the solid has ended again: there it lies behind the triangle, or in front of it.
+        let inward =
+            unit(axes(|axis| (a[axis] - near[axis]) + (b[axis] - near[axis]) + (c[axis] - near[axis])));
+        let normal = unit(normal);
+        let aside = |sign: f64| axes(|axis| inward[axis] + sign * 0.125 * normal[axis]);
+        let (extent, part) = (self.tree.extent(), |size: f64, digits: u32| size / (1u64 << digits) as f64);
+        let size = extent.max(longest(&near));
+        for further in [part(size, 44), part(size, 38), part(size, 38).max(part(extent, 32))] {
+            for way in [onward, aside(-1.0), aside(1.0)] {
+                let beyond = axes(|axis| near[axis] + further * way[axis]);
+                if self.is_inside(direct, &beyond)?.is_some_and(|inside| inside != is_inside) {
+                    let exactly =
+                        |axis: usize| Interval::exactly(beyond[axis]).minus(Interval::exactly(point[axis]));
+                    let [x, y, z] = axes(|axis| exactly(axis).square());
+                    return Ok(Some(x.plus(y).plus(z).root().upper));
+                }
             }
         }
         Ok(None)
