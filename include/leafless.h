@@ -3382,8 +3382,8 @@ typedef struct leafless_point_distance {
     uint64_t splits;  ///< How many times a cell was split.
     /// The nearest point of the boundary, but for rounding, if `has_nearest`; else zeros.
     double nearest_model[3];
-    /// The number of the surface that it lies on: of a closed mesh, the triangle's. UINT32_MAX if there is
-    /// none.
+    /// The number of the surface that it lies on: of a closed mesh, the triangle's; of several, one that
+    /// bounds the solid next to the point, if one is found. UINT32_MAX if there is none.
     uint32_t surface;
     leafless_stop_reason measured;  ///< Why the search ended.
     /// Whether the solid answered itself and told the nearest point: a closed mesh within the universe does,

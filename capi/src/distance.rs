@@ -43,7 +43,8 @@ pub struct leafless_point_distance {
     pub splits: u64,
     /// The nearest point of the boundary, but for rounding, if `has_nearest`; else zeros.
     pub nearest_model: [f64; 3],
-    /// The number of the surface that it lies on: of a closed mesh, the triangle's. UINT32_MAX if there is none.
+    /// The number of the surface that it lies on: of a closed mesh, the triangle's; of several, one
+    /// that bounds the solid next to the point, if one is found. UINT32_MAX if there is none.
     pub surface: u32,
     /// Why the search ended.
     pub measured: leafless_stop_reason,

@@ -30,7 +30,7 @@ use once_cell::race::OnceBox;
 /// Which surfaces an extended octree keeps.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SurfaceOptions {
-    /// Where nothing exact is known of a surface (a mesh, a host program's function), two parallel planes may stand for it that
+    /// Where nothing exact is known of a surface (a mesh, a host program's function), two parallel planes may stand for it, a layer, that
     /// are at most this far apart (model units). `None`: only exact surfaces are kept.
     pub tolerance: Option<f64>,
 }
@@ -65,7 +65,13 @@ impl SurfaceOptions {
 /// the surfaces in doubt does not reach it after all. So eight cells that are done become one, from the finest up, by this rule: none
 /// of them is given up, all their exact surfaces together are at most three, and one function of these has the value of each cell
 /// for all combinations of signs that are possible in that cell. Combinations that are possible in none of the eight have the value
-/// of the nearest that is. Cells with slabs stay apart, because each slab stands for a surface of its own.
+/// of the nearest that is. Cells with layers of their own stay apart, because each stands for a surface of its own.
+///
+/// With a tolerance, meshes take part by the planes of their facets: those that lie in one plane to rounding share one layer, with
+/// the width that this takes, in all cells that it crosses, and where more planes meet, facets that face about the same side share a
+/// layer of their cell, at most as thick as the tolerance. The table of the layers' sides is that of the fill rule, and proven: what is
+/// thinner than a layer is undecided within it, and no point is that is further than twice the tolerance from the surface, unless its
+/// cell was given up.
 ///
 /// A solid whose answers are dear, such as a function of a host program, is asked level by level about many cells at once.
 ///
