@@ -1,6 +1,7 @@
 //! Any bytes as a closed mesh that answers rays, points and distances without cells.
 #![no_main]
 
+#[allow(dead_code)]
 #[path = "../bodies/direct.rs"]
 mod direct;
 

@@ -1,6 +1,7 @@
 //! Any bytes as a closed mesh that is stored with the planes of its facets.
 #![no_main]
 
+#[allow(dead_code)]
 #[path = "../bodies/direct.rs"]
 mod direct;
 

@@ -141,6 +141,7 @@ fn what_the_fuzzer_found_interesting() {
     corpus("attributes", attributes::attributes);
     corpus("records", records::records);
     corpus("direct", direct::direct);
+    corpus("layers", direct::layers);
 }
 
 #[test]

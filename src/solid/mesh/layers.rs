@@ -401,6 +401,15 @@ impl<'v> Layering<'v> {
         for of in (1..1usize << count).filter(|of| of & !widest == 0) {
             for others in (0..1usize << count).filter(|signs| signs & of == 0) {
                 let allowed = self.allowed(found, groups, (of, others), &witnesses)?;
+                // Where nothing that is known differs, all of the layers is undecided there.
+                let mut here = (0..1usize << count)
+                    .filter(|signs| signs & !of == others)
+                    .filter_map(|signs| known[signs]);
+                let first = here.next();
+                let is_open = allowed.is_none() && here.all(|other| Some(other) == first);
+                if is_open && !self.are_covered(found, of) {
+                    return None;
+                }
                 rules[rule_count] = Rule { of, others, allowed };
                 rule_count += 1;
             }
@@ -423,6 +432,32 @@ impl<'v> Layering<'v> {
         }
         let wide = |signs: u64| (table >> (signs & ((1 << count) - 1)) & 1) as u64;
         Some(Table((0..64).fold(0, |all, signs| all | wide(signs) << signs)))
+    }
+
+    /// Whether all of the cell's own ones of the layers `of` lies near to facets.
+    fn are_covered(&self, found: &Found, of: usize) -> bool {
+        let is_own = |(i, layer): &(usize, &Layer)| of >> i & 1 != 0 && layer.plane.is_none();
+        found.each().iter().enumerate().filter(is_own).all(|(_, layer)| {
+            let Slab { normal, inner, outer } = layer.slab;
+            let level = match (inner.is_finite(), outer.is_finite()) {
+                (true, true) => 0.5 * (inner + outer),
+                (true, false) => inner,
+                _ => outer,
+            };
+            let is_near =
+                |p: &Point| self.facets.iter().any(|facet| away(p, &facet.polygon) <= 2.0 * self.tolerance);
+            // Where the edges of the cell meet it.
+            (0..12).all(|edge: usize| {
+                let axis = edge / 4;
+                let mut p = [0.0; 3];
+                p[(axis + 1) % 3] = if edge % 2 == 0 { -1.0 } else { 1.0 };
+                p[(axis + 2) % 3] = if edge / 2 % 2 == 0 { -1.0 } else { 1.0 };
+                p[axis] = (level - dot(&normal, &p)) / normal[axis];
+                // (What is no number is not greater.)
+                let is_met = p[axis].abs() <= 1.0;
+                !is_met || is_near(&p)
+            })
+        })
     }
 
     /// Which value a table may have for all sides of the layers `of` at these sides of the others.
