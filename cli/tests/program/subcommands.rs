@@ -491,11 +491,14 @@ fn octrees_of_scenes_keep_their_surfaces() {
     assert_eq!(place.bytes("part.lfl"), bytes);
     let coarse = place.run("csg part.csg -o coarse.lfl --surfaces --depth 6 --json").good().json();
     assert_eq!(coarse["depth"], 6);
-    // A mesh, of which layers are kept.
+    // A mesh, of which planes of a coordinate are kept exactly: six beside those of the scene's own block.
     place.write("cube.stl", stl(&block([-3.1; 3], [-1.2; 3])));
     place.write("both.csg", format!("union() {{ {part} import(file = \"cube.stl\"); }}"));
     let both = place.run("csg both.csg -o both.lfl --surfaces=1e-3 --json").good().json();
-    assert!(both["cuts"]["surfaces"]["slabs"].as_u64().unwrap() > 0, "{both}");
+    assert_eq!(
+        (&both["cuts"]["surfaces"]["planes"], &both["cuts"]["surfaces"]["slabs"]),
+        (&12.into(), &0.into())
+    );
     assert!(
         (both["surfaces"].as_f64().unwrap() - 0.0331).abs() < 1e-7 && both["depth"].as_u64().unwrap() < 14
     );
