@@ -268,7 +268,8 @@ impl<'v> Layering<'v> {
         let margin = 4.0 * range * self.slack + 64.0 * UNIT;
         let slab = Slab { normal, inner: inner - margin, outer: outer + margin };
         // (What is no number is not less.)
-        if !(self.width(&slab) <= SHARE * self.tolerance) {
+        let is_thin = self.width(&slab) <= SHARE * self.tolerance;
+        if !is_thin {
             return None;
         }
         // Nothing lies beyond the cell's corners.
@@ -450,8 +451,8 @@ impl<'v> Layering<'v> {
             (0..12).all(|edge: usize| {
                 let axis = edge / 4;
                 let mut p = [0.0; 3];
-                p[(axis + 1) % 3] = if edge % 2 == 0 { -1.0 } else { 1.0 };
-                p[(axis + 2) % 3] = if edge / 2 % 2 == 0 { -1.0 } else { 1.0 };
+                p[(axis + 1) % 3] = if edge & 1 == 0 { -1.0 } else { 1.0 };
+                p[(axis + 2) % 3] = if edge & 2 == 0 { -1.0 } else { 1.0 };
                 p[axis] = (level - dot(&normal, &p)) / normal[axis];
                 // (What is no number is not greater.)
                 let is_met = p[axis].abs() <= 1.0;
