@@ -86,7 +86,7 @@ SEEN_BY = {
     "section-metadata-length": {"section.end_of_entry"},
     "section-required": {"section.end_of_entry"},
     "section-missing": {"section.end_of_table"},
-    "section-cuts": {"surface_numbers.values", None},
+    "section-cuts": {"cell_slab_group.end", None},
     "section-end": {"section.end_of_table"},
     "file-length": {LENGTH},
     "object-mirror": OBJECT_FIELDS,
@@ -115,15 +115,17 @@ SEEN_BY = {
     "planes-missing": {"header.num_brick_planes", "element.upper_octants", "level.num_partial"},
     "planes-needless": None,
     "cut-first": None,
+    "cell-slab-group": {"cell_slab_group.end", None},
     "cut-block": None,
     "cut-head": None,
     "cut-group": None,
     "cut-uniform": None,
     "cut-ids": None,
     "surface-record": {"surface.kind", "surface.terms", None},
-    "surface-number": {"surface_numbers.values", None},
-    "surface-origin": None,
+    "surface-number": None,
+    "surface-origin": {"surface.origin_low", "surface.origin_high", None},
     "surface-placement": {"placement.outer", None},
+    "cell-slab": {"cell_slab.home", "cell_slab.component", "cell_slab.other_component", "cell_slab.fields", None},
     "placement-map": {"placement.entries", None},
     "level-table-counts": None,
     "channel-count": None,
@@ -315,9 +317,10 @@ def channel(number, record):
     )
 
 
-def cuts(root):
+def cuts(data, root):
     """What the file says of cuts, as the lines of a text, with doubles as numbers."""
-    told = {"cuts": [], "surface": [], "placement": [], "slab-origin": []}
+    keys = ("cuts", "surface", "placement", "slab-origin", "cell-slab", "cell-slab-group")
+    told = {key: [] for key in keys}
     if root.cut_heads is None:
         return told
     heads = root.cut_heads.heads
@@ -325,7 +328,10 @@ def cuts(root):
     placements = root.placements.placements if root.placements else []
     origins = root.origins.origins if root.origins else []
     nothing, splits = heads.count(0), heads.count(255)
-    counts = [len(heads) - nothing - splits, nothing, splits, len(surfaces), len(placements), len(origins)]
+    slabs = root.cell_slabs.slabs if root.cell_slabs else []
+    groups = root.cell_slab_groups.groups if root.cell_slab_groups else []
+    counts = [len(heads) - nothing - splits, nothing, splits, len(surfaces) + len(slabs)]
+    counts += [len(placements), len(origins), len(slabs), len(groups)]
     told["cuts"].append(" ".join(map(str, counts)))
     for i, surface in enumerate(surfaces):
         kind = ("plane", "quadric", "powers", "torus", "slab")[surface.kind]
@@ -335,11 +341,28 @@ def cuts(root):
             end = at + (surface.terms >> (3 * k) & 7)
             numbers.append(root.surface_numbers.values[at:end])
             at = end
+        if kind == "slab":
+            # A number of 64 bits in the place of a double.
+            start = root.find_surface_numbers.section.ofs_body + 8 * at
+            number = int.from_bytes(data[start : start + 8], "little") if surface.has_number else i
+            numbers += [surface.origin, number if surface.origin else 0]
         told["surface"].append([str(i), kind, str(surface.placement), *numbers])
     for i, map_ in enumerate(placements):
         told["placement"].append([str(i), str(map_.outer), *map_.entries])
     for i, origin in enumerate(origins):
         told["slab-origin"].append(f"{i} {origin.low:016x} {origin.high:016x}")
+    for i, slab in enumerate(slabs):
+        path = slab.home & (1 << 61) - 1
+        level = (path.bit_length() - 1) // 3
+        at = [sum((path >> 3 * k + axis & 1) << k for k in range(level)) for axis in range(3)]
+        normal = [Fraction(-1 if slab.is_negative else 1)] * 3
+        for k, component in enumerate((slab.component, slab.other_component)):
+            normal[(slab.axis + 1 + k) % 3] = Fraction(component, 1 << 15)
+        inner = sum(n * Fraction(2 * a + 1, 2 << level) for n, a in zip(normal, at)) + Fraction(slab.offset, 1 << slab.step)
+        outer = inner + Fraction(slab.width, 1 << slab.step)
+        told["cell-slab"].append([f"{len(surfaces) + i} {level} {at[0]} {at[1]} {at[2]} {slab.index}", *normal, inner, outer])
+    for i, group in enumerate(groups):
+        told["cell-slab-group"].append(f"{i} {group.origin.low:016x} {group.origin.high:016x} {group.end}")
     return told
 
 
@@ -417,7 +440,7 @@ def check_valid(data, stated, description):
         "cells": [f"{surely} {possibly}"],
         "channel": [channel(number, record) for number, record in enumerate(root.objects.objects) if record.is_channel],
         "metadata": [f"{fact.key}\t{fact.value}" for fact in root.metadata.facts] if root.metadata else [],
-        **cuts(root),
+        **cuts(data, root),
     }
     told = {key: [] for key in known}
     compared = 0
@@ -438,8 +461,12 @@ def check_valid(data, stated, description):
             told[key].append([float(word) for word in value.split(" ")])
         elif key == "surface":
             i, kind, placement, *numbers = value.split(" ")
+            identity = [int(numbers.pop()) for _ in range(2 if kind == "slab" else 0)]
             split = [[float.fromhex(word) for word in number.split(",") if number != "0"] for number in numbers]
-            told[key].append([i, kind, placement, *split])
+            told[key].append([i, kind, placement, *split, *reversed(identity)])
+        elif key == "cell-slab":
+            *cell, x, y, z, inner, outer = value.split(" ")
+            told[key].append([" ".join(cell), *map(float.fromhex, (x, y, z, inner, outer))])
         elif key == "placement":
             i, outer, *entries = value.split(" ")
             told[key].append([i, outer, *map(float.fromhex, entries)])

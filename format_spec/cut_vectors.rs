@@ -20,9 +20,11 @@ const SURFACES: u64 = 15;
 const NUMBERS: u64 = 20;
 const PLACEMENTS: u64 = 21;
 const ORIGINS: u64 = 22;
+const CELL_SLABS: u64 = 23;
+const GROUPS: u64 = 24;
 
 /// The same with their names, types and components.
-const KINDS: [(u64, &str, (u64, u64)); 8] = [
+const KINDS: [(u64, &str, (u64, u64)); 10] = [
     (HEADS, "cut heads", (U8, 1)),
     (IDS, "cut ids", (U8, 1)),
     (BLOCKS, "cut blocks", (U32, 2)),
@@ -31,6 +33,8 @@ const KINDS: [(u64, &str, (u64, u64)); 8] = [
     (NUMBERS, "surface numbers", (F64, 1)),
     (PLACEMENTS, "placements", (RECORD, 13)),
     (ORIGINS, "origins", (U64, 2)),
+    (CELL_SLABS, "cell slabs", (U64, 2)),
+    (GROUPS, "cell slab groups", (U64, 3)),
 ];
 
 /// Whether the sections of a kind are for cuts.
@@ -59,7 +63,61 @@ impl Kind {
 /// Rows of an affine map.
 type Map = [[f64; 4]; 3];
 
-/// A surface: its numbers, each as the doubles whose sum it is, of a slab without origin and number.
+/// A slab that is stored as one of a cell: its words and what they say.
+#[derive(Debug, Clone, Copy)]
+struct CellSlab {
+    cell: Cell,
+    /// Which of the cell's slabs it is.
+    index: u64,
+    axis: usize,
+    is_negative: bool,
+    /// The components of the normal along the next two axes, in units of 2^-15.
+    others: [i64; 2],
+    /// In steps from the cell's centre.
+    offset: i64,
+    /// In steps.
+    width: u64,
+    /// A step is 2^-step of the universe's edge.
+    step: u64,
+}
+
+impl CellSlab {
+    fn words(&self) -> [u64; 2] {
+        let Cell { level, at } = self.cell;
+        let mut home = 1;
+        for l in (0..level).rev() {
+            let octant = (0..3).map(|axis| u64::from(at[axis] >> l & 1) << axis).sum::<u64>();
+            home = 8 * home + octant;
+        }
+        let [a, b] = self.others.map(|own| own as u64 & 0xFFFF);
+        let offset = (self.offset as u64 & 0x7FFFF) << 32;
+        let planes = a | b << 16 | offset | self.width << 51 | self.step << 55;
+        [home | self.index << 61, planes | (self.axis as u64) << 61 | u64::from(self.is_negative) << 63]
+    }
+
+    /// The normal and the two offsets in units of the universe. Everything is a multiple of 2^-50, and exact.
+    fn numbers(&self) -> [f64; 5] {
+        let unit = 1i128 << 50;
+        let mut normal = [0i128; 3];
+        normal[self.axis] = if self.is_negative { -unit } else { unit };
+        for k in 0..2 {
+            normal[(self.axis + 1 + k) % 3] = i128::from(self.others[k]) * (unit >> 15);
+        }
+        let centre = |axis: usize| i128::from(2 * self.cell.at[axis] + 1) * (unit >> (self.cell.level + 1));
+        let step = unit >> self.step;
+        let inner =
+            (0..3).map(|i| normal[i] * centre(i) / unit).sum::<i128>() + i128::from(self.offset) * step;
+        let outer = inner + i128::from(self.width) * step;
+        let exactly = |n: i128| {
+            assert!(n as f64 as i128 == n);
+            n as f64 / unit as f64
+        };
+        let [x, y, z] = normal;
+        [x, y, z, inner, outer].map(exactly)
+    }
+}
+
+/// A surface: its numbers, each as the doubles whose sum it is.
 #[derive(Clone)]
 pub struct Surface {
     kind: Kind,
@@ -67,13 +125,21 @@ pub struct Surface {
     /// The outermost map first.
     maps: Vec<Map>,
     /// What a slab was made from, and its number there.
-    origin: Option<([u64; 2], u32)>,
+    origin: Option<([u64; 2], u64)>,
+    /// The same as a slab of a cell, if it is stored as one. It is placed by the map of the universe.
+    cell: Option<CellSlab>,
 }
 
 impl Surface {
     fn new(kind: Kind, numbers: &[f64]) -> Surface {
         let number = |&c: &f64| if c == 0.0 { vec![] } else { vec![c] };
-        Surface { kind, numbers: numbers.iter().map(number).collect(), maps: vec![], origin: None }
+        Surface {
+            kind,
+            numbers: numbers.iter().map(number).collect(),
+            maps: vec![],
+            origin: None,
+            cell: None,
+        }
     }
 
     fn plane(a: f64, b: f64, c: f64, d: f64) -> Surface {
@@ -104,7 +170,16 @@ impl Surface {
         self
     }
 
-    fn of(mut self, origin: u64, number: u32) -> Surface {
+    /// A slab of a cell; `origin` 0 for none.
+    fn of_cell(frame: &Frame, slab: CellSlab, origin: u64) -> Surface {
+        let ([x, y, z], edge) = (frame.origin(), frame.edge());
+        let map = [[edge, 0.0, 0.0, x], [0.0, edge, 0.0, y], [0.0, 0.0, edge, z]];
+        let plain = Surface::new(Kind::Slab, &slab.numbers()).placed(&[map]);
+        let own = if origin == 0 { plain } else { plain.of(origin, 1 << 63 | slab.words()[0]) };
+        Surface { cell: Some(slab), ..own }
+    }
+
+    fn of(mut self, origin: u64, number: u64) -> Surface {
         self.origin = Some(([mix(origin), mix(origin + 1)], number));
         self
     }
@@ -285,15 +360,34 @@ fn inverse(map: &Map, p: &[Q; 3]) -> [Q; 3] {
 #[derive(Default)]
 struct Stored {
     heads: Vec<u8>,
-    ids: Vec<u32>,
+    ids: Vec<u64>,
     blocks: Vec<[u32; 2]>,
     first: Vec<u32>,
-    /// The model's surfaces in the order of the file.
+    /// The model's surfaces in the order of the file, the first of which are stored as records.
     order: Vec<usize>,
-    /// Of each, in that order: the place of its map, and of its origin.
+    records: usize,
+    /// Of each record: the place of its map, and of its origin.
     places: Vec<[u64; 2]>,
     placements: Vec<(Map, u64)>,
     origins: Vec<[u64; 2]>,
+    /// For each group of slabs of cells the origin, and where it ends.
+    groups: Vec<([u64; 2], u64)>,
+}
+
+/// Bits of an id where there are so many surfaces.
+fn bits_of_an_id(surfaces: usize) -> usize {
+    (0..).find(|&bits| 1 << bits >= surfaces).map_or(1, |bits: usize| bits.max(1))
+}
+
+/// Numbers in a stream of bits.
+fn packed(numbers: &[u64], bits: usize) -> Vec<u8> {
+    let mut bytes = vec![0; (numbers.len() * bits).div_ceil(8)];
+    for (i, number) in numbers.iter().enumerate() {
+        for k in (0..bits).filter(|k| number >> k & 1 != 0) {
+            bytes[(i * bits + k) / 8] |= 1 << ((i * bits + k) % 8);
+        }
+    }
+    bytes
 }
 
 /// The same table of surfaces in another order: the i-th is the one that was at the i-th place of `order`.
@@ -349,6 +443,36 @@ impl Model {
     fn stored(&self, cuts: &Cuts) -> Stored {
         let (cells, first) = self.partial_cells();
         let mut all = Stored { first, ..Stored::default() };
+        // The surfaces of all tables in the order of their first use; then those of records first, and then group by group.
+        let mut met: Vec<usize> = vec![];
+        let mut walk = VecDeque::from(cells.clone());
+        while let Some(cell) = walk.pop_front() {
+            match (cuts.cut)(cell) {
+                Cut::Nothing => {}
+                Cut::Split => walk.extend((0..8).map(|k| cell.child(k))),
+                Cut::Table(surfaces, _) => {
+                    for surface in surfaces {
+                        if !met.contains(&surface) {
+                            met.push(surface);
+                        }
+                    }
+                }
+            }
+        }
+        let (of_cells, records): (Vec<usize>, Vec<usize>) =
+            met.into_iter().partition(|&i| cuts.surfaces[i].cell.is_some());
+        all.records = records.len();
+        all.order = records;
+        let origin = |i: usize| cuts.surfaces[i].origin.map_or([0; 2], |(origin, _)| origin);
+        for &slab in &of_cells {
+            if all.groups.iter().all(|&(own, _)| own != origin(slab)) {
+                all.groups.push((origin(slab), 0));
+            }
+        }
+        for (own, end) in &mut all.groups {
+            all.order.extend(of_cells.iter().filter(|&&slab| origin(slab) == *own));
+            *end = (all.order.len() - all.records) as u64;
+        }
         let mut cells = VecDeque::from(cells);
         let mut splits = 0;
         while let Some(cell) = cells.pop_front() {
@@ -363,20 +487,15 @@ impl Model {
                     0xFF
                 }
                 Cut::Table(surfaces, table) => {
-                    for &surface in &surfaces {
-                        if !all.order.contains(&surface) {
-                            all.order.push(surface);
-                        }
-                    }
                     let number = |surface: usize| all.order.iter().position(|&own| own == surface);
                     let mut order: Vec<usize> = (0..surfaces.len()).collect();
                     order.sort_by_key(|&i| number(surfaces[i]));
-                    all.ids.extend(order.iter().map(|&i| number(surfaces[i]).expect("a number") as u32));
+                    all.ids.extend(order.iter().map(|&i| number(surfaces[i]).expect("a number") as u64));
                     permuted(table, &order)
                 }
             });
         }
-        for &surface in &all.order {
+        for &surface in &all.order[..all.records] {
             let surface = &cuts.surfaces[surface];
             let mut outer = 0;
             for map in &surface.maps {
@@ -402,53 +521,52 @@ impl Model {
 }
 
 impl Stored {
-    /// The numbers of a surface, of slabs with those that tell which it is.
-    fn numbers(&self, cuts: &Cuts, i: usize) -> Vec<Vec<f64>> {
-        let surface = &cuts.surfaces[self.order[i]];
-        let mut numbers = surface.numbers.clone();
-        if surface.kind == Kind::Slab {
-            let number = |n: u64| if n == 0 { vec![] } else { vec![n as f64] };
-            numbers.push(number(self.places[i][1]));
-            numbers.push(number(surface.origin.map_or(0, |(_, number)| number.into())));
-        }
-        numbers
+    /// Bits of an id.
+    fn width(&self) -> usize {
+        bits_of_an_id(self.order.len())
     }
 
     fn sections(&self, cuts: &Cuts) -> Vec<Section> {
-        let (mut records, mut doubles) = (vec![], vec![]);
-        for i in 0..self.order.len() {
-            let numbers = self.numbers(cuts, i);
-            let terms = numbers.iter().enumerate().map(|(i, own)| (own.len() as u32) << (3 * i)).sum::<u32>();
-            let kind = cuts.surfaces[self.order[i]].kind as u32;
-            let record = [kind, terms, doubles.len() as u32, self.places[i][0] as u32];
-            records.extend(record.map(u32::to_le_bytes).concat());
-            doubles.extend(numbers.concat());
+        let (mut records, mut words) = (vec![], vec![]);
+        for (i, &[placement, origin]) in self.places.iter().enumerate() {
+            let surface = &cuts.surfaces[self.order[i]];
+            let mut counts: Vec<usize> = surface.numbers.iter().map(Vec::len).collect();
+            let first = words.len() as u32;
+            words.extend(surface.numbers.iter().flatten().map(|c| c.to_bits()));
+            // The number of a slab, if it is not its place.
+            if let Some((_, number)) = surface.origin.filter(|&(_, number)| number != i as u64) {
+                counts.push(1);
+                words.push(number);
+            }
+            let terms = counts.iter().enumerate().map(|(i, &own)| (own as u32) << (3 * i)).sum::<u32>();
+            let kind = surface.kind as u32 + 256 * origin as u32;
+            records.extend([kind, terms, first, placement as u32].map(u32::to_le_bytes).concat());
         }
-        let (width, size) = match self.order.len() {
-            0..=256 => (U8, 1),
-            257..=65_536 => (U16, 2),
-            _ => (U32, 4),
-        };
+        let slabs = self.order[self.records..]
+            .iter()
+            .map(|&i| cuts.surfaces[i].cell.expect("a slab of a cell").words());
         let placement = |(map, outer): &(Map, u64)| {
             let bits = map.as_flattened().iter().map(|c| c.to_bits()).chain([*outer]);
             bits.flat_map(u64::to_le_bytes).collect::<Vec<_>>()
         };
         let bytes = [
             self.heads.clone(),
-            self.ids.iter().flat_map(|id| id.to_le_bytes()[..size].to_vec()).collect(),
+            packed(&self.ids, self.width()),
             self.blocks.iter().flatten().flat_map(|n| n.to_le_bytes()).collect(),
             self.first.iter().flat_map(|n| n.to_le_bytes()).collect(),
             records,
-            doubles.iter().flat_map(|c| c.to_le_bytes()).collect(),
+            words.iter().flat_map(|c| c.to_le_bytes()).collect(),
             self.placements.iter().flat_map(placement).collect(),
             self.origins.iter().flatten().flat_map(|n| n.to_le_bytes()).collect(),
+            slabs.flatten().flat_map(u64::to_le_bytes).collect(),
+            self.groups
+                .iter()
+                .flat_map(|&([low, high], end)| [low, high, end])
+                .flat_map(u64::to_le_bytes)
+                .collect(),
         ];
         let sections = KINDS.iter().zip(bytes).filter(|(_, bytes)| !bytes.is_empty());
-        sections
-            .map(|(&(kind, _, element), bytes)| {
-                Section::new(kind, if kind == IDS { (width, 1) } else { element }, bytes)
-            })
-            .collect()
+        sections.map(|(&(kind, _, element), bytes)| Section::new(kind, element, bytes)).collect()
     }
 }
 
@@ -475,17 +593,30 @@ impl Model {
         let count = |of: u8| stored.heads.iter().filter(|&&head| head == of).count();
         let (none, splits) = (count(0), count(0xFF));
         let tables = stored.heads.len() - none - splits;
-        let (surfaces, placements, origins) =
-            (stored.order.len(), stored.placements.len(), stored.origins.len());
-        let mut facts = vec![("cuts", format!("{tables} {none} {splits} {surfaces} {placements} {origins}"))];
-        for (i, &surface) in stored.order.iter().enumerate() {
-            let numbers = stored.numbers(cuts, i).into_iter().map(|doubles| match &doubles[..] {
-                [] => "0".to_owned(),
-                doubles => doubles.iter().map(|&c| hex(c)).collect::<Vec<_>>().join(","),
-            });
-            let numbers = numbers.collect::<Vec<_>>().join(" ");
-            let kind = cuts.surfaces[surface].kind.name();
-            facts.push(("surface", format!("{i} {kind} {} {numbers}", stored.places[i][0])));
+        let counts = [
+            stored.order.len(),
+            stored.placements.len(),
+            stored.origins.len(),
+            stored.order.len() - stored.records,
+            stored.groups.len(),
+        ];
+        let counts = counts.map(|count| count.to_string()).join(" ");
+        let mut facts = vec![("cuts", format!("{tables} {none} {splits} {counts}"))];
+        for (i, &[placement, origin]) in stored.places.iter().enumerate() {
+            let surface = &cuts.surfaces[stored.order[i]];
+            let mut numbers: Vec<String> = vec![];
+            for doubles in &surface.numbers {
+                numbers.push(match &doubles[..] {
+                    [] => "0".to_owned(),
+                    doubles => doubles.iter().map(|&c| hex(c)).collect::<Vec<_>>().join(","),
+                });
+            }
+            if surface.kind == Kind::Slab {
+                numbers.push(origin.to_string());
+                numbers.push(surface.origin.map_or(0, |(_, number)| number).to_string());
+            }
+            let numbers = numbers.join(" ");
+            facts.push(("surface", format!("{i} {} {placement} {numbers}", surface.kind.name())));
         }
         for (i, (map, outer)) in stored.placements.iter().enumerate() {
             let entries = map.as_flattened().iter().map(|&c| hex(c)).collect::<Vec<_>>().join(" ");
@@ -493,6 +624,15 @@ impl Model {
         }
         for (i, [low, high]) in stored.origins.iter().enumerate() {
             facts.push(("slab-origin", format!("{i} {low:016x} {high:016x}")));
+        }
+        for (i, &surface) in stored.order.iter().enumerate().skip(stored.records) {
+            let slab = cuts.surfaces[surface].cell.expect("a slab of a cell");
+            let Cell { level, at: [x, y, z] } = slab.cell;
+            let numbers = slab.numbers().map(hex).join(" ");
+            facts.push(("cell-slab", format!("{i} {level} {x} {y} {z} {} {numbers}", slab.index)));
+        }
+        for (i, ([low, high], end)) in stored.groups.iter().enumerate() {
+            facts.push(("cell-slab-group", format!("{i} {low:016x} {high:016x} {end}")));
         }
         facts
     }
@@ -644,12 +784,12 @@ fn placed() -> Model {
     Model { frame: Frame::new([-4.0, -4.0, -1.0], 8.0, 5).expect("a frame"), ..whole(5, cuts) }
 }
 
-/// Slabs of two origins, and slabs without.
+/// Slabs of two origins, and slabs without. The number of one is its place, and that of another no double at all.
 fn slabs() -> Model {
     let slab = Surface::slab;
     let surfaces = vec![
-        slab([1.0, 0.0, 0.0], 2.0, 2.5).of(1, 7),
-        slab([0.0, 1.0, 0.5], 3.0, 4.0).of(3, u32::MAX),
+        slab([1.0, 0.0, 0.0], 2.0, 2.5).of(1, 0),
+        slab([0.0, 1.0, 0.5], 3.0, 4.0).of(3, u64::MAX),
         slab([0.6, 0.0, -0.8], -1.25, 0.0),
         slab([0.0, 1.0, 0.0], 5.5, 6.0).of(1, 0),
         slab([0.0, 0.0, 1.0], 4.0, 4.0),
@@ -664,7 +804,7 @@ fn slabs() -> Model {
     whole(3, Cuts::new(surfaces, cut))
 }
 
-/// More surfaces than ids of one byte can tell, in more cuts than a block has.
+/// More surfaces than eight bits can tell, in more cuts than a block has.
 fn many() -> Model {
     let plane = |i: usize| Surface::plane(1.0, i as f64 / 256.0, 0.5, -0.03125 * i as f64);
     let cut = |cell: Cell| {
@@ -714,6 +854,110 @@ fn all_kinds() -> Model {
     Model::plain(3, shape).cuts(Cuts::new(surfaces, cut))
 }
 
+/// A slab of a cell that cuts it about in the middle, whose width is an eighth of the cell's edge.
+fn middle(cell: Cell, index: u64) -> CellSlab {
+    let hash = cell.at.iter().fold(u64::from(cell.level) + 5 * index, |hash, &a| mix(hash ^ u64::from(a)));
+    let part = |shift: u32| (hash >> shift & 0x7FFF) as i64 - 0x4000;
+    CellSlab {
+        cell,
+        index,
+        axis: (hash % 3) as usize,
+        is_negative: hash >> 40 & 1 != 0,
+        others: [part(8), part(23)],
+        offset: (hash >> 50) as i64 % 16 - 12,
+        width: 8,
+        step: u64::from(cell.level) + 6,
+    }
+}
+
+/// Cells of one level at which a PARTIAL universe is split.
+fn cells_of(level: u8) -> Vec<Cell> {
+    let side = 0..1u32 << level;
+    let each = |z: u32| side.clone().flat_map(move |y| (0..1u32 << level).map(move |x| [x, y, z]));
+    side.clone().flat_map(each).map(|at| Cell { level, at }).collect()
+}
+
+/// Slabs of cells, of two origins and of none, beside a plane and a slab that is not one of a cell.
+fn cell_slabs() -> Model {
+    let frame = Frame::new([-1.0, 0.5, 0.0], 4.0, 3).expect("a frame");
+    let mut surfaces = vec![
+        Surface::plane(1.0, 0.5, 0.25, -1.25),
+        Surface::slab([0.0, 1.0, 1.0], 2.5, 3.0).of(1, 1 << 63 | 1),
+    ];
+    let cells = cells_of(2);
+    for (i, &cell) in cells.iter().enumerate() {
+        let origin = [0, 1, 3][i % 3];
+        surfaces.push(Surface::of_cell(&frame, middle(cell, 0), origin));
+        surfaces.push(Surface::of_cell(&frame, middle(cell, 2), origin));
+    }
+    let cut = move |cell: Cell| {
+        if cell.level < 2 {
+            return Cut::Split;
+        }
+        let i = cells.iter().position(|&own| own == cell).expect("a cell of level two");
+        let (one, other) = (2 + 2 * i, 3 + 2 * i);
+        match cell.at.iter().sum::<u32>() % 5 {
+            0 => Cut::Table(vec![other, one], table(|a, b, _| a && b)),
+            1 => Cut::Table(vec![one, 0], table(|a, b, _| a || b)),
+            2 => Cut::Nothing,
+            3 => Cut::Table(vec![1, other, one], table(|a, b, c| a && b || c)),
+            _ => Cut::Table(vec![one], NEGATIVE),
+        }
+    };
+    Model { frame, ..whole(3, Cuts::new(surfaces, cut)) }
+}
+
+/// The same with nothing but slabs of cells: one of each of the eight octants.
+fn cell_slabs_alone() -> Model {
+    let frame = Model::plain(2, |_| Tag::Partial).frame;
+    let cells = cells_of(1);
+    let origins = [1, 1, 3, 3, 3, 0, 0, 5];
+    let surfaces =
+        cells.iter().zip(origins).map(|(&cell, origin)| Surface::of_cell(&frame, middle(cell, 1), origin));
+    let surfaces: Vec<_> = surfaces.collect();
+    let cut = move |cell: Cell| match cells.iter().position(|&own| own == cell) {
+        Some(i) => Cut::Table(vec![i], POSITIVE),
+        None => Cut::Split,
+    };
+    whole(2, Cuts::new(surfaces, cut))
+}
+
+/// Slabs of the finest cells that there are and of the universe, with the greatest and the least numbers.
+fn cell_slabs_extreme() -> Model {
+    let frame = Model::plain(20, |_| Tag::Partial).frame;
+    let finest = Cell { level: 20, at: [0xF_FFFF, 0x5_5555, 0] };
+    let slab = CellSlab {
+        cell: finest,
+        index: 0,
+        axis: 2,
+        is_negative: true,
+        others: [-32_767, 32_767],
+        offset: 262_143,
+        width: 15,
+        step: 2,
+    };
+    let surfaces = vec![
+        Surface::of_cell(&frame, slab, 1),
+        Surface::of_cell(&frame, CellSlab { offset: -262_144, step: 50, axis: 1, index: 1, ..slab }, 1),
+        Surface::of_cell(
+            &frame,
+            CellSlab {
+                cell: Cell::ROOT,
+                axis: 0,
+                others: [0, 1],
+                offset: 0,
+                width: 0,
+                step: 25,
+                index: 2,
+                ..slab
+            },
+            0,
+        ),
+    ];
+    let inside = |a: bool, b: bool, c: bool| a && !b || c;
+    whole(20, Cuts::everywhere(surfaces, table(inside)))
+}
+
 /// All valid vectors with cuts, and some that say something of cuts.
 pub(super) fn valid() -> Vec<Valid> {
     let mut vectors = vec![];
@@ -732,7 +976,14 @@ pub(super) fn valid() -> Vec<Valid> {
     let about = "surfaces that are placed by chains of two and three maps, which begin with the same one";
     add("cut-placed", about, placed());
     add("cut-slabs", "slabs of two origins, and slabs without", slabs());
-    add("cut-many", "more than 256 surfaces: ids of two bytes; many blocks", many());
+    add("cut-many", "more than 256 surfaces: ids of nine bits; many blocks", many());
+    let about =
+        "slabs of cells of two origins and of none, behind a plane and a slab of one of these origins";
+    add("cut-cell-slabs", about, cell_slabs());
+    add("cut-cell-slabs-alone", "no surfaces but slabs of cells, and ids of three bits", cell_slabs_alone());
+    let about =
+        "slabs of a finest cell of depth 20 and of the universe, with the greatest and the least numbers";
+    add("cut-cell-slabs-extreme", about, cell_slabs_extreme());
     add(
         "cut-kinds",
         "surfaces of all kinds in a tree of odd depth, with octants that are PARTIAL",
@@ -808,7 +1059,8 @@ pub(super) fn valid() -> Vec<Valid> {
         parts.object(77, 0, 0);
         parts.sections.push(Section::new(HEADS, (U8, 3), vec![0xF0; 9]).of(1));
         parts.sections.push(Section::new(ORIGINS, (F32, 1), vec![1; 4]).of(2).flagged(1));
-        parts.sections.push(Section::new(23, (U16, 1), vec![2; 4]));
+        parts.sections.push(Section::new(GROUPS, (U16, 1), vec![2; 2]).of(1));
+        parts.sections.push(Section::new(25, (U16, 1), vec![2; 4]));
         parts.sections.push(Section::new(APPLICATION, (U8, 1), vec![3; 4]));
     });
     let about = "the blocks and the first cuts lie in one place with other sections";
@@ -847,6 +1099,7 @@ pub(super) fn invalid(list: &mut List) {
     tables_of_sections(list);
     list.way = Way::Verification;
     records(list);
+    slabs_of_cells(list);
     surfaces(list);
 }
 
@@ -863,7 +1116,7 @@ fn pop(bytes: &mut Vec<u8>, count: usize) {
 }
 
 fn tables_of_sections(list: &mut List) {
-    let model = all_kinds();
+    let (model, cell_slabs) = (all_kinds(), cell_slabs());
     let add = |list: &mut List,
                rule,
                of: &str,
@@ -877,21 +1130,24 @@ fn tables_of_sections(list: &mut List) {
     for (kind, name, element) in KINDS {
         let of = name.replace(' ', "-");
         let about = "a section of cuts of another type";
-        add(list, "section-size", &of, about, section(name), &model, &|parts| {
+        let model = if kind < CELL_SLABS { &model } else { &cell_slabs };
+        add(list, "section-size", &of, about, section(name), model, &|parts| {
             let section = parts.section(kind);
             // Bytes of the same length.
             section.element = if element == (U8, 1) { (U8, section.bytes.len() as u64) } else { (U8, 4) };
         });
         let about = "a section of cuts that is required";
-        add(list, "section-required", &of, about, field("section flags", 1), &model, &|parts| {
+        add(list, "section-required", &of, about, field("section flags", 1), model, &|parts| {
             parts.section(kind).flags = 1;
         });
     }
-    let about = "ids of eight bytes";
-    add(list, "section-size", "cut-ids-u64", about, section("cut ids"), &model, &|parts| {
-        parts.section(IDS).bytes.resize(64, 0);
-        parts.section(IDS).element = (U64, 1);
-    });
+    for (of, ty, size) in [("u16", U16, 2), ("u32", U32, 4), ("u64", U64, 8)] {
+        let about = "ids that are no bytes";
+        add(list, "section-size", &format!("cut-ids-{of}"), about, section("cut ids"), &model, &|parts| {
+            parts.section(IDS).bytes.resize(8 * size, 0);
+            parts.section(IDS).element = (ty, 1);
+        });
+    }
     let about = "cut heads in an unknown encoding of a newer minor version";
     let error = "Format(Required { name: \"section encoding\", value: 1 })".to_owned();
     add(list, "table-encoding", "cuts", about, error, &model, &|parts| {
@@ -906,8 +1162,33 @@ fn tables_of_sections(list: &mut List) {
     });
     let about = "origins, and nothing else of cuts";
     cuts(list, "origins-alone", about, "origins", &model, &|parts| {
-        KINDS.iter().take(7).for_each(|&(kind, ..)| drop(parts.take(kind)));
+        let others = KINDS.iter().map(|&(kind, ..)| kind).filter(|&kind| kind < ORIGINS);
+        others.for_each(|kind| drop(parts.take(kind)));
     });
+    let about = "slabs of cells, and nothing else of cuts";
+    cuts(list, "cell-slabs-alone", about, "cell slabs", &cell_slabs_alone(), &|parts| {
+        [HEADS, IDS, BLOCKS, FIRST].into_iter().for_each(|kind| drop(parts.take(kind)));
+    });
+    for (kind, of) in [(CELL_SLABS, "cell-slabs"), (GROUPS, "cell-slab-groups")] {
+        cuts(list, of, "a section of cuts is absent", "cell slab groups", &cell_slabs, &|parts| {
+            drop(parts.take(kind))
+        });
+    }
+    let about = "more groups than slabs of cells";
+    cuts(list, "cell-slab-groups-more", about, "cell slab groups", &cell_slabs_alone(), &|parts| {
+        let group = |i: u64| [i, i, i].map(u64::to_le_bytes).concat();
+        parts.section(GROUPS).bytes = (1..10).flat_map(group).collect();
+    });
+    for (kind, name, element) in KINDS {
+        if [NUMBERS, PLACEMENTS, ORIGINS].contains(&kind) {
+            let of = format!("{}-of-cell-slabs", name.replace(' ', "-"));
+            let about = "a section of records, where there are slabs of cells alone";
+            cuts(list, &of, about, name, &cell_slabs_alone(), &|parts| {
+                let size = 8 * if element.0 == RECORD { 13 } else { 2 };
+                parts.sections.push(Section::new(kind, element, vec![0; size]));
+            });
+        }
+    }
     for (kind, of, name) in [
         (IDS, "ids", "cut ids"),
         (BLOCKS, "blocks", "cut blocks"),
@@ -926,23 +1207,10 @@ fn tables_of_sections(list: &mut List) {
         let about = "one element too few";
         cuts(list, &less, about, name, &tables(), &|parts| pop(&mut parts.section(kind).bytes, size));
     }
-    for (of, width, size) in [("ids-u16", U16, 2), ("ids-u32", U32, 4)] {
-        cuts(list, of, "ids that are wider than their number needs", "cut ids", &model, &|parts| {
-            let ids = parts.section(IDS);
-            ids.element = (width, 1);
-            ids.bytes = ids.bytes.iter().flat_map(|&id| vec![id, 0, 0, 0][..size].to_vec()).collect();
-        });
-    }
-    let about = "ids of one byte where there are more than 256 surfaces";
-    cuts(list, "ids-u8", about, "cut ids", &many(), &|parts| {
-        let ids = parts.section(IDS);
-        ids.element = (U8, 1);
-        ids.bytes = ids.bytes.chunks(2).map(|id| id[0]).collect();
-    });
     let nothing = || whole(2, Cuts::new(vec![], |_| Cut::Nothing));
     for (kind, name, element) in KINDS {
-        let size = 8 * if element.0 == RECORD { 13 } else { 2 };
-        if [IDS, NUMBERS, PLACEMENTS, ORIGINS].contains(&kind) {
+        let size = 8 * if element.0 == RECORD { 13 } else { 2 } * if kind == GROUPS { 3 } else { 1 };
+        if [IDS, NUMBERS, PLACEMENTS, ORIGINS, GROUPS].contains(&kind) {
             let of = format!("{}-needless", name.replace(' ', "-"));
             cuts(list, &of, "a section of cuts that have no surfaces", name, &nothing(), &|parts| {
                 parts.sections.push(Section::new(kind, element, vec![0; size]));
@@ -953,10 +1221,15 @@ fn tables_of_sections(list: &mut List) {
     cuts(list, "surfaces-needless", about, "cut ids", &nothing(), &|parts| {
         parts.sections.push(Section::new(SURFACES, (U32, 4), vec![0; 16]));
     });
+    let about = "slabs of cells that no cut has, and no ids";
+    cuts(list, "cell-slabs-needless", about, "cut ids", &nothing(), &|parts| {
+        let words = middle(Cell::ROOT, 0).words();
+        parts.sections.push(Section::new(CELL_SLABS, (U64, 2), words.map(u64::to_le_bytes).concat()));
+    });
     list.way = Way::Verification;
     for (kind, name, _) in KINDS {
         let of = name.replace(' ', "-");
-        let mut bytes = Parts::of(&model).bytes();
+        let mut bytes = Parts::of(if kind < CELL_SLABS { &model } else { &cell_slabs }).bytes();
         let at = super::offset_of(&bytes, 0, kind);
         bytes[at] ^= 1;
         list.add("section-crc", &of, "a bit of a section of cuts has fallen over", checksum(name), bytes);
@@ -1042,22 +1315,35 @@ fn records(list: &mut List) {
     let count = |head: u8| usize::from(SURFACES_OF[usize::from(head)]);
     let pair = heads.iter().position(|&head| count(head) >= 2).expect("a table of two");
     let at: usize = heads[..pair].iter().map(|&head| count(head)).sum();
+    let width = stored.width();
+    let with_ids = |parts: &mut Parts, change: &dyn Fn(&mut Vec<u64>)| {
+        let mut ids = stored.ids.clone();
+        change(&mut ids);
+        parts.section(IDS).bytes = packed(&ids, width);
+    };
     let about = "surfaces of a cut that descend";
-    add("cut-ids", "descend", about, record(pair), &|parts| parts.section(IDS).bytes.swap(at, at + 1));
+    add("cut-ids", "descend", about, record(pair), &|parts| with_ids(parts, &|ids| ids.swap(at, at + 1)));
     add("cut-ids", "same", "a surface twice in a cut", record(pair), &|parts| {
-        let ids = &mut parts.section(IDS).bytes;
-        ids[at] = ids[at + 1];
+        with_ids(parts, &|ids| ids[at] = ids[at + 1]);
     });
     let one = heads.iter().position(|&head| count(head) > 0).expect("a table");
     let about = "the first surface that is used is not the first surface";
-    add("cut-ids", "first", about, record(one), &|parts| parts.section(IDS).bytes[0] = 1);
+    add("cut-ids", "first", about, record(one), &|parts| with_ids(parts, &|ids| ids[0] = 1));
+    assert!(width == 2 && stored.order.len() == 3);
     add("cut-ids", "beyond", "a surface that is not there", record(one), &|parts| {
-        parts.section(IDS).bytes[0] = 255
+        with_ids(parts, &|ids| ids[0] = 3);
     });
-    let ends = heads.iter().rposition(|&head| count(head) > 0).expect("a table");
-    let about = "the ids end before those of the last cut";
-    add("cut-ids", "less", about, record(ends), &|parts| pop(&mut parts.section(IDS).bytes, 1));
-    add("cut-ids", "more", "an id that no cut has", record(last), &|parts| parts.section(IDS).bytes.push(0));
+    // The first cut whose ids reach into the last byte.
+    let in_last = (0..heads.len())
+        .find(|&n| {
+            let ids: usize = heads[..=n].iter().map(|&head| count(head)).sum();
+            (ids * width).div_ceil(8) == (stored.ids.len() * width).div_ceil(8)
+        })
+        .expect("a cut");
+    let about = "the ids end before those of the last cuts";
+    add("cut-ids", "less", about, record(in_last), &|parts| pop(&mut parts.section(IDS).bytes, 1));
+    let about = "a byte more than the ids take";
+    add("cut-ids", "more", about, record(last), &|parts| parts.section(IDS).bytes.push(0));
     let about = "a surface that no cut has";
     add("cut-ids", "unused", about, record(last), &|parts| {
         let doubles = parts.section(NUMBERS).bytes.len() as u32 / 8;
@@ -1071,6 +1357,150 @@ fn records(list: &mut List) {
     list.add("cut-group", "root", about, record(0), bytes);
     let bytes = changed(&plane, |parts| put(&mut parts.section(FIRST).bytes, 0, 0, 4));
     list.add("cut-first", "root", "a PARTIAL universe without a cut", first(0), bytes);
+    let about = "a bit of the last byte behind the last id";
+    for (of, bit) in [("rest", 1), ("rest-last", 7)] {
+        let bytes = changed(&plane, |parts| parts.section(IDS).bytes[0] |= 1 << bit);
+        list.add("cut-ids", of, about, record(1), bytes);
+    }
+}
+
+/// Slabs of cells, and their groups.
+fn slabs_of_cells(list: &mut List) {
+    let model = cell_slabs_alone();
+    let stored = model.stored(model.cuts.as_ref().expect("cuts"));
+    let mut add = |rule, of: &str, about, error: String, model: &Model, change: &dyn Fn(&mut Parts)| {
+        list.add(rule, of, about, error, changed(model, change));
+    };
+    // The origins of the slabs are 1 1 3 3 3 0 0 5. Their cuts follow the one of the universe, which is split.
+    assert!(stored.groups.iter().map(|&(_, end)| end).eq([2, 5, 7, 8]) && stored.heads.len() == 9);
+    let word = |parts: &mut Parts, kind: u64, at: usize, value: u64| {
+        put(&mut parts.section(kind).bytes, 8 * at, value, 8)
+    };
+    let end = |parts: &mut Parts, group: usize, value: u64| word(parts, GROUPS, 3 * group + 2, value);
+    for (of, about, group, value, at) in [
+        ("empty", "a group of no slabs", 0, 0, 0),
+        ("same", "a group that ends where the one before does", 1, 2, 2),
+        ("descend", "a group that ends before the one before does", 2, 4, 5),
+        ("beyond", "a group that ends where there are no slabs", 3, 9, 8),
+        ("less", "slabs of cells behind the last group", 3, 7, 7),
+        ("great", "a group that ends far beyond all slabs", 1, u64::MAX, 8),
+    ] {
+        add("cell-slab-group", of, about, surface(at), &model, &|parts| end(parts, group, value));
+    }
+    let about = "a last group that ends before the last slab";
+    add("cell-slab-group", "short", about, surface(7), &model, &|parts| {
+        pop(&mut parts.section(GROUPS).bytes, 24);
+    });
+    let origin = |parts: &mut Parts, group: usize, [low, high]: [u64; 2]| {
+        word(parts, GROUPS, 3 * group, low);
+        word(parts, GROUPS, 3 * group + 1, high);
+    };
+    let (one, none) = (stored.groups[0].0, stored.groups[2].0);
+    assert_eq!(none, [0; 2]);
+    for (of, about, group, of_group, at) in [
+        ("next", "two groups of one origin that follow each other", 1, one, 2),
+        ("again", "two groups of one origin, with others between them", 3, one, 7),
+        ("none", "two groups without origin", 3, none, 7),
+        ("twice", "a later group that has the origin of an earlier one", 2, one, 5),
+    ] {
+        add("cell-slab-group", of, about, surface(at), &model, &|parts| origin(parts, group, of_group));
+    }
+
+    let ids = |parts: &mut Parts, ids: [u64; 8]| parts.section(IDS).bytes = packed(&ids, stored.width());
+    assert_eq!(stored.ids, [0, 1, 2, 3, 4, 5, 6, 7]);
+    for (of, about, wrong, at) in [
+        ("group", "the second slab of a group before the first one", [0, 1, 3, 2, 4, 5, 6, 7], 3),
+        ("groups", "a group before the one that stands before it", [0, 5, 2, 3, 4, 1, 6, 7], 2),
+        ("group-first", "a group that is not the first one before all others", [2, 0, 1, 3, 4, 5, 6, 7], 1),
+    ] {
+        add("cut-ids", of, about, record(at), &model, &|parts| ids(parts, wrong));
+    }
+    let about = "a slab of a group that no cut has, while a later group has been used";
+    add("cut-ids", "group-unused", about, record(9), &model, &|parts| ids(parts, [0, 1, 2, 3, 3, 5, 6, 7]));
+    let about = "the first slab of a cell has the number of the next surface of a record";
+    let mixed = cell_slabs();
+    let of_mixed = mixed.stored(mixed.cuts.as_ref().expect("cuts"));
+    assert!(of_mixed.records == 2);
+    let first = of_mixed.ids.iter().position(|&id| id == 2).expect("a slab of a cell");
+    let at = (0..of_mixed.heads.len())
+        .find(|&n| {
+            of_mixed.heads[..=n]
+                .iter()
+                .map(|&head| usize::from(SURFACES_OF[usize::from(head)]))
+                .sum::<usize>()
+                > first
+        })
+        .expect("a cut");
+    add("cut-ids", "slab-next", about, record(at), &mixed, &|parts| {
+        let mut ids = of_mixed.ids.clone();
+        ids[first] = 3;
+        parts.section(IDS).bytes = packed(&ids, of_mixed.width());
+    });
+
+    let part = |parts: &mut Parts, at: usize, shift: u64, bits: u64, value: u64| {
+        let before = super::number(&parts.section(CELL_SLABS).bytes, 8 * at, 8);
+        let mask = ((1 << bits) - 1) << shift;
+        word(parts, CELL_SLABS, at, before & !mask | value << shift);
+    };
+    for (of, about, at, shift, bits, value) in [
+        ("index", "the fourth slab of a cell", 0, 61, 2, 3),
+        ("bit", "bit 63 of a home", 2, 63, 1, 1),
+        ("no-cell", "a home without the bit that leads", 4, 0, 61, 0),
+        ("no-level", "a home whose leading bit is none of a level", 6, 0, 61, 0b10_101),
+        ("no-level-two", "a home whose leading bit is one less than that of a level", 8, 0, 61, 0b100_101),
+        ("deep", "a cell below the finest ones", 10, 0, 61, 0b1_101_011_001),
+        ("deepest", "the last finest cell of an octree of depth 20", 10, 0, 61, (1 << 61) - 1),
+        ("axis", "a fourth axis", 1, 61, 2, 3),
+        ("component", "a component of a normal that is as long as the greatest", 3, 0, 16, 0x8000),
+        (
+            "other-component",
+            "the other component of a normal that is as long as the greatest",
+            5,
+            16,
+            16,
+            0x8000,
+        ),
+        ("step", "steps that are too small", 7, 55, 6, 51),
+        ("step-least", "the least step that can be written", 7, 55, 6, 63),
+        ("step-half", "steps that are too large: half the universe", 9, 55, 6, 1),
+        ("step-one", "steps that are as large as the universe", 15, 55, 6, 0),
+    ] {
+        add("cell-slab", of, about, surface(at as u64 / 2), &model, &|parts| {
+            part(parts, at, shift, bits, value)
+        });
+    }
+    for (of, about, at, value) in [
+        (
+            "edge-great",
+            "slabs of cells in a universe that is too large for them",
+            56,
+            2f64.powi(64).next_up(),
+        ),
+        (
+            "edge-small",
+            "slabs of cells in a universe that is too small for them",
+            56,
+            2f64.powi(-64).next_down(),
+        ),
+        ("origin-great", "slabs of cells in a universe that is too far away for them", 40, -2f64.powi(65)),
+        (
+            "origin-small",
+            "slabs of cells in a universe whose origin is too near to zero for them",
+            48,
+            2f64.powi(-65),
+        ),
+    ] {
+        let mut bytes = Parts::of(&model).bytes();
+        put(&mut bytes, at, value.to_bits(), 8);
+        super::mirror(&mut bytes);
+        super::seal(&mut bytes);
+        list.add("cell-slab", of, about, surface(0), bytes);
+    }
+    let mut add = |rule, of: &str, about, error: String, model: &Model, change: &dyn Fn(&mut Parts)| {
+        list.add(rule, of, about, error, changed(model, change));
+    };
+    let about = "a slab of a cell that is not legal, behind records";
+    add("cell-slab", "behind", about, surface(2), &mixed, &|parts| part(parts, 1, 61, 2, 3));
 }
 
 /// How many surfaces a table has.
@@ -1119,6 +1549,14 @@ fn surfaces(list: &mut List) {
         let terms = super::number(&parts.section(SURFACES).bytes, 20, 4);
         word(parts, 20, terms | 1 << 31);
     });
+    add(
+        "surface-record",
+        "kind-great",
+        "the greatest kind that a byte can tell",
+        surface(1),
+        &two(),
+        &|parts| word(parts, 16, 255),
+    );
     let about = "doubles that begin before those of the first surface end";
     add("surface-record", "first", about, surface(1), &two(), &|parts| word(parts, 24, 3));
     add("surface-record", "begin", "the first doubles are no numbers", surface(0), &two(), &|parts| {
@@ -1197,47 +1635,55 @@ fn surfaces(list: &mut List) {
     ] {
         numbers(list, of, about, wrong);
     }
-    // Of a slab with an origin, the last two doubles.
+    // A slab with an origin, and with a number that is not its place.
     let slab = || table_of(vec![slab(1.0, 2.0).of(5, 6)]);
-    for (of, about, back, value) in [
-        ("origin-broken", "an origin that is no whole number", 2, 1.5),
-        ("origin-negative", "a negative origin", 2, -1.0),
-        ("slab-number", "a number of a slab that is no whole number", 1, 0.25),
-        ("slab-number-great", "a number of a slab that is 2^32", 1, 4_294_967_296.0),
-    ] {
-        let change = |parts: &mut Parts| {
-            let doubles = &mut parts.section(NUMBERS).bytes;
-            let at = doubles.len() - 8 * back;
-            put(doubles, at, f64::to_bits(value), 8);
-        };
-        list.add("surface-number", of, about, surface(0), changed(&slab(), change));
-    }
-    let about = "a number of a slab that has no origin";
-    let bytes = changed(&slab(), |parts| {
-        let doubles = &mut parts.section(NUMBERS).bytes;
-        let origin = doubles.len() - 16;
-        doubles.drain(origin..origin + 8);
-        let terms = super::number(&parts.section(SURFACES).bytes, 4, 4);
-        put(&mut parts.section(SURFACES).bytes, 4, terms & !(7 << 15), 4);
-        parts.take(ORIGINS);
-    });
-    list.add("surface-number", "slab-number-needless", about, surface(0), bytes);
 
     let mut add = |rule, of: &str, about, error: String, model: &Model, change: &dyn Fn(&mut Parts)| {
         list.add(rule, of, about, error, changed(model, change));
     };
     let about = "the first slab has the second origin";
     add("surface-origin", "", about, surface(0), &slab(), &|parts| {
-        let doubles = &mut parts.section(NUMBERS).bytes;
-        let at = doubles.len() - 16;
-        put(doubles, at, 2f64.to_bits(), 8);
+        word(parts, 0, 4 | 2 << 8);
         parts.section(ORIGINS).bytes.extend([7; 16]);
     });
+    let about = "a slab with the greatest origin that a record can name";
+    add("surface-origin", "great", about, surface(0), &slab(), &|parts| word(parts, 0, 4 | 0xFF_FFFF << 8));
+    let about = "a plane with an origin";
+    add("surface-origin", "plane", about, surface(0), &two(), &|parts| {
+        word(parts, 0, 1 << 8);
+        parts.sections.push(Section::new(ORIGINS, (U64, 2), vec![7; 16]));
+    });
+    let about = "a number of a slab that has no origin";
+    add("surface-origin", "needless-number", about, surface(0), &slab(), &|parts| {
+        word(parts, 0, 4);
+        parts.take(ORIGINS);
+    });
+    let about = "a number of a slab that is its place, and is stored";
+    add("surface-origin", "number", about, surface(0), &slab(), &|parts| {
+        let words = &mut parts.section(NUMBERS).bytes;
+        let at = words.len() - 8;
+        put(words, at, 0, 8);
+    });
+    for (of, about, more) in [
+        ("slab-terms", "a slab with two words for its number", 2 << 15),
+        ("slab-terms-bit", "a bit beyond the number of a slab", 1 << 15 | 1 << 18),
+    ] {
+        add("surface-record", of, about, surface(0), &slab(), &|parts| {
+            let terms = super::number(&parts.section(SURFACES).bytes, 4, 4);
+            word(parts, 4, terms & 0x7FFF | more);
+            parts.section(NUMBERS).bytes.extend([1; 8]);
+        });
+    }
     let about = "an origin that no slab has";
     add("surface-origin", "unused", about, surface(1), &slab(), &|parts| {
         parts.section(ORIGINS).bytes.extend([7; 16]);
     });
-    add("surface-origin", "none", "an origin that is not there", surface(1), &slab(), &|parts| {
+    add("surface-origin", "none", "an origin that is not there", surface(0), &slab(), &|parts| {
+        parts.take(ORIGINS);
+    });
+    let about = "an origin that is not there, of a slab whose number is its place";
+    let first = table_of(vec![Surface::slab([1.0, 0.0, 0.5], 1.0, 2.0).of(5, 0)]);
+    add("surface-origin", "absent", about, surface(1), &first, &|parts| {
         parts.take(ORIGINS);
     });
 

@@ -99,6 +99,12 @@ instances:
   find_origins:
     type: finder(section_kind::origins)
     doc: The place of the solid's section `origins` in the table.
+  find_cell_slabs:
+    type: finder(section_kind::cell_slabs)
+    doc: The place of the solid's section `cell slabs` in the table.
+  find_cell_slab_groups:
+    type: finder(section_kind::cell_slab_groups)
+    doc: The place of the solid's section `cell slab groups` in the table.
   cut_heads:
     pos: find_cut_heads.section.ofs_body
     size: find_cut_heads.section.len_body
@@ -147,6 +153,20 @@ instances:
     type: origins
     if: find_origins.is_found
     doc: What slabs were made from.
+    doc-ref: specification.md §5.8
+  cell_slabs:
+    pos: find_cell_slabs.section.ofs_body
+    size: find_cell_slabs.section.len_body
+    type: cell_slabs
+    if: find_cell_slabs.is_found
+    doc: Slabs that were made for one cell each.
+    doc-ref: specification.md §5.8
+  cell_slab_groups:
+    pos: find_cell_slab_groups.section.ofs_body
+    size: find_cell_slab_groups.section.len_body
+    type: cell_slab_groups
+    if: find_cell_slab_groups.is_found
+    doc: What those were made from.
     doc-ref: specification.md §5.8
   windows:
     pos: find_windows.section.ofs_body
@@ -585,8 +605,7 @@ types:
         size: 0
         valid:
           expr: >-
-            is_known ? (element_code == element_demanded
-            or (kind == section_kind::cut_ids and (element_code == 2 or element_code == 3)))
+            is_known ? element_code == element_demanded
             and num_components == num_components_demanded
             and (kind == section_kind::objects or is_starts or is_of_cuts
             or (kind == section_kind::metadata ? len_body <= 1048576 : num_elements == num_elements_demanded))
@@ -614,7 +633,7 @@ types:
           : kind_code <= 10 or (is_of_cuts and _root.header.version_minor >= 4)))
         doc: Whether this description knows the section. It knows those of the solid.
       is_of_cuts:
-        value: (kind_code >= 11 and kind_code <= 15) or (kind_code >= 20 and kind_code <= 22)
+        value: (kind_code >= 11 and kind_code <= 15) or (kind_code >= 20 and kind_code <= 24)
         doc: Whether it is one of the sections of cuts, if it is known.
       is_starts:
         value: kind_code >= 33 and (kind_code - 33) % 5 == 0
@@ -686,16 +705,16 @@ types:
           : column == 1 and (_root.header.form & 1) != 0 ? 6
           : column == 2 and ((_root.header.form >> 1) & 3) == 1 ? 2
           : 3
-        doc: The element type of a known section. Ids of cuts may be wider.
+        doc: The element type of a known section.
         doc-ref: specification.md §5
       num_components_demanded:
         value: |
           (kind == section_kind::objects ? 16
-          : kind == section_kind::level_table ? 3
+          : kind == section_kind::level_table or kind == section_kind::cell_slab_groups ? 3
           : kind == section_kind::planes ? 2
           : kind == section_kind::bricks or kind == section_kind::dictionary_entries ? _root.header.num_brick_planes
           : kind == section_kind::windows or kind == section_kind::surfaces ? 4
-          : kind == section_kind::cut_blocks or kind == section_kind::origins ? 2
+          : kind == section_kind::cut_blocks or kind == section_kind::origins or kind == section_kind::cell_slabs ? 2
           : kind == section_kind::placements ? 13
           : column >= 1 and column <= 3 ? 2
           : 1).as<u1>
@@ -850,15 +869,27 @@ types:
     doc-ref: specification.md §5.8
     seq:
       - id: kind
-        type: u4
+        type: u1
         valid:
           max: 4
         doc: 0 is a plane, 1 a quadric, 2 a sum of powers, 3 a torus, 4 a slab. (`surface-record`)
+      - id: origin_low
+        type: u2
+        valid:
+          expr: _ == 0 or kind == 4
+        doc: The lower 16 bits of `origin`. (`surface-origin`, in part)
+      - id: origin_high
+        type: u1
+        valid:
+          expr: _ == 0 or kind == 4
+        doc: The upper 8 bits of `origin`. (`surface-origin`, in part)
       - id: terms
         type: u4
         valid:
-          expr: _ >> (3 * num_numbers) == 0
-        doc: Of how many doubles each number is the sum, three bits for each. (`surface-record`)
+          expr: _ >> (3 * num_numbers) == 0 or (kind == 4 and _ >> 15 == 1)
+        doc: |
+          Of how many doubles each number is the sum, three bits for each. 1 in the bits behind those of a slab says that
+          one more entry of `surface_numbers` is the slab's number, of 64 bits. (`surface-record`)
       - id: first
         type: u4
         doc: Its first double.
@@ -867,8 +898,14 @@ types:
         doc: 0, or one more than the index of the first map that it is placed by.
     instances:
       num_numbers:
-        value: '(kind == 1 or kind == 2 ? 10 : kind == 4 ? 7 : 4).as<u1>'
+        value: '(kind == 1 or kind == 2 ? 10 : kind == 4 ? 5 : 4).as<u1>'
         doc: The numbers that a surface of this kind has.
+      origin:
+        value: '(origin_low + 65536 * origin_high).as<u4>'
+        doc: 0, or one more than the index of the origin of a slab.
+      has_number:
+        value: kind == 4 and terms >> 15 == 1
+        doc: Whether the number of a slab is stored. If it is not, and the slab has an origin, it is the index of the record.
   surface_numbers:
     doc: The doubles of the surfaces.
     doc-ref: specification.md §5.8
@@ -876,9 +913,9 @@ types:
       - id: values
         type: f8
         repeat: eos
-        valid:
-          expr: _ != 0.0 and _ >= -1.7976931348623157e+308 and _ <= 1.7976931348623157e+308
-        doc: Surface by surface, and number by number. (`surface-number`, in part)
+        doc: |
+          Surface by surface, and number by number. The numbers of slabs among them are no doubles, but integers of 64 bits
+          (see `has_number` of a surface).
   placements:
     doc: Maps that place surfaces.
     doc-ref: specification.md §5.8
@@ -927,6 +964,84 @@ types:
       - id: high
         type: u8
         doc: The higher half.
+  cell_slabs:
+    doc: Slabs that were made for one cell each.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: slabs
+        size: 16
+        type: cell_slab
+        repeat: eos
+        doc: Group by group, and in each in the order of their first use.
+  cell_slab:
+    doc: |
+      Two parallel planes in whole numbers. In units of the universe the component of their normal along `axis` is 1, or -1 if
+      `is_negative`; along the next axis it is `component` / 2^15, and along the one after `other_component` / 2^15. Where c is
+      the centre of the home, the faces have the offsets n·c + `offset` / 2^`step` and, from there, `width` / 2^`step`.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: home
+        type: u8
+        valid:
+          expr: (_ >> 61) <= 2
+        doc: |
+          The cell, a one followed by three bits for each level, in bits 0 to 60, and in bits 61 and 62 which of the cell's slabs
+          it is. (`cell-slab`, in part)
+      - id: component
+        type: s2
+        valid:
+          min: -32767
+        doc: Along the axis behind `axis`. (`cell-slab`)
+      - id: other_component
+        type: s2
+        valid:
+          min: -32767
+        doc: Along the axis behind that. (`cell-slab`)
+      - id: fields
+        type: u4
+        valid:
+          expr: ((_ >> 29) & 3) <= 2 and ((_ >> 23) & 63) >= 2 and ((_ >> 23) & 63) <= 50
+        doc: |
+          From the lowest bit on: 19 bits of the offset, four of the width, six of the step, two of the axis, and the sign.
+          (`cell-slab`)
+    instances:
+      offset:
+        value: '((fields & 262143).as<s4> - (fields & 262144).as<s4>).as<s4>'
+        doc: How far the inner face lies from the centre, in steps.
+      width:
+        value: '((fields >> 19) & 15).as<u1>'
+        doc: How far the outer face lies from the inner one, in steps.
+      step:
+        value: '((fields >> 23) & 63).as<u1>'
+        doc: A step is the universe's edge divided by 2 to this power.
+      axis:
+        value: '((fields >> 29) & 3).as<u1>'
+        doc: The axis of the greatest component of the normal.
+      is_negative:
+        value: (fields >> 31) != 0
+        doc: Whether that component is -1.
+      index:
+        value: '(home >> 61).as<u1>'
+        doc: Which of the slabs of its home it is.
+  cell_slab_groups:
+    doc: What cell slabs were made from.
+    doc-ref: specification.md §5.8
+    seq:
+      - id: groups
+        type: cell_slab_group
+        repeat: eos
+        doc: In the order of their first use.
+  cell_slab_group:
+    doc: Cell slabs of one origin, which follow each other.
+    seq:
+      - id: origin
+        type: origin
+        doc: Two zeros if they have none.
+      - id: end
+        type: u8
+        valid:
+          min: 1
+        doc: How many cell slabs there are up to the last of the group. (`cell-slab-group`, in part)
   objects:
     doc: What the file holds. Each section belongs to one of these objects.
     doc-ref: specification.md §2.6, §5.1
@@ -1638,7 +1753,7 @@ enums:
       doc: One byte for each cut.
     12:
       id: cut_ids
-      doc: Surfaces of each cut, of 1, 2 or 4 bytes.
+      doc: Surfaces of each cut, a stream of bits.
     13:
       id: cut_blocks
       doc: What is counted before every 32nd cut, 8 bytes each.
@@ -1657,6 +1772,12 @@ enums:
     22:
       id: origins
       doc: What slabs were made from, 16 bytes each.
+    23:
+      id: cell_slabs
+      doc: Slabs that were made for one cell, 16 bytes each.
+    24:
+      id: cell_slab_groups
+      doc: What those were made from, 24 bytes each.
     32:
       id: windows
       doc: Rays of each direction, 16 bytes each.

@@ -22,7 +22,7 @@
  *
  * As a library: compile with LEAFLESS_READER_NO_MAIN, or include this file after defining it. The bytes of a file must
  * stay as they are while its reader is used. Only lfl_verify allocates memory, and releases it itself: at most 1.3 MB at a
- * time, or a byte for each cut.
+ * time, or a byte for each cut and 16 bytes for each group of cell slabs.
  *
  * No byte order, alignment or layout of structures is assumed. But for the sides of surfaces (reader_cuts.c), no
  * floating-point arithmetic is done: doubles are taken apart and put together as 64 bits. The platform's `double` must be
@@ -385,7 +385,9 @@ enum {
     KIND_VALUE_BASE,
     KIND_SURFACE_NUMBERS,
     KIND_PLACEMENTS,
-    KIND_ORIGINS
+    KIND_ORIGINS,
+    KIND_CELL_SLABS,
+    KIND_CELL_SLAB_GROUPS
 };
 
 /* Types of objects (§5.1). */
@@ -755,8 +757,6 @@ static const char *check_section(struct lfl_reader *r, uint32_t index, uint64_t 
     if (!known)
         return NULL;
     d = demanded(r, s.kind);
-    if (s.kind == KIND_CUT_IDS && (s.element_type == TYPE_U16 || s.element_type == TYPE_U32))
-        d.element_type = s.element_type;
     REFUSE_IF(s.element_type != d.element_type || s.components != d.components, "section-size");
     REFUSE_IF(!d.any_count && s.count != d.count, "section-count");
     REFUSE_IF(s.kind == KIND_METADATA && s.length > MAX_METADATA, "section-metadata-length");
@@ -1717,8 +1717,9 @@ static void print_cuts(const struct lfl_reader *r)
         nothing += cut_head(r, i) == HEAD_NOTHING;
         splits += cut_head(r, i) == HEAD_SPLIT;
     }
-    printf("cuts: %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", cuts - nothing - splits,
-           nothing, splits, count_of(r, KIND_SURFACES), count_of(r, KIND_PLACEMENTS), count_of(r, KIND_ORIGINS));
+    printf("cuts: %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 "\n",
+           cuts - nothing - splits, nothing, splits, surface_count(r), count_of(r, KIND_PLACEMENTS),
+           count_of(r, KIND_ORIGINS), count_of(r, KIND_CELL_SLABS), count_of(r, KIND_CELL_SLAB_GROUPS));
     for (i = 0; i < count_of(r, KIND_SURFACES); i++) {
         struct surface s;
         if (read_surface(r, i, &s) != NULL)
@@ -1729,6 +1730,8 @@ static void print_cuts(const struct lfl_reader *r)
             for (m = 0; m < s.terms[k]; m++)
                 printf("%s%a", m == 0 ? "" : ",", from_bits(double_bits(r, s.begin[k] + m)));
         }
+        if (s.kind == SLAB)
+            printf(" %" PRIu32 " %" PRIu64, s.origin, s.origin == 0 ? 0 : s.number);
         putchar('\n');
     }
     for (i = 0; i < count_of(r, KIND_PLACEMENTS); i++) {
@@ -1740,6 +1743,21 @@ static void print_cuts(const struct lfl_reader *r)
     for (i = 0; i < count_of(r, KIND_ORIGINS); i++) {
         const unsigned char *p = item(r, KIND_ORIGINS, i);
         printf("slab-origin: %" PRIu64 " %016" PRIx64 " %016" PRIx64 "\n", i, u64(p), u64(p + 8));
+    }
+    for (i = 0; i < count_of(r, KIND_CELL_SLABS); i++) {
+        struct cell_slab s;
+        if (read_cell_slab(r, i, &s) != NULL)
+            continue;
+        printf("cell-slab: %" PRIu64 " %u", count_of(r, KIND_SURFACES) + i, s.level);
+        printf(" %" PRIu32 " %" PRIu32 " %" PRIu32 " %u", s.at[0], s.at[1], s.at[2], s.index);
+        for (k = 0; k < 5; k++)
+            printf(" %a", s.number[k]);
+        putchar('\n');
+    }
+    for (i = 0; i < count_of(r, KIND_CELL_SLAB_GROUPS); i++) {
+        const unsigned char *p = item(r, KIND_CELL_SLAB_GROUPS, i);
+        printf("cell-slab-group: %" PRIu64 " %016" PRIx64 " %016" PRIx64, i, u64(p), u64(p + 8));
+        printf(" %" PRIu64 "\n", u64(p + 16));
     }
 }
 

@@ -11,12 +11,12 @@ enum { TABLE_SURFACES = 3, MAX_NUMBERS = 10, MAX_MAPS = 64, HEAD_NOTHING = 0x00,
 enum { PLANE, QUADRIC, POWERS, TORUS, SLAB, SURFACE_KINDS };
 
 /* Numbers of a surface of each kind. */
-static const unsigned number_count[SURFACE_KINDS] = {4, 10, 10, 4, 7};
+static const unsigned number_count[SURFACE_KINDS] = {4, 10, 10, 4, 5};
 
 static int is_cut_kind(uint32_t kind)
 {
     return (kind >= KIND_CUT_HEADS && kind <= KIND_SURFACES) ||
-           (kind >= KIND_SURFACE_NUMBERS && kind <= KIND_ORIGINS);
+           (kind >= KIND_SURFACE_NUMBERS && kind <= KIND_CELL_SLAB_GROUPS);
 }
 
 static struct demand demanded_of_cuts(uint32_t kind)
@@ -24,51 +24,86 @@ static struct demand demanded_of_cuts(uint32_t kind)
     struct demand d = {TYPE_U32, 1, 1, 0};
     switch (kind) {
     case KIND_CUT_HEADS:
-    case KIND_CUT_IDS: d.element_type = TYPE_U8; break; /* ids: or U16 or U32 */
+    case KIND_CUT_IDS: d.element_type = TYPE_U8; break;
     case KIND_CUT_BLOCKS: d.components = 2; break;
     case KIND_CUT_FIRST: break;
     case KIND_SURFACES: d.components = 4; break;
     case KIND_SURFACE_NUMBERS: d.element_type = TYPE_F64; break;
     case KIND_PLACEMENTS: d.element_type = TYPE_RECORD, d.components = 13; break;
-    default: d.element_type = TYPE_U64, d.components = 2; break; /* origins */
+    case KIND_CELL_SLAB_GROUPS: d.element_type = TYPE_U64, d.components = 3; break;
+    default: d.element_type = TYPE_U64, d.components = 2; break; /* origins, cell slabs */
     }
     return d;
 }
 
 static uint64_t count_of(const struct lfl_reader *r, unsigned kind) { return r->section[kind].count; }
 
+/* Surfaces have the numbers of their records, and then those of the slabs of cells. */
+static uint64_t surface_count(const struct lfl_reader *r)
+{
+    return count_of(r, KIND_SURFACES) + count_of(r, KIND_CELL_SLABS);
+}
+
+/* Bits of an id. */
+static unsigned id_bits(const struct lfl_reader *r)
+{
+    unsigned bits = 1;
+    while (bits < 32 && surface_count(r) > UINT64_C(1) << bits)
+        bits++;
+    return bits;
+}
+
 /* §5.8: the table, and what is below it. */
 static const char *check_cut_sections(const struct lfl_reader *r)
 {
-    static const unsigned others[] = {KIND_CUT_IDS, KIND_CUT_BLOCKS, KIND_CUT_FIRST, KIND_SURFACES,
-                                      KIND_SURFACE_NUMBERS, KIND_PLACEMENTS, KIND_ORIGINS};
-    uint64_t heads = count_of(r, KIND_CUT_HEADS), surfaces = count_of(r, KIND_SURFACES);
-    unsigned i, width = surfaces <= 256 ? TYPE_U8 : surfaces <= 65536 ? TYPE_U16 : TYPE_U32;
+    static const unsigned others[] = {KIND_CUT_IDS,         KIND_CUT_BLOCKS, KIND_CUT_FIRST, KIND_SURFACES,
+                                      KIND_SURFACE_NUMBERS, KIND_PLACEMENTS, KIND_ORIGINS,   KIND_CELL_SLABS,
+                                      KIND_CELL_SLAB_GROUPS};
+    enum { OTHERS = sizeof others / sizeof *others };
+    uint64_t heads = count_of(r, KIND_CUT_HEADS), records = count_of(r, KIND_SURFACES);
+    uint64_t slabs = count_of(r, KIND_CELL_SLABS);
+    unsigned i;
     if (heads == 0) {
-        for (i = 0; i < 7; i++)
+        for (i = 0; i < OTHERS; i++)
             REFUSE_IF(count_of(r, others[i]) != 0, "section-cuts");
         return NULL;
     }
     REFUSE_IF(heads > UINT32_MAX, "section-cuts");
-    for (i = 0; i < 7; i++)
-        REFUSE_IF(others[i] != KIND_CUT_FIRST && count_of(r, others[i]) > UINT32_MAX, "section-cuts");
+    for (i = 0; i < OTHERS; i++)
+        REFUSE_IF(others[i] != KIND_CUT_IDS && others[i] != KIND_CUT_FIRST && count_of(r, others[i]) > UINT32_MAX,
+                  "section-cuts");
+    REFUSE_IF(records + slabs > UINT32_MAX, "section-cuts");
+    REFUSE_IF(count_of(r, KIND_CUT_IDS) > quotient_up(UINT64_C(0xFFFFFFFF) * id_bits(r), 8), "section-cuts");
     REFUSE_IF(count_of(r, KIND_CUT_BLOCKS) != quotient_up(heads, CUTS_OF_BLOCK), "section-cuts");
     /* No overflow: there are sections of so many elements and bricks. */
     REFUSE_IF(count_of(r, KIND_CUT_FIRST) != r->elements + r->bricks + 1, "section-cuts");
-    REFUSE_IF((count_of(r, KIND_CUT_IDS) != 0) != (surfaces != 0), "section-cuts");
-    REFUSE_IF(surfaces != 0 && r->section[KIND_CUT_IDS].element_type != width, "section-cuts");
-    REFUSE_IF((count_of(r, KIND_SURFACE_NUMBERS) != 0) != (surfaces != 0), "section-cuts");
-    REFUSE_IF(count_of(r, KIND_PLACEMENTS) != 0 && surfaces == 0, "section-cuts");
-    REFUSE_IF(count_of(r, KIND_ORIGINS) != 0 && surfaces == 0, "section-cuts");
+    REFUSE_IF((count_of(r, KIND_CUT_IDS) != 0) != (records + slabs != 0), "section-cuts");
+    REFUSE_IF((count_of(r, KIND_SURFACE_NUMBERS) != 0) != (records != 0), "section-cuts");
+    REFUSE_IF(count_of(r, KIND_PLACEMENTS) != 0 && records == 0, "section-cuts");
+    REFUSE_IF(count_of(r, KIND_ORIGINS) != 0 && records == 0, "section-cuts");
+    REFUSE_IF((count_of(r, KIND_CELL_SLAB_GROUPS) != 0) != (slabs != 0), "section-cuts");
+    REFUSE_IF(count_of(r, KIND_CELL_SLAB_GROUPS) > slabs, "section-cuts");
     return NULL;
 }
 
 static unsigned cut_head(const struct lfl_reader *r, uint64_t cut) { return *item(r, KIND_CUT_HEADS, cut); }
 static uint32_t cut_first(const struct lfl_reader *r, uint64_t n) { return u32(item(r, KIND_CUT_FIRST, n)); }
 
+/* Whether the section goes on for so many ids. */
+static int has_ids(const struct lfl_reader *r, uint64_t count)
+{
+    return quotient_up(count * id_bits(r), 8) <= count_of(r, KIND_CUT_IDS);
+}
+
+/* Id i, which must be there: w bits from bit w i of the section on. */
 static uint32_t cut_id(const struct lfl_reader *r, uint64_t i)
 {
-    return (uint32_t)little_endian(item(r, KIND_CUT_IDS, i), type_size[r->section[KIND_CUT_IDS].element_type]);
+    unsigned bits = id_bits(r), k;
+    uint64_t at = i * bits;
+    uint32_t id = 0;
+    for (k = 0; k < bits; k++, at++)
+        id |= (uint32_t)(*item(r, KIND_CUT_IDS, at / 8) >> at % 8 & 1) << k;
+    return id;
 }
 
 /* The bits of a table in which its surface i, 0 to 2, is positive. */
@@ -120,6 +155,9 @@ struct surface {
     uint64_t begin[MAX_NUMBERS];
     unsigned terms[MAX_NUMBERS];
     uint32_t placement;
+    uint32_t origin; /* 0, or one more than the place of a slab's origin */
+    uint64_t number; /* of a slab with an origin */
+    int is_number_stored;
 };
 
 static uint64_t double_bits(const struct lfl_reader *r, uint64_t i) { return u64(item(r, KIND_SURFACE_NUMBERS, i)); }
@@ -179,28 +217,37 @@ static int is_legal_figure(const struct lfl_reader *r, const struct surface *s)
         return high && is_moderate(n[9]);
     case TORUS: return number_sign(r, s, 0) > 0 && number_sign(r, s, 1) > 0 && number_sign(r, s, 2) > 0;
     default: /* slab */
-        return (any & 7) != 0 && n[3] <= n[4] && is_whole(n[5], 0, UINT32_MAX) && is_whole(n[6], 0, UINT32_MAX) &&
-               (n[5] != 0.0 || n[6] == 0.0);
+        return (any & 7) != 0 && n[3] <= n[4];
     }
 }
 
-/* Surface i, which must be there: its record, and whether its numbers are legal. Not its origin, its placement, and the place
-   of its doubles. */
+/* Surface i, which must be that of a record: the record, and whether its numbers are legal. Not its origin, its placement, and
+   the place of its doubles. */
 static const char *read_surface(const struct lfl_reader *r, uint64_t i, struct surface *s)
 {
     const unsigned char *p = item(r, KIND_SURFACES, i);
-    uint32_t kind = u32(p), terms = u32(p + 4);
+    uint32_t kind = u32(p) & 0xFF, terms = u32(p + 4);
     unsigned k, m;
     REFUSE_IF(kind >= SURFACE_KINDS, "surface-record");
     s->kind = kind;
     s->first = s->end = u32(p + 8);
     s->placement = u32(p + 12);
+    s->origin = u32(p) >> 8;
+    s->number = i;
+    s->is_number_stored = 0;
     for (k = 0; k < number_count[kind]; k++, terms >>= 3) {
         s->begin[k] = s->end;
         s->terms[k] = terms & 7;
         s->end += s->terms[k];
     }
+    if (kind == SLAB && terms == 1) {
+        terms = 0;
+        s->is_number_stored = 1;
+        s->end++;
+    }
     REFUSE_IF(terms != 0 || s->end > count_of(r, KIND_SURFACE_NUMBERS), "surface-record");
+    if (s->is_number_stored)
+        s->number = double_bits(r, s->end - 1);
     for (k = 0; k < number_count[kind]; k++) {
         for (m = 0; m < s->terms[k]; m++) {
             uint64_t bits = double_bits(r, s->begin[k] + m);
@@ -221,6 +268,58 @@ static double map_entry(const struct lfl_reader *r, uint64_t map, unsigned row, 
 static uint64_t map_outer(const struct lfl_reader *r, uint64_t map)
 {
     return u64(item(r, KIND_PLACEMENTS, map) + 96);
+}
+
+/* A slab of a cell. */
+struct cell_slab {
+    unsigned level, index;
+    uint32_t at[3];
+    /* In units of the universe: the normal, and the offsets of the inner and of the outer face. */
+    double number[5];
+};
+
+/* Whether an entry of a map is legal. */
+static int is_entry(uint64_t bits)
+{
+    uint64_t magnitude = bits & UINT64_MAX >> 1;
+    return bits == 0 || (magnitude >= (uint64_t)(1023 - 64) << 52 && magnitude <= (uint64_t)(1023 + 64) << 52);
+}
+
+/* 2^-n. */
+static double power_of_half(unsigned n) { return from_bits((uint64_t)(1023 - n) << 52); }
+
+/* Slab i of those of cells, which must be there. All numbers are exact: multiples of 2^-50 of less than 2^17, or of 2^-36. */
+static const char *read_cell_slab(const struct lfl_reader *r, uint64_t i, struct cell_slab *s)
+{
+    const unsigned char *p = item(r, KIND_CELL_SLABS, i);
+    uint64_t home = u64(p), planes = u64(p + 8), octants = home & ((UINT64_C(1) << 61) - 1);
+    unsigned axis = planes >> 61 & 3, step = planes >> 55 & 63, width = planes >> 51 & 15, k, b;
+    uint32_t others[2], offset = (uint32_t)(planes >> 32) & 0x7FFFF;
+    double along = 0.0;
+    others[0] = planes & 0xFFFF;
+    others[1] = planes >> 16 & 0xFFFF;
+    for (s->level = 0; s->level <= r->depth && octants >> 3 * s->level != 1; s->level++)
+        ;
+    s->index = home >> 61 & 3;
+    REFUSE_IF(!is_entry(r->edge), "cell-slab");
+    for (k = 0; k < 3; k++)
+        REFUSE_IF(!is_entry(r->origin[k]), "cell-slab");
+    REFUSE_IF(home >> 63 != 0 || s->index > 2 || s->level > r->depth, "cell-slab");
+    REFUSE_IF(axis > 2 || others[0] == 0x8000 || others[1] == 0x8000 || step < 2 || step > 50, "cell-slab");
+    memset(s->at, 0, sizeof s->at);
+    for (b = 0; b < s->level; b++) {
+        for (k = 0; k < 3; k++)
+            s->at[k] |= (uint32_t)(octants >> (3 * b + k) & 1) << b;
+    }
+    s->number[axis] = planes >> 63 ? -1.0 : 1.0;
+    for (k = 0; k < 2; k++)
+        s->number[(axis + 1 + k) % 3] = ((double)others[k] - (others[k] >> 15 ? 65536.0 : 0.0)) * power_of_half(15);
+    for (k = 0; k < 3; k++)
+        along += s->number[k] * ((2.0 * s->at[k] + 1.0) * power_of_half(s->level + 1));
+    along += ((double)offset - (offset >> 18 ? 524288.0 : 0.0)) * power_of_half(step);
+    s->number[3] = along;
+    s->number[4] = along + width * power_of_half(step);
+    return NULL;
 }
 
 /* ---- §10.3 Verification ----------------------------------------------------------------------------------------- */
@@ -258,9 +357,90 @@ static const char *verify_first(const struct lfl_reader *r, unsigned char *level
     return NULL;
 }
 
-static const char *verify_cuts_in_order(const struct lfl_reader *r, unsigned char *level, uint64_t known)
+static uint64_t group_end(const struct lfl_reader *r, uint64_t g)
 {
-    uint64_t cut, ids = 0, splits = 0, used = 0, cuts = count_of(r, KIND_CUT_HEADS);
+    return u64(item(r, KIND_CELL_SLAB_GROUPS, g) + 16);
+}
+
+static int compare_origins(const void *a, const void *b)
+{
+    const unsigned char *p = *(const unsigned char *const *)a, *q = *(const unsigned char *const *)b;
+    int order = memcmp(p, q, 16);
+    return order != 0 ? order : (p > q) - (p < q);
+}
+
+/* The groups of slabs of cells: each has some, all together have all, and no two have one origin. */
+static const char *verify_groups(const struct lfl_reader *r)
+{
+    uint64_t g, end = 0, groups = count_of(r, KIND_CELL_SLAB_GROUPS);
+    const unsigned char **order;
+    const char *error = NULL;
+    for (g = 0; g < groups; g++) {
+        REFUSE_IF(group_end(r, g) <= end, "cell-slab-group");
+        end = group_end(r, g);
+    }
+    REFUSE_IF(end != count_of(r, KIND_CELL_SLABS), "cell-slab-group");
+    if (groups < 2)
+        return NULL;
+    order = malloc((size_t)groups * sizeof *order);
+    if (order == NULL)
+        return lfl_out_of_memory;
+    for (g = 0; g < groups; g++)
+        order[g] = item(r, KIND_CELL_SLAB_GROUPS, g);
+    qsort(order, (size_t)groups, sizeof *order, compare_origins);
+    for (g = 1; g < groups && error == NULL; g++) {
+        if (memcmp(order[g - 1], order[g], 16) == 0)
+            error = "cell-slab-group";
+    }
+    free(order);
+    return error;
+}
+
+/* Which surfaces have been met: of each group how many. Group 0 are the surfaces of records. */
+struct met {
+    uint64_t groups;
+    uint64_t *count; /* for each group, and one more: for all of them together */
+};
+
+/* The number of the first surface of a group. */
+static uint64_t group_begin(const struct lfl_reader *r, uint64_t g)
+{
+    if (g == 0)
+        return 0;
+    return count_of(r, KIND_SURFACES) + (g == 1 ? 0 : group_end(r, g - 2));
+}
+
+/* Meets a surface; returns 0 if it is not its turn. */
+static int meet(const struct lfl_reader *r, struct met *met, uint32_t id)
+{
+    /* The last group that begins at the surface or before. */
+    uint64_t low = 0, high = met->groups, begin;
+    if (id >= surface_count(r))
+        return 0;
+    if (id < count_of(r, KIND_SURFACES))
+        high = 1;
+    while (high - low > 1) {
+        uint64_t middle = low + (high - low) / 2;
+        if (group_begin(r, middle) <= id)
+            low = middle;
+        else
+            high = middle;
+    }
+    begin = group_begin(r, low);
+    if (id - begin > met->count[low])
+        return 0;
+    if (low > 1 && met->count[low - 1] == 0)
+        return 0;
+    if (id - begin == met->count[low]) {
+        met->count[low]++;
+        met->count[met->groups]++;
+    }
+    return 1;
+}
+
+static const char *verify_cuts_in_order(const struct lfl_reader *r, unsigned char *level, uint64_t known, struct met *met)
+{
+    uint64_t cut, ids = 0, splits = 0, cuts = count_of(r, KIND_CUT_HEADS);
     unsigned i, nothing;
     for (cut = 0; cut < known; cut++) {
         unsigned head = cut_head(r, cut), own = table_surfaces(head);
@@ -282,21 +462,23 @@ static const char *verify_cuts_in_order(const struct lfl_reader *r, unsigned cha
         }
         for (i = 0; i < own; i++, ids++) {
             uint32_t id;
-            REFUSE_IF(ids >= count_of(r, KIND_CUT_IDS), "cut-ids");
+            REFUSE_IF(ids >= UINT32_MAX || !has_ids(r, ids + 1), "cut-ids");
             id = cut_id(r, ids);
             REFUSE_IF(i > 0 && id <= cut_id(r, ids - 1), "cut-ids");
-            REFUSE_IF(id > used, "cut-ids");
-            used += id == used;
+            REFUSE_IF(!meet(r, met, id), "cut-ids");
         }
     }
     REFUSE_IF(known != cuts, "cut-group");
-    REFUSE_IF(ids != count_of(r, KIND_CUT_IDS) || used != count_of(r, KIND_SURFACES), "cut-ids");
+    REFUSE_IF(quotient_up(ids * id_bits(r), 8) != count_of(r, KIND_CUT_IDS), "cut-ids");
+    if (ids * id_bits(r) % 8 != 0)
+        REFUSE_IF(*item(r, KIND_CUT_IDS, count_of(r, KIND_CUT_IDS) - 1) >> ids * id_bits(r) % 8 != 0, "cut-ids");
+    REFUSE_IF(met->count[met->groups] != surface_count(r), "cut-ids");
     return NULL;
 }
 
 static const char *verify_surfaces(const struct lfl_reader *r)
 {
-    uint64_t i, doubles = 0, maps = 0, origins = 0, m, origin;
+    uint64_t i, doubles = 0, maps = 0, origins = 0, m;
     unsigned length;
     for (i = 0; i < count_of(r, KIND_SURFACES); i++) {
         struct surface s;
@@ -305,12 +487,11 @@ static const char *verify_surfaces(const struct lfl_reader *r)
         REFUSE_IF(s.first != doubles, "surface-record");
         REFUSE_IF(error != NULL, error);
         doubles = s.end;
-        if (s.kind == SLAB) {
-            origin = (uint64_t)first_double(r, &s, 5);
-            REFUSE_IF(origin > origins + 1, "surface-origin");
-            if (origin > origins)
-                origins = origin;
-        }
+        REFUSE_IF(s.origin != 0 && s.kind != SLAB, "surface-origin");
+        REFUSE_IF(s.is_number_stored && (s.origin == 0 || s.number == i), "surface-origin");
+        REFUSE_IF(s.origin > origins + 1, "surface-origin");
+        if (s.origin > origins)
+            origins = s.origin;
         REFUSE_IF(s.placement > count_of(r, KIND_PLACEMENTS), "surface-placement");
         if (s.placement > maps) {
             REFUSE_IF(map_outer(r, maps) > maps, "surface-placement");
@@ -324,6 +505,10 @@ static const char *verify_surfaces(const struct lfl_reader *r)
     REFUSE_IF(doubles != count_of(r, KIND_SURFACE_NUMBERS), "surface-record");
     REFUSE_IF(origins != count_of(r, KIND_ORIGINS), "surface-origin");
     REFUSE_IF(maps != count_of(r, KIND_PLACEMENTS), "surface-placement");
+    for (i = 0; i < count_of(r, KIND_CELL_SLABS); i++) {
+        struct cell_slab s;
+        REFUSE_IF(read_cell_slab(r, i, &s) != NULL, "cell-slab");
+    }
     return NULL;
 }
 
@@ -370,9 +555,7 @@ static const char *verify_placements(const struct lfl_reader *r)
     unsigned i;
     for (map = 0; map < count_of(r, KIND_PLACEMENTS); map++) {
         for (i = 0; i < 12; i++) {
-            uint64_t bits = u64(item(r, KIND_PLACEMENTS, map) + 8 * i), magnitude = bits & UINT64_MAX >> 1;
-            REFUSE_IF(bits != 0 && (magnitude < (uint64_t)(1023 - 64) << 52 || magnitude > (uint64_t)(1023 + 64) << 52),
-                      "placement-map");
+            REFUSE_IF(!is_entry(u64(item(r, KIND_PLACEMENTS, map) + 8 * i)), "placement-map");
         }
         REFUSE_IF(is_singular(r, map), "placement-map");
     }
@@ -383,15 +566,19 @@ static const char *verify_cuts(const struct lfl_reader *r)
 {
     uint64_t known;
     unsigned char *level;
+    struct met met;
     const char *error;
     if (count_of(r, KIND_CUT_HEADS) == 0)
         return NULL;
+    met.groups = 1 + count_of(r, KIND_CELL_SLAB_GROUPS);
+    met.count = calloc((size_t)met.groups + 1, sizeof *met.count);
     level = malloc((size_t)count_of(r, KIND_CUT_HEADS));
-    if (level == NULL)
-        return lfl_out_of_memory;
-    if ((error = verify_first(r, level, &known)) == NULL)
-        error = verify_cuts_in_order(r, level, known);
+    if (level == NULL || met.count == NULL)
+        error = lfl_out_of_memory;
+    else if ((error = verify_first(r, level, &known)) == NULL && (error = verify_groups(r)) == NULL)
+        error = verify_cuts_in_order(r, level, known, &met);
     free(level);
+    free(met.count);
     if (error != NULL || (error = verify_surfaces(r)) != NULL)
         return error;
     return verify_placements(r);
@@ -567,10 +754,21 @@ static int side_of(const struct lfl_reader *r, uint32_t id, const double point[3
     struct interval p[3], n[MAX_NUMBERS], value = zero;
     uint64_t next;
     unsigned i, j, length = 0;
-    if (id >= count_of(r, KIND_SURFACES) || read_surface(r, id, &s) != NULL)
-        return 0;
     for (i = 0; i < 3; i++)
         p[i] = exactly(point[i]);
+    if (id >= count_of(r, KIND_SURFACES)) {
+        struct cell_slab slab;
+        if (id >= surface_count(r) || read_cell_slab(r, id - count_of(r, KIND_SURFACES), &slab) != NULL)
+            return 0;
+        /* In units of the universe. */
+        for (i = 0; i < 3; i++) {
+            p[i] = quotient(sum(p[i], exactly(-from_bits(r->origin[i]))), exactly(from_bits(r->edge)));
+            value = sum(value, product(exactly(slab.number[i]), p[i]));
+        }
+        return (value.high < slab.number[3]) - (value.low > slab.number[4]);
+    }
+    if (read_surface(r, id, &s) != NULL)
+        return 0;
     if (s.placement != 0) {
         struct map all;
         for (i = 0; i < 3; i++) {
@@ -710,7 +908,7 @@ enum lfl_answer lfl_contains_with_cuts(const struct lfl_reader *r, double x, dou
     for (i = 0; i < table_surfaces(cut_head(r, cut)); i++) {
         int side;
         unsigned half;
-        if (ids + i >= count_of(r, KIND_CUT_IDS))
+        if (!has_ids(r, ids + i + 1))
             return LFL_UNDECIDED;
         side = side_of(r, cut_id(r, ids + i), point);
         half = side > 0 ? head & where_positive(i) : head & ~where_positive(i);

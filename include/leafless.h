@@ -2409,8 +2409,7 @@ LEAFLESS_ENUM(leafless_stored_surface_kind, uint32_t) {
     LEAFLESS_STORED_SURFACE_KIND_POWERS = 2,
     LEAFLESS_STORED_SURFACE_KIND_TORUS = 3,  ///< R, q, s, t of q - (sqrt((s x)² + (s y)²) - R)² - (s z + t)².
     /// a, b, c and two offsets: positive where a x + b y + c z is less than the first, negative where it is
-    /// greater than the second, and not known between. The last two numbers tell which slab it is: an origin,
-    /// and a number.
+    /// greater than the second, and not known between.
     LEAFLESS_STORED_SURFACE_KIND_SLAB = 4,
 };
 
@@ -2423,7 +2422,9 @@ typedef struct leafless_stored_surface_info {
     uint32_t terms[10];  ///< Of how many doubles each number is the exact sum.
     uint32_t term_count;  ///< How many doubles that is in all.
     bool has_origin;  ///< Whether a slab can be told from others.
-    uint32_t origin_number;  ///< If so: its number where it was made.
+    /// If so: its number where it was made. Numbers from 2^63 on are those of slabs that were made for one
+    /// cell.
+    uint64_t origin_number;
     uint64_t origin[2];  ///< And the fingerprint of what it was made from, the lower half first.
 } leafless_stored_surface_info;
 

@@ -58,7 +58,7 @@ pub enum leafless_stored_surface_kind {
     /// R, q, s, t of q - (sqrt((s x)² + (s y)²) - R)² - (s z + t)².
     LEAFLESS_STORED_SURFACE_KIND_TORUS = 3,
     /// a, b, c and two offsets: positive where a x + b y + c z is less than the first, negative where it is greater than the
-    /// second, and not known between. The last two numbers tell which slab it is: an origin, and a number.
+    /// second, and not known between.
     LEAFLESS_STORED_SURFACE_KIND_SLAB = 4,
 }
 use leafless_stored_surface_kind::*;
@@ -81,8 +81,8 @@ pub struct leafless_stored_surface_info {
     pub term_count: u32,
     /// Whether a slab can be told from others.
     pub has_origin: bool,
-    /// If so: its number where it was made.
-    pub origin_number: u32,
+    /// If so: its number where it was made. Numbers from 2^63 on are those of slabs that were made for one cell.
+    pub origin_number: u64,
     /// And the fingerprint of what it was made from, the lower half first.
     pub origin: [u64; 2],
 }
@@ -218,8 +218,7 @@ pub unsafe extern "C" fn leafless_octree_surface_at(
             *count = found.number(i).len() as u32;
             all.extend_from_slice(found.number(i));
         }
-        let maps: Vec<f64> =
-            found.placements().flat_map(|rows| rows.as_flattened().iter().copied()).collect();
+        let maps: Vec<f64> = found.placements().flatten().flatten().collect();
         terms.fill(&all)?;
         rows.fill(&maps)?;
         let origin = found.origin();

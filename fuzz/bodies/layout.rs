@@ -29,9 +29,11 @@ pub const SURFACES: u32 = 15;
 pub const NUMBERS: u32 = 20;
 pub const PLACEMENTS: u32 = 21;
 pub const ORIGINS: u32 = 22;
+pub const CELL_SLABS: u32 = 23;
+pub const GROUPS: u32 = 24;
 /// Those of cuts.
-pub const CUTS: [u32; 8] =
-    [CUT_HEADS, CUT_IDS, CUT_BLOCKS, CUT_FIRST, SURFACES, NUMBERS, PLACEMENTS, ORIGINS];
+pub const CUTS: [u32; 10] =
+    [CUT_HEADS, CUT_IDS, CUT_BLOCKS, CUT_FIRST, SURFACES, NUMBERS, PLACEMENTS, ORIGINS, CELL_SLABS, GROUPS];
 
 /// Fields of the header: offset and length.
 pub const HEADER_FIELDS: [(usize, usize); 28] = [
@@ -228,6 +230,131 @@ const MOST_SECTIONS: usize = 64;
 const MOST_ENTRIES: usize = 600;
 /// Cuts that a repaired tree may have.
 const MOST_CUTS: usize = 2000;
+
+/// Bits of an id where there are so many surfaces.
+fn bits_of_an_id(surfaces: usize) -> usize {
+    (1..).find(|&bits| 1 << bits >= surfaces).unwrap_or(1)
+}
+
+/// The numbers of a stream of bits.
+fn unpacked(bytes: &[u8], bits: usize) -> Vec<usize> {
+    let bit = |i: usize| usize::from(bytes[i / 8] >> (i % 8) & 1);
+    let one = |i: usize| (0..bits).map(|k| bit(i * bits + k) << k).sum();
+    (0..8 * bytes.len() / bits).map(one).collect()
+}
+
+/// A stream of bits.
+fn packed(numbers: &[usize], bits: usize) -> Vec<u8> {
+    let mut bytes = vec![0; (numbers.len() * bits).div_ceil(8)];
+    for (i, number) in numbers.iter().enumerate() {
+        for k in 0..bits {
+            bytes[(i * bits + k) / 8] |= ((number >> k & 1) as u8) << ((i * bits + k) % 8);
+        }
+    }
+    bytes
+}
+
+/// Surfaces whose numbers are those of their first use.
+struct Group {
+    start: usize,
+    /// The first one that has not been used.
+    next: usize,
+    end: usize,
+    origin: [u64; 2],
+}
+
+/// Which surfaces cuts use: those of records, then slabs of cells group by group.
+struct Kept {
+    groups: Vec<Group>,
+    slabs: Vec<u8>,
+}
+
+impl Kept {
+    fn new(records: usize, slabs: &[u8], groups: &[u8]) -> Kept {
+        let all = records + slabs.len() / 16;
+        let mut kept = Kept { groups: vec![], slabs: slabs.to_vec() };
+        let mut add = |end: usize, origin| {
+            let start = kept.groups.last().map_or(0, |group: &Group| group.end);
+            kept.groups.push(Group { start, next: start, end: end.clamp(start, all), origin });
+        };
+        add(records, [0; 2]);
+        for group in groups.chunks_exact(24) {
+            let end = records.saturating_add(number(group, 16, 8) as usize);
+            add(end, [number(group, 0, 8), number(group, 8, 8)]);
+        }
+        add(all, [7; 2]);
+        // The others begin where surfaces are; no two of them have one origin.
+        let mut n = 0;
+        kept.groups.retain(|group| {
+            n += 1;
+            n == 1 || group.start < group.end
+        });
+        for g in 1..kept.groups.len() {
+            while kept.groups[1..g].iter().any(|before| before.origin == kept.groups[g].origin) {
+                kept.groups[g].origin[1] = kept.groups[g].origin[1].wrapping_add(1);
+            }
+        }
+        kept
+    }
+
+    fn all(&self) -> usize {
+        self.groups.last().map_or(0, |group| group.end)
+    }
+
+    fn may_be(&self, id: usize) -> bool {
+        let g = self.groups.iter().position(|group| id < group.end).expect("a group");
+        let begun = g < 2 || self.groups[g - 1].next > self.groups[g - 1].start;
+        id < self.groups[g].next || id == self.groups[g].next && begun
+    }
+
+    /// A surface that may be used and is none of some others, `drawn` if that is one.
+    fn one(&mut self, drawn: usize, others: &[usize]) -> usize {
+        let is_good = |id: &usize| self.may_be(*id) && !others.contains(id);
+        let all = self.all();
+        let id =
+            (0..all).map(|i| (drawn % all + all - i) % all).find(is_good).expect("a surface that is left");
+        let group = self.groups.iter_mut().find(|group| id < group.end).expect("a group");
+        group.next = group.next.max(id + 1);
+        id
+    }
+
+    /// What surfaces are called when those are gone that are not used; the slabs of cells, mended, and their groups.
+    fn finish(&self, depth: usize) -> (Vec<usize>, Vec<u8>, Vec<u8>) {
+        let (mut names, mut slabs, mut groups) = (vec![0; self.all()], vec![], vec![]);
+        let records = self.groups[0].end;
+        let mut next = 0;
+        for (g, group) in self.groups.iter().enumerate() {
+            for id in group.start..group.next {
+                names[id] = next;
+                next += 1;
+                if g > 0 {
+                    let at = 16 * (id - records);
+                    slabs.extend(mended_slab(&self.slabs[at..at + 16], depth));
+                }
+            }
+            if g > 0 && group.next > group.start {
+                let end = slabs.len() as u64 / 16;
+                groups.extend([group.origin[0], group.origin[1], end].map(u64::to_le_bytes).concat());
+            }
+        }
+        (names, slabs, groups)
+    }
+}
+
+/// A slab of a cell that is legal.
+fn mended_slab(slab: &[u8], depth: usize) -> Vec<u8> {
+    let [home, planes] = [number(slab, 0, 8), number(slab, 8, 8)];
+    let index = (home >> 61 & 3).min(2);
+    let octants = home & ((1 << 61) - 1);
+    let is_level = |level: &usize| octants >> (3 * level) == 1;
+    // A cell of the first level is always there.
+    let cell = (0..=depth).find(is_level).map_or(8 | octants & 7, |_| octants);
+    let part = |shift: u32, bits: u32| planes >> shift & ((1 << bits) - 1);
+    let component = |own: u64| if own == 0x8000 { 0 } else { own };
+    let (a, b) = (component(part(0, 16)), component(part(16, 16)));
+    let rest = part(32, 23) << 32 | part(55, 6).clamp(2, 50) << 55 | part(61, 2).min(2) << 61;
+    [cell | index << 61, a | b << 16 | rest | planes & 1 << 63].map(u64::to_le_bytes).concat()
+}
 
 impl File {
     /// The parts of `bytes`, if there are a signature and a header. Sections that lie elsewhere than in the
@@ -534,12 +661,11 @@ impl File {
             return CUTS.into_iter().for_each(|kind| self.set(kind, vec![]));
         }
         let known = levels.len();
-        let width = self.section(CUT_IDS).map_or(1, |section| section.size().min(4));
-        let old_ids: Vec<u64> =
-            self.bytes(CUT_IDS).chunks_exact(width).map(|id| number(id, 0, width)).collect();
         let old_heads = self.bytes(CUT_HEADS).to_vec();
-        let all = self.bytes(SURFACES).len() / 16;
-        let (mut heads, mut ids, mut used) = (vec![], vec![], 0);
+        let mut kept = Kept::new(self.bytes(SURFACES).len() / 16, self.bytes(CELL_SLABS), self.bytes(GROUPS));
+        let all = kept.all();
+        let old_ids = unpacked(self.bytes(CUT_IDS), bits_of_an_id(all));
+        let (mut heads, mut ids) = (vec![], vec![]);
         let mut drawn = old_ids.iter().cycle();
         let mut record = 0;
         while record < levels.len() {
@@ -568,22 +694,11 @@ impl File {
                 let level = levels[record] + 1;
                 levels.extend([level; 8]);
             }
-            // Different ones of those that were used, or the next.
-            let mut own: Vec<u64> = vec![];
+            // Different ones of those that were used, or that may be next.
+            let mut own: Vec<usize> = vec![];
             while own.len() < count {
                 let drawn = drawn.next().map_or(0, |&id| id);
-                let mut id = drawn.min(used).min(all as u64 - 1);
-                while own.contains(&id) {
-                    id = (id + 1) % (used + 1).min(all as u64);
-                    if own.len() as u64 == (used + 1).min(all as u64) {
-                        break;
-                    }
-                }
-                if own.contains(&id) {
-                    break;
-                }
-                used = used.max(id + 1).min(all as u64);
-                own.push(id);
+                own.push(kept.one(drawn, &own));
             }
             own.sort_unstable();
             ids.extend(own);
@@ -591,7 +706,7 @@ impl File {
             record += 1;
         }
         // Those that are left, with their doubles.
-        let used = used as usize;
+        let used = kept.groups[0].next;
         let mut records = self.bytes(SURFACES)[..16 * used].to_vec();
         let (old, mut doubles) = (self.bytes(NUMBERS).to_vec(), vec![]);
         for surface in records.chunks_exact_mut(16) {
@@ -613,16 +728,10 @@ impl File {
             counted[0] += (0..3u32).rev().find(|&i| depends(i as usize)).map_or(0, |i| i + 1);
             counted[1] += u32::from(*head == 0xFF);
         }
-        let width = match used {
-            0..=256 => 1,
-            257..=65_536 => 2,
-            _ => 4,
-        };
+        let (names, slabs, groups) = kept.finish(depth);
+        let ids: Vec<usize> = ids.iter().map(|&id| names[id]).collect();
         self.set(CUT_HEADS, heads);
-        self.set(CUT_IDS, ids.iter().flat_map(|id| id.to_le_bytes()[..width].to_vec()).collect());
-        if let Some(section) = self.section(CUT_IDS) {
-            put(&mut section.entry, 8, [0, 1, 2, 0, 3][width] | 0x100, 2);
-        }
+        self.set(CUT_IDS, packed(&ids, bits_of_an_id(used + slabs.len() / 16)));
         self.set(CUT_BLOCKS, blocks);
         self.set(CUT_FIRST, first.iter().flat_map(|n| n.to_le_bytes()).collect());
         self.set(SURFACES, records);
@@ -631,6 +740,8 @@ impl File {
             self.set(PLACEMENTS, vec![]);
             self.set(ORIGINS, vec![]);
         }
+        self.set(CELL_SLABS, slabs);
+        self.set(GROUPS, groups);
     }
 
     /// The table's order, the elements of the solid's sections, and the counts.
@@ -651,13 +762,14 @@ impl File {
                 REL | INDICES => (2, 1),
                 BASE | SEGMENTS => (4, 1),
                 BRICKS | ENTRIES => (4, planes),
-                CUT_HEADS if has_cuts => (1, 1),
+                CUT_HEADS | CUT_IDS if has_cuts => (1, 1),
                 CUT_BLOCKS if has_cuts => (3, 2),
                 CUT_FIRST if has_cuts => (3, 1),
                 SURFACES if has_cuts => (3, 4),
                 NUMBERS if has_cuts => (6, 1),
                 PLACEMENTS if has_cuts => (0, 13),
-                ORIGINS if has_cuts => (4, 2),
+                ORIGINS | CELL_SLABS if has_cuts => (4, 2),
+                GROUPS if has_cuts => (4, 3),
                 _ => continue,
             };
             put(&mut section.entry, 8, kind | components << 8, 4);

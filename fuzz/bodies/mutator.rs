@@ -1,9 +1,9 @@
 //! Changes of files that know what a file is: without them hardly any input would get past the checksums.
 
 use super::layout::{
-    BASE, CUT_BLOCKS, CUT_FIRST, CUT_HEADS, CUT_IDS, CUTS, ENTRIES, ENTRY_FIELDS, File, HEADER_FIELDS,
-    INDICES, LEVELS, METADATA, NUMBERS, OBJECTS, ORIGINS, PLACEMENTS, PLANES, RECORD, RECORD_FIELDS, REL,
-    Repairs, SEGMENTS, SURFACES, Section, number, put,
+    BASE, CELL_SLABS, CUT_BLOCKS, CUT_FIRST, CUT_HEADS, CUT_IDS, CUTS, ENTRIES, ENTRY_FIELDS, File, GROUPS,
+    HEADER_FIELDS, INDICES, LEVELS, METADATA, NUMBERS, OBJECTS, ORIGINS, PLACEMENTS, PLANES, RECORD,
+    RECORD_FIELDS, REL, Repairs, SEGMENTS, SURFACES, Section, number, put,
 };
 use super::{Random, halves, joined};
 
@@ -308,24 +308,30 @@ fn change_double(file: &mut File, kind: u32, random: &mut Random) {
 /// Changes something about cuts; adds some where there are none, or takes them away.
 fn change_cuts(file: &mut File, random: &mut Random) {
     if file.section(CUT_HEADS).is_none() {
-        // A plane, a quadric and a slab. How many cuts there must be is repaired.
+        // A plane, a quadric and a slab, and slabs of cells of two origins. How many cuts there must be is repaired.
         put(&mut file.header, 10, 4, 2);
         file.header[67] = if random.one_in(8) { file.header[67] } else { 2 };
         let surfaces = [[0, 0o1111, 0, 0], [1, 0o1_001_000_111, 4, 0], [4, 0o11111, 9, 0]];
         let doubles = [1.0, -2.0, 0.5, 7.0, -1.0, -1.0, -1.0, 20.0, 100.0, 1.0, 1.0, -1.0, 3.0, 9.0];
+        // Of octants of the universe: about through the middle, and as thick as an eighth of the cell.
+        let planes = |bits: u64| bits & 3 << 61 | bits & 1 << 63 | 7 << 55 | 8 << 51 | bits & 0x3FFF_3FFF;
+        let slabs: Vec<u64> = (0..3).flat_map(|k| [8 + k | k << 61, planes(random.next())]).collect();
         let heads = (0..40 + random.below(40)).map(|_| match random.below(4) {
             0 => [0, 0xFF, 0xAA, 0x55][random.below(4)],
             _ => random.next() as u8,
         });
         let parts = [
             (CUT_HEADS, heads.collect(), 0x101),
-            (CUT_IDS, (0..60).map(|_| random.below(3) as u8).collect(), 0x101),
+            (CUT_IDS, (0..60).map(|_| random.next() as u8).collect(), 0x101),
             (CUT_BLOCKS, vec![0; 24], 0x203),
             (CUT_FIRST, vec![0; 8], 0x103),
             (SURFACES, surfaces.as_flattened().iter().flat_map(|n: &u32| n.to_le_bytes()).collect(), 0x403),
             (NUMBERS, doubles.iter().flat_map(|c: &f64| c.to_le_bytes()).collect(), 0x106),
+            (CELL_SLABS, slabs.into_iter().flat_map(u64::to_le_bytes).collect(), 0x204),
+            (GROUPS, [5, 6, 2, 0, 0, 3u64].into_iter().flat_map(u64::to_le_bytes).collect(), 0x304),
         ];
-        for (kind, bytes, element) in parts {
+        let count = if random.one_in(3) { 6 } else { 8 };
+        for (kind, bytes, element) in parts.into_iter().take(count) {
             let mut section = Section::new(kind, bytes);
             put(&mut section.entry, 8, element, 2);
             file.sections.push(section);
@@ -336,7 +342,8 @@ fn change_cuts(file: &mut File, random: &mut Random) {
     }
     match random.below(16) {
         0..3 => change_number(file, CUT_HEADS, 1, random),
-        3 | 4 => change_number(file, CUT_IDS, 1 + random.below(2), random),
+        3 => change_number(file, CUT_IDS, 1, random),
+        4 => change_number(file, if random.one_in(3) { GROUPS } else { CELL_SLABS }, 8, random),
         5 => change_number(file, CUT_BLOCKS, 4, random),
         6 => change_number(file, CUT_FIRST, 4, random),
         7 | 8 => change_number(file, SURFACES, 4, random),

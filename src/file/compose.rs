@@ -2,7 +2,7 @@
 
 use super::elements::{Elements, Sink};
 use super::header::{HEADER_LENGTH, Header};
-use super::kind::{Element, Kind};
+use super::kind::Kind;
 use super::object::Object;
 use super::section::{Entry, SECTION_ALIGNMENT};
 use super::wire::Wire;
@@ -46,11 +46,7 @@ pub(super) fn compose(
             crc.update(bytes);
             Ok(())
         })?;
-        let (element, components) = match (kind, elements) {
-            (Kind::CutIds, Elements::U16(_)) => (Element::U16, 1),
-            (Kind::CutIds, Elements::U32(_)) => (Element::U32, 1),
-            _ => kind.element(&objects[owner as usize]),
-        };
+        let (element, components) = kind.element(&objects[owner as usize]);
         let entry = Entry {
             kind: kind as u32,
             owner,

@@ -2,10 +2,13 @@
 
 use super::compose::Section;
 use super::elements::Elements;
-use super::kind::{Element, Kind};
+use super::kind::Kind;
 use super::section::Sections;
 use crate::error::FormatError;
-use crate::octree::cuts::{Block, CutsRef, Ids, Placement, SurfaceRecord, SurfacesRef};
+use crate::lattice::Frame;
+use crate::octree::cuts::{
+    Block, CellSlab, CellSlabGroup, CutsRef, Ids, Placement, SurfaceRecord, SurfacesRef, Universe, width,
+};
 use core::mem::offset_of;
 
 // The elements of sections are the structures in memory.
@@ -16,48 +19,54 @@ const _: () = {
     assert!(offset_of!(SurfaceRecord, first) == 8 && offset_of!(SurfaceRecord, placement) == 12);
     assert!(size_of::<Placement>() == 104 && align_of::<Placement>() == 8);
     assert!(offset_of!(Placement, rows) == 0 && offset_of!(Placement, outer) == 96);
+    assert!(
+        size_of::<CellSlab>() == 16 && offset_of!(CellSlab, home) == 0 && offset_of!(CellSlab, planes) == 8
+    );
+    assert!(size_of::<CellSlabGroup>() == 24 && offset_of!(CellSlabGroup, origin) == 0);
+    assert!(offset_of!(CellSlabGroup, end) == 16);
 };
 
-/// The cuts of an octree, whose numbers have this machine's order; `None` if it has none.
-pub(super) fn view<'a>(sections: &Sections, bytes: &'a [u8]) -> Result<Option<CutsRef<'a>>, FormatError> {
+/// The cuts of an octree on a frame, whose numbers have this machine's order; `None` if it has none.
+pub(super) fn view<'a>(
+    sections: &Sections,
+    bytes: &'a [u8],
+    frame: &Frame,
+) -> Result<Option<CutsRef<'a>>, FormatError> {
     let heads = sections.bytes(bytes, Kind::CutHeads)?;
     if heads.is_empty() {
         return Ok(None);
     }
+    let surfaces = SurfacesRef {
+        records: sections.array(bytes, Kind::Surfaces)?,
+        doubles: sections.array(bytes, Kind::SurfaceNumbers)?,
+        placements: sections.array(bytes, Kind::Placements)?,
+        origins: sections.array(bytes, Kind::Origins)?,
+        slabs: sections.array(bytes, Kind::CellSlabs)?,
+        groups: sections.array(bytes, Kind::CellSlabGroups)?,
+        universe: Universe::of(frame),
+    };
     Ok(Some(CutsRef {
         heads,
-        ids: match sections.ids {
-            Element::U16 => Ids::U16(sections.array(bytes, Kind::CutIds)?),
-            Element::U32 => Ids::U32(sections.array(bytes, Kind::CutIds)?),
-            _ => Ids::U8(sections.bytes(bytes, Kind::CutIds)?),
-        },
+        ids: Ids { bytes: sections.bytes(bytes, Kind::CutIds)?, width: width(surfaces.len() as u64) },
         blocks: sections.array(bytes, Kind::CutBlocks)?,
         first: sections.array(bytes, Kind::CutFirst)?,
-        surfaces: SurfacesRef {
-            records: sections.array(bytes, Kind::Surfaces)?,
-            doubles: sections.array(bytes, Kind::SurfaceNumbers)?,
-            placements: sections.array(bytes, Kind::Placements)?,
-            origins: sections.array(bytes, Kind::Origins)?,
-        },
+        surfaces,
     }))
 }
 
 /// The sections of cuts.
 pub(super) fn sections<'a>(owner: u32, cuts: &CutsRef<'a>) -> [Section<'a>; Kind::CUTS.len()] {
     let surfaces = &cuts.surfaces;
-    let ids = match cuts.ids {
-        Ids::U8(ids) => Elements::Bytes(ids),
-        Ids::U16(ids) => Elements::U16(ids),
-        Ids::U32(ids) => Elements::U32(ids),
-    };
     [
         (owner, Kind::CutHeads, Elements::Bytes(cuts.heads)),
-        (owner, Kind::CutIds, ids),
+        (owner, Kind::CutIds, Elements::Bytes(cuts.ids.bytes)),
         (owner, Kind::CutBlocks, Elements::Pairs32(bytemuck::cast_slice(cuts.blocks))),
         (owner, Kind::CutFirst, Elements::U32(cuts.first)),
         (owner, Kind::Surfaces, Elements::Fours32(bytemuck::cast_slice(surfaces.records))),
         (owner, Kind::SurfaceNumbers, Elements::U64(bytemuck::cast_slice(surfaces.doubles))),
         (owner, Kind::Placements, Elements::Placements(bytemuck::cast_slice(surfaces.placements))),
         (owner, Kind::Origins, Elements::Pairs64(surfaces.origins)),
+        (owner, Kind::CellSlabs, Elements::Pairs64(bytemuck::cast_slice(surfaces.slabs))),
+        (owner, Kind::CellSlabGroups, Elements::Triples64(bytemuck::cast_slice(surfaces.groups))),
     ]
 }

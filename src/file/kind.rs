@@ -12,7 +12,7 @@ use crate::octree::word::Planes;
 pub(super) const SECTION_REQUIRED: u32 = 1;
 
 /// The sections that this library knows. The numbers are part of the format. 16 to 31 are for values (17 is
-/// reserved for those of PARTIAL cells by rank), but for 20 to 22, 48 to 55 are reserved for versions, 56 to 63 for the archive;
+/// reserved for those of PARTIAL cells by rank), but for 20 to 24, 48 to 55 are reserved for versions, 56 to 63 for the archive;
 /// from 2^31 on they belong to applications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
@@ -59,6 +59,10 @@ pub(super) enum Kind {
     Placements = 21,
     /// What slabs were made from.
     Origins = 22,
+    /// Slabs that were made for one cell each.
+    CellSlabs = 23,
+    /// What those were made from, and how many they are.
+    CellSlabGroups = 24,
     /// The rays of each direction of a tri-dexel model.
     Windows = 32,
     /// First interval of each ray along x, and their number.
@@ -103,8 +107,8 @@ const COLUMNS: [[Kind; 5]; 3] = [
 ];
 
 /// Numbers right below the first kind of tri-dexel models that no kind has.
-const UNUSED: usize = 9;
-const _: () = assert!((Kind::Origins as usize) < Kind::Windows as usize - UNUSED);
+const UNUSED: usize = 7;
+const _: () = assert!((Kind::CellSlabGroups as usize) < Kind::Windows as usize - UNUSED);
 
 /// Places for what is kept by kind; see [`Kind::slot`].
 pub(super) const KINDS: usize = 48 - UNUSED;
@@ -142,7 +146,7 @@ impl Element {
 }
 
 impl Kind {
-    pub(super) const ALL: [Kind; 37] = [
+    pub(super) const ALL: [Kind; 39] = [
         Kind::Objects,
         Kind::Metadata,
         Kind::Levels,
@@ -164,6 +168,8 @@ impl Kind {
         Kind::SurfaceNumbers,
         Kind::Placements,
         Kind::Origins,
+        Kind::CellSlabs,
+        Kind::CellSlabGroups,
         Kind::Windows,
         Kind::StartsX,
         Kind::SpansX,
@@ -183,7 +189,7 @@ impl Kind {
     ];
 
     /// Sections that an object may have at most.
-    pub(super) const MOST: usize = 18;
+    pub(super) const MOST: usize = 20;
 
     /// Its place in an array of [`KINDS`].
     pub(super) const fn slot(self) -> usize {
@@ -204,7 +210,7 @@ impl Kind {
     }
 
     /// Those of the cuts of an octree.
-    pub(super) const CUTS: [Kind; 8] = [
+    pub(super) const CUTS: [Kind; 10] = [
         Kind::CutHeads,
         Kind::CutIds,
         Kind::CutBlocks,
@@ -213,6 +219,8 @@ impl Kind {
         Kind::SurfaceNumbers,
         Kind::Placements,
         Kind::Origins,
+        Kind::CellSlabs,
+        Kind::CellSlabGroups,
     ];
 
     /// The kind with this number, if the sections of such objects may be of it in a file of this minor version.
@@ -258,6 +266,8 @@ impl Kind {
             Kind::SurfaceNumbers => "surface numbers",
             Kind::Placements => "placements",
             Kind::Origins => "origins",
+            Kind::CellSlabs => "cell slabs",
+            Kind::CellSlabGroups => "cell slab groups",
             Kind::Windows => "windows",
             Kind::StartsX => "starts along x",
             Kind::SpansX => "spans along x",
@@ -282,8 +292,7 @@ impl Kind {
         if self == Kind::Metadata || self.is_of_cuts() { 0 } else { SECTION_REQUIRED }
     }
 
-    /// Type and components of an element of an object's section. (The surfaces of cuts may be of other types; see
-    /// [`Sections`](super::section::Sections).)
+    /// Type and components of an element of an object's section.
     pub(super) fn element(self, object: &Object) -> (Element, u8) {
         match self {
             Kind::Objects => (Element::Record, (size_of::<Object>() / 8) as u8),
@@ -302,7 +311,8 @@ impl Kind {
             Kind::Surfaces | Kind::Windows => (Element::U32, 4),
             Kind::SurfaceNumbers => (Element::F64, 1),
             Kind::Placements => (Element::Record, (size_of::<Placement>() / 8) as u8),
-            Kind::Origins => (Element::U64, 2),
+            Kind::Origins | Kind::CellSlabs => (Element::U64, 2),
+            Kind::CellSlabGroups => (Element::U64, 3),
             _ => self.dexel_element(object),
         }
     }

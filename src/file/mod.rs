@@ -81,16 +81,18 @@
 //! | 9 | dictionary entries | one or two u64 | dictionary entries |
 //! | 10 | dictionary segments | u64 | segments of the dictionary |
 //! | 11 | cut heads | u8 | cuts |
-//! | 12 | cut ids | u8, u16 or u32 | surfaces of all cuts |
+//! | 12 | cut ids | byte of a stream of bits | bytes that the surfaces of all cuts take |
 //! | 13 | cut blocks | two u32 | ⌈cuts / 32⌉ |
 //! | 14 | cut first | u32 | elements + bricks + 1 |
-//! | 15 | surfaces | four u32 | surfaces |
+//! | 15 | surfaces | four u32 | surfaces that are no cell slabs |
 //! | 16 | values of a channel | one to four u8, u16, u32 or f32 | values |
 //! | 18 | value rel of a channel | u16 | elements + bricks |
 //! | 19 | value base of a channel | u64 | ⌈(elements + bricks) / 1024⌉ |
-//! | 20 | surface numbers | f64 | doubles of all surfaces |
+//! | 20 | surface numbers | f64, or a u64 in its place | numbers of all of these |
 //! | 21 | placements | twelve f64, u64 | maps |
 //! | 22 | origins | two u64 | what slabs were made from |
+//! | 23 | cell slabs | two u64 | slabs of single cells |
+//! | 24 | cell slab groups | three u64 | what these were made from |
 //! | 32 | windows of a tri-dexel model | four u32 | directions |
 //! | 33, 38, 43 | starts along x, y, z | u32 | rays of the window + 1 |
 //! | 34, 39, 44 | spans along x, y, z | two u32 or f64 | intervals |

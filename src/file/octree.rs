@@ -34,7 +34,7 @@ impl Stored for Octree {
     fn view<'a>(layout: &Layout, starts: &Starts, bytes: &'a [u8]) -> Result<OctreeRef<'a>, FormatError> {
         let head = &layout.head;
         let tree = tree::view(&Object::main(&head.header), &layout.sections, head.frame, starts, bytes)?;
-        let cuts = cuts::view(&layout.sections, bytes)?;
+        let cuts = cuts::view(&layout.sections, bytes, &tree.frame)?;
         Ok(OctreeRef { root: head.root, exterior: head.exterior, proof: head.proof, cuts, ..tree })
     }
 

@@ -6,7 +6,7 @@ use super::kind::{Element, KINDS, Kind, SECTION_REQUIRED};
 use super::object::{MAX_OBJECTS, Object};
 use super::wire::{Wire, elements, wire_struct};
 use crate::error::FormatError;
-use crate::octree::cuts::{BLOCK, width};
+use crate::octree::cuts::{self, BLOCK};
 use crate::octree::metadata::MetadataLimit;
 use bytemuck::Pod;
 use core::ops::Range;
@@ -149,8 +149,6 @@ pub(super) fn read_table(head: &Head, table: &[u8]) -> Result<Sections, FormatEr
 #[derive(Debug, Clone)]
 pub(super) struct Sections {
     ranges: [Range<u64>; KINDS],
-    /// Numbers of surfaces.
-    pub(super) ids: Element,
 }
 
 impl Sections {
@@ -162,7 +160,6 @@ impl Sections {
         entries: impl Iterator<Item = Entry>,
     ) -> Result<Sections, FormatError> {
         let mut ranges = [const { 0..0 }; KINDS];
-        let mut ids = Element::U8;
         for entry in entries {
             let Some(kind) = Kind::of(entry.kind, object, minor) else {
                 if entry.flags & SECTION_REQUIRED != 0 {
@@ -173,12 +170,7 @@ impl Sections {
             if entry.encoding != RAW {
                 return Err(FormatError::Required { name: "section encoding", value: entry.encoding.into() });
             }
-            let (mut element, components) = kind.element(object);
-            if let (Kind::CutIds, Some(own @ (Element::U16 | Element::U32))) =
-                (kind, Element::from_number(entry.element_type))
-            {
-                (element, ids) = (own, own);
-            }
+            let (element, components) = kind.element(object);
             let count = kind.demanded(object).unwrap_or(entry.count);
             if (entry.element_type, entry.components, entry.count) != (element as u8, components, count) {
                 return Err(FormatError::Section { name: kind.name() });
@@ -198,7 +190,7 @@ impl Sections {
                 return Err(FormatError::Section { name: kind.name() });
             }
         }
-        let sections = Sections { ranges, ids };
+        let sections = Sections { ranges };
         sections.check_cuts(object)?;
         Ok(sections)
     }
@@ -207,23 +199,24 @@ impl Sections {
     fn check_cuts(&self, object: &Object) -> Result<(), FormatError> {
         let count = |kind: Kind| {
             let (element, components) = kind.element(object);
-            let element = if kind == Kind::CutIds { self.ids } else { element };
             let range = self.range(kind);
             (range.end - range.start) / (element.size() * u64::from(components))
         };
-        let (heads, surfaces) = (count(Kind::CutHeads), count(Kind::Surfaces));
+        let (heads, records, slabs) = (count(Kind::CutHeads), count(Kind::Surfaces), count(Kind::CellSlabs));
+        let surfaces = records.saturating_add(slabs);
+        let most_ids = cuts::bytes(u32::MAX.into(), cuts::width(surfaces.min(u32::MAX.into())));
         let elements = object.elements.saturating_add(object.bricks);
-        let has_ids = self.ids.size() as usize == width(usize::try_from(surfaces).unwrap_or(usize::MAX));
         for kind in Kind::CUTS {
             let own = count(kind);
             let fits = match kind {
                 Kind::CutHeads => own < 1 << 32,
-                Kind::CutIds => own < 1 << 32 && has_ids && (own != 0) == (surfaces != 0),
+                Kind::CutIds => own <= most_ids && (own != 0) == (surfaces != 0),
                 Kind::CutBlocks => own == heads.div_ceil(BLOCK as u64),
                 Kind::CutFirst => own == elements.saturating_add(1),
-                Kind::SurfaceNumbers => own < 1 << 32 && (own != 0) == (surfaces != 0),
-                Kind::Surfaces => own < 1 << 32,
-                _ => own < 1 << 32 && (own == 0 || surfaces != 0),
+                Kind::Surfaces | Kind::CellSlabs => surfaces < 1 << 32,
+                Kind::SurfaceNumbers => own < 1 << 32 && (own != 0) == (records != 0),
+                Kind::CellSlabGroups => own <= slabs && (own != 0) == (slabs != 0),
+                _ => own < 1 << 32 && (own == 0 || records != 0),
             };
             if !(fits && heads != 0 || own == 0 && heads == 0) {
                 return Err(FormatError::Section { name: kind.name() });
@@ -239,9 +232,7 @@ impl Sections {
 
     /// Where the sections of `object` lie that are there, and what their numbers are.
     pub(super) fn numbers(&self, object: &Object) -> impl Iterator<Item = (Range<u64>, Element)> {
-        let ids = self.ids;
         let element = move |kind: Kind| match kind {
-            Kind::CutIds => ids,
             // All of its numbers are of eight bytes.
             Kind::Placements => Element::U64,
             _ => kind.element(object).0,

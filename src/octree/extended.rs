@@ -1,6 +1,8 @@
 //! Octrees whose PARTIAL cells keep surfaces: what is counted, and what they promise.
 
-use super::cuts::{BLOCK, Block, CellCut, CellFunction, CellIds, CutCounts, CutsRef, Head, StoredSurface};
+use super::cuts::{
+    BLOCK, Block, CellCut, CellFunction, CellIds, CutCounts, CutsRef, Head, StoredSurface, SurfacesRef,
+};
 use super::links::Step;
 use super::tag::Tag;
 use super::view::{OctreeRef, starts_half_way};
@@ -17,13 +19,10 @@ impl OctreeRef<'_> {
         let (given_up, splits) = (count(Head::NONE), count(Head::SPLIT));
         let surfaces = &cuts.surfaces;
         let bytes = size_of_val(cuts.heads)
-            + cuts.ids.len() * cuts.ids.width()
+            + size_of_val(cuts.ids.bytes)
             + size_of_val(cuts.blocks)
             + size_of_val(cuts.first)
-            + size_of_val(surfaces.records)
-            + size_of_val(surfaces.doubles)
-            + size_of_val(surfaces.placements)
-            + size_of_val(surfaces.origins);
+            + surfaces.bytes();
         Some(CutCounts {
             cells: cuts.heads.len() as u64 - given_up - splits,
             given_up,
@@ -50,8 +49,9 @@ impl OctreeRef<'_> {
     pub(crate) fn check_cuts(&self) -> Result<(), Error> {
         let Some(cuts) = &self.cuts else { return Ok(()) };
         let mut levels = self.levels_of_records(cuts)?;
+        cuts.surfaces.check_groups()?;
         // Records, and what is counted before them.
-        let (mut ids, mut splits, mut known) = (0, 0, 0);
+        let (mut ids, mut splits, mut known) = (0, 0, Known::new(&cuts.surfaces)?);
         for (record, &head) in cuts.heads.iter().enumerate() {
             if record % BLOCK == 0 {
                 let block = Block { ids: ids as u32, splits };
@@ -78,20 +78,19 @@ impl OctreeRef<'_> {
             }
             let Some(own) = CellIds::read(cuts.ids, ids, head.surfaces()) else { return Err(wrong.into()) };
             ids += own.len();
-            for (i, &id) in own.iter().enumerate() {
-                // Surfaces stand in the order of their first use.
-                let is_next = id <= known && (i == 0 || own[i - 1] < id);
-                if !is_next {
-                    return Err(wrong.into());
-                }
-                known = known.max(id + 1);
+            // (As many bytes may hold one id more than there may be.)
+            if u32::try_from(ids).is_err() {
+                return Err(wrong.into());
+            }
+            let is_ascending = own.windows(2).all(|pair| pair[0] < pair[1]);
+            if !is_ascending || !own.iter().all(|&id| known.meet(&cuts.surfaces, id)) {
+                return Err(wrong.into());
             }
         }
-        let is_short = levels.len() != cuts.heads.len() || ids != cuts.ids.len();
-        if is_short || known as usize != cuts.surfaces.len() {
+        if levels.len() != cuts.heads.len() || !cuts.ids.ends_with(ids) || !known.are_all_met() {
             return Err(Damage::CutRecord { record: cuts.heads.len() as u64 }.into());
         }
-        Ok(cuts.surfaces.check()?)
+        Ok(cuts.surfaces.check(self.frame.depth())?)
     }
 
     /// The levels of the PARTIAL cells that the planes have, in the order of their records, whose counts are checked. (Memory for as
@@ -125,6 +124,44 @@ impl OctreeRef<'_> {
             }
         }
         Ok(levels)
+    }
+}
+
+/// Which surfaces have been met, where surfaces stand group by group in the order of their first use.
+struct Known {
+    /// For each group the numbers of its first surface, of the first that has not been met, and of the first that is not its own.
+    groups: Vec<[u64; 3]>,
+}
+
+impl Known {
+    fn new(surfaces: &SurfacesRef<'_>) -> Result<Known, Error> {
+        let first = surfaces.records.len() as u64;
+        let ends = surfaces.groups.iter().map(|group| first.saturating_add(group.end));
+        let mut groups = memory::with_capacity(1 + surfaces.groups.len())?;
+        groups.push([0, 0, first]);
+        let mut start = first;
+        for end in ends {
+            groups.push([start, start, end]);
+            start = end;
+        }
+        Ok(Known { groups })
+    }
+
+    /// Whether a surface is one that was met before, or the first of its group that was not, of a group that may be begun.
+    fn meet(&mut self, surfaces: &SurfacesRef<'_>, id: u32) -> bool {
+        let group = surfaces.group(id as usize).map_or(0, |(group, _)| group + 1);
+        // (Slabs of cells have a group after the first.)
+        let begun = group < 2 || self.groups.get(group - 1).is_some_and(|&[first, next, _]| next > first);
+        let Some([_, next, end]) = self.groups.get_mut(group) else { return false };
+        let id = u64::from(id);
+        if id == *next && id < *end {
+            *next += 1;
+        }
+        begun && id < *next
+    }
+
+    fn are_all_met(&self) -> bool {
+        self.groups.iter().all(|[_, next, end]| next == end)
     }
 }
 

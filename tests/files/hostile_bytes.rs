@@ -4,13 +4,14 @@
 
 use crate::bodies;
 use crate::bodies::layout::{
-    BASE, BRICKS, CUTS, File, LEVELS, NUMBERS, PLACEMENTS, PLANES, REL, Repairs, SURFACES, Section, put,
+    BASE, BRICKS, CELL_SLABS, CUTS, File, GROUPS, LEVELS, NUMBERS, PLACEMENTS, PLANES, REL, Repairs,
+    SURFACES, Section, put,
 };
 use crate::bodies::{Aligned, Random, joined, read_in_all_ways, seeds, walk};
 use crate::common::on_all_processors;
 use leafless::error::{Damage, FormatError};
 use leafless::octree::Cursor;
-use leafless::{Error, Solid, file};
+use leafless::{Error, Solid, file, union};
 use std::path::Path;
 
 // ---- inputs ---------------------------------------------------------------------------------------------
@@ -566,6 +567,27 @@ fn numbers_that_are_none_do_not_make_a_tree_unlike_itself() {
         read_in_all_ways(&bytes, true);
         exercise(&bytes);
     }
+}
+
+/// Trees without surfaces but slabs of cells have no records, and the slabs of two of them were taken for the same.
+#[test]
+fn tables_without_records_are_not_taken_for_one() {
+    let vectors = Path::new(env!("CARGO_MANIFEST_DIR")).join("format_spec/vectors/valid");
+    let bytes = std::fs::read(vectors.join("cut-cell-slabs-alone.lfl")).unwrap();
+    let mut file = File::parse(&bytes).unwrap();
+    // As many slabs that face the other way, of other origins.
+    for slab in file.section(CELL_SLABS).unwrap().bytes.chunks_exact_mut(16) {
+        slab[15] ^= 0x80;
+    }
+    for group in file.section(GROUPS).unwrap().bytes.chunks_exact_mut(24) {
+        group[9] ^= 1;
+    }
+    let others = file.assemble(&Repairs::FRAME);
+    let [own, others] = [&bytes, &others].map(|bytes| file::from_bytes(bytes).unwrap());
+    let count = own.view().cuts().unwrap().surfaces;
+    let both = union(own.view(), others.view(), &bodies::CONTROL).unwrap();
+    assert_eq!(both.view().cuts().unwrap().surfaces, 2 * count);
+    both.view().check().unwrap();
 }
 
 /// Every head, every count and every id of the cuts of small files, with right checksums.

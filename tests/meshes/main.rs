@@ -4,6 +4,7 @@
 mod common;
 
 mod attributes;
+mod cell_slabs;
 mod cells;
 mod closed;
 mod descended;

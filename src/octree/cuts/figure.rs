@@ -2,7 +2,7 @@
 //!
 //! What is next to a surface stays open; [exact signs](crate::solid) are for those who put the tree on a frame.
 
-use super::surfaces::{MOST_MAPS, SurfaceKind, SurfacesRef};
+use super::surfaces::{MOST_MAPS, Numbers, SurfaceKind, SurfacesRef};
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Ball, axes};
 
@@ -48,8 +48,18 @@ impl<'a> Figure<'a> {
     pub(crate) fn new(surfaces: &SurfacesRef<'a>, id: u32) -> Option<Figure<'a>> {
         let (kind, own) = surfaces.get(id as usize)?;
         let mut numbers = [Ball::ZERO; 10];
-        for (to, number) in numbers.iter_mut().zip(own) {
-            *to = Ball::sum(number);
+        if let Numbers::Slab([x, y, z, inner, outer]) = own {
+            // In model space, where it takes no map.
+            let normal = [x, y, z].map(Ball::exactly);
+            let along = dot(normal, surfaces.universe.origin.map(Ball::exactly));
+            let edge = Ball::exactly(surfaces.universe.edge);
+            let [inner, outer] = [inner, outer].map(|offset| edge.times(Ball::exactly(offset)).plus(along));
+            numbers[..3].copy_from_slice(&normal);
+            numbers[3..5].copy_from_slice(&[inner, outer]);
+        } else {
+            for (i, to) in numbers.iter_mut().enumerate().take(kind.numbers() as usize) {
+                *to = Ball::sum(own.get(i));
+            }
         }
         let id = id as usize;
         let maps = surfaces.placements(id).count();

@@ -1,95 +1,93 @@
-//! Which surfaces records have, in as few bytes a number as their count allows.
+//! Which surfaces records have, in as few bits a number as their count allows.
 
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Numbers of surfaces, one after the other: of one byte if there are up to 256 surfaces, of two up to 65 536, else of four.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Ids<'a> {
-    U8(&'a [u8]),
-    U16(&'a [u16]),
-    U32(&'a [u32]),
+/// Numbers of surfaces, one after the other, in a stream of bits: each takes as many as the greatest may need, from the lowest bit of
+/// a byte on. The bits of the last byte that are left are zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ids<'a> {
+    pub bytes: &'a [u8],
+    /// Bits of a number.
+    pub width: u32,
 }
 
 /// The same in memory.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum OwnedIds {
-    U8(Vec<u8>),
-    U16(Vec<u16>),
-    U32(Vec<u32>),
+pub(crate) struct OwnedIds {
+    bytes: Vec<u8>,
+    width: u32,
 }
 
-/// Bytes of a number where there are so many surfaces.
-pub(crate) const fn width(surfaces: usize) -> usize {
+/// Bits of a number where there are so many surfaces.
+pub(crate) const fn width(surfaces: u64) -> u32 {
     match surfaces {
-        0..=0x100 => 1,
-        0x101..=0x1_0000 => 2,
-        _ => 4,
+        0..=2 => 1,
+        more => u64::BITS - (more - 1).leading_zeros(),
     }
 }
 
-impl<'a> Ids<'a> {
-    pub(crate) fn len(&self) -> usize {
-        match self {
-            Ids::U8(ids) => ids.len(),
-            Ids::U16(ids) => ids.len(),
-            Ids::U32(ids) => ids.len(),
-        }
-    }
+/// Bytes that so many numbers take, of so many bits each.
+pub(crate) const fn bytes(count: u64, width: u32) -> u64 {
+    (count * width as u64).div_ceil(8)
+}
 
-    /// Bytes of a number.
-    pub(crate) fn width(&self) -> usize {
-        match self {
-            Ids::U8(_) => 1,
-            Ids::U16(_) => 2,
-            Ids::U32(_) => 4,
-        }
-    }
-
+impl Ids<'_> {
+    /// The number at a place; some number if it lies in the last byte and beyond the end.
     pub(crate) fn get(&self, index: usize) -> Option<u32> {
-        match self {
-            Ids::U8(ids) => ids.get(index).copied().map(u32::from),
-            Ids::U16(ids) => ids.get(index).copied().map(u32::from),
-            Ids::U32(ids) => ids.get(index).copied(),
-        }
+        let bit = (index as u64).checked_mul(self.width.into())?;
+        let (first, shift) = (usize::try_from(bit / 8).ok()?, bit % 8);
+        let word = match self.bytes.get(first..).and_then(<[u8]>::first_chunk) {
+            Some(eight) => u64::from_le_bytes(*eight),
+            None => {
+                // (The end of the stream.)
+                let end = (bit + u64::from(self.width)).div_ceil(8);
+                let rest = self.bytes.get(first..usize::try_from(end).ok()?)?;
+                rest.iter().rev().fold(0, |all, &byte| all << 8 | u64::from(byte))
+            }
+        };
+        Some((word >> shift & ((1 << self.width) - 1)) as u32)
     }
 
-    pub(crate) fn iter(self) -> impl ExactSizeIterator<Item = u32> + Clone + use<'a> {
-        (0..self.len()).map(move |index| self.get(index).unwrap_or(u32::MAX))
+    /// Whether the stream ends with so many numbers.
+    pub(crate) fn ends_with(&self, count: usize) -> bool {
+        let bits = (count as u64 * u64::from(self.width)) % 8;
+        let is_rest_zero = bits == 0 || self.bytes.last().is_some_and(|&last| last >> bits == 0);
+        self.bytes.len() as u64 == bytes(count as u64, self.width) && is_rest_zero
     }
 
     pub(crate) fn copied(&self) -> Result<OwnedIds, Error> {
-        Ok(match self {
-            Ids::U8(ids) => OwnedIds::U8(memory::copied(ids)?),
-            Ids::U16(ids) => OwnedIds::U16(memory::copied(ids)?),
-            Ids::U32(ids) => OwnedIds::U32(memory::copied(ids)?),
-        })
-    }
-}
-
-impl PartialEq for Ids<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        self.iter().eq(other.iter())
+        Ok(OwnedIds { bytes: memory::copied(self.bytes)?, width: self.width })
     }
 }
 
 impl OwnedIds {
-    /// The narrowest form of `ids`, all of which are less than `surfaces`.
-    pub(crate) fn narrowed(ids: Vec<u32>, surfaces: usize) -> Result<OwnedIds, Error> {
-        Ok(match width(surfaces) {
-            1 => OwnedIds::U8(memory::collected(ids.iter().map(|&id| id as u8))?),
-            2 => OwnedIds::U16(memory::collected(ids.iter().map(|&id| id as u16))?),
-            _ => OwnedIds::U32(ids),
-        })
+    /// The stream of `ids`, all of which are less than `surfaces`.
+    pub(crate) fn packed(
+        ids: impl ExactSizeIterator<Item = u32>,
+        surfaces: usize,
+    ) -> Result<OwnedIds, Error> {
+        let width = width(surfaces as u64);
+        let mut all = memory::with_capacity(bytes(ids.len() as u64, width) as usize)?;
+        let (mut word, mut filled) = (0u64, 0);
+        for id in ids {
+            word |= u64::from(id) << filled;
+            filled += width;
+            while filled >= 8 {
+                all.push(word as u8);
+                word >>= 8;
+                filled -= 8;
+            }
+        }
+        if filled > 0 {
+            all.push(word as u8);
+        }
+        Ok(OwnedIds { bytes: all, width })
     }
 
     pub(crate) fn view(&self) -> Ids<'_> {
-        match self {
-            OwnedIds::U8(ids) => Ids::U8(ids),
-            OwnedIds::U16(ids) => Ids::U16(ids),
-            OwnedIds::U32(ids) => Ids::U32(ids),
-        }
+        Ids { bytes: &self.bytes, width: self.width }
     }
 }
 
@@ -116,5 +114,27 @@ impl core::ops::Deref for CellIds {
 
     fn deref(&self) -> &[u32] {
         &self.ids[..usize::from(self.count)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back() {
+        assert_eq!([0, 1, 2, 3, 256, 257, 1 << 32].map(width), [1, 1, 1, 2, 8, 9, 32]);
+        for surfaces in [1u32, 2, 3, 200, 833, 1 << 20, u32::MAX] {
+            for count in [0, 1, 2, 3, 7, 8, 9, 100] {
+                let id = |i: u32| (i.wrapping_mul(0x9E37_79B9) ^ 0x5555) % surfaces;
+                let own =
+                    OwnedIds::packed((0..count as usize).map(|i| id(i as u32)), surfaces as usize).unwrap();
+                assert!((0..count).all(|i| own.view().get(i as usize) == Some(id(i))));
+                assert!(own.view().ends_with(count as usize));
+                let far = count as usize + 8;
+                assert_eq!(own.view().get(far), None);
+                assert!(!own.view().ends_with(far));
+            }
+        }
     }
 }

@@ -4,6 +4,7 @@
 //! representation and operation using extended octrees*, ACM Transactions on Graphics 9 (2), 1990), here with curved surfaces and
 //! exact signs. The planes of the tree stay what they are without the cuts.
 //!
+//! - `cell_slab`: slabs that were made for one cell, in whole numbers.
 //! - `figure`: on which side of a surface points lie, by arithmetic in doubles.
 //! - `ids`: the numbers of surfaces.
 //! - `read`: what cuts say, for others.
@@ -11,6 +12,7 @@
 //! - `surfaces`: the table of surfaces, in numbers that are exact.
 //! - `writer`: how cuts are gathered and put in order.
 
+mod cell_slab;
 mod figure;
 mod ids;
 mod read;
@@ -18,13 +20,14 @@ mod record;
 mod surfaces;
 mod writer;
 
+pub(crate) use cell_slab::{CellSlab, CellSlabGroup, Steps};
 pub(crate) use figure::{Division, Figure, FigureLine};
-pub(crate) use ids::{CellIds, Ids, OwnedIds, width};
+pub(crate) use ids::{CellIds, Ids, OwnedIds, bytes, width};
 pub use read::{CellFunction, StoredSurface};
 pub(crate) use record::Head;
 pub use surfaces::SurfaceKind;
 pub(crate) use surfaces::{
-    MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceRecord, SurfaceWriter, Surfaces, SurfacesRef,
+    MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceRecord, SurfaceWriter, Surfaces, SurfacesRef, Universe,
 };
 pub(crate) use writer::{Cut, CutWriter, Names};
 
@@ -96,6 +99,9 @@ impl CutsRef<'_> {
                 doubles: memory::copied(self.surfaces.doubles)?,
                 placements: memory::copied(self.surfaces.placements)?,
                 origins: memory::copied(self.surfaces.origins)?,
+                slabs: memory::copied(self.surfaces.slabs)?,
+                groups: memory::copied(self.surfaces.groups)?,
+                universe: self.surfaces.universe,
             },
         })
     }

@@ -1,7 +1,7 @@
 //! What cuts say, for whoever reads them: the function of a cell, and the surfaces.
 
 use super::CellIds;
-use super::surfaces::{SurfaceKind, SurfacesRef};
+use super::surfaces::{Numbers, SurfaceKind, SurfacesRef};
 
 /// The function that the solid is in a PARTIAL cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,13 +29,14 @@ pub struct StoredSurface<'a> {
     surfaces: SurfacesRef<'a>,
     id: usize,
     kind: SurfaceKind,
+    numbers: Numbers<'a>,
 }
 
 impl<'a> StoredSurface<'a> {
     /// `None` if there is none of this number, or it is damaged.
     pub(crate) fn new(surfaces: SurfacesRef<'a>, id: u32) -> Option<StoredSurface<'a>> {
-        let (kind, _) = surfaces.get(id as usize)?;
-        Some(StoredSurface { surfaces, id: id as usize, kind })
+        let (kind, numbers) = surfaces.get(id as usize)?;
+        Some(StoredSurface { surfaces, id: id as usize, kind, numbers })
     }
 
     /// What kind of function it is.
@@ -49,17 +50,20 @@ impl<'a> StoredSurface<'a> {
     }
 
     /// A number, as the doubles whose sum it is; none for zero, and for a number that the kind does not have.
-    pub fn number(&self, i: usize) -> &'a [f64] {
-        self.surfaces.get(self.id).and_then(|(_, mut numbers)| numbers.nth(i)).unwrap_or(&[])
+    pub fn number(&self, i: usize) -> &[f64] {
+        if i < self.numbers() { self.numbers.get(i) } else { &[] }
     }
 
-    /// The maps that place the figure, the rows of `[M | t]` each, in the order in which they are applied.
-    pub fn placements(&self) -> impl Iterator<Item = &'a [[f64; 4]; 3]> + use<'a> {
-        self.surfaces.placements(self.id)
+    /// The maps that place the figure, the rows of `[M | t]` each, in the order in which they are applied. (A slab that was made for one
+    /// cell is given in units of the universe, and placed by the map from there to model space.)
+    pub fn placements(&self) -> impl Iterator<Item = [[f64; 4]; 3]> + use<'a> {
+        let universe = self.surfaces.cell_slab(self.id).map(|_| self.surfaces.universe.rows());
+        self.surfaces.placements(self.id).copied().chain(universe)
     }
 
-    /// Of a slab that can be told from others: the fingerprint of what it was made from, and its number there.
-    pub fn origin(&self) -> Option<([u64; 2], u32)> {
+    /// Of a slab that can be told from others: the fingerprint of what it was made from, and its number there. Numbers from 2^63 on are
+    /// those of slabs that were made for one cell.
+    pub fn origin(&self) -> Option<([u64; 2], u64)> {
         self.surfaces.identity(self.id)
     }
 }

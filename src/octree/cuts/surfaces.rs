@@ -1,7 +1,8 @@
 //! The table of surfaces: each is the boundary of the points where a function is positive, given in numbers that are exact.
 
+use super::cell_slab::{CellSlab, CellSlabGroup};
 use crate::error::{Damage, Error};
-use crate::lattice::{Affine, valid};
+use crate::lattice::{Affine, Frame, valid};
 use crate::memory;
 use alloc::vec::Vec;
 use bytemuck::{Pod, Zeroable};
@@ -21,9 +22,8 @@ pub enum SurfaceKind {
     Powers = 2,
     /// A torus: R, q, s and t of q − (√((s x)² + (s y)²) − R)² − (s z + t)².
     Torus = 3,
-    /// A plane with a width: its normal, the two offsets between which the boundary lies (the first is that of the inner side, which
-    /// counts as positive), and which of all slabs it is: the number of its origin, plus one, and its number there; two zeros if it
-    /// has none. See [`StoredSurface::origin`](super::StoredSurface::origin).
+    /// A plane with a width: its normal, and the two offsets between which the boundary lies (the first is that of the inner side,
+    /// which counts as positive). Which of all slabs it is tells [`StoredSurface::origin`](super::StoredSurface::origin).
     Slab = 4,
 }
 
@@ -32,16 +32,8 @@ impl SurfaceKind {
     pub(crate) const fn numbers(self) -> u32 {
         match self {
             SurfaceKind::Plane | SurfaceKind::Torus => 4,
-            SurfaceKind::Slab => 7,
-            SurfaceKind::Quadric | SurfaceKind::Powers => 10,
-        }
-    }
-
-    /// Numbers that say where a surface is, and not which of all it is.
-    pub(crate) const fn figures(self) -> u32 {
-        match self {
             SurfaceKind::Slab => 5,
-            _ => self.numbers(),
+            SurfaceKind::Quadric | SurfaceKind::Powers => 10,
         }
     }
 
@@ -61,9 +53,10 @@ impl SurfaceKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct SurfaceRecord {
-    /// A [`SurfaceKind`].
+    /// A [`SurfaceKind`] in the lowest byte; of a slab above it the place of its origin, plus one, or 0 if it has none.
     pub kind: u32,
-    /// Of how many doubles each number is the sum, three bits a number, from the lowest on.
+    /// Of how many doubles each number is the sum, three bits a number, from the lowest on. A slab that has an origin may have one more
+    /// number, a word of 64 bits: which of the slabs of its origin it is. Without that it is the one of the record's own place.
     pub terms: u32,
     /// Its first double.
     pub first: u32,
@@ -79,7 +72,56 @@ pub(crate) const MOST_MAPS: usize = 64;
 
 impl SurfaceRecord {
     fn doubles(&self) -> usize {
-        (0..10).map(|i| (self.terms >> (3 * i) & 7) as usize).sum()
+        before(self.terms, 10)
+    }
+
+    fn kind(&self) -> Option<SurfaceKind> {
+        SurfaceKind::of(self.kind & 0xFF)
+    }
+
+    /// The place of the origin, plus one; 0 for none.
+    fn origin(&self) -> u32 {
+        self.kind >> 8
+    }
+}
+
+/// How many doubles the first numbers have.
+fn before(terms: u32, numbers: usize) -> usize {
+    (0..numbers).map(|i| (terms >> (3 * i) & 7) as usize).sum()
+}
+
+/// The numbers of a surface, each as the doubles whose sum it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Numbers<'a> {
+    Stored { terms: u32, doubles: &'a [f64] },
+    Slab([f64; 5]),
+}
+
+impl Numbers<'_> {
+    /// A number; nothing for zero.
+    pub(crate) fn get(&self, i: usize) -> &[f64] {
+        match self {
+            Numbers::Stored { terms, doubles } => {
+                let first = before(*terms, i);
+                doubles
+                    .get(first..first + (terms.checked_shr(3 * i as u32).unwrap_or(0) & 7) as usize)
+                    .unwrap_or(&[])
+            }
+            Numbers::Slab(numbers) => match numbers.get(i) {
+                Some(number) if *number != 0.0 => core::slice::from_ref(number),
+                _ => &[],
+            },
+        }
+    }
+
+    /// All doubles, number by number.
+    fn doubles(&self, kind: SurfaceKind) -> impl Iterator<Item = f64> + Clone + '_ {
+        (0..kind.numbers() as usize).flat_map(|i| self.get(i).iter().copied())
+    }
+
+    /// Of how many doubles each number is the sum, three bits a number.
+    fn terms(&self, kind: SurfaceKind) -> u32 {
+        (0..kind.numbers()).fold(0, |all, i| all | (self.get(i as usize).len() as u32) << (3 * i))
     }
 }
 
@@ -96,13 +138,35 @@ pub(crate) struct Placement {
 /// What slabs were made from: a fingerprint of 128 bits, the lower half first.
 pub(crate) type Origin = [u64; 2];
 
-/// Surfaces in memory.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// The universe of a tree, in whose units its slabs of cells are.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Universe {
+    pub origin: [f64; 3],
+    pub edge: f64,
+}
+
+impl Universe {
+    pub(crate) fn of(frame: &Frame) -> Universe {
+        Universe { origin: frame.origin(), edge: frame.edge() }
+    }
+
+    /// The rows of the map from its units to model space.
+    pub(crate) fn rows(&self) -> [[f64; 4]; 3] {
+        let ([x, y, z], edge) = (self.origin, self.edge);
+        [[edge, 0.0, 0.0, x], [0.0, edge, 0.0, y], [0.0, 0.0, edge, z]]
+    }
+}
+
+/// Surfaces in memory: those of records first, and then slabs of cells.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Surfaces {
     pub records: Vec<SurfaceRecord>,
     pub doubles: Vec<f64>,
     pub placements: Vec<Placement>,
     pub origins: Vec<Origin>,
+    pub slabs: Vec<CellSlab>,
+    pub groups: Vec<CellSlabGroup>,
+    pub universe: Universe,
 }
 
 /// Surfaces, borrowed. They are equal if all bits are.
@@ -112,6 +176,9 @@ pub(crate) struct SurfacesRef<'a> {
     pub doubles: &'a [f64],
     pub placements: &'a [Placement],
     pub origins: &'a [Origin],
+    pub slabs: &'a [CellSlab],
+    pub groups: &'a [CellSlabGroup],
+    pub universe: Universe,
 }
 
 impl Surfaces {
@@ -121,12 +188,14 @@ impl Surfaces {
             doubles: &self.doubles,
             placements: &self.placements,
             origins: &self.origins,
+            slabs: &self.slabs,
+            groups: &self.groups,
+            universe: self.universe,
         }
     }
 }
 
 /// Puts surfaces into a table one after the other; maps and origins that several share stand once.
-#[derive(Default)]
 pub(crate) struct SurfaceWriter {
     all: Surfaces,
     places: HashMap<(u64, [[u64; 4]; 3]), u64>,
@@ -134,16 +203,21 @@ pub(crate) struct SurfaceWriter {
 }
 
 impl SurfaceWriter {
+    pub(crate) fn new(universe: Universe) -> SurfaceWriter {
+        let all = Surfaces { universe, ..Surfaces::default() };
+        SurfaceWriter { all, places: HashMap::new(), origins: HashMap::new() }
+    }
+
     /// A surface, whose placements are those maps in the order in which they are applied, last one first.
     ///
     /// # Errors
-    /// [`Error::Limit`] if a number is the sum of more than seven doubles, if there are more than 64 maps, or too many doubles;
-    /// [`Error::OutOfMemory`].
+    /// [`Error::Limit`] if a number is the sum of more than seven doubles, if there are more than 64 maps, or too many doubles or
+    /// origins; [`Error::OutOfMemory`].
     pub(crate) fn put<'n>(
         &mut self,
         kind: SurfaceKind,
         numbers: impl Iterator<Item = &'n [f64]>,
-        identity: Option<(Origin, u32)>,
+        identity: Option<(Origin, u64)>,
         placements: impl Iterator<Item = &'n [[f64; 4]; 3]>,
     ) -> Result<(), Error> {
         let mut outer = 0;
@@ -162,7 +236,7 @@ impl SurfaceWriter {
         }
         let too_many = |_| Error::Limit { what: "doubles of all surfaces", limit: u32::MAX.into() };
         let (first, mut terms) = (u32::try_from(self.all.doubles.len()).map_err(too_many)?, 0);
-        let mut number = |i: u32, own: &[f64]| {
+        for (i, own) in (0..kind.numbers()).zip(numbers) {
             if own.len() > MOST_TERMS {
                 let what = "doubles for an exact number of a surface";
                 return Err(Error::Limit { what, limit: MOST_TERMS as u64 });
@@ -170,29 +244,49 @@ impl SurfaceWriter {
             terms |= (own.len() as u32) << (3 * i);
             self.all.doubles.try_reserve(own.len())?;
             self.all.doubles.extend_from_slice(own);
-            Ok(())
-        };
-        for (i, own) in (0..kind.figures()).zip(numbers) {
-            number(i, own)?;
         }
+        let mut place = 0;
         if let Some((origin, which)) = identity {
             self.origins.try_reserve(1)?;
             let next = self.all.origins.len() as u32 + 1;
-            let place = *self.origins.entry(origin).or_insert(next);
+            place = *self.origins.entry(origin).or_insert(next);
             if place == next {
+                if place > MOST_ORIGINS {
+                    return Err(Error::Limit { what: "origins of slabs", limit: MOST_ORIGINS.into() });
+                }
                 memory::push(&mut self.all.origins, origin)?;
             }
-            for (i, whole) in (kind.figures()..).zip([place, which]) {
-                let double = [f64::from(whole)];
-                number(i, if whole == 0 { &[] } else { &double })?;
+            if which != self.all.records.len() as u64 {
+                terms |= 1 << (3 * kind.numbers());
+                memory::push(&mut self.all.doubles, f64::from_bits(which))?;
             }
         }
-        let record = SurfaceRecord { kind: kind as u32, terms, first, placement: outer as u32 };
+        let record = SurfaceRecord { kind: kind as u32 | place << 8, terms, first, placement: outer as u32 };
         memory::push(&mut self.all.records, record)
+    }
+
+    /// A slab of a cell; those of one origin follow each other, and all surfaces of other kinds stand before them.
+    pub(crate) fn put_cell_slab(&mut self, slab: CellSlab, origin: Origin) -> Result<(), Error> {
+        memory::push(&mut self.all.slabs, slab)?;
+        let end = self.all.slabs.len() as u64;
+        match self.all.groups.last_mut() {
+            Some(group) if group.origin == origin => group.end = end,
+            _ => memory::push(&mut self.all.groups, CellSlabGroup { origin, end })?,
+        }
+        Ok(())
     }
 
     pub(crate) fn finish(self) -> Surfaces {
         self.all
+    }
+}
+
+/// Most origins of slabs that are not made for a cell.
+const MOST_ORIGINS: u32 = (1 << 24) - 1;
+
+impl PartialEq for Surfaces {
+    fn eq(&self, other: &Self) -> bool {
+        self.view() == other.view()
     }
 }
 
@@ -206,64 +300,96 @@ impl PartialEq for SurfacesRef<'_> {
             && bits(self.doubles) == bits(other.doubles)
             && bits(self.placements) == bits(other.placements)
             && self.origins == other.origins
+            && (self.slabs, self.groups) == (other.slabs, other.groups)
     }
 }
 
 impl<'a> SurfacesRef<'a> {
-    pub(crate) const NONE: SurfacesRef<'static> =
-        SurfacesRef { records: &[], doubles: &[], placements: &[], origins: &[] };
+    pub(crate) const NONE: SurfacesRef<'static> = SurfacesRef {
+        records: &[],
+        doubles: &[],
+        placements: &[],
+        origins: &[],
+        slabs: &[],
+        groups: &[],
+        universe: Universe { origin: [0.0; 3], edge: 1.0 },
+    };
 
     pub(crate) fn len(&self) -> usize {
-        self.records.len()
+        self.records.len() + self.slabs.len()
     }
 
-    /// The kind of a surface, and its numbers, each as the doubles whose sum it is; `None` where the table is damaged.
-    pub(crate) fn get(
-        &self,
-        id: usize,
-    ) -> Option<(SurfaceKind, impl Iterator<Item = &'a [f64]> + Clone + use<'a>)> {
-        let record = *self.records.get(id)?;
-        let kind = SurfaceKind::of(record.kind)?;
+    /// Bytes of the arrays.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(self.records)
+            + size_of_val(self.doubles)
+            + size_of_val(self.placements)
+            + size_of_val(self.origins)
+            + size_of_val(self.slabs)
+            + size_of_val(self.groups)
+    }
+
+    /// The slab of a cell that is the surface of this number.
+    pub(crate) fn cell_slab(&self, id: usize) -> Option<CellSlab> {
+        self.slabs.get(id.checked_sub(self.records.len())?).copied()
+    }
+
+    /// The group of a slab of a cell.
+    pub(crate) fn group(&self, id: usize) -> Option<(usize, &'a CellSlabGroup)> {
+        let place = id.checked_sub(self.records.len())? as u64;
+        let group = self.groups.partition_point(|group| group.end <= place);
+        Some((group, self.groups.get(group)?))
+    }
+
+    /// The kind of a surface, and its numbers, in its own space; `None` where the table is damaged.
+    pub(crate) fn get(&self, id: usize) -> Option<(SurfaceKind, Numbers<'a>)> {
+        let Some(record) = self.records.get(id) else {
+            return Some((SurfaceKind::Slab, Numbers::Slab(self.cell_slab(id)?.numbers())));
+        };
         let first = record.first as usize;
-        let mut rest = self.doubles.get(first..first + record.doubles())?;
-        let numbers = (0..kind.numbers()).map(move |i| {
-            let (own, others) = rest.split_at((record.terms >> (3 * i) & 7) as usize);
-            rest = others;
-            own
-        });
-        Some((kind, numbers))
+        let doubles = self.doubles.get(first..first.checked_add(record.doubles())?)?;
+        Some((record.kind()?, Numbers::Stored { terms: record.terms, doubles }))
     }
 
     /// Which of all slabs a slab is, if that is known: its origin, and its number there.
-    pub(crate) fn identity(&self, id: usize) -> Option<(Origin, u32)> {
+    pub(crate) fn identity(&self, id: usize) -> Option<(Origin, u64)> {
+        let Some(record) = self.records.get(id) else {
+            let (_, group) = self.group(id)?;
+            return (group.origin != [0; 2]).then_some((group.origin, self.cell_slab(id)?.number()));
+        };
         let (kind, numbers) = self.get(id)?;
-        let mut whole = numbers.skip(5).map(|number| number.iter().sum::<f64>() as u32);
-        let origin = (kind == SurfaceKind::Slab).then(|| whole.next())??.checked_sub(1)?;
-        Some((*self.origins.get(origin as usize)?, whole.next()?))
+        let origin = (kind == SurfaceKind::Slab).then(|| record.origin().checked_sub(1))??;
+        let word = numbers.get(SurfaceKind::Slab.numbers() as usize).first();
+        Some((*self.origins.get(origin as usize)?, word.map_or(id as u64, |word| word.to_bits())))
     }
 
-    /// What surfaces are ordered by, and records that tell of one surface: the number of words that they take; the kind, of how
-    /// many doubles each number is the sum, the doubles, and the maps; and, of slabs, which they are.
-    fn words(&self, id: usize) -> (usize, impl Iterator<Item = u64> + use<'a>) {
-        let (kind, numbers) = self.get(id).unzip();
-        let figures = kind.map_or(0, SurfaceKind::figures) as usize;
-        let doubles = numbers.into_iter().flatten().take(figures).flatten();
-        let maps = self.placements(id).flat_map(|rows| rows.as_flattened());
-        let count = 2 + doubles.clone().count() + maps.clone().count();
-        let terms = self.records.get(id).map_or(0, |record| record.terms & ((1 << (3 * figures)) - 1));
-        let (origin, number) = self.identity(id).unwrap_or_default();
-        let which = origin.into_iter().chain([number.into()]);
-        let bits = doubles.chain(maps).map(|c| c.to_bits());
-        (count, [kind.map_or(0, |kind| kind as u64), terms.into()].into_iter().chain(bits).chain(which))
-    }
-
-    /// Compares a surface with another one, of the same table or not, by their words.
+    /// Compares a surface with another one, of the same table or not: the number of words that they take; the kind, of how many doubles
+    /// each number is the sum, the doubles, and the maps; and, of slabs, which they are.
     pub(crate) fn order(&self, id: usize, others: &SurfacesRef<'_>, other: usize) -> Ordering {
-        let ((count, words), (others_count, others)) = (self.words(id), others.words(other));
+        let [own, theirs] = [(self, id), (others, other)].map(|(table, id)| {
+            let (kind, numbers) =
+                table.get(id).unwrap_or((SurfaceKind::Plane, Numbers::Stored { terms: 0, doubles: &[] }));
+            (table, id, kind, numbers)
+        });
+        fn words<'w>(
+            (table, id, kind, numbers): &'w (&SurfacesRef<'w>, usize, SurfaceKind, Numbers<'w>),
+        ) -> (usize, impl Iterator<Item = u64> + 'w) {
+            let universe = table.cell_slab(*id).map(|_| table.universe.rows());
+            let maps =
+                table.placements(*id).copied().chain(universe).flat_map(|rows| rows.into_iter().flatten());
+            let doubles = numbers.doubles(*kind);
+            let count = doubles.clone().count() + maps.clone().count();
+            let (origin, number) = table.identity(*id).unwrap_or_default();
+            let bits = doubles.chain(maps).map(f64::to_bits);
+            let words = [*kind as u64, numbers.terms(*kind).into()].into_iter().chain(bits);
+            (count, words.chain(origin).chain([number]))
+        }
+        let ((count, words), (others_count, others)) = (words(&own), words(&theirs));
         count.cmp(&others_count).then_with(|| words.cmp(others))
     }
 
-    /// The maps that a surface is placed by, in the order in which they are applied; at most one more than is legal.
+    /// The maps that the surface of a record is placed by, in the order in which they are applied; at most one more than is legal. (Slabs
+    /// of cells are in units of the universe.)
     pub(crate) fn placements(&self, id: usize) -> impl Iterator<Item = &'a [[f64; 4]; 3]> + Clone + use<'a> {
         let placements = self.placements;
         let mut next = self.records.get(id).map_or(0, |record| u64::from(record.placement));
@@ -277,19 +403,55 @@ impl<'a> SurfacesRef<'a> {
         .take(MOST_MAPS + 1)
     }
 
-    /// Checks that all is there, in the order of first use, and that every surface is one. O(n).
-    pub(crate) fn check(&self) -> Result<(), Damage> {
+    /// Checks that the groups take in all slabs of cells one after the other, and that no two have one origin. O(n log n).
+    pub(crate) fn check_groups(&self) -> Result<(), Error> {
+        let slabs = self.slabs.len() as u64;
+        let wrong = |end: u64| {
+            Error::from(Damage::Surface { surface: self.records.len() as u64 + end.min(slabs) })
+        };
+        let mut end = 0;
+        for group in self.groups {
+            if group.end <= end {
+                return Err(wrong(end));
+            }
+            end = group.end;
+        }
+        if end != slabs {
+            return Err(wrong(end));
+        }
+        let mut origins = memory::collected((0..self.groups.len()).map(|g| (self.groups[g].origin, g)))?;
+        origins.sort_unstable();
+        let again = origins.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1].1).min();
+        match again {
+            // (The first group of an origin is not one of these.)
+            Some(again) => Err(wrong(self.groups[again - 1].end)),
+            None => Ok(()),
+        }
+    }
+
+    /// Checks that all is there, in the order of first use, and that every surface is one of an octree that is so deep; not the groups of
+    /// slabs of cells. O(n).
+    pub(crate) fn check(&self, depth: u8) -> Result<(), Damage> {
         let (mut doubles, mut placements, mut origins) = (0, 0, 0);
         for (id, record) in self.records.iter().enumerate() {
             let wrong = Damage::Surface { surface: id as u64 };
-            let kind = SurfaceKind::of(record.kind).filter(|kind| record.terms >> (3 * kind.numbers()) == 0);
-            if kind.is_none() || record.first as usize != doubles {
+            let has_origin = record.origin() != 0;
+            let may_be = record.kind().is_some_and(|kind| match record.terms >> (3 * kind.numbers()) {
+                0 => !has_origin || kind == SurfaceKind::Slab,
+                // A number that is the record's own place is left out.
+                1 => self.identity(id).is_some_and(|(_, number)| number != id as u64),
+                _ => false,
+            });
+            if !may_be || record.first as usize != doubles || u64::from(record.origin()) > origins + 1 {
                 return Err(wrong);
             }
             doubles += record.doubles();
-            let origin = self.get(id).and_then(|(kind, numbers)| Figure::new(kind, numbers)?.origin());
-            let Some(origin) = origin.filter(|&origin| origin <= origins + 1) else { return Err(wrong) };
-            origins = origins.max(origin);
+            let is_one =
+                |(kind, numbers)| Figure::new(kind, &numbers).is_some_and(|figure| figure.is_surface());
+            if !self.get(id).is_some_and(is_one) {
+                return Err(wrong);
+            }
+            origins = origins.max(record.origin().into());
             if self.placements(id).count() > MOST_MAPS {
                 return Err(wrong);
             }
@@ -308,6 +470,13 @@ impl<'a> SurfacesRef<'a> {
         let ends = (doubles, placements, origins);
         if ends != (self.doubles.len(), self.placements.len() as u64, self.origins.len() as u64) {
             return Err(Damage::Surface { surface: self.records.len() as u64 });
+        }
+        // The map from units of the universe is like any that places surfaces.
+        let has_map = self.slabs.is_empty() || Affine::new(self.universe.rows()).is_ok();
+        for (place, slab) in self.slabs.iter().enumerate() {
+            if !has_map || !slab.is_valid(depth) {
+                return Err(Damage::Surface { surface: (self.records.len() + place) as u64 });
+            }
         }
         for (index, Placement { rows, .. }) in self.placements.iter().enumerate() {
             let is_negative_zero = |c: &f64| c.to_bits() == (-0.0f64).to_bits();
@@ -329,9 +498,10 @@ struct Figure<'a> {
 impl<'a> Figure<'a> {
     /// `None` if the doubles of a number are not as an exact number is written: none of them zero, each at most 2^-53 of the one
     /// before.
-    fn new(kind: SurfaceKind, numbers: impl Iterator<Item = &'a [f64]>) -> Option<Figure<'a>> {
+    fn new(kind: SurfaceKind, numbers: &'a Numbers<'a>) -> Option<Figure<'a>> {
         let mut own = [&[][..]; 10];
-        for (to, number) in own.iter_mut().zip(numbers) {
+        for (i, to) in own.iter_mut().enumerate().take(kind.numbers() as usize) {
+            let number = numbers.get(i);
             // (A product with 2^53 is exact or infinite, one with 2^-53 may be rounded.)
             let fits = |pair: &[f64]| pair[1].abs() * (2.0 / f64::EPSILON) <= pair[0].abs();
             let is_sum = number.iter().all(|c| c.is_finite() && *c != 0.0) && number.windows(2).all(fits);
@@ -363,29 +533,26 @@ impl<'a> Figure<'a> {
         (number == f64::from(number as u32)).then_some(number as u32)
     }
 
-    /// The origin of a slab, 0 for none; `None` if the numbers make no surface.
-    fn origin(&self) -> Option<u64> {
+    /// Whether the numbers make a surface.
+    fn is_surface(&self) -> bool {
         let is_constant = |linear: core::ops::Range<usize>| linear.clone().all(|i| self.sign(i) == 0);
-        let some = |is: bool, origin: u32| is.then_some(u64::from(origin));
         match self.kind {
-            SurfaceKind::Plane => some(!is_constant(0..3), 0),
-            SurfaceKind::Quadric => some(!is_constant(0..9), 0),
+            SurfaceKind::Plane => !is_constant(0..3),
+            SurfaceKind::Quadric => !is_constant(0..9),
             SurfaceKind::Powers => {
-                for i in [0, 1, 3, 4, 6, 7, 9] {
-                    valid::numbers("surface", &[self.double(i)?]).ok()?;
-                }
+                let is_number = |i: usize| {
+                    self.double(i).is_some_and(|number| valid::numbers("surface", &[number]).is_ok())
+                };
                 let is_exponent = |i: usize| self.whole(i).is_some_and(|n| (1..=64).contains(&n));
                 let is_high = |i: usize| self.sign(i - 2) != 0 && self.whole(i) > Some(2);
-                some([2, 5, 8].into_iter().all(is_exponent) && [2, 5, 8].into_iter().any(is_high), 0)
+                [0, 1, 3, 4, 6, 7, 9].into_iter().all(is_number)
+                    && [2, 5, 8].into_iter().all(is_exponent)
+                    && [2, 5, 8].into_iter().any(is_high)
             }
-            SurfaceKind::Torus => some((0..3).all(|i| self.sign(i) > 0), 0),
+            SurfaceKind::Torus => (0..3).all(|i| self.sign(i) > 0),
             SurfaceKind::Slab => {
-                for i in 0..3 {
-                    self.double(i)?;
-                }
-                let (origin, number) = (self.whole(5)?, self.whole(6)?);
-                let is_ordered = self.double(3)? <= self.double(4)?;
-                some(!is_constant(0..3) && is_ordered && (origin != 0 || number == 0), origin)
+                let is_double = (0..5).all(|i| self.double(i).is_some());
+                is_double && !is_constant(0..3) && self.double(3) <= self.double(4)
             }
         }
     }

@@ -1,6 +1,6 @@
 //! How cuts are gathered while a tree is written, and put in order when it is done.
 
-use super::{BLOCK, Block, Cuts, CutsRef, Head, OwnedIds, Surfaces, records};
+use super::{BLOCK, Block, Cuts, CutsRef, Head, Origin, OwnedIds, Surfaces, records};
 use crate::error::{Damage, Error};
 use crate::memory;
 use crate::octree::word::Planes;
@@ -8,6 +8,7 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::ops::Range;
+use hashbrown::HashMap;
 
 /// What is known of a PARTIAL cell, while the tree is written.
 #[derive(Debug, Clone, PartialEq)]
@@ -185,10 +186,10 @@ impl CutWriter {
         Ok(())
     }
 
-    /// Puts all in order: records, and what is counted before them. With the numbers so far of those surfaces that are used, in the
-    /// order of their first use; of those that a record is the first to use, in the `order` that is given of their numbers. The table
-    /// of surfaces is left empty. Nothing comes of a tree without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL
-    /// cell.
+    /// Puts all in order: records, and what is counted before them. With the numbers so far of those surfaces that are used: first
+    /// those that `group` gives no origin, and then slabs of cells, origin by origin; within these the order is that of their first
+    /// use, and of those that a record is the first to use, the `order` that is given of their numbers. The table of surfaces is left
+    /// empty. Nothing comes of a tree without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL cell.
     ///
     /// # Errors
     /// [`Error::Limit`] if there are 2^32 records or ids, and [`Error::OutOfMemory`].
@@ -196,6 +197,7 @@ impl CutWriter {
         mut self,
         root: Option<Cut>,
         order: impl Fn(u32, u32) -> Ordering,
+        group: impl Fn(u32) -> Option<Origin>,
     ) -> Result<Option<(Cuts, Vec<u32>)>, Error> {
         if let Some(root) = root {
             // (There is no element then.)
@@ -222,9 +224,9 @@ impl CutWriter {
         }
         first.push(next + u32::from(first.is_empty()));
         let mut heads: Vec<u8> = memory::with_capacity(count as usize)?;
-        let mut ids: Vec<u32> = memory::with_capacity(all().map(|records| records.ids.len()).sum())?;
+        let mut ids: Vec<Name> = memory::with_capacity(all().map(|records| records.ids.len()).sum())?;
         let mut blocks = memory::with_capacity((count as usize).div_ceil(BLOCK))?;
-        let (mut splits, mut names) = (0u32, Renaming::default());
+        let (mut splits, mut names) = (0u32, Renaming::new(group)?);
         let generations = self.levels.iter().map(|level| level.generations.len()).max().unwrap_or(0);
         for records in (0..generations)
             .flat_map(|g| self.levels.iter().filter_map(move |level| level.generations.get(g)))
@@ -246,8 +248,10 @@ impl CutWriter {
                 heads.push(head.0);
             }
         }
-        let ids = OwnedIds::narrowed(ids, names.used.len())?;
-        Ok(Some((Cuts { heads, ids, blocks, first, surfaces: Surfaces::default() }, names.used)))
+        let (starts, used) = names.finish()?;
+        let numbers = ids.iter().map(|name| starts[name.group as usize] + name.place);
+        let ids = OwnedIds::packed(numbers, used.len())?;
+        Ok(Some((Cuts { heads, ids, blocks, first, surfaces: Surfaces::default() }, used)))
     }
 }
 
@@ -283,31 +287,57 @@ impl Records {
     }
 }
 
-/// The numbers of surfaces in the order of their first use.
-#[derive(Default)]
-struct Renaming {
-    /// For each number so far the new one; all bits are set of those that are not used.
-    names: Vec<u32>,
-    used: Vec<u32>,
+/// What a surface is called in the end, but for how many there are in the groups before its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Name {
+    group: u32,
+    place: u32,
 }
 
-impl Renaming {
-    const UNUSED: u32 = u32::MAX;
+/// The numbers of surfaces: group by group, in the order of their first use.
+struct Renaming<G> {
+    /// Of a slab of a cell its origin.
+    group: G,
+    /// For each number so far the new name, if it is used.
+    names: Vec<Option<Name>>,
+    /// The numbers so far of each group. The first is that of all surfaces but slabs of cells.
+    used: Vec<Vec<u32>>,
+    groups: HashMap<Origin, u32>,
+}
 
-    fn known(&self, id: u32) -> Option<u32> {
-        self.names.get(id as usize).copied().filter(|&name| name != Renaming::UNUSED)
+impl<G: Fn(u32) -> Option<Origin>> Renaming<G> {
+    fn new(group: G) -> Result<Renaming<G>, Error> {
+        let used = memory::collected([Vec::new()].into_iter())?;
+        Ok(Renaming { group, names: Vec::new(), used, groups: HashMap::new() })
     }
 
-    fn of(&mut self, id: u32) -> Result<u32, Error> {
+    fn known(&self, id: u32) -> Option<Name> {
+        self.names.get(id as usize).copied().flatten()
+    }
+
+    fn of(&mut self, id: u32) -> Result<Name, Error> {
         if let Some(name) = self.known(id) {
             return Ok(name);
         }
         let missing = (id as usize + 1).saturating_sub(self.names.len());
         self.names.try_reserve(missing)?;
-        self.names.resize(self.names.len() + missing, Renaming::UNUSED);
-        let name = self.used.len() as u32;
-        self.names[id as usize] = name;
-        memory::push(&mut self.used, id)?;
+        self.names.resize(self.names.len() + missing, None);
+        let group = match (self.group)(id) {
+            None => 0,
+            Some(origin) => {
+                self.groups.try_reserve(1)?;
+                let next = self.used.len() as u32;
+                let group = *self.groups.entry(origin).or_insert(next);
+                if group == next {
+                    memory::push(&mut self.used, Vec::new())?;
+                }
+                group
+            }
+        };
+        let used = &mut self.used[group as usize];
+        let name = Name { group, place: used.len() as u32 };
+        memory::push(used, id)?;
+        self.names[id as usize] = Some(name);
         Ok(name)
     }
 
@@ -317,20 +347,30 @@ impl Renaming {
         own: &[u32],
         table: u8,
         order: impl Fn(u32, u32) -> Ordering,
-        ids: &mut Vec<u32>,
+        ids: &mut Vec<Name>,
     ) -> Result<u8, Error> {
         let mut places = [0, 1, 2];
         let places = &mut places[..own.len()];
-        places.sort_unstable_by(|&a, &b| match [own[a], own[b]].map(|id| self.known(id)) {
-            [Some(a), Some(b)] => a.cmp(&b),
-            [Some(_), None] => Ordering::Less,
-            [None, Some(_)] => Ordering::Greater,
-            [None, None] => order(own[a], own[b]),
-        });
+        places.sort_unstable_by(|&a, &b| order(own[a], own[b]));
+        let mut names = [None; 3];
         for &place in &*places {
-            ids.push(self.of(own[place])?);
+            names[place] = Some(self.of(own[place])?);
         }
+        places.sort_unstable_by_key(|&place| names[place]);
+        ids.extend(places.iter().filter_map(|&place| names[place]));
         Ok(permuted(table, places.iter().copied()))
+    }
+
+    /// How many surfaces there are before those of each group, and the numbers so far of all.
+    fn finish(self) -> Result<(Vec<u32>, Vec<u32>), Error> {
+        let mut starts = memory::with_capacity(self.used.len())?;
+        let mut all = Vec::new();
+        for own in &self.used {
+            starts.push(all.len() as u32);
+            all.try_reserve(own.len())?;
+            all.extend_from_slice(own);
+        }
+        Ok((starts, all))
     }
 }
 

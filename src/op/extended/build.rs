@@ -160,21 +160,30 @@ pub fn build_extended<S: Solid>(
             let size = |id: u32| Some(layers.get((id as usize).checked_sub(exact)?)?.size());
             size(a).cmp(&size(b)).then(a.cmp(&b))
         };
-        let mut cuts = cuts.finish((tag == Tag::Partial).then_some(cut), by_size)?;
+        let origin = if layers.is_empty() { None } else { origin(solid, frame, options) };
+        let group = |id: u32| match (id as usize).checked_sub(exact) {
+            None => surfaces[id as usize].cell_slab(frame).map(|(_, origin)| origin),
+            Some(layer) => {
+                let (_, own) = layers[layer].cell_slab(frame)?;
+                Some(if layer < shared.len() { own } else { origin.unwrap_or_default() })
+            }
+        };
+        let mut cuts = cuts.finish((tag == Tag::Partial).then_some(cut), by_size, group)?;
         if let Some((cuts, used)) = &mut cuts {
-            let origin = if layers.is_empty() { None } else { origin(solid, frame, options) };
             // Slabs are numbered as the table of surfaces is.
             for (number, &id) in (0..).zip(&*used) {
-                if let (Some(layer), Some(origin)) = ((id as usize).checked_sub(exact), origin) {
+                let Some((layer, origin)) = (id as usize).checked_sub(exact).zip(origin) else { continue };
+                // (A slab that another build made for a cell, and that has no origin, has none here.)
+                if layer >= shared.len() || layers[layer].cell_slab(frame).is_none() {
                     let half_space = &mut layers[layer].half_space;
                     *half_space = half_space.identified(origin, number);
                 }
             }
-            cuts.surfaces =
-                PlacedHalfSpace::write(used.iter().map(|&id| match (id as usize).checked_sub(exact) {
-                    None => &surfaces[id as usize],
-                    Some(layer) => &layers[layer],
-                }))?;
+            let surfaces = used.iter().map(|&id| match (id as usize).checked_sub(exact) {
+                None => &surfaces[id as usize],
+                Some(layer) => &layers[layer],
+            });
+            cuts.surfaces = PlacedHalfSpace::write(surfaces, frame)?;
         }
         let cuts = cuts.map(|(cuts, _)| cuts);
         job.advance(WHOLE);
@@ -192,6 +201,9 @@ pub fn plain(tree: &Octree, depth: u8, rule: Rule, control: &Control<'_>) -> Res
     let plain = build(tree, &tree.frame().with_depth(depth)?, rule, control)?;
     Ok(plain.with_metadata_from(tree).with_channels_from(tree))
 }
+
+/// How many times thinner than the tolerance slabs are that may become thicker than their surface takes.
+const FINE: f64 = 64.0;
 
 /// What tells the slabs of a build from all others; `None` if the solid cannot be told from others.
 fn origin<S: Solid>(solid: &S, frame: &Frame, options: &SurfaceOptions) -> Option<Origin> {
@@ -350,12 +362,24 @@ impl<C: Classifier> Extended<'_, C> {
         if done.is_none() {
             slabs.truncate(before);
         }
+        self.quantise(cell, &mut slabs[before..]);
         let fate = match done {
             Some(done) => done.into(),
             None if cell.level == self.frame.depth() && !wants_slabs => Fate::Ends(Cut::None),
             None => Fate::Goes(part),
         };
         Ok((fate, wants_slabs))
+    }
+
+    /// Puts the slabs that a cell has alone in whole numbers, where those are about as close. (A cell may have got more of them than its
+    /// function needs; a home tells three apart.)
+    fn quantise(&self, cell: Cell, own: &mut [PlacedHalfSpace]) {
+        let least = self.tolerance.unwrap_or(0.0) / FINE;
+        for (index, slab) in (0..MOST_KEPT as u8).zip(own) {
+            if let Some(quantised) = slab.quantised(&self.frame, cell, index, least) {
+                *slab = quantised;
+            }
+        }
     }
 
     /// What becomes of a cell of which no exact surfaces are known.
@@ -415,12 +439,13 @@ impl<C: Classifier> Extended<'_, C> {
             }
             *plane = Some(HalfSpace::layer(&cube, slab));
         }
-        let (mut ids, mut count) = ([0; MOST_KEPT], 0);
+        let (mut ids, mut count, before) = ([0; MOST_KEPT], 0, slabs.len());
         for half_space in planes.into_iter().flatten() {
             ids[count] = u32::try_from(self.own() as usize + slabs.len()).map_err(|_| Error::OutOfMemory)?;
             memory::push(slabs, PlacedHalfSpace { half_space, placements: Arc::new([]) })?;
             count += 1;
         }
+        self.quantise(cell, &mut slabs[before..]);
         let all = (0..count).map(|i| Table::of(i, false).0);
         let table = match enclosure.join {
             SlabJoin::All => all.fold(!0, |all, one| all & one),

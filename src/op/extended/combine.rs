@@ -85,7 +85,8 @@ pub(in crate::op) fn combine(
         };
         let Output { writer, cuts } = hand.out;
         let surfaces = &walk.walk.surfaces;
-        let cuts = match cuts.finish((tag == Tag::Partial).then_some(cut), |a, b| surfaces.order(a, b))? {
+        let (order, group) = (|a, b| surfaces.order(a, b), |id| surfaces.group(id));
+        let cuts = match cuts.finish((tag == Tag::Partial).then_some(cut), order, group)? {
             Some((cuts, used)) => Some(Cuts { surfaces: surfaces.written(&used)?, ..cuts }),
             None => None,
         };

@@ -4,7 +4,7 @@ use super::function::Known;
 use crate::error::{Damage, Error};
 use crate::lattice::Frame;
 use crate::memory;
-use crate::octree::cuts::{Names, SurfaceKind, SurfaceWriter, Surfaces, SurfacesRef};
+use crate::octree::cuts::{Names, Origin, SurfaceKind, SurfaceWriter, Surfaces, SurfacesRef, Universe};
 use crate::solid::PlacedHalfSpace;
 use crate::solid::half_space::Placed;
 use crate::solid::half_space::residue::residue;
@@ -49,12 +49,17 @@ impl<'a> JointSurfaces<'a> {
         };
         let mut known: HashMap<u64, u32> = HashMap::new();
         // (Trees that share their table share surfaces that are like no others.)
-        let mut met: HashMap<*const (), Range<usize>> = HashMap::new();
+        let mut met: HashMap<[(usize, usize); 2], Range<usize>> = HashMap::new();
         for number in 0..own.tables.len() {
             let table = own.tables[number];
             let start = own.names.len();
-            let address = table.records.as_ptr().cast();
-            if let Some(range) = met.get(&address).filter(|range| range.len() == table.len()) {
+            // (An empty array may have any address.)
+            let place = |address: usize, count: usize| (if count == 0 { 0 } else { address }, count);
+            let address = [
+                place(table.records.as_ptr() as usize, table.records.len()),
+                place(table.slabs.as_ptr() as usize, table.slabs.len()),
+            ];
+            if let Some(range) = met.get(&address) {
                 memory::push(&mut own.ranges, range.clone())?;
                 continue;
             }
@@ -116,18 +121,30 @@ impl<'a> JointSurfaces<'a> {
         &self.names[self.ranges[table].clone()]
     }
 
+    /// Of a slab of a cell its origin, or two zeros.
+    pub(super) fn group(&self, id: u32) -> Option<Origin> {
+        let (table, id) = self.places[id as usize];
+        let (_, group) = self.tables[table as usize].group(id as usize)?;
+        Some(group.origin)
+    }
+
     /// A table of the surfaces with these numbers.
     pub(super) fn written(&self, used: &[u32]) -> Result<Surfaces, Error> {
-        let mut all = SurfaceWriter::default();
+        let mut all = SurfaceWriter::new(Universe::of(&self.frame));
         let mut maps = Vec::new();
         for &id in used {
             let (table, id) = self.places[id as usize];
             let (table, id) = (&self.tables[table as usize], id as usize);
+            if let (Some(slab), Some((_, group))) = (table.cell_slab(id), table.group(id)) {
+                all.put_cell_slab(slab, group.origin)?;
+                continue;
+            }
             let (kind, numbers) = table.get(id).ok_or(Damage::Surface { surface: id as u64 })?;
             maps.clear();
             for map in table.placements(id) {
                 memory::push(&mut maps, map)?;
             }
+            let numbers = (0..kind.numbers() as usize).map(|i| numbers.get(i));
             all.put(kind, numbers, table.identity(id), maps.iter().rev().copied())?;
         }
         Ok(all.finish())

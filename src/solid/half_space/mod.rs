@@ -15,6 +15,7 @@ pub(crate) mod points;
 pub(crate) mod possible;
 pub(crate) mod power;
 pub(crate) mod quadric;
+mod quantised;
 pub(crate) mod record;
 pub(crate) mod residue;
 mod slab;
@@ -28,7 +29,7 @@ use crate::cut::Taylor;
 use crate::error::Error;
 use crate::lattice::exact::{DoubleDouble, Dyadic, sign};
 use crate::lattice::{Frame, Interval, valid};
-use crate::octree::cuts::Origin;
+use crate::octree::cuts::{CellSlab, Origin};
 use crate::solid::Fingerprint;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -209,7 +210,7 @@ impl HalfSpace {
         outer: f64,
         identity: Option<SlabIdentity>,
     ) -> HalfSpace {
-        HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer, identity })))
+        HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer, identity, cell_slab: None })))
     }
 
     /// Whether it is a plane with a width.
@@ -217,11 +218,14 @@ impl HalfSpace {
         matches!(&*self.0, Surface::Slab(_))
     }
 
-    /// The slab of which it is known which one it is; any other half-space as it is.
+    /// The slab of which it is known which one it is: that of this number, or one of a cell. Any other half-space as it is.
     pub(crate) fn identified(&self, origin: Origin, number: u32) -> HalfSpace {
         match &*self.0 {
-            &Surface::Slab(ThickPlane { normal, inner, outer, .. }) => {
-                HalfSpace::slab(normal, inner, outer, Some(SlabIdentity { origin, number }))
+            &Surface::Slab(ThickPlane { normal, inner, outer, cell_slab, .. }) => {
+                let number = cell_slab.map_or(number.into(), CellSlab::number);
+                let identity = Some(SlabIdentity { origin, number });
+                let slab = ThickPlane { normal, inner, outer, identity, cell_slab };
+                HalfSpace(Arc::new(Surface::Slab(slab)))
             }
             _ => self.clone(),
         }

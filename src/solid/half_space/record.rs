@@ -10,7 +10,9 @@ use crate::error::Error;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Affine, Frame};
 use crate::memory;
-use crate::octree::cuts::{MOST_MAPS, MOST_TERMS, Origin, SurfaceKind, SurfaceWriter, Surfaces, SurfacesRef};
+use crate::octree::cuts::{
+    CellSlab, MOST_MAPS, MOST_TERMS, Origin, SurfaceKind, SurfaceWriter, Surfaces, SurfacesRef, Universe,
+};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
@@ -135,7 +137,7 @@ impl HalfSpace {
     }
 
     /// The half-space of stored numbers; `None` if they make none.
-    fn stored(kind: SurfaceKind, numbers: &[Dyadic], origins: &[Origin]) -> Option<HalfSpace> {
+    fn stored(kind: SurfaceKind, numbers: &[Dyadic], identity: Option<SlabIdentity>) -> Option<HalfSpace> {
         let is_constant = |linear: &[Dyadic]| linear.iter().all(Dyadic::is_zero);
         Some(match (kind, numbers) {
             (SurfaceKind::Plane, [a, b, c, d]) => {
@@ -166,23 +168,12 @@ impl HalfSpace {
                 let [major, square, scale, shift] = [major, square, scale, shift].map(Clone::clone);
                 HalfSpace::ring(Torus { major, square, scale, shift })
             }
-            (SurfaceKind::Slab, [x, y, z, inner, outer, origin, number]) => {
+            (SurfaceKind::Slab, [x, y, z, inner, outer]) => {
                 let all = [x, y, z, inner, outer].map(Dyadic::exactly);
                 let [Some(x), Some(y), Some(z), Some(inner), Some(outer)] = all else { return None };
                 if [x, y, z] == [0.0; 3] || inner > outer {
                     return None;
                 }
-                let whole = |n: &Dyadic| {
-                    let n = n.exactly()?;
-                    (n == f64::from(n as u32)).then_some(n as u32)
-                };
-                let identity = match (whole(origin)?, whole(number)?) {
-                    (0, 0) => None,
-                    (0, _) => return None,
-                    (origin, number) => {
-                        Some(SlabIdentity { origin: *origins.get(origin as usize - 1)?, number })
-                    }
-                };
                 HalfSpace::slab([x, y, z], inner, outer, identity)
             }
             _ => return None,
@@ -260,16 +251,32 @@ impl PlacedHalfSpace {
         (bits.len(), bits)
     }
 
-    /// Writes surfaces one after the other; maps that several share stand once.
+    /// The slab of a cell of a universe, and its origin, or two zeros if it has none.
+    pub(crate) fn cell_slab(&self, frame: &Frame) -> Option<(CellSlab, Origin)> {
+        let Surface::Slab(ThickPlane { cell_slab, identity, .. }) = &*self.half_space.0 else { return None };
+        let is_there = matches!(&*self.placements, [only] if *only.rows() == Universe::of(frame).rows());
+        let origin = identity.as_ref().map_or([0; 2], |identity| identity.origin);
+        // (A tree that is less deep than the one that the slab was made for has no such cell.)
+        let has_cell = |slab: &CellSlab| slab.is_valid(frame.depth());
+        cell_slab.filter(|slab| is_there && has_cell(slab)).map(|slab| (slab, origin))
+    }
+
+    /// Writes surfaces of a tree on a frame one after the other; maps that several share stand once. Slabs of cells stand at the end,
+    /// those of one origin together.
     ///
     /// # Errors
     /// [`Error::Limit`] if a number is the sum of more than seven doubles, if a surface has more than 64 maps, or if there are
     /// too many doubles; [`Error::OutOfMemory`].
     pub(crate) fn write<'s>(
         surfaces: impl ExactSizeIterator<Item = &'s PlacedHalfSpace>,
+        frame: &Frame,
     ) -> Result<Surfaces, Error> {
-        let mut all = SurfaceWriter::default();
+        let mut all = SurfaceWriter::new(Universe::of(frame));
         for surface in surfaces {
+            if let Some((slab, origin)) = surface.cell_slab(frame) {
+                all.put_cell_slab(slab, origin)?;
+                continue;
+            }
             let too_long = || Error::Limit {
                 what: "doubles for an exact number of a surface",
                 limit: MOST_TERMS as u64,
@@ -290,8 +297,14 @@ impl PlacedHalfSpace {
 
     /// A stored surface; `None` if it is damaged.
     pub(crate) fn read(surfaces: &SurfacesRef<'_>, id: usize) -> Option<PlacedHalfSpace> {
+        let identity = surfaces.identity(id).map(|(origin, number)| SlabIdentity { origin, number });
+        if let Some(slab) = surfaces.cell_slab(id) {
+            let placements = Arc::from([Affine::new(surfaces.universe.rows()).ok()?]);
+            return Some(PlacedHalfSpace { half_space: HalfSpace::of_cell(slab, identity), placements });
+        }
         let (kind, numbers) = surfaces.get(id)?;
-        let numbers: Vec<Dyadic> = numbers.map(Dyadic::sum).collect();
+        let numbers: Vec<Dyadic> =
+            (0..kind.numbers() as usize).map(|i| Dyadic::sum(numbers.get(i))).collect();
         let mut placements =
             surfaces.placements(id).map(|rows| Affine::new(*rows).ok()).collect::<Option<Vec<_>>>()?;
         if placements.len() > MOST_MAPS {
@@ -299,7 +312,7 @@ impl PlacedHalfSpace {
         }
         placements.reverse();
         Some(PlacedHalfSpace {
-            half_space: HalfSpace::stored(kind, &numbers, surfaces.origins)?,
+            half_space: HalfSpace::stored(kind, &numbers, identity)?,
             placements: Arc::from(placements),
         })
     }

@@ -114,11 +114,15 @@ fn projective(seed: u64, form: impl Iterator<Item = Residue> + Clone) -> u64 {
 /// damaged. O(maps).
 pub(crate) fn residue(surfaces: &SurfacesRef<'_>, id: usize) -> Option<u64> {
     let (kind, numbers) = surfaces.get(id)?;
+    if let (Some(slab), Some(([low, high], _))) = (surfaces.cell_slab(id), surfaces.identity(id)) {
+        // (On another universe it is another slab, and compared as such.)
+        return Some(mixed(kind as u64, [slab.home, slab.planes, low, high].into_iter()));
+    }
     let one =
         core::array::from_fn(|i| core::array::from_fn(|j| if i == j { Residue::ONE } else { Residue::ZERO }));
     let map = surfaces.placements(id).fold(one, |map: Map, rows| product(&map, &inverse(rows)));
     let seed = kind as u64;
-    let mut numbers = numbers.map(Residue::sum);
+    let mut numbers = (0..kind.numbers() as usize).map(|i| Residue::sum(numbers.get(i)));
     let mut next = || numbers.next().unwrap_or(Residue::ZERO);
     Some(match kind {
         SurfaceKind::Plane => {
@@ -140,7 +144,7 @@ pub(crate) fn residue(surfaces: &SurfacesRef<'_>, id: usize) -> Option<u64> {
         }
         SurfaceKind::Slab => {
             let ([low, high], number) = surfaces.identity(id)?;
-            let own = numbers.take(5).map(|number| number.0).chain([low, high, number.into()]);
+            let own = numbers.take(5).map(|number| number.0).chain([low, high, number]);
             projective(mixed(seed, own), map.into_iter().flatten())
         }
     })

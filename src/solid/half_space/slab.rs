@@ -1,14 +1,15 @@
 //! Planes with a width: what is known of a surface where nothing exact is known.
 
-use super::HalfSpace;
 use super::bounds::{Octants, Sides};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
+use super::{HalfSpace, Surface};
 use crate::cut::Slab;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Cube, Interval, axes};
-use crate::octree::cuts::Origin;
+use crate::octree::cuts::{CellSlab, Origin};
+use alloc::sync::Arc;
 
 /// A point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer` is not; of others nothing is known.
 pub(crate) struct ThickPlane {
@@ -16,6 +17,8 @@ pub(crate) struct ThickPlane {
     pub(crate) inner: f64,
     pub(crate) outer: f64,
     pub(crate) identity: Option<SlabIdentity>,
+    /// The same in whole numbers, of a slab that was made for one cell and is given in units of a universe.
+    pub(crate) cell_slab: Option<CellSlab>,
 }
 
 impl HalfSpace {
@@ -36,6 +39,13 @@ impl HalfSpace {
         let offset = |own: f64| half.times(Interval::exactly(own)).plus(along);
         HalfSpace::slab(slab.normal, offset(slab.inner).lower, offset(slab.outer).upper, None)
     }
+
+    /// A slab of a cell, in units of the universe.
+    pub(crate) fn of_cell(slab: CellSlab, identity: Option<SlabIdentity>) -> HalfSpace {
+        let [x, y, z, inner, outer] = slab.numbers();
+        let (normal, cell_slab) = ([x, y, z], Some(slab));
+        HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer, identity, cell_slab })))
+    }
 }
 
 /// Which slab it is. A slab stands for a set that is not known, so that only its origin tells it from others: two with the same
@@ -45,16 +55,17 @@ pub(crate) struct SlabIdentity {
     /// What it was made from: a fingerprint of the solid and of how that was built.
     pub(crate) origin: Origin,
     /// Its number there.
-    pub(crate) number: u32,
+    pub(crate) number: u64,
 }
 
 impl SlabIdentity {
     /// The same as numbers.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = Dyadic> {
         let [low, high] = self.origin;
-        [low as u32, (low >> 32) as u32, high as u32, (high >> 32) as u32, self.number]
+        [low, high, self.number]
             .into_iter()
-            .map(|number| Dyadic::new(f64::from(number)))
+            .flat_map(|word| [word as u32, (word >> 32) as u32])
+            .map(|half| Dyadic::new(f64::from(half)))
     }
 }
 

@@ -378,13 +378,17 @@ impl Solid for Octree {
 impl CutsRef<'_> {
     /// A fingerprint that has taken in the cuts.
     fn taken_in(&self, all: Fingerprinter) -> Fingerprinter {
-        let ids = self.ids.iter().map(u64::from);
         let surfaces = &self.surfaces;
+        let doubles = surfaces.doubles.iter().map(|double| double.to_bits());
+        let slabs = surfaces.slabs.iter().flat_map(|slab| [slab.home, slab.planes]);
+        let groups = surfaces.groups.iter().flat_map(|group| [group.origin[0], group.origin[1], group.end]);
         all.bytes(self.heads)
-            .words(self.ids.len() as u64, ids)
+            .bytes(self.ids.bytes)
             .bytes(bytemuck::cast_slice(surfaces.records))
-            .numbers(surfaces.doubles)
+            .words(surfaces.doubles.len() as u64, doubles)
             .bytes(bytemuck::cast_slice(surfaces.placements))
             .bytes(bytemuck::cast_slice(surfaces.origins))
+            .words(2 * surfaces.slabs.len() as u64, slabs)
+            .words(3 * surfaces.groups.len() as u64, groups)
     }
 }

@@ -1,0 +1,178 @@
+//! Slabs that were made for one cell: two words each.
+
+use crate::lattice::{Cell, axes};
+use bytemuck::{Pod, Zeroable};
+use core::ops::RangeInclusive;
+
+/// A slab that was made for one cell, whose planes lie a whole number of steps from the cell's centre. It has a meaning of its own
+/// outside of the cell, too, but nothing is known there of the surface that it stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct CellSlab {
+    /// The cell, in bits 0 to 60: a one, and behind it the octants from the universe down, three bits each. In bits 61 and 62 which
+    /// of the cell's slabs it is.
+    pub home: u64,
+    /// From the lowest bit on: two components of the normal, 16 bits each; the inner offset, 19; the width, 4; the step, 6; the axis
+    /// of the greatest component, 2; whether that is negative.
+    pub planes: u64,
+}
+
+/// The planes of a slab in whole numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Steps {
+    /// The axis along which the normal has the component 1, or −1.
+    pub axis: usize,
+    pub is_negative: bool,
+    /// The components along the next two axes, in units of 2^-15.
+    pub others: [i16; 2],
+    /// How far the inner plane lies from the cell's centre, in steps: n · (p − centre) of its points, where n is the normal.
+    pub offset: i32,
+    /// From there to the outer plane, in steps.
+    pub width: u8,
+    /// A step is the universe's edge divided by 2^step.
+    pub step: u8,
+}
+
+impl Steps {
+    /// Units of a normal in its greatest component.
+    pub(crate) const UNIT: f64 = 32_768.0;
+    /// The greatest offset, and one less than the least.
+    pub(crate) const MOST_OFFSET: i32 = (1 << 18) - 1;
+    pub(crate) const MOST_WIDTH: u8 = 15;
+    /// The exponents of steps. Within these, all numbers of a slab of any cell are doubles.
+    pub(crate) const STEPS: RangeInclusive<u8> = 2..=50;
+
+    /// The normal.
+    pub(crate) fn normal(&self) -> [f64; 3] {
+        let mut normal = [if self.is_negative { -1.0 } else { 1.0 }; 3];
+        for (k, &own) in (1..).zip(&self.others) {
+            normal[(self.axis + k) % 3] = f64::from(own) / Steps::UNIT;
+        }
+        normal
+    }
+}
+
+/// Bits of the cell in [`CellSlab::home`].
+const CELL: u32 = 61;
+
+/// What tells numbers of slabs of cells from other numbers of slabs.
+const MADE_FOR_A_CELL: u64 = 1 << 63;
+
+impl CellSlab {
+    /// The `index`-th slab of a cell, up to the third.
+    pub(crate) fn new(cell: Cell, index: u8, steps: &Steps) -> CellSlab {
+        let octants =
+            (1..=cell.level).fold(1u64, |all, level| all << 3 | u64::from(cell.ancestor(level).octant()));
+        let [a, b] = steps.others.map(|own| u64::from(own as u16));
+        let offset = (steps.offset as u32 & 0x7_FFFF).into();
+        let parts = [
+            (a, 16),
+            (b, 16),
+            (offset, 19),
+            (steps.width.into(), 4),
+            (steps.step.into(), 6),
+            (steps.axis as u64, 2),
+            (steps.is_negative.into(), 1),
+        ];
+        let mut shift = 0;
+        let planes = parts.into_iter().fold(0, |all, (part, bits)| {
+            let own: u64 = part << shift;
+            shift += bits;
+            all | own
+        });
+        CellSlab { home: u64::from(index) << CELL | octants, planes }
+    }
+
+    pub(crate) fn steps(self) -> Steps {
+        let part = |shift: u32, bits: u32| self.planes >> shift & ((1 << bits) - 1);
+        Steps {
+            axis: part(61, 2) as usize,
+            is_negative: part(63, 1) != 0,
+            others: [part(0, 16) as u16 as i16, part(16, 16) as u16 as i16],
+            // (The sign is that of the highest of 19 bits.)
+            offset: ((part(32, 19) as i32) << 13) >> 13,
+            width: part(51, 4) as u8,
+            step: part(55, 6) as u8,
+        }
+    }
+
+    /// The cell; `None` of a damaged slab.
+    pub(crate) fn home(self) -> Option<Cell> {
+        let octants = self.home & ((1 << CELL) - 1);
+        let level = octants.checked_ilog2().filter(|bits| bits % 3 == 0)? / 3;
+        let cell = (0..level).rev().fold(Cell::ROOT, |cell, k| cell.child((octants >> (3 * k) & 7) as u8));
+        Some(cell)
+    }
+
+    /// Its number among all slabs of its origin.
+    pub(crate) fn number(self) -> u64 {
+        MADE_FOR_A_CELL | self.home
+    }
+
+    /// Whether the words are those of a slab of a cell of an octree that is so deep.
+    pub(crate) fn is_valid(self, depth: u8) -> bool {
+        let steps = self.steps();
+        self.home >> 63 == 0
+            && self.home >> CELL < 3
+            && self.home().is_some_and(|cell| cell.level <= depth)
+            && steps.axis < 3
+            && steps.others.iter().all(|&own| own != i16::MIN)
+            && Steps::STEPS.contains(&steps.step)
+    }
+
+    /// Its numbers in units of the universe: the normal, and the offsets of the inner and the outer plane. They are exact.
+    pub(crate) fn numbers(self) -> [f64; 5] {
+        let steps = self.steps();
+        let [x, y, z] = steps.normal();
+        let Cell { level, at } = self.home().unwrap_or(Cell::ROOT);
+        let centre = axes(|axis| (2 * u64::from(at[axis]) + 1) as f64 / (2u64 << level) as f64);
+        let step = 1.0 / (1u64 << steps.step.min(*Steps::STEPS.end())) as f64;
+        let inner = (x * centre[0] + y * centre[1]) + z * centre[2] + f64::from(steps.offset) * step;
+        [x, y, z, inner, inner + f64::from(steps.width) * step]
+    }
+}
+
+/// Slabs of cells that have one origin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct CellSlabGroup {
+    /// Two zeros if they have none.
+    pub origin: super::Origin,
+    /// How many slabs of cells there are up to the last of the group.
+    pub end: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back() {
+        let cell = Cell { level: 20, at: [0xF_FFFF, 0x5_5555, 1] };
+        let steps = Steps {
+            axis: 1,
+            is_negative: true,
+            others: [-32_767, 12_345],
+            offset: -Steps::MOST_OFFSET - 1,
+            width: 15,
+            step: 50,
+        };
+        for steps in
+            [steps, Steps { axis: 2, is_negative: false, offset: Steps::MOST_OFFSET, step: 2, ..steps }]
+        {
+            let slab = CellSlab::new(cell, 2, &steps);
+            assert_eq!((slab.steps(), slab.home()), (steps, Some(cell)));
+            assert!(slab.is_valid(20) && !slab.is_valid(19) && slab.number() >> 63 == 1);
+        }
+        for step in [0, 1, 51] {
+            assert!(!CellSlab::new(cell, 2, &Steps { step, ..steps }).is_valid(20));
+        }
+        let root =
+            CellSlab::new(Cell::ROOT, 0, &Steps { axis: 0, is_negative: false, others: [0, 0], ..steps });
+        assert_eq!(root.home(), Some(Cell::ROOT));
+        assert!(
+            CellSlab { home: 2, ..root }.home().is_none() && CellSlab { home: 0, ..root }.home().is_none()
+        );
+        assert!(!CellSlab { home: root.home | 3 << 61, ..root }.is_valid(20));
+    }
+}

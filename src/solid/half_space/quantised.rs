@@ -1,0 +1,81 @@
+//! Slabs of one cell in whole numbers: rounded outward, once.
+
+use super::slab::ThickPlane;
+use super::{HalfSpace, PlacedHalfSpace, Surface};
+use crate::lattice::{Affine, Cell, Frame, Interval, axes};
+use crate::octree::cuts::{CellSlab, Steps, Universe};
+use alloc::sync::Arc;
+
+/// Steps between the planes, as many as can be told with what is rounded at both.
+const STEPS: f64 = (Steps::MOST_WIDTH - 2) as f64;
+
+/// How much thicker a slab may become.
+const THICKER: f64 = 1.4;
+
+impl PlacedHalfSpace {
+    /// A slab in model space that is used in one cell alone, its `index`-th, in whole numbers: what is proven of points of the cell by
+    /// the result is true. `None` of what is no slab, and where a slab would become thicker by more than two fifths and be thicker
+    /// than `least` (model units): in cells that are large in comparison with its width.
+    pub(crate) fn quantised(
+        &self,
+        frame: &Frame,
+        cell: Cell,
+        index: u8,
+        least: f64,
+    ) -> Option<PlacedHalfSpace> {
+        let &Surface::Slab(ThickPlane { normal, inner, outer, .. }) = &*self.half_space.0 else {
+            return None;
+        };
+        if !self.placements.is_empty() || !(inner.is_finite() && outer.is_finite()) {
+            return None;
+        }
+        let axis = (0..3).fold(0, |best, i| if normal[i].abs() > normal[best].abs() { i } else { best });
+        let greatest = normal[axis].abs();
+        let others = [1, 2].map(|k| {
+            let unit = libm::round(normal[(axis + k) % 3] / greatest * Steps::UNIT);
+            unit.clamp(1.0 - Steps::UNIT, Steps::UNIT - 1.0) as i16
+        });
+        let is_negative = normal[axis] < 0.0;
+        let steps = Steps { axis, is_negative, others, offset: 0, width: 0, step: 0 };
+
+        // In units of the universe, from the centre of the cell, of a normal whose greatest component is ±1.
+        let (own, unit) = (normal.map(Interval::exactly), Interval::exactly(greatest));
+        let edge = Interval::exactly(frame.edge());
+        let centre = axes(|i| {
+            let centre = (2 * u64::from(cell.at[i]) + 1) as f64 / (2u64 << cell.level) as f64;
+            edge.times(Interval::exactly(centre)).plus(Interval::exactly(frame.origin()[i]))
+        });
+        let along = (0..3).fold(Interval::exactly(0.0), |sum, i| sum.plus(own[i].times(centre[i])));
+        let scale = unit.times(edge);
+        let offset = |offset: f64| Interval::exactly(offset).minus(along).over(scale);
+        let (inner, outer) = (offset(inner), offset(outer));
+        // How far the rounded normal is off in the corners of the cell.
+        let half = 0.5 / (1u64 << cell.level) as f64;
+        let rounded = steps.normal();
+        let turned = (0..3).fold(Interval::exactly(0.0), |sum, i| {
+            let off = own[i].over(unit).minus(Interval::exactly(rounded[i]));
+            // (A power of two: exact.)
+            sum.plus(Interval::exactly(off.upper.max(-off.lower) * half))
+        });
+        let (low, high) = (inner.minus(turned).lower, outer.plus(turned).upper);
+
+        let wanted =
+            f64::max((high - low) / STEPS, low.abs().max(high.abs()) / f64::from(Steps::MOST_OFFSET));
+        let is_fine = |step: &u8| 1.0 / (1u64 << step) as f64 >= wanted;
+        let step = Steps::STEPS.rev().find(is_fine)?;
+        let size = 1.0 / (1u64 << step) as f64;
+        let (first, last) = (libm::floor(low / size), libm::ceil(high / size));
+        let width = last - first;
+        let before = outer.upper - inner.lower;
+        let is_thin = width * size <= f64::max(THICKER * before, least / frame.edge());
+        let fits = width <= f64::from(Steps::MOST_WIDTH) && first.abs() <= f64::from(Steps::MOST_OFFSET);
+        // (What is no number is not less.)
+        if !(is_thin && fits) {
+            return None;
+        }
+        let steps = Steps { offset: first as i32, width: width as u8, step, ..steps };
+        let placements = Arc::from([Affine::new(Universe::of(frame).rows()).ok()?]);
+        let half_space = HalfSpace::of_cell(CellSlab::new(cell, index, &steps), None);
+        Some(PlacedHalfSpace { half_space, placements })
+    }
+}
