@@ -786,6 +786,9 @@ pub enum Damage {
         /// Number of the map.
         placement: u64,
     },
+    /// The moments that are stored are no intervals.
+    #[error("the moments of the solid are not legal")]
+    Moments,
     /// The level table does not describe the tree.
     #[error("the level table is wrong at level {level}")]
     LevelTable {

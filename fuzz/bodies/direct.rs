@@ -252,6 +252,15 @@ impl Scene {
         })
     }
 
+    /// Whether a facet is so narrow that doubles do not tell its plane: any plane through its longest edge may stand for it.
+    fn has_a_needle(&self) -> bool {
+        self.moved.iter().any(|facet| {
+            let [a, b, c] = facet.map(|p| p.map(|c| c / self.size));
+            let [u, v] = [minus(b, a), minus(c, a)];
+            length(cross(u, v)) <= 1e-6 * length(u) * length(v)
+        })
+    }
+
     /// Where a point lies in regard to the universe, unless it is near to its faces.
     fn is_in_universe(&self, Place { near: p, size, .. }: &Place) -> Option<bool> {
         let (low, edge) = (self.frame.origin(), self.frame.edge());
@@ -567,7 +576,8 @@ pub fn layers(data: &[u8]) {
                     scene.moved.iter().map(|facet| from_triangle(*facet, p)).fold(f64::INFINITY, f64::min);
                 let is_far = all > 2.0 * tolerance + 1e-9 * (scene.size + place.size);
                 // (A facet without thickness, whose plane goes on beyond it, may be taken for a body. Planes are up to 2^-22 wide.)
-                let is_beside = || scene.is_near_to_a_plane(p, 1e-6 * (scene.size + place.size));
+                let is_beside =
+                    || scene.is_near_to_a_plane(p, 1e-6 * (scene.size + place.size)) || scene.has_a_needle();
                 assert!(!is_known || !is_far || is_beside(), "undecided {all} from the surface: {}", told());
             }
             _ => {}

@@ -7,7 +7,8 @@ use super::section::Sections;
 use crate::error::FormatError;
 use crate::lattice::Frame;
 use crate::octree::cuts::{
-    Block, CellSlab, CellSlabGroup, CutsRef, Ids, Placement, SurfaceRecord, SurfacesRef, Universe, width,
+    Block, CellSlab, CellSlabGroup, CutsRef, Ids, Placement, StoredMoments, SurfaceRecord, SurfacesRef,
+    Universe, width,
 };
 use core::mem::offset_of;
 
@@ -24,6 +25,9 @@ const _: () = {
     );
     assert!(size_of::<CellSlabGroup>() == 24 && offset_of!(CellSlabGroup, origin) == 0);
     assert!(offset_of!(CellSlabGroup, end) == 16);
+    assert!(size_of::<StoredMoments>() == 184 && offset_of!(StoredMoments, point) == 0);
+    assert!(offset_of!(StoredMoments, volume) == 24 && offset_of!(StoredMoments, first) == 40);
+    assert!(offset_of!(StoredMoments, second) == 88);
 };
 
 /// The cuts of an octree on a frame, whose numbers have this machine's order; `None` if it has none.
@@ -51,6 +55,7 @@ pub(super) fn view<'a>(
         blocks: sections.array(bytes, Kind::CutBlocks)?,
         first: sections.array(bytes, Kind::CutFirst)?,
         surfaces,
+        moments: sections.array(bytes, Kind::Moments)?.first(),
     }))
 }
 
@@ -68,5 +73,10 @@ pub(super) fn sections<'a>(owner: u32, cuts: &CutsRef<'a>) -> [Section<'a>; Kind
         (owner, Kind::Origins, Elements::Pairs64(surfaces.origins)),
         (owner, Kind::CellSlabs, Elements::Pairs64(bytemuck::cast_slice(surfaces.slabs))),
         (owner, Kind::CellSlabGroups, Elements::Triples64(bytemuck::cast_slice(surfaces.groups))),
+        (
+            owner,
+            Kind::Moments,
+            Elements::Moments(bytemuck::cast_slice(cuts.moments.map_or(&[], core::slice::from_ref))),
+        ),
     ]
 }

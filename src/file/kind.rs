@@ -4,7 +4,7 @@ use super::counts::ENCODING_DICTIONARY;
 use super::form::Form;
 use super::object::{CHANNEL, CUTS_MINOR, DEXELS, Object, SOLID};
 use crate::dexel::{DexelEnds, DexelNormals};
-use crate::octree::cuts::Placement;
+use crate::octree::cuts::{Placement, StoredMoments};
 use crate::octree::view::LevelCounts;
 use crate::octree::word::Planes;
 
@@ -12,7 +12,7 @@ use crate::octree::word::Planes;
 pub(super) const SECTION_REQUIRED: u32 = 1;
 
 /// The sections that this library knows. The numbers are part of the format. 16 to 31 are for values (17 is
-/// reserved for those of PARTIAL cells by rank), but for 20 to 24, 48 to 55 are reserved for versions, 56 to 63 for the archive;
+/// reserved for those of PARTIAL cells by rank), but for 20 to 25, 48 to 55 are reserved for versions, 56 to 63 for the archive;
 /// from 2^31 on they belong to applications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
@@ -63,6 +63,8 @@ pub(super) enum Kind {
     CellSlabs = 23,
     /// What those were made from, and how many they are.
     CellSlabGroups = 24,
+    /// The moments of a solid with cuts.
+    Moments = 25,
     /// The rays of each direction of a tri-dexel model.
     Windows = 32,
     /// First interval of each ray along x, and their number.
@@ -107,8 +109,8 @@ const COLUMNS: [[Kind; 5]; 3] = [
 ];
 
 /// Numbers right below the first kind of tri-dexel models that no kind has.
-const UNUSED: usize = 7;
-const _: () = assert!((Kind::CellSlabGroups as usize) < Kind::Windows as usize - UNUSED);
+const UNUSED: usize = 6;
+const _: () = assert!((Kind::Moments as usize) < Kind::Windows as usize - UNUSED);
 
 /// Places for what is kept by kind; see [`Kind::slot`].
 pub(super) const KINDS: usize = 48 - UNUSED;
@@ -146,7 +148,7 @@ impl Element {
 }
 
 impl Kind {
-    pub(super) const ALL: [Kind; 39] = [
+    pub(super) const ALL: [Kind; 40] = [
         Kind::Objects,
         Kind::Metadata,
         Kind::Levels,
@@ -170,6 +172,7 @@ impl Kind {
         Kind::Origins,
         Kind::CellSlabs,
         Kind::CellSlabGroups,
+        Kind::Moments,
         Kind::Windows,
         Kind::StartsX,
         Kind::SpansX,
@@ -189,7 +192,7 @@ impl Kind {
     ];
 
     /// Sections that an object may have at most.
-    pub(super) const MOST: usize = 20;
+    pub(super) const MOST: usize = 21;
 
     /// Its place in an array of [`KINDS`].
     pub(super) const fn slot(self) -> usize {
@@ -210,7 +213,7 @@ impl Kind {
     }
 
     /// Those of the cuts of an octree.
-    pub(super) const CUTS: [Kind; 10] = [
+    pub(super) const CUTS: [Kind; 11] = [
         Kind::CutHeads,
         Kind::CutIds,
         Kind::CutBlocks,
@@ -221,6 +224,7 @@ impl Kind {
         Kind::Origins,
         Kind::CellSlabs,
         Kind::CellSlabGroups,
+        Kind::Moments,
     ];
 
     /// The kind with this number, if the sections of such objects may be of it in a file of this minor version.
@@ -268,6 +272,7 @@ impl Kind {
             Kind::Origins => "origins",
             Kind::CellSlabs => "cell slabs",
             Kind::CellSlabGroups => "cell slab groups",
+            Kind::Moments => "moments",
             Kind::Windows => "windows",
             Kind::StartsX => "starts along x",
             Kind::SpansX => "spans along x",
@@ -313,6 +318,7 @@ impl Kind {
             Kind::Placements => (Element::Record, (size_of::<Placement>() / 8) as u8),
             Kind::Origins | Kind::CellSlabs => (Element::U64, 2),
             Kind::CellSlabGroups => (Element::U64, 3),
+            Kind::Moments => (Element::F64, (size_of::<StoredMoments>() / 8) as u8),
             _ => self.dexel_element(object),
         }
     }

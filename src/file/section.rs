@@ -215,6 +215,7 @@ impl Sections {
                 Kind::CutFirst => own == elements.saturating_add(1),
                 Kind::Surfaces | Kind::CellSlabs => surfaces < 1 << 32,
                 Kind::SurfaceNumbers => own < 1 << 32 && (own != 0) == (records != 0),
+                Kind::Moments => own <= 1,
                 Kind::CellSlabGroups => own <= slabs && (own != 0) == (slabs != 0),
                 _ => own < 1 << 32 && (own == 0 || records != 0),
             };

@@ -7,7 +7,7 @@ use super::links::Step;
 use super::tag::Tag;
 use super::view::{OctreeRef, starts_half_way};
 use crate::error::{Damage, Error};
-use crate::lattice::Cell;
+use crate::lattice::{Cell, VolumeMoments};
 use crate::memory;
 use alloc::vec::Vec;
 
@@ -30,6 +30,12 @@ impl OctreeRef<'_> {
             surfaces: surfaces.len() as u64,
             bytes: bytes as u64,
         })
+    }
+
+    /// The volume and the moments of the solid that the cells bound, if that knew them when the tree was made: they are exact up to
+    /// rounding, and hold as far as the cells are proven.
+    pub fn moments(&self) -> Option<VolumeMoments> {
+        self.cuts.as_ref()?.moments?.moments()
     }
 
     /// The same tree without cuts: what its planes say.
@@ -89,6 +95,9 @@ impl OctreeRef<'_> {
         }
         if levels.len() != cuts.heads.len() || !cuts.ids.ends_with(ids) || !known.are_all_met() {
             return Err(Damage::CutRecord { record: cuts.heads.len() as u64 }.into());
+        }
+        if cuts.moments.is_some_and(|stored| stored.moments().is_none()) {
+            return Err(Damage::Moments.into());
         }
         Ok(cuts.surfaces.check(self.frame.depth())?)
     }

@@ -232,6 +232,19 @@ impl Octree {
         octree
     }
 
+    /// The same tree without the moments of the solid that it may keep ([`OctreeRef::moments`]): [`measure`](crate::measure) looks at
+    /// cells and surfaces; the arrays are shared.
+    #[must_use]
+    pub fn without_moments(&self) -> Octree {
+        let mut octree = self.clone();
+        octree.arrays.with_mut(|view| {
+            if let Some(cuts) = &mut view.cuts {
+                cuts.moments = None;
+            }
+        });
+        octree
+    }
+
     /// Facts about the tree that its file carries along: units, name, source.
     pub fn metadata(&self) -> &Metadata {
         &self.metadata

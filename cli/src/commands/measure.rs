@@ -312,11 +312,14 @@ fn text(
             line("exact", "yes, but for rounding: the mesh is closed, and no triangles intersect".into())
         }
         Some(Some(reason)) => line("exact", format!("no: {reason}")),
+        None if mass.exact => {
+            line("exact", "yes, but for rounding: the file keeps what its mesh knew of itself".into())
+        }
         None => {}
     }
     let ended = match (mass.stop_reason, is_stored) {
         (StopReason::Tolerance, _) => "",
-        _ if inexact == Some(&None) => "",
+        _ if mass.exact => "",
         (StopReason::Budget, _) => ", which were all that may be split",
         (StopReason::Exhausted, true) => ", and the file knows no more",
         (StopReason::Exhausted, false) => ", and there is nothing left to split at this depth",

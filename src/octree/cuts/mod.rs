@@ -7,6 +7,7 @@
 //! - `cell_slab`: slabs that were made for one cell, in whole numbers.
 //! - `figure`: on which side of a surface points lie, by arithmetic in doubles.
 //! - `ids`: the numbers of surfaces.
+//! - `moments`: the moments of the solid.
 //! - `read`: what cuts say, for others.
 //! - `record`: one byte for each PARTIAL cell: a truth table of up to three surfaces, nothing, or a split into eight records.
 //! - `surfaces`: the table of surfaces, in numbers that are exact.
@@ -15,6 +16,7 @@
 mod cell_slab;
 mod figure;
 mod ids;
+mod moments;
 mod read;
 mod record;
 mod surfaces;
@@ -23,6 +25,7 @@ mod writer;
 pub(crate) use cell_slab::{CellSlab, CellSlabGroup, Steps};
 pub(crate) use figure::{Division, Figure, FigureLine};
 pub(crate) use ids::{CellIds, Ids, OwnedIds, bytes, width};
+pub(crate) use moments::StoredMoments;
 pub use read::{CellFunction, StoredSurface};
 pub(crate) use record::Head;
 pub use surfaces::SurfaceKind;
@@ -63,16 +66,27 @@ pub(crate) struct Cuts {
     /// For each element and brick the records before its own; one more is the number of records of the planes.
     pub first: Vec<u32>,
     pub surfaces: Surfaces,
+    /// Of the solid, if they were known. (What changes the solid makes new cuts.)
+    pub moments: Option<StoredMoments>,
 }
 
-/// The cuts of an octree, borrowed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The cuts of an octree, borrowed. They are equal if they say the same of all cells.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct CutsRef<'a> {
     pub heads: &'a [u8],
     pub ids: Ids<'a>,
     pub blocks: &'a [Block],
     pub first: &'a [u32],
     pub surfaces: SurfacesRef<'a>,
+    pub moments: Option<&'a StoredMoments>,
+}
+
+impl PartialEq for CutsRef<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        (self.heads, self.ids, self.first) == (other.heads, other.ids, other.first)
+            && self.blocks == other.blocks
+            && self.surfaces == other.surfaces
+    }
 }
 
 impl Cuts {
@@ -83,6 +97,7 @@ impl Cuts {
             blocks: &self.blocks,
             first: &self.first,
             surfaces: self.surfaces.view(),
+            moments: self.moments.as_ref(),
         }
     }
 }
@@ -103,6 +118,7 @@ impl CutsRef<'_> {
                 groups: memory::copied(self.surfaces.groups)?,
                 universe: self.surfaces.universe,
             },
+            moments: self.moments.copied(),
         })
     }
 }

@@ -251,7 +251,7 @@ impl CutWriter {
         let (starts, used) = names.finish()?;
         let numbers = ids.iter().map(|name| starts[name.group as usize] + name.place);
         let ids = OwnedIds::packed(numbers, used.len())?;
-        Ok(Some((Cuts { heads, ids, blocks, first, surfaces: Surfaces::default() }, used)))
+        Ok(Some((Cuts { heads, ids, blocks, first, surfaces: Surfaces::default(), moments: None }, used)))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, Cube, Frame, valid};
 use crate::memory;
-use crate::octree::cuts::{Cut, Origin};
+use crate::octree::cuts::{Cut, Origin, StoredMoments};
 use crate::octree::view::{element_levels, starts_half_way};
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Tag};
@@ -184,6 +184,9 @@ pub fn build_extended<S: Solid>(
                 Some(layer) => &layers[layer],
             });
             cuts.surfaces = PlacedHalfSpace::write(surfaces, frame)?;
+            if classifier.exterior() == Tag::Empty {
+                cuts.moments = classifier.moments(control)?.as_ref().map(StoredMoments::new);
+            }
         }
         let cuts = cuts.map(|(cuts, _)| cuts);
         job.advance(WHOLE);
@@ -201,9 +204,6 @@ pub fn plain(tree: &Octree, depth: u8, rule: Rule, control: &Control<'_>) -> Res
     let plain = build(tree, &tree.frame().with_depth(depth)?, rule, control)?;
     Ok(plain.with_metadata_from(tree).with_channels_from(tree))
 }
-
-/// How many times thinner than the tolerance slabs are that may become thicker than their surface takes.
-const FINE: f64 = 64.0;
 
 /// What tells the slabs of a build from all others; `None` if the solid cannot be told from others.
 fn origin<S: Solid>(solid: &S, frame: &Frame, options: &SurfaceOptions) -> Option<Origin> {
@@ -374,9 +374,9 @@ impl<C: Classifier> Extended<'_, C> {
     /// Puts the slabs that a cell has alone in whole numbers, where those are about as close. (A cell may have got more of them than its
     /// function needs; a home tells three apart.)
     fn quantise(&self, cell: Cell, own: &mut [PlacedHalfSpace]) {
-        let least = self.tolerance.unwrap_or(0.0) / FINE;
+        let tolerance = self.tolerance.unwrap_or(0.0);
         for (index, slab) in (0..MOST_KEPT as u8).zip(own) {
-            if let Some(quantised) = slab.quantised(&self.frame, cell, index, least) {
+            if let Some(quantised) = slab.quantised(&self.frame, cell, index, tolerance) {
                 *slab = quantised;
             }
         }

@@ -12,16 +12,20 @@ const STEPS: f64 = (Steps::MOST_WIDTH - 2) as f64;
 /// How much thicker a slab may become.
 const THICKER: f64 = 1.4;
 
+/// How many times thinner than the tolerance slabs are that may become thicker by any factor.
+const FINE: f64 = 1024.0;
+
 impl PlacedHalfSpace {
     /// A slab in model space that is used in one cell alone, its `index`-th, in whole numbers: what is proven of points of the cell by
-    /// the result is true. `None` of what is no slab, and where a slab would become thicker by more than two fifths and be thicker
-    /// than `least` (model units): in cells that are large in comparison with its width.
+    /// the result is true. `None` of what is no slab; of what is thicker in the cell than `tolerance` (model units); and where a slab
+    /// would become thicker by more than two fifths and be thicker than a 1024th of that, in cells that are large in comparison with
+    /// its width.
     pub(crate) fn quantised(
         &self,
         frame: &Frame,
         cell: Cell,
         index: u8,
-        least: f64,
+        tolerance: f64,
     ) -> Option<PlacedHalfSpace> {
         let &Surface::Slab(ThickPlane { normal, inner, outer, .. }) = &*self.half_space.0 else {
             return None;
@@ -57,7 +61,11 @@ impl PlacedHalfSpace {
             // (A power of two: exact.)
             sum.plus(Interval::exactly(off.upper.max(-off.lower) * half))
         });
-        let (low, high) = (inner.minus(turned).lower, outer.plus(turned).upper);
+        // What lies beyond the cell's corners does not matter.
+        let reach = rounded.iter().map(|c| c.abs()).sum::<f64>() * half;
+        let in_cell = |offset: f64| offset.clamp(-reach, reach);
+        let before = in_cell(outer.upper) - in_cell(inner.lower);
+        let (low, high) = (in_cell(inner.minus(turned).lower), in_cell(outer.plus(turned).upper));
 
         let wanted =
             f64::max((high - low) / STEPS, low.abs().max(high.abs()) / f64::from(Steps::MOST_OFFSET));
@@ -66,8 +74,8 @@ impl PlacedHalfSpace {
         let size = 1.0 / (1u64 << step) as f64;
         let (first, last) = (libm::floor(low / size), libm::ceil(high / size));
         let width = last - first;
-        let before = outer.upper - inner.lower;
-        let is_thin = width * size <= f64::max(THICKER * before, least / frame.edge());
+        let most = tolerance / frame.edge();
+        let is_thin = before <= most && width * size <= f64::max(THICKER * before, most / FINE);
         let fits = width <= f64::from(Steps::MOST_WIDTH) && first.abs() <= f64::from(Steps::MOST_OFFSET);
         // (What is no number is not less.)
         if !(is_thin && fits) {

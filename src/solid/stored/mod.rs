@@ -179,13 +179,15 @@ impl<T: Tree> Classifier for StoredOnFrame<T> {
     }
 
     fn answer_whole(&self, question: WholeQuestion<'_>, _: &Control<'_>) -> Result<(), Error> {
-        if let WholeQuestion::Surfaces(known) | WholeQuestion::Layers(known) = question {
-            match &self.cuts {
+        match question {
+            WholeQuestion::Surfaces(known) | WholeQuestion::Layers(known) => match &self.cuts {
                 Some(cuts) => *known = Some(memory::collected(cuts.surfaces().iter().cloned())?),
                 // No cell is crossed by any.
                 None if self.tree.tree().is_binary() => *known = Some(Vec::new()),
                 None => {}
-            }
+            },
+            WholeQuestion::Moments(known) => *known = self.tree.tree().moments(),
+            _ => {}
         }
         Ok(())
     }
