@@ -207,7 +207,7 @@ fn main() {
         eprintln!("SKIPPED: LEAFLESS_MODELS is not set");
         return;
     };
-    for name in ["bunny-closed.stl", "featuretype.STL"] {
+    for name in ["bunny-closed.stl", "featuretype.STL", "stanford-bunny.obj"] {
         let bytes = std::fs::read(Path::new(&folder).join(name)).expect(name);
         let file = exchange::read_mesh(&bytes, &exchange::MeshOptions::default()).expect("a mesh");
         let mesh = (0..times).fold(file.mesh.sewn().expect("a mesh"), |mesh, _| finer(&mesh));

@@ -42,6 +42,11 @@ impl Loops {
         self.vertices.len() - 2 * self.ends.len()
     }
 
+    /// How many edges they have together.
+    pub(crate) fn edges(&self) -> usize {
+        self.vertices.len()
+    }
+
     pub(crate) fn iter(&self) -> impl Iterator<Item = &[u32]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, &end)| &self.vertices[start..end])

@@ -58,6 +58,30 @@ impl FillRule {
             FillRule::Positive => winding > 0,
         }
     }
+
+    /// By how much a winding number that is no integer exceeds what the rule asks for.
+    #[inline(always)]
+    pub(crate) fn excess(self, winding: f64) -> f64 {
+        match self {
+            FillRule::Positive => winding - 0.5,
+            FillRule::NonZero | FillRule::EvenOdd => winding.abs() - 0.5,
+        }
+    }
+
+    /// Whether points are enclosed whose winding number lies between two numbers; nothing if it may be one that parts those that
+    /// are enclosed from those that are not.
+    pub(crate) fn encloses_all(self, low: f64, high: f64) -> Option<bool> {
+        let (one, other) = (self.excess(low), self.excess(high));
+        // Around zero the ends are the farthest from it.
+        let is_through = self != FillRule::Positive && low < 0.0 && high > 0.0;
+        if one > 0.0 && other > 0.0 && !is_through {
+            Some(true)
+        } else if one < 0.0 && other < 0.0 {
+            Some(false)
+        } else {
+            None
+        }
+    }
 }
 
 /// A surface of triangles with shared vertices.

@@ -11,6 +11,7 @@ mod descended;
 mod direct;
 mod direct_awkward;
 mod direct_heavy;
+mod direct_open;
 mod enclosure;
 mod layers;
 mod moments;

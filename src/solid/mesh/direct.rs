@@ -9,12 +9,15 @@
 //! surface, its points belong to the solid if points on any side do: it is shifted into all octants. Where all of these run
 //! outside, next to a sharp corner, nothing is told.
 //!
-//! Rays and distances are those of closed meshes: an open one bounds the solid beside its triangles, too. Of a point of an open
-//! mesh the triangles on the way to infinity count what the surface and cones over the rim of its holes, from the other end of
-//! that way, wind around it, and the cones' own winding number is taken off (`rim`).
+//! Of a point of an open mesh the triangles on the way to infinity count what the surface and cones over the rim of its holes, from the
+//! other end of that way, wind around it, and the cones' own winding number is taken off (`rim`). An open mesh bounds the solid beside
+//! its triangles, too, where its winding number is one half. A ball and a box without triangles in which the number cannot change by
+//! enough hold none of that boundary. (Rays of open meshes: `open_trace`.)
 
-use super::rim::{DIRECTIONS, Rim};
+use super::rim::{DIRECTIONS, Fraction, Rim};
+use super::rim_line::RimLine;
 use crate::error::Error;
+use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Interval, Ray, axes, valid};
 use crate::memory;
 use crate::mesh::{FillRule, Hit, Loops, NearestPoint, Shift, Sides, TriangleMesh, TriangleTree, Wanted};
@@ -26,9 +29,42 @@ use glam::DVec3;
 #[derive(Default)]
 pub(super) struct Direct {
     /// Triangles that are passed through.
-    hits: Vec<Hit>,
+    pub(super) hits: Vec<Hit>,
     /// Triangles that are touched.
-    touched: Vec<Hit>,
+    pub(super) touched: Vec<Hit>,
+    /// The rim of an open mesh as a ray sees it.
+    pub(super) line: RimLine,
+}
+
+impl Direct {
+    /// Takes the triangles that are only touched out of those that were hit, and orders both by time.
+    pub(super) fn arrange(&mut self) -> Result<(), Error> {
+        let Direct { hits, touched, .. } = self;
+        touched.clear();
+        for hit in hits.iter().filter(|hit| hit.step == 0) {
+            memory::push(touched, *hit)?;
+        }
+        hits.retain(|hit| hit.step != 0);
+        for list in [hits, touched] {
+            list.sort_unstable_by(|a, b| {
+                let by_time = a.t.lower.total_cmp(&b.t.lower).then(a.t.upper.total_cmp(&b.t.upper));
+                by_time.then(a.triangle.cmp(&b.triangle))
+            });
+        }
+        Ok(())
+    }
+}
+
+/// How many of some triangles that were hit, which are in order, are passed at the same time as the first one, as far as rounding
+/// tells, and until when.
+pub(super) fn together(hits: &[Hit]) -> (usize, f64) {
+    let mut until = hits.first().map_or(0.0, |hit| hit.t.upper);
+    let met = hits.iter().take_while(|hit| {
+        let meets = hit.t.lower <= until;
+        until = if meets { until.max(hit.t.upper) } else { until };
+        meets
+    });
+    (met.count(), until)
 }
 
 /// A mesh with the tree of its triangles.
@@ -36,6 +72,8 @@ pub(super) struct Direct {
 pub(super) struct Tracer<'m> {
     pub(super) tree: TriangleTree<'m>,
     pub(super) fill: FillRule,
+    /// Of an open mesh.
+    pub(super) rim: Option<&'m Rim>,
 }
 
 /// The rim of an open mesh in model units; a displacement counts as the error of its vertices.
@@ -91,33 +129,17 @@ impl Tracer<'_> {
         is_first_enough: bool,
         trace: &mut RayTrace,
     ) -> Result<bool, Error> {
-        let Direct { hits, touched } = direct;
-        touched.clear();
-        for hit in hits.iter().filter(|hit| hit.step == 0) {
-            memory::push(touched, *hit)?;
-        }
-        hits.retain(|hit| hit.step != 0);
-        for list in [&mut *hits, &mut *touched] {
-            list.sort_unstable_by(|a, b| {
-                let by_time = a.t.lower.total_cmp(&b.t.lower).then(a.t.upper.total_cmp(&b.t.upper));
-                by_time.then(a.triangle.cmp(&b.triangle))
-            });
-        }
+        direct.arrange()?;
+        let Direct { hits, touched, .. } = direct;
         let steps = |hits: &[Hit]| hits.iter().map(|hit| hit.step).sum::<i32>();
         let mut winding = if is_first_enough { 0 } else { -steps(hits) };
         trace.begins_inside = self.fill.encloses(winding);
         // (What begins on the surface touches it at 0.)
         let (mut from, mut rest) = (-1.0, &hits[..]);
         let mut touched = Touched { hits: touched, tree: &self.tree };
-        while let Some((first, more)) = rest.split_first() {
-            // Those that are passed at the same time, as far as rounding tells.
-            let mut until = first.t.upper;
-            let count = more.iter().take_while(|hit| {
-                let meets = hit.t.lower <= until;
-                until = if meets { until.max(hit.t.upper) } else { until };
-                meets
-            });
-            let (together, behind) = rest.split_at(1 + count.count());
+        while let Some(first) = rest.first() {
+            let (count, until) = together(rest);
+            let (together, behind) = rest.split_at(count);
             rest = behind;
             // Whatever their order is, the winding number does not leave this range.
             let falls = together.iter().map(|hit| hit.step.min(0)).sum::<i32>();
@@ -159,7 +181,7 @@ impl Tracer<'_> {
     }
 
     /// The first of some triangles at which the fill rule's answer changes, if they are passed in their order.
-    fn crossed(&self, together: &[Hit], mut winding: i32) -> Hit {
+    pub(super) fn crossed(&self, together: &[Hit], mut winding: i32) -> Hit {
         let before = self.fill.encloses(winding);
         let found = together.iter().find(|hit| {
             winding += hit.step;
@@ -182,7 +204,15 @@ impl Tracer<'_> {
     }
 
     /// Whether the solid holds a point; nothing of a point on the surface of the mesh, or nearer to it than is known.
+    #[inline]
     pub(super) fn is_inside(&self, direct: &mut Direct, point: &[f64; 3]) -> Result<Option<bool>, Error> {
+        match self.rim {
+            None => self.is_inside_closed(direct, point),
+            Some(rim) => self.is_inside_open(direct, rim, point),
+        }
+    }
+
+    fn is_inside_closed(&self, direct: &mut Direct, point: &[f64; 3]) -> Result<Option<bool>, Error> {
         if !point.iter().all(|c| c.is_finite()) {
             return Ok(None);
         }
@@ -193,7 +223,7 @@ impl Tracer<'_> {
             let apart = 1e-76 + 2.0 * self.tree.displacement();
             let near = self.tree.nearest_of(&at, |_| true);
             let is_apart = near.is_some_and(|(_, distance)| distance.lower > apart);
-            return if is_apart { self.is_inside(direct, &at) } else { Ok(None) };
+            return if is_apart { self.is_inside_closed(direct, &at) } else { Ok(None) };
         }
         let shortest = Ray::along_axis(*point, axis, sign);
         let found = self.is_inside_by(direct, &shortest)?;
@@ -239,6 +269,12 @@ impl Tracer<'_> {
         });
         let Bounds { min, max } = bounds;
         let centre = axes(|axis| 0.5 * min[axis] + 0.5 * max[axis]);
+        if count == 0
+            && let Some(rim) = self.rim
+            && let Some(is_inside) = self.side_of_box(direct, rim, bounds, &mut 64)?
+        {
+            return Ok(Some(if is_inside { BoxContent::Full } else { BoxContent::Empty }));
+        }
         let mut found = [false; 2];
         let mut look_at = |direct: &mut Direct, point: &[f64; 3]| -> Result<bool, Error> {
             if let Some(inside) = self.is_inside(direct, point)? {
@@ -249,7 +285,7 @@ impl Tracer<'_> {
         if look_at(direct, &centre)? {
             return Ok(Some(BoxContent::Both));
         }
-        if count > 0 {
+        if count > 0 || self.rim.is_some() {
             // Next to a corner that lies on no triangle the box is on the corner's side.
             for k in 0..8 {
                 let corner = axes(|axis| if k >> axis & 1 != 0 { max[axis] } else { min[axis] });
@@ -283,12 +319,23 @@ impl Tracer<'_> {
     }
 
     /// Whether the solid of an open mesh holds a point; nothing where its winding number may be one half, or jumps.
-    pub(super) fn is_inside_open(
+    fn is_inside_open(
         &self,
         direct: &mut Direct,
         rim: &Rim,
         point: &[f64; 3],
     ) -> Result<Option<bool>, Error> {
+        Ok(self.winding(direct, rim, point)?.and_then(|winding| self.encloses_around(winding, 0.0)))
+    }
+
+    /// Whether the fill rule encloses all points whose winding number differs by no more than `change` from one that is known.
+    fn encloses_around(&self, winding: Fraction, change: f64) -> Option<bool> {
+        let wide = winding.error + 1e-12 + change;
+        self.fill.encloses_all(winding.value - wide, winding.value + wide)
+    }
+
+    /// The winding number of an open mesh at a point; nothing where it jumps.
+    fn winding(&self, direct: &mut Direct, rim: &Rim, point: &[f64; 3]) -> Result<Option<Fraction>, Error> {
         if !point.iter().all(|&c| valid::is_moderate(c)) {
             return Ok(None);
         }
@@ -302,14 +349,79 @@ impl Tracer<'_> {
                 return Ok(None);
             }
             let Some(cones) = rim.of_cones(DVec3::from(*point), towards) else { continue };
-            let winding = -f64::from(hits.iter().map(|hit| hit.step).sum::<i32>()) - cones.value;
-            let excess = match self.fill {
-                FillRule::Positive => winding - 0.5,
-                FillRule::NonZero | FillRule::EvenOdd => winding.abs() - 0.5,
-            };
-            return Ok((excess.abs() > cones.error + 1e-12).then_some(excess > 0.0));
+            let steps = hits.iter().map(|hit| hit.step).sum::<i32>();
+            return Ok(Some(Fraction { value: -f64::from(steps) - cones.value, error: cones.error }));
         }
         Ok(None)
+    }
+
+    /// On which side a box lies that no triangle meets: what is told of its middle, and of its parts.
+    fn side_of_box(
+        &self,
+        direct: &mut Direct,
+        rim: &Rim,
+        bounds: &Bounds,
+        parts: &mut usize,
+    ) -> Result<Option<bool>, Error> {
+        let Bounds { min, max } = *bounds;
+        let centre = axes(|axis| 0.5 * min[axis] + 0.5 * max[axis]);
+        let half = axes(|axis| (max[axis] - centre[axis]).max(centre[axis] - min[axis]));
+        let radius = (1.0 + 1e-12) * sqrt(half.iter().map(|c| c * c).sum());
+        let Some(winding) = self.winding(direct, rim, &centre)? else { return Ok(None) };
+        // (If not even that of the middle is told, nor is that of the box.)
+        if self.encloses_around(winding, 0.0).is_none() {
+            return Ok(None);
+        }
+        let side = self.encloses_around(winding, rim.change_within(centre, radius));
+        if side.is_some() || *parts == 0 {
+            return Ok(side);
+        }
+        *parts -= 1;
+        let axis = (0..3).fold(0, |most, axis| if half[axis] > half[most] { axis } else { most });
+        let (mut lower, mut upper) = (*bounds, *bounds);
+        (lower.max[axis], upper.min[axis]) = (centre[axis], centre[axis]);
+        let Some(side) = self.side_of_box(direct, rim, &lower, parts)? else { return Ok(None) };
+        Ok(self.side_of_box(direct, rim, &upper, parts)?.filter(|&other| other == side))
+    }
+
+    /// The nearest point of the boundary of an open mesh: that of its triangles, if the winding number is nowhere one half in the ball that they
+    /// leave free. Nothing if that is not proven, or there may be no boundary at the nearest triangle.
+    pub(super) fn nearest_open(
+        &self,
+        direct: &mut Direct,
+        rim: &Rim,
+        point: &[f64; 3],
+    ) -> Result<Option<NearestSurface>, Error> {
+        let Some((near, distance)) = self.tree.nearest_of(point, |_| true) else { return Ok(None) };
+        let lower = distance.lower;
+        let Some(winding) = self.winding(direct, rim, point)? else { return Ok(None) };
+        let Some(is_inside) = self.encloses_around(winding, rim.change_within(*point, lower)) else {
+            return Ok(None);
+        };
+        Ok(match self.across(direct, point, Some(is_inside), &near)? {
+            Some(most) if most >= lower => {
+                Some(self.surface_at(&near, Interval::between(lower, most), Some(is_inside)))
+            }
+            _ => None,
+        })
+    }
+
+    /// What is told of a nearest point at a distance.
+    fn surface_at(
+        &self,
+        near: &NearestPoint,
+        mut distance: Interval,
+        is_inside: Option<bool>,
+    ) -> NearestSurface {
+        let displacement = self.tree.displacement();
+        if displacement > 0.0 {
+            // Along each axis the surface may lie that far from the mesh.
+            let moved = Interval::exactly(3.0).root().times(Interval::exactly(displacement)).upper;
+            distance = distance.plus(Interval::between(-moved, moved)).not_negative();
+        }
+        let is_inside = is_inside.filter(|_| distance.lower > 0.0);
+        let surface = Some(near.triangle);
+        NearestSurface { distance, is_inside, point: self.tree.point_of(near), surface }
     }
 
     /// The nearest point of the boundary. Nothing if it is not found out whether the nearest triangle belongs to it.
@@ -319,7 +431,7 @@ impl Tracer<'_> {
         sides: &Sides,
         point: &[f64; 3],
     ) -> Result<Option<NearestSurface>, Error> {
-        let (tree, displacement) = (&self.tree, self.tree.displacement());
+        let tree = &self.tree;
         let may_bound = |triangle: u32| !sides.is_flat(triangle) && sides.of(triangle) != Some(0);
         let Some((mut near, mut distance)) = tree.nearest_of(point, may_bound) else { return Ok(None) };
         let is_inside = self.is_inside(direct, point)?;
@@ -336,14 +448,7 @@ impl Tracer<'_> {
                 _ => return Ok(None),
             }
         }
-        let found = tree.point_of(&near);
-        if displacement > 0.0 {
-            // Along each axis the surface may lie that far from the mesh.
-            let moved = Interval::exactly(3.0).root().times(Interval::exactly(displacement)).upper;
-            distance = distance.plus(Interval::between(-moved, moved)).not_negative();
-        }
-        let is_inside = is_inside.filter(|_| distance.lower > 0.0);
-        Ok(Some(NearestSurface { distance, is_inside, point: found, surface: Some(near.triangle) }))
+        Ok(Some(self.surface_at(&near, distance, is_inside)))
     }
 
     /// Of the triangles that are as near as the first one: the first that bounds the solid all over, or next to which points on
@@ -429,15 +534,15 @@ impl Tracer<'_> {
 }
 
 /// Triangles that are touched, in the order of time.
-struct Touched<'t> {
-    hits: &'t [Hit],
-    tree: &'t TriangleTree<'t>,
+pub(super) struct Touched<'t> {
+    pub(super) hits: &'t [Hit],
+    pub(super) tree: &'t TriangleTree<'t>,
 }
 
 impl Touched<'_> {
     /// The time of a crossing with those that may be at the same time, as the triangle on the other side of an edge. Where the ray
     /// runs in a triangle's plane for longer, that is for itself.
-    fn joined(&self, crossing: Interval) -> Interval {
+    pub(super) fn joined(&self, crossing: Interval) -> Interval {
         let longest = 16.0 * crossing.width() + 1e-14 * crossing.upper;
         let met = self.hits.iter().take_while(|hit| hit.t.lower <= crossing.upper);
         let met = met.filter(|hit| hit.t.upper >= crossing.lower && hit.t.width() <= longest);
@@ -445,7 +550,7 @@ impl Touched<'_> {
     }
 
     /// Adds those between two times, during which the ray is outside.
-    fn note(&mut self, from: f64, to: f64, trace: &mut RayTrace) -> Result<(), Error> {
+    pub(super) fn note(&mut self, from: f64, to: f64, trace: &mut RayTrace) -> Result<(), Error> {
         let mut end = from;
         for hit in self.hits.iter().take_while(|hit| hit.t.lower < to) {
             let (lower, upper) = (hit.t.lower.max(end), hit.t.upper.min(to));

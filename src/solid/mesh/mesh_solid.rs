@@ -143,10 +143,16 @@ impl MeshSolid {
         self.boundary.moments.get_or_try_init(find).copied()
     }
 
-    /// What answers without cells: of a mesh whose triangles have a tree.
+    /// What answers without cells: of a mesh whose triangles have a tree, and whose rim is known if it is open.
     #[inline]
     fn tracer(&self) -> Option<Tracer<'_>> {
-        Some(Tracer { tree: self.mesh.known_triangle_tree()?, fill: self.fill })
+        let rim = if self.is_closed() { None } else { Some(self.boundary.rim.get()?) };
+        Some(Tracer { tree: self.mesh.known_triangle_tree()?, fill: self.fill, rim })
+    }
+
+    /// Whether the rim is short enough that rays, boxes and distances are worth a look at all of it.
+    fn is_traced(&self) -> bool {
+        self.boundary.loops.edges() <= MOST_EDGES
     }
 
     fn is_closed(&self) -> bool {
@@ -209,6 +215,9 @@ impl MeshOnFrame {
         }
     }
 }
+
+/// Edges of a rim that are looked at for every ray, box or distance at the most: with more of them cells are no slower.
+const MOST_EDGES: usize = 1 << 14;
 
 /// How many triangles are looked at together.
 const BATCH: usize = 64;
@@ -385,7 +394,7 @@ impl Classifier for MeshClassifier {
                 if loops.caps() == 0 {
                     solid.mesh.triangle_tree(control)?;
                     *is_direct = kind != Direct::Distances || solid.sides(control)?.is_some();
-                } else if kind == Direct::Points {
+                } else if kind == Direct::Points || solid.is_traced() {
                     solid.mesh.triangle_tree(control)?;
                     rim.get_or_try_init(|| direct::rim(&solid.mesh, loops).map(Box::new))?;
                     *is_direct = true;
@@ -560,21 +569,26 @@ impl Worker for MeshWorker {
             Question::Chords(chords) => *chords.found = self.find_chords(cell, part, chords.beam)?,
             Question::Surfaces(_) => {}
             Question::Layers(question) => self.find_layers(cell, part, question)?,
-            Question::Ray(ray) => {
-                if let Some(tracer) = self.solid.tracer().filter(|_| self.solid.is_closed()) {
-                    tracer.trace(&mut self.direct, ray)?;
+            Question::Ray(ray) => match self.solid.tracer() {
+                Some(tracer @ Tracer { rim: None, .. }) => tracer.trace(&mut self.direct, ray)?,
+                Some(tracer @ Tracer { rim: Some(rim), .. }) if self.solid.is_traced() => {
+                    tracer.trace_open(&mut self.direct, rim, ray)?;
                 }
-            }
+                _ => {}
+            },
             Question::Box(bounds, known) => {
-                if let Some(tracer) = self.solid.tracer().filter(|_| self.solid.is_closed()) {
+                if let Some(tracer) = self.solid.tracer().filter(|_| self.solid.is_traced()) {
                     *known = tracer.content_of(&mut self.direct, bounds)?;
                 }
             }
             Question::Nearest(point, known) => {
-                if let (Some(tracer), Some(Some(sides))) =
-                    (self.solid.tracer(), self.solid.boundary.sides.get())
-                {
-                    *known = tracer.nearest(&mut self.direct, sides, &point)?;
+                let Some(tracer) = self.solid.tracer().filter(|_| self.solid.is_traced()) else {
+                    return Ok(());
+                };
+                match (tracer.rim, self.solid.boundary.sides.get()) {
+                    (Some(rim), _) => *known = tracer.nearest_open(&mut self.direct, rim, &point)?,
+                    (None, Some(Some(sides))) => *known = tracer.nearest(&mut self.direct, sides, &point)?,
+                    _ => {}
                 }
             }
         }
@@ -608,13 +622,8 @@ impl Batch for MeshWorker {
     /// Once [`WholeQuestion::Direct`] was asked. A point on the surface gets no answer.
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
         let Some(tracer) = self.solid.tracer() else { return Ok(()) };
-        let rim = if self.solid.is_closed() { None } else { Some(self.solid.boundary.rim.get()) };
         for (point, answer) in points.iter().zip(answers) {
-            *answer = match rim {
-                None => tracer.is_inside(&mut self.direct, point)?,
-                Some(Some(rim)) => tracer.is_inside_open(&mut self.direct, rim, point)?,
-                Some(None) => None,
-            };
+            *answer = tracer.is_inside(&mut self.direct, point)?;
         }
         Ok(())
     }

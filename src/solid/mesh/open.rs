@@ -234,10 +234,7 @@ impl MeshOnFrame {
 
     /// By how much a winding number exceeds what the fill rule asks for.
     pub(super) fn excess(&self, winding: f64) -> f64 {
-        match self.fill {
-            FillRule::Positive => winding - 0.5,
-            FillRule::NonZero | FillRule::EvenOdd => winding.abs() - 0.5,
-        }
+        self.fill.excess(winding)
     }
 
     /// The caps' winding number over a cell, continued from its lowest centre through caps.

@@ -29,6 +29,15 @@ pub(super) struct Rim {
     pub(super) vertex_error: f64,
 }
 
+/// The distance of a point from an edge, both ends of which are seen from there.
+#[inline(always)]
+fn distance([from, to]: [DVec3; 2]) -> f64 {
+    let edge = to - from;
+    let along = -from.dot(edge) / edge.length_squared();
+    let along = if along.is_nan() { 0.0 } else { along.clamp(0.0, 1.0) };
+    sqrt((from + along * edge).length_squared())
+}
+
 /// A winding number but for an integer, and a bound of its error.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fraction {
@@ -136,15 +145,51 @@ impl Rim {
         let point = DVec3::from(point);
         let (mut least, mut most) = (f64::INFINITY, 0.0);
         for &[from, to] in &self.edges {
-            let (edge, back) = (to - from, point - from);
-            let along = back.dot(edge) / edge.length_squared();
-            let along = if along.is_nan() { 0.0 } else { along.clamp(0.0, 1.0) };
-            let distance = sqrt((back - along * edge).length_squared());
+            let distance = distance([from - point, to - point]);
             least = distance.min(least);
             // ∫ ds / distance², at half the distance, is at most that of the edge's whole line.
             let inverse = 2.0 / distance;
-            most += (sqrt(edge.length_squared()) * inverse).min(PI) * inverse;
+            most += (sqrt((to - from).length_squared()) * inverse).min(PI) * inverse;
         }
         Slope { distance: least, most: most / (4.0 * PI) }
+    }
+
+    /// By how much the caps' winding number may differ from that at a point within `radius` of it, caps not counted: infinitely
+    /// much if the rim may be as near. O(n) in the edges.
+    pub(super) fn change_within(&self, point: [f64; 3], radius: f64) -> f64 {
+        /// Outweighs what is rounded here.
+        const SLACK: f64 = 1.0 + 1e-9;
+        let point = DVec3::from(point);
+        let reach = radius * SLACK + 2.0 * self.vertex_error;
+        let mut most = 0.0;
+        for &[from, to] in &self.edges {
+            let ends = [from - point, to - point];
+            let nearest = distance(ends) - reach - 1e-12 * (ends[0].abs() + ends[1].abs()).element_sum();
+            if nearest <= 0.0 {
+                return f64::INFINITY;
+            }
+            // ∫ ds / distance² along the edge.
+            let length = sqrt((to - from).length_squared()) + 4.0 * self.vertex_error;
+            most += (length / nearest).min(PI) / nearest;
+        }
+        let most = most * radius * SLACK / (4.0 * PI);
+        if most.is_nan() { f64::INFINITY } else { most }
+    }
+
+    /// The gradient of the caps' winding number, but for rounding: the magnetic field of a current along the rim. O(n) in the edges.
+    pub(super) fn gradient(&self, point: [f64; 3]) -> DVec3 {
+        let point = DVec3::from(point);
+        let mut sum = DVec3::ZERO;
+        for &[from, to] in &self.edges {
+            let (a, b) = (from - point, to - point);
+            let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
+            sum += a.cross(b) * ((1.0 / far + 1.0 / farther) / (far * farther + a.dot(b)));
+        }
+        sum / (4.0 * PI)
+    }
+
+    /// The edges, each from its beginning to its end.
+    pub(super) fn edges(&self) -> &[[DVec3; 2]] {
+        &self.edges
     }
 }

@@ -1,0 +1,387 @@
+//! Rays of open meshes, without a descent through cells.
+//!
+//! An open mesh bounds the solid where its triangles do, and where its winding number is one half. Triangles ahead of a point of the ray count
+//! what the surface and cones over the rim wind around it, and the cones' own number (`rim_line`) is taken off. Where that is less than
+//! one half in magnitude all along the ray, the ray is that of a closed mesh. Else the number is bounded from triangle to triangle: by the
+//! sums at both ends, by its change around the middle (an interval's Newton step), and by halves.
+
+use super::direct::{Direct, Touched, Tracer, together};
+use super::rim::Rim;
+use super::rim_line::{RimLine, Sums};
+use crate::error::Error;
+use crate::lattice::{Interval, Ray, axes};
+use crate::mesh::{FillRule, Hit, Shift, Wanted};
+use crate::solid::{RayCrossing, RayQuestion, RayTrace};
+
+/// How often the rim is looked at for a ray.
+const MOST_LOOKS: usize = 256;
+
+/// A stretch of which so small a part of the rim's distance is left is not divided further.
+const SHORTEST: f64 = 1.0 / (1 << 20) as f64;
+
+impl Tracer<'_> {
+    /// Where a ray goes in and out of the solid of an open mesh. Nothing is told if it comes very near to the rim, or if the winding number
+    /// is not told after many looks.
+    pub(super) fn trace_open(
+        &self,
+        direct: &mut Direct,
+        rim: &Rim,
+        question: RayQuestion<'_>,
+    ) -> Result<(), Error> {
+        let RayQuestion { ray, is_first_enough, trace } = question;
+        trace.clear();
+        if !direct.line.look(rim, ray)? {
+            return Ok(());
+        }
+        // Of a ray from outside the winding number is zero long before, and does not change until the mesh.
+        let begin = if self.tree.way_out(&ray.from).is_none() { f64::NEG_INFINITY } else { 0.0 };
+        let all = direct.line.sums(begin);
+        if all.left.max(-all.right) + all.error < 0.5 {
+            return self.trace(direct, RayQuestion { ray, is_first_enough, trace });
+        }
+        if !self.tree.pierced(ray, Wanted::All, Shift::ALL[0], &mut direct.hits)? {
+            return Ok(());
+        }
+        let follow = |direct: &mut Direct, is_first_enough: bool, trace: &mut RayTrace| {
+            direct.arrange()?;
+            let Direct { hits, touched, line } = direct;
+            let touched = Touched { hits: touched, tree: &self.tree };
+            let mut course = Course {
+                tracer: self,
+                rim,
+                line,
+                ray,
+                is_first_enough,
+                looks: 0,
+                found: Found { trace, touched, before: None, since: -1.0, open: None },
+            };
+            let is_known = course.follow(hits)?;
+            if !is_known {
+                trace.clear();
+            }
+            Ok::<bool, Error>(is_known)
+        };
+        if !follow(direct, is_first_enough, trace)? || !trace.has_touches() {
+            return Ok(());
+        }
+        // As of closed meshes: what it only touches may be inside on another side.
+        if trace.until < f64::INFINITY {
+            trace.clear();
+            if !follow(direct, false, trace)? {
+                return Ok(());
+            }
+        }
+        for shift in &Shift::ALL[1..] {
+            if !trace.has_touches() {
+                break;
+            }
+            self.tree.pierced(ray, Wanted::All, *shift, &mut direct.hits)?;
+            let mut other = RayTrace::UNKNOWN;
+            if !follow(direct, false, &mut other)? {
+                break;
+            }
+            *trace = trace.united(&other)?;
+        }
+        Ok(())
+    }
+}
+
+/// What was found of a ray so far.
+struct Found<'t> {
+    trace: &'t mut RayTrace,
+    touched: Touched<'t>,
+    /// Whether it was inside when that was known last.
+    before: Option<bool>,
+    /// Since when it has been known to be inside, or outside.
+    since: f64,
+    /// A time during which it may be either.
+    open: Option<RayCrossing>,
+}
+
+impl Found<'_> {
+    /// The ray is on one side from a time on.
+    fn known(&mut self, from: f64, is_inside: bool) -> Result<(), Error> {
+        if self.open.is_none() {
+            match self.before {
+                Some(before) if before == is_inside => return Ok(()),
+                Some(_) => self.unknown(RayCrossing {
+                    t: Interval::exactly(from),
+                    is_inside_after: false,
+                    is_met: false,
+                    normal: [0.0; 3],
+                    surface: None,
+                })?,
+                None => {
+                    (self.trace.begins_inside, self.before) = (is_inside, Some(is_inside));
+                    return Ok(());
+                }
+            }
+        }
+        let Some(mut open) = self.open.take() else { return Ok(()) };
+        open.is_met |= is_inside || self.before == Some(true);
+        open.is_inside_after = is_inside;
+        self.trace.push(open)?;
+        (self.before, self.since) = (Some(is_inside), from.max(open.t.upper));
+        Ok(())
+    }
+
+    /// The ray may be on either side during the time of a crossing.
+    fn unknown(&mut self, crossing: RayCrossing) -> Result<(), Error> {
+        let t = Interval::between(crossing.t.lower.max(0.0), crossing.t.upper.max(0.0));
+        match &mut self.open {
+            Some(open) => {
+                let (t, is_met) = (open.t.joined(t), open.is_met || crossing.is_met);
+                // What it began with may only be a touch, unless the ray came from inside.
+                let kept = if self.before == Some(true) { *open } else { crossing };
+                *open = RayCrossing { t, is_met, ..kept };
+            }
+            none => {
+                if self.before == Some(false) {
+                    self.touched.note(self.since, t.lower, self.trace)?;
+                }
+                *none = Some(RayCrossing { t, ..crossing });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A ray on its way, from triangle to triangle.
+struct Course<'c> {
+    tracer: &'c Tracer<'c>,
+    rim: &'c Rim,
+    line: &'c RimLine,
+    ray: &'c Ray,
+    is_first_enough: bool,
+    looks: usize,
+    found: Found<'c>,
+}
+
+/// What to do after a stretch.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Next {
+    GoOn,
+    /// Enough is known.
+    Enough,
+    /// It took too many looks.
+    GiveUp,
+}
+
+impl Course<'_> {
+    /// Follows the winding number along triangles that are passed, in order. `false` if it cannot tell.
+    fn follow(&mut self, hits: &[Hit]) -> Result<bool, Error> {
+        let mut winding = -hits.iter().map(|hit| hit.step).sum::<i32>();
+        let (mut now, mut rest) = (self.look(0.0), hits);
+        loop {
+            let next = match rest.first() {
+                Some(hit) => self.look(hit.t.lower.max(now.at)),
+                None => Sums::END,
+            };
+            // (No time passes before a triangle on which the ray begins. What it is off the triangle it is there.)
+            match self.stretch(winding, &now, &next)? {
+                Next::GoOn => {}
+                Next::Enough => return Ok(true),
+                Next::GiveUp => return Ok(false),
+            }
+            if rest.is_empty() {
+                break;
+            }
+            let (count, until) = together(rest);
+            let (met, behind) = rest.split_at(count);
+            rest = behind;
+            now = if until > next.at { self.look(until) } else { next };
+            self.pass(winding, met, &next, &now)?;
+            winding += met.iter().map(|hit| hit.step).sum::<i32>();
+        }
+        let Found { trace, touched, before, since, open } = &mut self.found;
+        if open.is_some() {
+            return Ok(false);
+        }
+        if *before == Some(false) {
+            touched.note(*since, f64::INFINITY, trace)?;
+        }
+        trace.until = f64::INFINITY;
+        Ok(true)
+    }
+
+    fn look(&mut self, at: f64) -> Sums {
+        self.looks += 1;
+        self.line.sums(at)
+    }
+
+    /// On which side the ray is between two times, with no triangle between them, or some that add so much; nothing if that
+    /// is not sure.
+    fn side(&self, winding: i32, [falls, rises]: [i32; 2], from: &Sums, to: &Sums) -> Option<bool> {
+        let [least, most] = from.until(to);
+        let (low, high) = (f64::from(winding + falls) - most, f64::from(winding + rises) - least);
+        self.tracer.fill.encloses_all(low, high)
+    }
+
+    /// Passes triangles, all at the same time as far as rounding tells.
+    fn pass(&mut self, winding: i32, met: &[Hit], from: &Sums, to: &Sums) -> Result<(), Error> {
+        let falls = met.iter().map(|hit| hit.step.min(0)).sum::<i32>();
+        let rises = met.iter().map(|hit| hit.step.max(0)).sum::<i32>();
+        if let Some(is_inside) = self.side(winding, [falls, rises], from, to) {
+            return self.found.known(from.at, is_inside);
+        }
+        let fill = self.tracer.fill;
+        let holds = |winding: i32| fill.excess(f64::from(winding) - from.value()) > 0.0;
+        let before = holds(winding);
+        let mut after = winding;
+        let first = met.iter().find(|hit| {
+            after += hit.step;
+            holds(after) != before
+        });
+        let first = first.unwrap_or(&met[0]);
+        let normal = self.tracer.tree.normal(first.triangle);
+        // A way that leaves the solid and passes the triangle from behind leaves along its normal.
+        let normal = if (first.step < 0) == before { normal } else { normal.map(|n| -n) };
+        let tree = &self.tracer.tree;
+        // Each first step leads inside. (Nobody knows what lies in one plane of a moved mesh.)
+        let is_met = tree.displacement() == 0.0
+            && met.iter().all(|first| {
+                let plane = met.iter().filter(|hit| tree.are_coplanar(first.triangle, hit.triangle));
+                let step = plane.map(|hit| hit.step).sum::<i32>();
+                self.side(winding, [step; 2], from, to) == Some(true)
+            });
+        let t = self.found.touched.joined(Interval::between(from.at, to.at));
+        let surface = Some(first.triangle);
+        self.found.unknown(RayCrossing { t, is_inside_after: false, is_met, normal, surface })
+    }
+
+    /// Goes from one time to another with no triangle between them.
+    fn stretch(&mut self, winding: i32, from: &Sums, to: &Sums) -> Result<Next, Error> {
+        if let Some(is_inside) = self.side(winding, [0; 2], from, to) {
+            self.found.known(from.at, is_inside)?;
+            if is_inside && self.is_first_enough {
+                self.found.trace.until = to.at;
+                return Ok(Next::Enough);
+            }
+            return Ok(Next::GoOn);
+        }
+        if self.looks >= MOST_LOOKS {
+            return Ok(Next::GiveUp);
+        }
+        if to.at == f64::INFINITY {
+            // Far away the number vanishes.
+            let further = from.at + (from.at - 0.5 * self.line.end()).abs() + 1.0 / self.line.speed();
+            let middle = self.look(self.line.end().max(further));
+            return self.halves(winding, [from, &middle, to]);
+        }
+        let middle = self.look(0.5 * from.at + 0.5 * to.at);
+        let Some(threshold) = self.threshold(winding, from, to) else {
+            return self.halves(winding, [from, &middle, to]);
+        };
+        let Some(mut root) = self.root(winding, threshold, Interval::between(from.at, to.at), &middle) else {
+            // It is no use to divide what is told no better by halves.
+            let is_short = to.at - from.at <= 4.0 * f64::EPSILON * to.at || {
+                let reach = (to.at - from.at) * self.line.speed();
+                reach <= SHORTEST * self.line.change(middle.at).distance()
+            };
+            if is_short {
+                self.unknown(threshold, Interval::between(from.at, to.at))?;
+                return Ok(Next::GoOn);
+            }
+            return self.halves(winding, [from, &middle, to]);
+        };
+        while self.looks < MOST_LOOKS {
+            let middle = self.look(0.5 * root.t.lower + 0.5 * root.t.upper);
+            match self.root(winding, threshold, root.t, &middle) {
+                // (By halves, where its change is not known well.)
+                Some(next) if next.t.width() < 0.75 * root.t.width() => root.t = next.t,
+                _ => break,
+            }
+        }
+        // Positive numbers are inside above one half, and negative ones below minus one half.
+        let is_inside_after = root.rises == (threshold > 0.0);
+        if root.t.lower > from.at {
+            self.found.known(from.at, !is_inside_after)?;
+            if !is_inside_after && self.is_first_enough {
+                self.found.trace.until = root.t.lower;
+                return Ok(Next::Enough);
+            }
+        }
+        if root.t.lower < root.t.upper || from.at < root.t.lower && root.t.upper < to.at {
+            self.unknown(threshold, root.t)?;
+        }
+        if root.t.upper < to.at {
+            self.found.known(root.t.upper, is_inside_after)?;
+            if is_inside_after && self.is_first_enough {
+                self.found.trace.until = to.at;
+                return Ok(Next::Enough);
+            }
+        }
+        Ok(Next::GoOn)
+    }
+
+    fn halves(&mut self, winding: i32, [from, middle, to]: [&Sums; 3]) -> Result<Next, Error> {
+        match self.stretch(winding, from, middle)? {
+            Next::GoOn => self.stretch(winding, middle, to),
+            next => Ok(next),
+        }
+    }
+
+    /// The only number that parts inside from outside which may be passed between two times; nothing if both may be.
+    fn threshold(&self, winding: i32, from: &Sums, to: &Sums) -> Option<f64> {
+        let [least, most] = from.until(to);
+        let (low, high) = (f64::from(winding) - most, f64::from(winding) - least);
+        if self.tracer.fill == FillRule::Positive || low > -0.5 {
+            Some(0.5)
+        } else if high < 0.5 {
+            Some(-0.5)
+        } else {
+            None
+        }
+    }
+
+    /// When the winding number passes a threshold in a stretch around a look, through which it surely rises or falls all the
+    /// way: an interval beside which it is on either side. Nothing if that is not sure.
+    fn root(&self, winding: i32, threshold: f64, stretch: Interval, middle: &Sums) -> Option<Root> {
+        let speed = self.line.speed();
+        let reach = (middle.at - stretch.lower).max(stretch.upper - middle.at) * speed;
+        let reach = reach * (1.0 + 1e-12) + f64::EPSILON;
+        let change = self.line.change(middle.at);
+        // (Also false for NaN.)
+        let is_near = reach < 0.5 * change.distance();
+        if !is_near {
+            return None;
+        }
+        let [least, most] = change.within(reach);
+        // That of the winding number in a unit of time.
+        let slope = Interval::new(-most, -least)?.times(Interval::exactly(speed));
+        let slope = slope.times(Interval::new(1.0 - 1e-12, 1.0 + 1e-12)?);
+        if slope.contains(0.0) {
+            return None;
+        }
+        let excess = f64::from(winding) - middle.value() - threshold;
+        let wide = middle.error + 1e-15 * (1.0 + excess.abs());
+        let excess = Interval::new(excess - wide, excess + wide)?;
+        let rises = slope.lower > 0.0;
+        let (fallen, steepness) = if rises { (excess, slope) } else { (excess.negated(), slope.negated()) };
+        let t = Interval::exactly(middle.at).minus(fallen.over(steepness));
+        // (If it is passed before or after, all of the stretch is on one side.)
+        let lower = t.lower.clamp(stretch.lower, stretch.upper);
+        let upper = t.upper.clamp(stretch.lower, stretch.upper);
+        Some(Root { t: Interval::new(lower, upper)?, rises })
+    }
+
+    /// The ray may pass the surface where the winding number is a threshold.
+    fn unknown(&mut self, threshold: f64, t: Interval) -> Result<(), Error> {
+        let middle = 0.5 * t.lower + 0.5 * t.upper;
+        let at = axes(|axis| {
+            let [high, low] = self.ray.direction[axis];
+            self.ray.from[axis] + middle * high + middle * low
+        });
+        // The surface's own number changes against the caps'.
+        let normal = self.rim.gradient(at).to_array();
+        let normal = if threshold > 0.0 { normal } else { normal.map(|n| -n) };
+        self.found.unknown(RayCrossing { t, is_inside_after: false, is_met: false, normal, surface: None })
+    }
+}
+
+/// Where a winding number passes a threshold.
+struct Root {
+    t: Interval,
+    /// Whether it rises.
+    rises: bool,
+}

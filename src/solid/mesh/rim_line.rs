@@ -1,0 +1,331 @@
+//! The winding number of caps along a line, from the rim alone.
+//!
+//! Cones over the rim that all lead back along the line, to a point infinitely far behind, meet the line only where it passes the rim
+//! itself. So their winding number changes smoothly along the line, and it is zero infinitely far ahead. Nothing is added to it or
+//! taken off but what triangles ahead count.
+//!
+//! Seen along the line a corner of the rim lies at the complex number ρ across it, and at a height. With r its distance from a point of the
+//! line, and s how far it lies behind, half the solid angle of an edge's cone is the argument of g g' + ρ̄ ρ', where g = r + s. Along
+//! the line g grows and ρ stays, so that each angle tends to zero and never turns back. The angles that are positive and those that are
+//! negative, summed apart, therefore bound the winding number between any two points of the line.
+//!
+//! **Errors.** A corner that is off by δ changes g by less than 2δ and the angle by δ (|ρ| + |ρ'|) / |g g' + ρ̄ ρ'| to the first
+//! order. All corners lie much further from the line than δ, and twice that bound outweighs what is of higher order.
+
+use super::rim::Rim;
+use crate::error::Error;
+use crate::lattice::Ray;
+use crate::lattice::exact::sqrt;
+use crate::memory;
+use alloc::vec::Vec;
+use core::f64::consts::TAU;
+use glam::{DVec2, DVec3};
+
+/// What positions are off by, as a part of the distance from where the line begins.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// How many errors corners lie from the line at least.
+const APART: f64 = 64.0;
+
+/// Beyond so many times the rim's distance the winding number is zero.
+const FAR: f64 = 1e60;
+
+/// On which side the line passes an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    /// The corner is the first of a walk, or the edge's angle is as good as zero.
+    None,
+    Left,
+    Right,
+}
+
+/// A corner of the rim as seen along the line, and its edge from the corner before.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    across: DVec2,
+    square: f64,
+    height: f64,
+    side: Side,
+    /// ρ̄ ρ' of the edge.
+    real: f64,
+    imaginary: f64,
+    /// |ρ| + |ρ'|, and |ρ| |ρ'|.
+    sum: f64,
+    product: f64,
+}
+
+/// The rim of a mesh along a line. Lengths are such that its corners lie within about 1 of where the line begins.
+#[derive(Default)]
+pub(super) struct RimLine {
+    corners: Vec<Corner>,
+    /// What corners are off by.
+    error: f64,
+    /// What edges add that are in the line's plane, in turns.
+    unsure: f64,
+    /// Lengths in a unit of time.
+    speed: f64,
+    /// When the line has passed all corners.
+    end: f64,
+}
+
+/// Sums of angles at a time, in turns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sums {
+    pub(super) at: f64,
+    /// That of the positive ones, which only falls with time, and of the negative ones, which only rises.
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) error: f64,
+}
+
+/// How the sums change.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Change {
+    left: f64,
+    right: f64,
+    error: f64,
+    /// How far the rim is.
+    distance: f64,
+}
+
+/// A sum of angles between 0 and half a turn.
+struct Angles {
+    real: f64,
+    imaginary: f64,
+    turns: f64,
+}
+
+impl Angles {
+    const NONE: Angles = Angles { real: 1.0, imaginary: 0.0, turns: 0.0 };
+
+    /// Adds the angle of a number of modulus 1.
+    #[inline(always)]
+    fn add(&mut self, real: f64, imaginary: f64) {
+        let Angles { real: x, imaginary: y, .. } = *self;
+        self.real = x * real - y * imaginary;
+        self.imaginary = x * imaginary + y * real;
+        // Beyond half a turn. (Near to no turn rounding may change the sign, too.)
+        if self.imaginary < 0.0 && y >= 0.0 && (x < 0.0 || self.real < 0.0) {
+            self.turns += 1.0;
+        }
+    }
+
+    fn in_turns(&self) -> f64 {
+        libm::atan2(self.imaginary + 0.0, self.real) / TAU + self.turns
+    }
+}
+
+impl Sums {
+    /// Infinitely far ahead.
+    pub(super) const END: Sums = Sums { at: f64::INFINITY, left: 0.0, right: 0.0, error: 0.0 };
+
+    /// The caps' winding number.
+    pub(super) fn value(&self) -> f64 {
+        self.left + self.right
+    }
+
+    /// What it is at the least and at the most, from then until the time of `later`.
+    pub(super) fn until(&self, later: &Sums) -> [f64; 2] {
+        let error = self.error + later.error;
+        [later.left + self.right - error, self.left + later.right + error]
+    }
+}
+
+impl RimLine {
+    /// Looks at a rim along a ray. `false` if that comes too near to the rim, or its numbers are too large. O(n) in the edges.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(super) fn look(&mut self, rim: &Rim, ray: &Ray) -> Result<bool, Error> {
+        self.corners.clear();
+        let from = DVec3::from(ray.from);
+        let reach = rim.edges().iter().flatten().fold(DVec3::ZERO, |most, p| most.max((*p - from).abs()));
+        let reach = reach.max_element();
+        // The next power of two, about.
+        let scale = f64::from_bits((2045 - (reach.to_bits() >> 52 & 0x7FF).clamp(1, 2044)) << 52);
+        let way = DVec3::from(ray.direction.map(|[high, _]| high));
+        let length = sqrt(way.length_squared());
+        let along = way / length;
+        let speed = length * scale;
+        let is_usual = (1e-100..1e100).contains(&reach) && (1e-200..1e200).contains(&speed);
+        if !is_usual {
+            return Ok(false);
+        }
+        let least = along.abs();
+        let axis = if least.x <= least.y && least.x <= least.z {
+            DVec3::X
+        } else if least.y <= least.z {
+            DVec3::Y
+        } else {
+            DVec3::Z
+        };
+        let u = axis.cross(along);
+        let u = u / sqrt(u.length_squared());
+        let v = along.cross(u);
+        (self.error, self.speed) = (2.0 * ROUNDING + 2.0 * rim.vertex_error * scale, speed);
+        (self.unsure, self.end) = (0.0, 0.0);
+        let nearest = APART * APART * self.error * self.error;
+        let mut end = f64::NEG_INFINITY;
+        let mut before: Option<(DVec3, Corner)> = None;
+        for &[to, start] in rim.edges() {
+            let seen = |p: DVec3| {
+                let p = (p - from) * scale;
+                let across = DVec2::new(p.dot(u), p.dot(v));
+                Corner {
+                    across,
+                    square: across.length_squared(),
+                    height: p.dot(along),
+                    side: Side::None,
+                    real: 0.0,
+                    imaginary: 0.0,
+                    sum: 0.0,
+                    product: 0.0,
+                }
+            };
+            let first = match before {
+                Some((place, corner)) if place == start => corner,
+                _ => {
+                    let corner = seen(start);
+                    memory::push(&mut self.corners, corner)?;
+                    corner
+                }
+            };
+            let mut corner = seen(to);
+            end = corner.height.max(end);
+            let [one, other] = [first.square, corner.square].map(sqrt);
+            (corner.sum, corner.product) = (one + other, one * other);
+            corner.real = first.across.dot(corner.across);
+            corner.imaginary = first.across.perp_dot(corner.across);
+            let wrong = 2.0 * (self.error * corner.sum + 4.0 * f64::EPSILON * corner.product);
+            if corner.square <= nearest || first.square <= nearest {
+                return Ok(false);
+            }
+            if corner.imaginary > wrong {
+                corner.side = Side::Left;
+            } else if corner.imaginary < -wrong {
+                corner.side = Side::Right;
+            } else if corner.real > 0.0 {
+                self.unsure += 2.0 * wrong / corner.real;
+            } else {
+                return Ok(false);
+            }
+            memory::push(&mut self.corners, corner)?;
+            before = Some((to, corner));
+        }
+        self.end = end.max(0.0) / speed;
+        // (In turns that would be a sixth of it.)
+        Ok(self.unsure < 0.25)
+    }
+
+    /// When the ray has passed all corners.
+    pub(super) fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// Lengths in a unit of time.
+    pub(super) fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// How far a corner lies behind a point, its distance, and their sum.
+    #[inline(always)]
+    fn seen(corner: &Corner, at: f64) -> [f64; 2] {
+        let behind = at - corner.height;
+        let distance = sqrt(corner.square + behind * behind);
+        let sum = distance + behind.abs();
+        [if behind >= 0.0 { sum } else { corner.square / sum }, distance]
+    }
+
+    /// What positions along the ray are off by.
+    fn error_at(&self, at: f64) -> f64 {
+        self.error + ROUNDING * at
+    }
+
+    /// The sums at a time, which is not negative, or long before. O(n) in the edges.
+    pub(super) fn sums(&self, time: f64) -> Sums {
+        let at = time * self.speed;
+        if at > FAR {
+            return Sums { at: time, left: 0.0, right: 0.0, error: 1e-50 };
+        }
+        let is_before = at == f64::NEG_INFINITY;
+        let off = 2.0 * if is_before { self.error } else { self.error_at(at) };
+        let (mut left, mut right, mut error) = (Angles::NONE, Angles::NONE, 0.0);
+        let mut before = 0.0;
+        for corner in &self.corners {
+            let g = if is_before { 0.0 } else { RimLine::seen(corner, at)[0] };
+            if corner.side != Side::None {
+                let (x, y) = (g * before + corner.real, corner.imaginary);
+                let inverse = 1.0 / sqrt(x * x + y * y);
+                error += (off * corner.sum + 16.0 * f64::EPSILON * (g * before + corner.product)) * inverse;
+                let (x, y) = (x * inverse, y * inverse);
+                match corner.side {
+                    Side::Left => left.add(x, y),
+                    _ => right.add(x, -y),
+                }
+            }
+            before = g;
+        }
+        let count = self.corners.len() as f64;
+        let error = (error + 16.0 * f64::EPSILON * count + self.unsure) / TAU;
+        // (Bounds of larger errors would be no bounds.)
+        let error = if error < 0.02 { error } else { f64::INFINITY };
+        Sums { at: time, left: left.in_turns(), right: -right.in_turns(), error }
+    }
+
+    /// How fast the sums change with the length at a time. O(n) in the edges.
+    pub(super) fn change(&self, time: f64) -> Change {
+        let at = time * self.speed;
+        let off = 2.0 * self.error_at(at);
+        let mut change = Change { left: 0.0, right: 0.0, error: 0.0, distance: f64::INFINITY };
+        let (mut before, mut place) = ([0.0, 1.0], DVec3::ZERO);
+        for (k, corner) in self.corners.iter().enumerate() {
+            let seen = RimLine::seen(corner, at);
+            let here = corner.across.extend(corner.height - at);
+            // (The first corner of all begins a walk.)
+            if k > 0 && corner.sum > 0.0 {
+                let edge = here - place;
+                let part = (-place.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+                let nearest = place + if part.is_nan() { 0.0 } else { part } * edge;
+                change.distance = change.distance.min(sqrt(nearest.length_squared()));
+                let g = seen[0] * before[0];
+                let x = g + corner.real;
+                let square = x * x + corner.imaginary * corner.imaginary;
+                let times = g * (1.0 / seen[1] + 1.0 / before[1]) / square;
+                let slope = -corner.imaginary * times;
+                let wrong = off * corner.sum + 16.0 * f64::EPSILON * (g + corner.product);
+                change.error += wrong * times * (1.0 + 4.0 * corner.imaginary.abs() / sqrt(square));
+                match corner.side {
+                    Side::Left => change.left += slope,
+                    Side::Right => change.right += slope,
+                    Side::None => change.error += slope.abs(),
+                }
+            }
+            (before, place) = (seen, here);
+        }
+        change.distance = (change.distance - off).max(0.0) * (1.0 - 1e-12);
+        let error = change.error + 1e-12 * (change.right - change.left);
+        Change { left: change.left / TAU, right: change.right / TAU, error: error / TAU, ..change }
+    }
+}
+
+impl Change {
+    /// How far the rim is.
+    pub(super) fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// The least and the greatest change of the winding number with the length, within `reach`, which is less than half the rim's distance. (Each
+    /// angle's is an integral of one sign over the inverse cubes of distances, none of which changes by more than `reach`.)
+    pub(super) fn within(&self, reach: f64) -> [f64; 2] {
+        let part = reach / self.distance;
+        let cube = |x: f64| 1.0 / (x * x * x);
+        let (least, most) = (cube(1.0 + part) * (1.0 - 1e-9), cube(1.0 - part) * (1.0 + 1e-9));
+        let range = |value: f64| {
+            let scaled = [value * least, value * most];
+            [scaled[0].min(scaled[1]), scaled[0].max(scaled[1])]
+        };
+        let (left, right) = (range(self.left), range(self.right));
+        let error = self.error * most;
+        [left[0] + right[0] - error, left[1] + right[1] + error]
+    }
+}
