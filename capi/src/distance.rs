@@ -43,13 +43,13 @@ pub struct leafless_point_distance {
     pub splits: u64,
     /// The nearest point of the boundary, but for rounding, if `has_nearest`; else zeros.
     pub nearest_model: [f64; 3],
-    /// The number of the surface that it lies on: of a closed mesh, the triangle's; of several, one
+    /// The number of the surface that it lies on: of a mesh, the triangle's; of several, one
     /// that bounds the solid next to the point, if one is found. UINT32_MAX if there is none.
     pub surface: u32,
     /// Why the search ended.
     pub measured: leafless_stop_reason,
-    /// Whether the solid answered itself and told the nearest point: a closed mesh within the universe does, unless the
-    /// nearest triangle intersects another one.
+    /// Whether the solid answered itself and told the nearest point: a mesh within the universe does, unless the nearest
+    /// triangle intersects another one, or the boundary may lie nearer over a hole.
     pub has_nearest: bool,
 }
 

@@ -49,8 +49,8 @@ pub struct leafless_ray_hit {
     pub cell: [u32; 3],
     /// The cell's level; 0 is the universe.
     pub level: u32,
-    /// The number of the surface that stops the ray, if the solid answers rays itself: of a closed mesh, the triangle's. Else
-    /// UINT32_MAX.
+    /// The number of the surface that stops the ray, if the solid answers rays itself: of a mesh, the triangle's. Else, and
+    /// where the ray meets what closes a hole of a mesh, UINT32_MAX.
     pub surface: u32,
     /// Whether something stops the ray.
     pub is_hit: bool,

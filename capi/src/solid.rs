@@ -39,10 +39,13 @@ pub(super) fn give_any(solid: AnySolid) -> *mut leafless_solid {
 /// point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
 /// though no triangle cuts them. leafless_mesh_inspect tells whether to expect them.
 ///
-/// Rays, points and distances of a closed mesh, and points of an open one, are told without cells: in some
-/// microseconds each. The first such question makes what that takes, and the solid keeps it: a tree over the
-/// triangles (O(t log t): 0.1 to 0.3 microseconds a triangle; 36 bytes a triangle, which leafless_solid_info
-/// tells), and for distances, on which sides of its triangles the solid lies (about twice that time, and 1 byte).
+/// Rays, points, boxes and distances are told without cells: in some microseconds each. A mesh with holes looks
+/// at all edges of its holes for a question, which takes some nanoseconds an edge, and asks its cells of rays
+/// that come very near to such an edge, of distances and boxes next to a hole, and of all but points if there
+/// are more than 16384 edges. The first such question makes what that takes, and the solid keeps it: a tree over
+/// the triangles (O(t log t): 0.1 to 0.3 microseconds a triangle; 36 bytes a triangle, which leafless_solid_info
+/// tells), and for distances of a closed mesh, on which sides of its triangles the solid lies (about twice that
+/// time, and 1 byte), or the edges of holes (48 bytes an edge).
 /// So ask one question beforehand if the first is not to take longer than others. Placed solids take over the
 /// order of the tree, and make its boxes anew. Threads that ask first at the same time may each make it once.
 ///

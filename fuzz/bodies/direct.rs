@@ -1,5 +1,6 @@
-//! Any bytes as a small closed mesh, moved or not, and as rays and points: what is answered without cells must be true by
-//! winding numbers that a look at each triangle tells in whole numbers, and by distances from each triangle in doubles.
+//! Any bytes as a small mesh, closed or with holes, moved or not, and as rays and points: what is answered without cells must be true by
+//! winding numbers that a look at each triangle tells, in whole numbers or (with holes) by solid angles, and by distances from each
+//! triangle in doubles.
 
 use leafless::query::{DistanceTo, Obstacle, distances, line_of_sight, ray_spans};
 use leafless::query::{RaySpans, Sight};
@@ -205,6 +206,8 @@ struct Scene {
     size: f64,
     /// Whether all corners lie on a small lattice.
     is_plain: bool,
+    /// Whether facets may be missing.
+    is_open: bool,
 }
 
 impl Scene {
@@ -234,9 +237,32 @@ impl Scene {
         Some(winding)
     }
 
-    /// Whether the solid holds a point; nothing on the surface of the mesh.
+    /// Whether the solid holds a point; nothing on the surface of the mesh, or with holes near to it, or to where the winding number
+    /// is one half.
     fn holds(&self, place: &Place) -> Option<bool> {
+        if self.is_open {
+            let excess = self.excess(place.near);
+            let is_near = || self.is_near(place.near, 1e-8 * self.size);
+            return (excess.abs() > 1e-6 && !is_near()).then_some(excess > 0.0);
+        }
         self.winding(place).map(|winding| encloses(self.fill, winding))
+    }
+
+    /// By how much the sum of solid angles (van Oosterom and Strackee 1983) exceeds what the fill rule asks for.
+    fn excess(&self, p: Point) -> f64 {
+        let angle = |facet: &Facet| {
+            let [a, b, c] = facet.map(|corner| minus(corner, p));
+            let size = length(a).max(length(b)).max(length(c));
+            if size == 0.0 {
+                return 0.0;
+            }
+            let [a, b, c] = [a, b, c].map(|corner| corner.map(|x| x / size));
+            let [x, y, z] = [a, b, c].map(length);
+            let real = x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y;
+            2.0 * dot(a, cross(b, c)).atan2(real)
+        };
+        let winding = self.moved.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI);
+        if self.fill == FillRule::Positive { winding - 0.5 } else { winding.abs() - 0.5 }
     }
 
     fn is_near(&self, p: Point, distance: f64) -> bool {
@@ -432,7 +458,7 @@ fn soup(bytes: &mut Bytes<'_>, corners: &Corners) -> Vec<Facet> {
     facets
 }
 
-fn scene(bytes: &mut Bytes<'_>) -> Option<Scene> {
+fn scene(bytes: &mut Bytes<'_>, may_be_open: bool) -> Option<Scene> {
     let (kind, code) = (bytes.byte(), bytes.byte());
     let is_plain = kind % 2 == 0;
     let scale = [1.0, 1.0, 1.0, 0.3, 2f64.powi(-200), 2f64.powi(200), 1e-70, 1e60][kind / 2 % 8];
@@ -442,7 +468,18 @@ fn scene(bytes: &mut Bytes<'_>) -> Option<Scene> {
         _ => [0.0; 3],
     };
     let fill = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive][code % 3];
-    let facets = soup(bytes, &Corners { is_plain, scale, offset });
+    let is_open = may_be_open && kind >= 128;
+    let fill = if is_open && fill == FillRule::EvenOdd { FillRule::NonZero } else { fill };
+    let mut facets = soup(bytes, &Corners { is_plain, scale, offset });
+    if is_open {
+        for _ in 0..1 + bytes.below(4) {
+            let gone = bytes.byte() % facets.len().max(1);
+            if facets.len() <= 1 {
+                return None;
+            }
+            facets.swap_remove(gone);
+        }
+    }
     let mesh = TriangleMesh::from_facets(&facets).ok()?;
     // (Welding drops triangles without area.)
     let of = |mesh: &TriangleMesh| -> Vec<Facet> {
@@ -477,7 +514,7 @@ fn scene(bytes: &mut Bytes<'_>) -> Option<Scene> {
     let size = moved.iter().flatten().flatten().fold(scale, |most: f64, c| most.max(c.abs()));
     let exact = facets.iter().map(|facet| facet.map(|p| p.map(Exact::of))).collect();
     let is_plain = is_plain && offset == [0.0; 3];
-    Some(Scene { facets, exact, fill, motion, moved, solid, frame, size, is_plain })
+    Some(Scene { facets, exact, fill, motion, moved, solid, frame, size, is_plain, is_open })
 }
 
 /// A vertex, the middle of two, a point of the lattice, or any.
@@ -498,7 +535,7 @@ fn point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) -> Point {
 pub fn direct(data: &[u8]) {
     let mut bytes = Bytes(data);
     let bytes = &mut bytes;
-    let Some(scene) = scene(bytes) else { return };
+    let Some(scene) = scene(bytes, true) else { return };
     let scale = scene.frame.edge() / 8.0;
     let corners = Corners {
         is_plain: bytes.below(2) == 0,
@@ -528,7 +565,7 @@ pub fn direct(data: &[u8]) {
 pub fn layers(data: &[u8]) {
     let mut bytes = Bytes(data);
     let bytes = &mut bytes;
-    let Some(scene) = scene(bytes) else { return };
+    let Some(scene) = scene(bytes, false) else { return };
     let scale = scene.frame.edge() / 8.0;
     let code = bytes.byte();
     let tolerance = scene.frame.edge() / f64::from(8u32 << (code % 12));
@@ -662,7 +699,7 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         let Some(truth) = scene.holds(&place) else { continue };
         assert!(!is_inner || truth, "not inside: {t} {spans:?} {told}");
         assert!(is_outer || !truth, "not outside: {t} {spans:?} {told}");
-        if is_outer && !is_inner && scene.is_plain && scene.motion.is_none() {
+        if is_outer && !is_inner && scene.is_plain && scene.motion.is_none() && !scene.is_open {
             let margin = 1e-9 * (scene.size + place.size);
             assert!(scene.is_near_to_a_plane(place.near, margin), "nothing told: {t} {spans:?} {told}");
         }
@@ -718,8 +755,10 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             let is_clear = !scene.is_near(near, 1e-9 * (scene.size + length(from) + length(end)));
             if is_clear && scene.is_in_universe(&place) == Some(true) && scene.holds(&place) == Some(true) {
                 assert_ne!(sight, Sight::Clear, "{near:?} {told}");
-                // (Of a moved mesh nothing is known of a ray that comes near to an edge; then the cells are asked.)
-                assert!(sight == Sight::Blocked || scene.motion.is_some(), "{near:?} {told}");
+                // (Of a moved mesh nothing is known of a ray that comes near to an edge, and of one with holes nothing of a ray that comes
+                // near to its rim; then the cells are asked.)
+                let is_told = scene.motion.is_none() && !scene.is_open;
+                assert!(sight == Sight::Blocked || !is_told, "{near:?} {told}");
             }
         }
     }
@@ -745,7 +784,9 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         (Membership::Outside, Some(truth)) => assert!(!truth, "not outside: {told}"),
         (Membership::Undecided, _) => {
             let is_in = scene.is_in_universe(&place) == Some(true);
-            assert!(!is_in || all <= margin, "undecided: {told}");
+            // (In whole numbers or, with holes, in doubles.)
+            let is_told = !scene.is_open || scene.is_plain && scene.motion.is_none() && truth.is_some();
+            assert!(!is_in || all <= margin || !is_told, "undecided: {told}");
         }
         _ => {}
     }
@@ -775,6 +816,12 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         if to == DistanceTo::Boundary && size < 1e6 * scene.size {
             bounds_the_solid(scene, near.point, facet, &told);
             no_boundary_is_nearer(scene, p, size, margin, &told);
+            if let Some(truth) = truth.filter(|_| scene.is_open && size > margin) {
+                let way = [0; 3].map(|_| bytes.fraction());
+                let other = at(|k| p[k] + 0.999 * size * way[k] / length(way).max(1e-3));
+                let other = scene.holds(&Place::new(other));
+                assert!(other.is_none_or(|other| other == truth), "the other side is nearer: {told}");
+            }
         }
     }
 }

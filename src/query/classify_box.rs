@@ -30,8 +30,7 @@ pub enum Region {
 /// of the box lies outside of the universe is undecided. Ends as soon as the answer is known, or once
 /// `control.max_splits` cells are split. One thread.
 ///
-/// A closed mesh tells of most boxes in the universe from a tree over its triangles, without cells
-/// ([`MeshSolid`](crate::MeshSolid)).
+/// A mesh tells of most boxes in the universe from a tree over its triangles, without cells ([`MeshSolid`](crate::MeshSolid)).
 ///
 /// # Errors
 /// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number; what the solid refuses;

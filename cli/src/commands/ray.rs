@@ -40,7 +40,7 @@ pub struct Arguments {
     #[command(flatten)]
     looking: Looking,
     /// Print a line of JSON for each ray: an object, or `null` for a miss. `surface` is the number of the triangle that a
-    /// closed mesh is met in, counted from 0; `null` for what does not answer rays itself, and for a ray that starts within
+    /// mesh is met in, counted from 0; `null` over a hole, for what does not answer rays itself, and for a ray that starts within
     #[arg(long)]
     json: bool,
 }

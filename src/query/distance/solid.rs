@@ -84,7 +84,8 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// doubles (some 10^-12 of the distance and of the triangle), and tells the nearest point and its triangle. The first question
 /// makes the tree, and finds out which triangles bound the solid ([`MeshSolid`](crate::MeshSolid)). Where the nearest triangle
 /// intersects another one, the interval is up to 2^-31 of the mesh's extent wide; where it then lies within the solid or outside of
-/// it, cells are asked.
+/// it, cells are asked. A mesh with holes answers in the same way where its winding number is surely not one half in the ball
+/// that its triangles leave free; of other points, as a rule those next to a hole, cells are asked.
 ///
 /// A point takes some dozen splits a level as a rule. It takes more the more of the surface is about as near: a ball's
 /// centre has no better bounds than cells as large as the budget allows. The answers are the same for any number of

@@ -34,8 +34,9 @@ pub enum Sight {
 /// Each ray may split `control.max_splits` cells; cells that were not split count as PARTIAL. The answers are the
 /// same for any number of threads.
 ///
-/// A closed mesh answers each ray from a tree over its triangles, in microseconds and to the rounding of doubles, whatever the
-/// frame's depth is; the first question makes the tree ([`MeshSolid`](crate::MeshSolid)).
+/// A mesh answers each ray from a tree over its triangles, in microseconds and to the rounding of doubles, whatever the frame's depth
+/// is; the first question makes the tree ([`MeshSolid`](crate::MeshSolid)). A mesh with holes also looks at all edges of its holes. It asks
+/// its cells of rays that come very near to such an edge, and of all rays if there are more than 16 384 edges.
 ///
 /// # Errors
 /// What the solid refuses; [`Error::OutOfMemory`], and [`Error::Cancelled`].

@@ -14,7 +14,7 @@
 //! its triangles, too, where its winding number is one half. A ball and a box without triangles in which the number cannot change by
 //! enough hold none of that boundary. (Rays of open meshes: `open_trace`.)
 
-use super::rim::{DIRECTIONS, Fraction, Rim};
+use super::rim::{Course, DIRECTIONS, Fraction, Rim};
 use super::rim_line::RimLine;
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
@@ -85,8 +85,10 @@ pub(super) fn rim(mesh: &TriangleMesh, loops: &Loops) -> Result<Rim, Error> {
     rim.vertex_error = mesh.displacement();
     let at = |vertex: u32| DVec3::from(mesh.vertices()[vertex as usize]);
     for walk in loops.iter() {
+        let first = rim.edges().len();
         let next = walk.iter().skip(1).chain(walk.first());
         walk.iter().zip(next).try_for_each(|(&from, &to)| rim.push([at(to), at(from)]))?;
+        rim.close(first)?;
     }
     Ok(rim)
 }
@@ -271,7 +273,7 @@ impl Tracer<'_> {
         let centre = axes(|axis| 0.5 * min[axis] + 0.5 * max[axis]);
         if count == 0
             && let Some(rim) = self.rim
-            && let Some(is_inside) = self.side_of_box(direct, rim, bounds, &mut 64)?
+            && let Some(is_inside) = self.side_of_box(direct, rim, bounds, &mut 32)?
         {
             return Ok(Some(if is_inside { BoxContent::Full } else { BoxContent::Empty }));
         }
@@ -325,20 +327,27 @@ impl Tracer<'_> {
         rim: &Rim,
         point: &[f64; 3],
     ) -> Result<Option<bool>, Error> {
-        Ok(self.winding(direct, rim, point)?.and_then(|winding| self.encloses_around(winding, 0.0)))
+        Ok(self.winding(direct, rim, (point, 0.0))?.and_then(|winding| self.encloses_around(winding)))
     }
 
-    /// Whether the fill rule encloses all points whose winding number differs by no more than `change` from one that is known.
-    fn encloses_around(&self, winding: Fraction, change: f64) -> Option<bool> {
-        let wide = winding.error + 1e-12 + change;
+    /// Whether the fill rule encloses all points of a winding number.
+    fn encloses_around(&self, winding: Fraction) -> Option<bool> {
+        let wide = winding.error + 1e-12;
         self.fill.encloses_all(winding.value - wide, winding.value + wide)
     }
 
-    /// The winding number of an open mesh at a point; nothing where it jumps.
-    fn winding(&self, direct: &mut Direct, rim: &Rim, point: &[f64; 3]) -> Result<Option<Fraction>, Error> {
+    /// The winding number of an open mesh at a point, and all around it in a ball of a radius in which no triangles lie; nothing where it
+    /// jumps. Where it is near to a whole number it may be told with an error of nearly one half.
+    fn winding(
+        &self,
+        direct: &mut Direct,
+        rim: &Rim,
+        (point, radius): (&[f64; 3], f64),
+    ) -> Result<Option<Fraction>, Error> {
         if !point.iter().all(|&c| valid::is_moderate(c)) {
             return Ok(None);
         }
+        let at = DVec3::from(*point);
         for towards in DIRECTIONS {
             // Away from where cones come from: there is none of them.
             let away = (-towards).to_array().map(|c| [c, 0.0]);
@@ -348,9 +357,14 @@ impl Tracer<'_> {
             if !is_sure || hits.iter().any(|hit| hit.t.lower <= 0.0) {
                 return Ok(None);
             }
-            let Some(cones) = rim.of_cones(DVec3::from(*point), towards) else { continue };
-            let steps = hits.iter().map(|hit| hit.step).sum::<i32>();
-            return Ok(Some(Fraction { value: -f64::from(steps) - cones.value, error: cones.error }));
+            let whole = -f64::from(hits.iter().map(|hit| hit.step).sum::<i32>());
+            let most = rim.most_along(&Course::new(at, -towards, false)).max(rim.most_within(*point, radius));
+            if most < 0.49 {
+                return Ok(Some(Fraction { value: whole, error: most }));
+            }
+            let Some(cones) = rim.of_cones(at, towards) else { continue };
+            let change = if radius > 0.0 { rim.change_within(*point, radius) } else { 0.0 };
+            return Ok(Some(Fraction { value: whole - cones.value, error: cones.error + change }));
         }
         Ok(None)
     }
@@ -367,12 +381,8 @@ impl Tracer<'_> {
         let centre = axes(|axis| 0.5 * min[axis] + 0.5 * max[axis]);
         let half = axes(|axis| (max[axis] - centre[axis]).max(centre[axis] - min[axis]));
         let radius = (1.0 + 1e-12) * sqrt(half.iter().map(|c| c * c).sum());
-        let Some(winding) = self.winding(direct, rim, &centre)? else { return Ok(None) };
-        // (If not even that of the middle is told, nor is that of the box.)
-        if self.encloses_around(winding, 0.0).is_none() {
-            return Ok(None);
-        }
-        let side = self.encloses_around(winding, rim.change_within(centre, radius));
+        let Some(winding) = self.winding(direct, rim, (&centre, radius))? else { return Ok(None) };
+        let side = self.encloses_around(winding);
         if side.is_some() || *parts == 0 {
             return Ok(side);
         }
@@ -382,6 +392,49 @@ impl Tracer<'_> {
         (lower.max[axis], upper.min[axis]) = (centre[axis], centre[axis]);
         let Some(side) = self.side_of_box(direct, rim, &lower, parts)? else { return Ok(None) };
         Ok(self.side_of_box(direct, rim, &upper, parts)?.filter(|&other| other == side))
+    }
+
+    /// On which side a ball without triangles lies, as far as it lies in a cube, of which the middle and half the edge are given.
+    fn side_of_ball(
+        &self,
+        direct: &mut Direct,
+        rim: &Rim,
+        (centre, radius): (&[f64; 3], f64),
+        (middle, half): ([f64; 3], f64),
+        parts: &mut usize,
+    ) -> Result<Option<bool>, Error> {
+        // Seen from the ball's point that is nearest to the middle, no point of the ball in the cube is further away than it is from the middle,
+        // and the way there lies in the ball.
+        let away = DVec3::from(middle) - DVec3::from(*centre);
+        let distance = sqrt(away.length_squared());
+        let wide = half * sqrt(3.0) * (1.0 + 1e-9);
+        let is_whole = distance == 0.0;
+        let place = if distance <= radius { away } else { away * (radius / distance) };
+        let place = (DVec3::from(*centre) + place * (1.0 - 1e-9)).to_array();
+        let reach = if is_whole { radius } else { wide + 1e-8 * radius };
+        let Some(winding) = self.winding(direct, rim, (&place, reach))? else { return Ok(None) };
+        let side = self.encloses_around(winding);
+        if side.is_some() || *parts == 0 {
+            return Ok(side);
+        }
+        *parts -= 1;
+        let mut all = None;
+        for k in 0..8 {
+            let part = axes(|axis| middle[axis] + if k >> axis & 1 != 0 { 0.5 * half } else { -0.5 * half });
+            let apart = (0..3).map(|axis| ((part[axis] - centre[axis]).abs() - 0.5 * half).max(0.0));
+            let is_beyond = sqrt(apart.map(|c| c * c).sum()) > radius * (1.0 + 1e-9);
+            if is_beyond {
+                continue;
+            }
+            let Some(side) = self.side_of_ball(direct, rim, (centre, radius), (part, 0.5 * half), parts)?
+            else {
+                return Ok(None);
+            };
+            if *all.get_or_insert(side) != side {
+                return Ok(None);
+            }
+        }
+        Ok(all)
     }
 
     /// The nearest point of the boundary of an open mesh: that of its triangles, if the winding number is nowhere one half in the ball that they
@@ -394,8 +447,8 @@ impl Tracer<'_> {
     ) -> Result<Option<NearestSurface>, Error> {
         let Some((near, distance)) = self.tree.nearest_of(point, |_| true) else { return Ok(None) };
         let lower = distance.lower;
-        let Some(winding) = self.winding(direct, rim, point)? else { return Ok(None) };
-        let Some(is_inside) = self.encloses_around(winding, rim.change_within(*point, lower)) else {
+        let cube = (*point, lower);
+        let Some(is_inside) = self.side_of_ball(direct, rim, (point, lower), cube, &mut 32)? else {
             return Ok(None);
         };
         Ok(match self.across(direct, point, Some(is_inside), &near)? {

@@ -38,13 +38,18 @@ use once_cell::race::OnceBox;
 /// around holes stay PARTIAL cells which no triangle cuts: [`TriangleMesh::report`] tells of holes.
 ///
 /// # One question after the other
-/// Rays ([`cast_rays`](crate::cast_rays), [`ray_spans`](crate::query::ray_spans)) and distances
-/// ([`distances`](crate::query::distances)) of a closed mesh, and points ([`contains`](crate::contains)) of any mesh, are answered
-/// without cells. The first such question makes what that takes: a tree over the triangles, which the mesh keeps for all solids
-/// that share it (O(t log t), 0.1 to 0.3 µs a triangle; 36 bytes a triangle); for distances, on which sides of its triangles the
-/// solid lies (about twice that, and a byte); for points of open meshes, the rim of their holes. A [placed](Self::placed) copy takes
-/// over the order of the tree, and makes its boxes anew. Threads that ask first at the same time may each make it once. A solid that
-/// is not [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer than the answer.
+/// Rays ([`cast_rays`](crate::cast_rays), [`ray_spans`](crate::query::ray_spans)), points ([`contains`](crate::contains)), boxes
+/// ([`classify_box`](crate::query::classify_box)) and distances ([`distances`](crate::query::distances)) are answered without cells. The
+/// first such question makes what that takes: a tree over the triangles, which the mesh keeps for all solids that share it (O(t log t),
+/// 0.1 to 0.3 µs a triangle; 36 bytes a triangle); for distances of closed meshes, on which sides of its triangles the solid lies (about
+/// twice that, and a byte); for open meshes, the rim of their holes (48 bytes an edge). A [placed](Self::placed) copy takes over the
+/// order of the tree, and makes its boxes anew. Threads that ask first at the same time may each make it once. A solid that is not
+/// [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer than the answer.
+///
+/// An open mesh looks at all edges of its rim for a question, once as a rule, and some dozen times where a ray passes through a
+/// hole. Where the winding number is one half away from triangles, ends of spans are as narrow as at triangles, and have no
+/// triangle. Cells are asked of rays that come very near to the rim, of boxes and points next to a hole for which the rim's bounds are
+/// too wide, and of rays, boxes and distances if the rim has more than 16 384 edges.
 ///
 /// ```
 /// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};

@@ -6,12 +6,13 @@
 //! sums at both ends, by its change around the middle (an interval's Newton step), and by halves.
 
 use super::direct::{Direct, Touched, Tracer, together};
-use super::rim::Rim;
+use super::rim::{self, Rim};
 use super::rim_line::{RimLine, Sums};
 use crate::error::Error;
 use crate::lattice::{Interval, Ray, axes};
 use crate::mesh::{FillRule, Hit, Shift, Wanted};
 use crate::solid::{RayCrossing, RayQuestion, RayTrace};
+use glam::DVec3;
 
 /// How often the rim is looked at for a ray.
 const MOST_LOOKS: usize = 256;
@@ -30,14 +31,21 @@ impl Tracer<'_> {
     ) -> Result<(), Error> {
         let RayQuestion { ray, is_first_enough, trace } = question;
         trace.clear();
-        if !direct.line.look(rim, ray)? {
-            return Ok(());
-        }
         // Of a ray from outside the winding number is zero long before, and does not change until the mesh.
-        let begin = if self.tree.way_out(&ray.from).is_none() { f64::NEG_INFINITY } else { 0.0 };
-        let all = direct.line.sums(begin);
-        if all.left.max(-all.right) + all.error < 0.5 {
-            return self.trace(direct, RayQuestion { ray, is_first_enough, trace });
+        let is_outside = self.tree.way_out(&ray.from).is_none();
+        let way = DVec3::from(ray.direction.map(|[high, _]| high));
+        let course = rim::Course::new(DVec3::from(ray.from), way, is_outside);
+        // Loops that are far away are not looked at, unless they matter.
+        let mut is_plain = rim.most_along(&course) < 0.49;
+        for least in [0.05, 0.0] {
+            if is_plain {
+                return self.trace(direct, RayQuestion { ray, is_first_enough, trace });
+            }
+            if !direct.line.look(rim, ray, &course, least)? {
+                return Ok(());
+            }
+            let all = direct.line.sums(if is_outside { f64::NEG_INFINITY } else { 0.0 });
+            is_plain = all.left.max(-all.right) + all.error + direct.line.others() < 0.49;
         }
         if !self.tree.pierced(ray, Wanted::All, Shift::ALL[0], &mut direct.hits)? {
             return Ok(());

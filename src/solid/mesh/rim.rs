@@ -25,9 +25,58 @@ const HIDDEN: f64 = 1e-6;
 #[derive(Default)]
 pub(super) struct Rim {
     edges: Vec<[DVec3; 2]>,
+    /// The loops of edges that were closed.
+    loops: Vec<Patch>,
     /// Bound of the error of a vertex's position per axis.
     pub(super) vertex_error: f64,
 }
+
+/// A ball around a loop. In it lies a cap: cones from the middle over the edges.
+struct Patch {
+    middle: DVec3,
+    radius: f64,
+    /// Its edges.
+    first: usize,
+    end: usize,
+    /// The cap's area is no larger than the loop is long, times half the radius. This is a 4π-th of that.
+    area: f64,
+}
+
+impl Patch {
+    /// A bound of the cap's winding number at this distance from the ball's middle, and further away.
+    #[inline(always)]
+    fn most(&self, distance: f64) -> f64 {
+        let gap = distance - self.radius;
+        // (Also of NaN.)
+        let is_clear = gap > 0.0;
+        if is_clear { self.area / (gap * gap) } else { f64::INFINITY }
+    }
+}
+
+/// A half-line, or all of its line.
+pub(super) struct Course {
+    from: DVec3,
+    way: DVec3,
+    is_line: bool,
+}
+
+impl Course {
+    pub(super) fn new(from: DVec3, way: DVec3, is_line: bool) -> Course {
+        Course { from, way: way / sqrt(way.length_squared()), is_line }
+    }
+
+    /// How far a point is from it, at the least.
+    #[inline(always)]
+    fn gap(&self, point: DVec3) -> f64 {
+        let to = point - self.from;
+        let along = to.dot(self.way);
+        let along = if self.is_line { along } else { along.max(0.0) };
+        sqrt((to - along * self.way).length_squared()) - 1e-12 * to.abs().element_sum()
+    }
+}
+
+/// Outweighs what is rounded in lengths.
+const SLACK: f64 = 1.0 + 1e-9;
 
 /// The distance of a point from an edge, both ends of which are seen from there.
 #[inline(always)]
@@ -63,13 +112,71 @@ pub(super) struct Slope {
 
 impl Rim {
     pub(super) fn bytes(&self) -> usize {
-        memory::bytes_of(&self.edges)
+        memory::bytes_of(&self.edges) + memory::bytes_of(&self.loops)
     }
 
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub(super) fn push(&mut self, edge: [DVec3; 2]) -> Result<(), Error> {
         memory::push(&mut self.edges, edge)
+    }
+
+    /// Closes a loop of all edges from `first` on.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(super) fn close(&mut self, first: usize) -> Result<(), Error> {
+        let edges = &self.edges[first..];
+        let corners = || edges.iter().map(|edge| edge[0]);
+        let (low, high) = corners()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let middle = 0.5 * low + 0.5 * high;
+        let far = |p: DVec3| sqrt((p - middle).length_squared());
+        let radius = corners().map(far).fold(0.0, f64::max) * SLACK + 2.0 * self.vertex_error;
+        let length = |edge: &[DVec3; 2]| sqrt((edge[1] - edge[0]).length_squared()) + 4.0 * self.vertex_error;
+        let area = edges.iter().map(length).sum::<f64>() * SLACK * radius / (8.0 * PI);
+        let end = self.edges.len();
+        memory::push(&mut self.loops, Patch { middle, radius, first, end, area })
+    }
+
+    /// A bound of the winding number of caps that lie in balls around their loops, wherever `gap` tells how far such a ball's middle is,
+    /// at the least; infinite if that may be in one of the balls. O(n) in the loops.
+    fn most(&self, gap: impl Fn(DVec3) -> f64) -> f64 {
+        let most = self.loops.iter().map(|patch| patch.most(gap(patch.middle))).sum::<f64>();
+        if most.is_nan() { f64::INFINITY } else { most * SLACK }
+    }
+
+    /// That bound on a half-line, or on all of its line. The half-line meets none of these caps if the bound is finite, so that the
+    /// winding number of cones back along the line is that of the caps.
+    pub(super) fn most_along(&self, course: &Course) -> f64 {
+        self.most(|middle| course.gap(middle))
+    }
+
+    /// Calls `visit` with the edges of each loop for which that bound is no less than `least`. Returns the bound of the others.
+    pub(super) fn near_loops<'r>(
+        &'r self,
+        course: &Course,
+        least: f64,
+        mut visit: impl FnMut(&'r [[DVec3; 2]]),
+    ) -> f64 {
+        let mut most = 0.0;
+        for patch in &self.loops {
+            let here = patch.most(course.gap(patch.middle));
+            if here < least {
+                most += here;
+            } else {
+                visit(&self.edges[patch.first..patch.end]);
+            }
+        }
+        most * SLACK
+    }
+
+    /// That bound in a ball.
+    pub(super) fn most_within(&self, point: [f64; 3], radius: f64) -> f64 {
+        self.most(|middle| {
+            let to = middle - DVec3::from(point);
+            sqrt(to.length_squared()) - radius * SLACK - 1e-12 * to.abs().element_sum()
+        })
     }
 
     /// The caps' winding number at a point (in finest cells from the frame's origin), but for an integer. `None` on the rim
@@ -157,8 +264,6 @@ impl Rim {
     /// By how much the caps' winding number may differ from that at a point within `radius` of it, caps not counted: infinitely
     /// much if the rim may be as near. O(n) in the edges.
     pub(super) fn change_within(&self, point: [f64; 3], radius: f64) -> f64 {
-        /// Outweighs what is rounded here.
-        const SLACK: f64 = 1.0 + 1e-9;
         let point = DVec3::from(point);
         let reach = radius * SLACK + 2.0 * self.vertex_error;
         let mut most = 0.0;

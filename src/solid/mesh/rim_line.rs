@@ -12,7 +12,7 @@
 //! **Errors.** A corner that is off by δ changes g by less than 2δ and the angle by δ (|ρ| + |ρ'|) / |g g' + ρ̄ ρ'| to the first
 //! order. All corners lie much further from the line than δ, and twice that bound outweighs what is of higher order.
 
-use super::rim::Rim;
+use super::rim::{Course, Rim};
 use crate::error::Error;
 use crate::lattice::Ray;
 use crate::lattice::exact::sqrt;
@@ -49,7 +49,7 @@ struct Corner {
     /// ρ̄ ρ' of the edge.
     real: f64,
     imaginary: f64,
-    /// |ρ| + |ρ'|, and |ρ| |ρ'|.
+    /// |ρ| + |ρ'| and |ρ| |ρ'|, or somewhat more.
     sum: f64,
     product: f64,
 }
@@ -66,6 +66,8 @@ pub(super) struct RimLine {
     speed: f64,
     /// When the line has passed all corners.
     end: f64,
+    /// A bound of what loops add that are not looked at.
+    others: f64,
 }
 
 /// Sums of angles at a time, in turns.
@@ -132,15 +134,23 @@ impl Sums {
 }
 
 impl RimLine {
-    /// Looks at a rim along a ray. `false` if that comes too near to the rim, or its numbers are too large. O(n) in the edges.
+    /// Looks along a ray at the loops of a rim of which the caps' winding number may come to `least` on its course. `false` if the ray comes too near
+    /// to such a loop, or numbers are too large. O(n) in the edges.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
-    pub(super) fn look(&mut self, rim: &Rim, ray: &Ray) -> Result<bool, Error> {
+    pub(super) fn look(&mut self, rim: &Rim, ray: &Ray, course: &Course, least: f64) -> Result<bool, Error> {
         self.corners.clear();
         let from = DVec3::from(ray.from);
-        let reach = rim.edges().iter().flatten().fold(DVec3::ZERO, |most, p| most.max((*p - from).abs()));
+        let mut reach = DVec3::ZERO;
+        self.others = rim.near_loops(course, least, |edges| {
+            reach = edges.iter().fold(reach, |most, [p, _]| most.max((*p - from).abs()));
+        });
         let reach = reach.max_element();
+        if reach == 0.0 {
+            (self.error, self.unsure, self.speed, self.end) = (0.0, 0.0, 1.0, 0.0);
+            return Ok(true);
+        }
         // The next power of two, about.
         let scale = f64::from_bits((2045 - (reach.to_bits() >> 52 & 0x7FF).clamp(1, 2044)) << 52);
         let way = DVec3::from(ray.direction.map(|[high, _]| high));
@@ -151,10 +161,10 @@ impl RimLine {
         if !is_usual {
             return Ok(false);
         }
-        let least = along.abs();
-        let axis = if least.x <= least.y && least.x <= least.z {
+        let size = along.abs();
+        let axis = if size.x <= size.y && size.x <= size.z {
             DVec3::X
-        } else if least.y <= least.z {
+        } else if size.y <= size.z {
             DVec3::Y
         } else {
             DVec3::Z
@@ -167,7 +177,7 @@ impl RimLine {
         let nearest = APART * APART * self.error * self.error;
         let mut end = f64::NEG_INFINITY;
         let mut before: Option<(DVec3, Corner)> = None;
-        for &[to, start] in rim.edges() {
+        let mut meet = |&[to, start]: &[DVec3; 2]| -> Result<bool, Error> {
             let seen = |p: DVec3| {
                 let p = (p - from) * scale;
                 let across = DVec2::new(p.dot(u), p.dot(v));
@@ -192,7 +202,8 @@ impl RimLine {
             };
             let mut corner = seen(to);
             end = corner.height.max(end);
-            let [one, other] = [first.square, corner.square].map(sqrt);
+            // (No less than the magnitudes.)
+            let [one, other] = [first.across, corner.across].map(|across| across.abs().element_sum());
             (corner.sum, corner.product) = (one + other, one * other);
             corner.real = first.across.dot(corner.across);
             corner.imaginary = first.across.perp_dot(corner.across);
@@ -211,10 +222,27 @@ impl RimLine {
             }
             memory::push(&mut self.corners, corner)?;
             before = Some((to, corner));
+            Ok(true)
+        };
+        let mut seen = Ok(true);
+        rim.near_loops(course, least, |edges| {
+            for edge in edges {
+                if matches!(seen, Ok(true)) {
+                    seen = meet(edge);
+                }
+            }
+        });
+        if !seen? {
+            return Ok(false);
         }
         self.end = end.max(0.0) / speed;
         // (In turns that would be a sixth of it.)
         Ok(self.unsure < 0.25)
+    }
+
+    /// A bound of what loops add that are not looked at.
+    pub(super) fn others(&self) -> f64 {
+        self.others
     }
 
     /// When the ray has passed all corners.
@@ -327,5 +355,151 @@ impl Change {
         let (left, right) = (range(self.left), range(self.right));
         let error = self.error * most;
         [left[0] + right[0] - error, left[1] + right[1] + error]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Random(u64);
+
+    impl Random {
+        /// A number from −1 to 1.
+        fn number(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        fn vector(&mut self) -> DVec3 {
+            DVec3::new(self.number(), self.number(), self.number())
+        }
+    }
+
+    fn ray(random: &mut Random) -> (Ray, DVec3, DVec3) {
+        let (from, way) = (random.vector() * 2.0, random.vector());
+        let ray = Ray::new(from.to_array(), way.to_array()).unwrap();
+        (ray, from, way)
+    }
+
+    /// A jagged loop around a random axis, and a triangle somewhere.
+    fn rim(random: &mut Random, corners: usize) -> Rim {
+        let mut rim = Rim::default();
+        let (u, v, middle) = (random.vector(), random.vector(), random.vector());
+        for count in [corners, 3] {
+            let first = rim.edges().len();
+            let points: Vec<DVec3> = (0..count)
+                .map(|k| {
+                    let angle = TAU * k as f64 / count as f64;
+                    middle + u * libm::cos(angle) + v * libm::sin(angle) + 0.3 * random.vector()
+                })
+                .collect();
+            for k in 0..count {
+                rim.push([points[(k + 1) % count], points[k]]).unwrap();
+            }
+            rim.close(first).unwrap();
+        }
+        rim
+    }
+
+    #[test]
+    fn sums_are_those_of_cones_and_bound_what_lies_between() {
+        let mut random = Random(1);
+        let mut line = RimLine::default();
+        let (mut seen, mut told) = (0, 0);
+        for round in 0..400 {
+            let rim = rim(&mut random, 3 + round % 40);
+            let (ray, from, way) = ray(&mut random);
+            if !line.look(&rim, &ray, &Course::new(from, way, true), 0.0).unwrap() {
+                continue;
+            }
+            seen += 1;
+            let towards = -way / sqrt(way.length_squared());
+            let times = [0.0, 0.1, 0.5, 1.0, 1.7, 3.0, 10.0, 1e3, 1e9];
+            let all: Vec<Sums> = times.iter().map(|&t| line.sums(t)).collect();
+            for sums in &all {
+                let cones = rim.of_cones(from + sums.at * way, towards);
+                if let Some(cones) = cones.filter(|_| sums.at < 100.0) {
+                    let off = (cones.value - sums.value()).abs();
+                    assert!(off <= cones.error + sums.error + 1e-9, "{round} {sums:?} {cones:?}");
+                    assert!(sums.error < 1e-8, "{round} {sums:?}");
+                }
+                assert!(sums.left >= 0.0 && sums.right <= 0.0, "{round} {sums:?}");
+            }
+            assert!(all[8].value().abs() < 1e-6, "{:?}", all[8]);
+            for pair in all.windows(2) {
+                let [least, most] = pair[0].until(&pair[1]);
+                for k in 0..=16 {
+                    let value =
+                        line.sums(pair[0].at + (pair[1].at - pair[0].at) * f64::from(k) / 16.0).value();
+                    assert!(least - 1e-12 <= value && value <= most + 1e-12, "{round} {pair:?} {value}");
+                }
+            }
+            // Newton's bounds of the change around a time.
+            let t = 2.0 + random.number() * 2.0;
+            let change = line.change(t);
+            let value = line.sums(t).value();
+            for part in [0.4, 0.1, 1e-3] {
+                let reach = part * change.distance();
+                let [least, most] = change.within(reach);
+                for k in [-1.0, -0.5, 0.3, 0.9] {
+                    let way = k * reach;
+                    let there = line.sums((t + way / line.speed()).max(0.0));
+                    let way = (there.at - t) * line.speed();
+                    let off = there.value() - value;
+                    let (low, high) = ((least * way).min(most * way), (least * way).max(most * way));
+                    assert!(
+                        low - 1e-12 <= off && off <= high + 1e-12,
+                        "{round} {part} {k}: {low} {off} {high}"
+                    );
+                    told += usize::from(least * most > 0.0);
+                }
+            }
+        }
+        assert!(seen > 300 && told > 1000, "{seen} {told}");
+    }
+
+    #[test]
+    fn caps_in_balls_wind_no_more_than_their_bound() {
+        let mut random = Random(2);
+        let mut line = RimLine::default();
+        let mut bounded = 0;
+        for round in 0..2000 {
+            let rim = rim(&mut random, 3 + round % 20);
+            let (mut ray, from, way) = ray(&mut random);
+            ray.from = (from * 5.0).to_array();
+            let course = Course::new(from * 5.0, way, round % 2 == 0);
+            let most = rim.most_along(&course);
+            if most == f64::INFINITY || !line.look(&rim, &ray, &course, 0.0).unwrap() {
+                continue;
+            }
+            bounded += 1;
+            for t in [0.0, 1.0, 3.0, 7.0, 20.0] {
+                let sums = line.sums(t);
+                assert!(sums.value().abs() <= most + sums.error, "{round} {t} {sums:?} {most}");
+            }
+        }
+        assert!(bounded > 500, "{bounded}");
+    }
+
+    #[test]
+    fn the_gradient_is_what_the_sums_change_by() {
+        let mut random = Random(3);
+        let mut line = RimLine::default();
+        for round in 0..100 {
+            let rim = rim(&mut random, 3 + round % 20);
+            let (ray, from, way) = ray(&mut random);
+            if !line.look(&rim, &ray, &Course::new(from, way, true), 0.0).unwrap() {
+                continue;
+            }
+            let gradient = rim.gradient((from + 0.5 * way).to_array());
+            let [least, most] = line.change(0.5).within(0.0);
+            let slope =
+                gradient.dot(way) / sqrt(way.length_squared()) * sqrt(way.length_squared()) / line.speed();
+            assert!(
+                (slope - 0.5 * (least + most)).abs() < 1e-6 * (1.0 + slope.abs()),
+                "{slope} {least} {most}"
+            );
+        }
     }
 }
