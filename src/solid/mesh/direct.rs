@@ -327,7 +327,19 @@ impl Tracer<'_> {
         rim: &Rim,
         point: &[f64; 3],
     ) -> Result<Option<bool>, Error> {
-        Ok(self.winding(direct, rim, (point, 0.0))?.and_then(|winding| self.encloses_around(winding)))
+        let (mut at, mut radius) = (*point, 0.0);
+        if point.iter().any(|c| c.abs() < valid::SMALLEST && *c != 0.0) {
+            // The least coordinates become zero, if that leads across no surface.
+            at = point.map(|c| if c.abs() < valid::SMALLEST { 0.0 } else { c });
+            radius = 1e-76;
+            let apart = radius + 2.0 * self.tree.displacement();
+            let near = self.tree.nearest_of(&at, |_| true);
+            let is_apart = near.is_some_and(|(_, distance)| distance.lower > apart);
+            if !is_apart {
+                return Ok(None);
+            }
+        }
+        Ok(self.winding(direct, rim, (&at, radius))?.and_then(|winding| self.encloses_around(winding)))
     }
 
     /// Whether the fill rule encloses all points of a winding number.
