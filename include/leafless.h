@@ -1289,13 +1289,15 @@ LEAFLESS_ENUM(leafless_operation, uint32_t) {
 /// point is inside: a cell is FULL or EMPTY if that is proven for all of its points, and others are PARTIAL
 /// though no triangle cuts them. leafless_mesh_inspect tells whether to expect them.
 ///
-/// Rays, points and distances of a closed mesh, and points of an open one, are told without cells: in some
-/// microseconds each. The first such question makes what that takes, and the solid keeps it: a tree over the
-/// triangles (O(t log t): 0.1 to 0.3 microseconds a triangle; 36 bytes a triangle, which leafless_solid_info
-/// tells), and for distances, on which sides of its triangles the solid lies (about twice that time, and 1
-/// byte). So ask one question beforehand if the first is not to take longer than others. Placed solids take
-/// over the order of the tree, and make its boxes anew. Threads that ask first at the same time may each make
-/// it once.
+/// Rays, points, boxes and distances are told without cells: in some microseconds each. A mesh with holes
+/// looks at all edges of its holes for a question, which takes some nanoseconds an edge, and asks its cells
+/// of rays that come very near to such an edge, of distances and boxes next to a hole, and of all but points
+/// if there are more than 16384 edges. The first such question makes what that takes, and the solid keeps it:
+/// a tree over the triangles (O(t log t): 0.1 to 0.3 microseconds a triangle; 36 bytes a triangle, which
+/// leafless_solid_info tells), and for distances of a closed mesh, on which sides of its triangles the solid
+/// lies (about twice that time, and 1 byte), or the edges of holes (48 bytes an edge). So ask one question
+/// beforehand if the first is not to take longer than others. Placed solids take over the order of the tree,
+/// and make its boxes anew. Threads that ask first at the same time may each make it once.
 ///
 /// - Buffers: `solid`, one pointer. `fill` is a leafless_fill.
 /// - Result: `*solid`. Time is linear in the mesh (n log n in the edges of its boundary).
@@ -2922,8 +2924,8 @@ typedef struct leafless_ray_hit {
     double normal[3];
     uint32_t cell[3];  ///< The place of the first cell that stops the ray among those of its level, per axis.
     uint32_t level;  ///< The cell's level; 0 is the universe.
-    /// The number of the surface that stops the ray, if the solid answers rays itself: of a closed mesh, the
-    /// triangle's. Else UINT32_MAX.
+    /// The number of the surface that stops the ray, if the solid answers rays itself: of a mesh, the
+    /// triangle's. Else, and where the ray meets what closes a hole of a mesh, UINT32_MAX.
     uint32_t surface;
     bool is_hit;  ///< Whether something stops the ray.
 } leafless_ray_hit;
@@ -3383,12 +3385,12 @@ typedef struct leafless_point_distance {
     uint64_t splits;  ///< How many times a cell was split.
     /// The nearest point of the boundary, but for rounding, if `has_nearest`; else zeros.
     double nearest_model[3];
-    /// The number of the surface that it lies on: of a closed mesh, the triangle's; of several, one that
-    /// bounds the solid next to the point, if one is found. UINT32_MAX if there is none.
+    /// The number of the surface that it lies on: of a mesh, the triangle's; of several, one that bounds the
+    /// solid next to the point, if one is found. UINT32_MAX if there is none.
     uint32_t surface;
     leafless_stop_reason measured;  ///< Why the search ended.
-    /// Whether the solid answered itself and told the nearest point: a closed mesh within the universe does,
-    /// unless the nearest triangle intersects another one.
+    /// Whether the solid answered itself and told the nearest point: a mesh within the universe does, unless
+    /// the nearest triangle intersects another one, or the boundary may lie nearer over a hole.
     bool has_nearest;
 } leafless_point_distance;
 

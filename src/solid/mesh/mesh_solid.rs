@@ -46,8 +46,8 @@ use once_cell::race::OnceBox;
 /// order of the tree, and makes its boxes anew. Threads that ask first at the same time may each make it once. A solid that is not
 /// [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer than the answer.
 ///
-/// An open mesh looks at all edges of its rim for a question, once as a rule, and some dozen times where a ray passes through a
-/// hole. Where the winding number is one half away from triangles, ends of spans are as narrow as at triangles, and have no
+/// Where a hole is near, an open mesh looks at the edges of its rim for a question: once as a rule, and some dozen times where a ray passes
+/// through a hole. Where the winding number is one half away from triangles, ends of spans are as narrow as at triangles, and have no
 /// triangle. Cells are asked of rays that come very near to the rim, of boxes and points next to a hole for which the rim's bounds are
 /// too wide, and of rays, boxes and distances if the rim has more than 16 384 edges.
 ///

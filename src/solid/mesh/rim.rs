@@ -288,9 +288,13 @@ impl Rim {
         for &[from, to] in &self.edges {
             let (a, b) = (from - point, to - point);
             let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
-            sum += a.cross(b) * ((1.0 / far + 1.0 / farther) / (far * farther + a.dot(b)));
+            let field = a.cross(b) * ((1.0 / far + 1.0 / farther) / (far * farther + a.dot(b)));
+            // (On the edge itself there is none. Where loops run to and fro, the others tell.)
+            if field.is_finite() {
+                sum += field;
+            }
         }
-        sum / (4.0 * PI)
+        if sum.is_finite() { sum / (4.0 * PI) } else { DVec3::ZERO }
     }
 
     /// The edges, each from its beginning to its end.
