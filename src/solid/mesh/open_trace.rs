@@ -75,6 +75,8 @@ impl Tracer<'_> {
         // As of closed meshes: what it only touches may be inside on another side.
         if trace.until < f64::INFINITY {
             trace.clear();
+            // (Those that are touched were taken out.)
+            self.tree.pierced(ray, Wanted::All, Shift::ALL[0], &mut direct.hits)?;
             if !follow(direct, false, trace)? {
                 return Ok(());
             }
