@@ -135,6 +135,11 @@ impl Found<'_> {
         Ok(())
     }
 
+    /// Ends the trace when the ray has just gone in, or where it begins.
+    fn end(&mut self) {
+        self.trace.until = self.trace.crossings.last().map_or(0.0, |crossing| crossing.t.upper);
+    }
+
     /// The ray may be on either side during the time of a crossing.
     fn unknown(&mut self, crossing: RayCrossing) -> Result<(), Error> {
         let t = Interval::between(crossing.t.lower.max(0.0), crossing.t.upper.max(0.0));
@@ -264,7 +269,7 @@ impl Course<'_> {
         if let Some(is_inside) = self.side(winding, [0; 2], from, to) {
             self.found.known(from.at, is_inside)?;
             if is_inside && self.is_first_enough {
-                self.found.trace.until = to.at;
+                self.found.end();
                 return Ok(Next::Enough);
             }
             return Ok(Next::GoOn);
@@ -307,7 +312,7 @@ impl Course<'_> {
         if root.t.lower > from.at {
             self.found.known(from.at, !is_inside_after)?;
             if !is_inside_after && self.is_first_enough {
-                self.found.trace.until = root.t.lower;
+                self.found.end();
                 return Ok(Next::Enough);
             }
         }
@@ -317,7 +322,7 @@ impl Course<'_> {
         if root.t.upper < to.at {
             self.found.known(root.t.upper, is_inside_after)?;
             if is_inside_after && self.is_first_enough {
-                self.found.trace.until = to.at;
+                self.found.end();
                 return Ok(Next::Enough);
             }
         }
