@@ -315,7 +315,7 @@ fn change_cuts(file: &mut File, random: &mut Random) {
         let doubles = [1.0, -2.0, 0.5, 7.0, -1.0, -1.0, -1.0, 20.0, 100.0, 1.0, 1.0, -1.0, 3.0, 9.0];
         // Of octants of the universe: about through the middle, and as thick as an eighth of the cell.
         let planes = |bits: u64| bits & 3 << 61 | bits & 1 << 63 | 7 << 55 | 8 << 51 | bits & 0x3FFF_3FFF;
-        let slabs: Vec<u64> = (0..3).flat_map(|k| [8 + k | k << 61, planes(random.next())]).collect();
+        let slabs: Vec<u64> = (0..3).flat_map(|k| [(8 + k) | k << 61, planes(random.next())]).collect();
         let heads = (0..40 + random.below(40)).map(|_| match random.below(4) {
             0 => [0, 0xFF, 0xAA, 0x55][random.below(4)],
             _ => random.next() as u8,

@@ -2,7 +2,7 @@
 //! lead to one answer it is the same.
 
 use super::{Aligned, CONTROL, Random, ask_measures, halves, walk};
-use leafless::octree::{CellFilter, Cursor, Direction, TaggedCell};
+use leafless::octree::{CellFilter, Cursor, Direction, SurfaceKind, TaggedCell};
 use leafless::op::Zone;
 use leafless::query::{
     Columns, DistanceTo, Obstacle, PointCursor, PointTable, RayHit, Region, Run, Side, classify_box,
@@ -88,8 +88,14 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
     let mut exact = vec![Membership::Inside; points.len()];
     contains(&solid, &frame, points, &mut exact, &CONTROL).expect("it is a solid");
+    // Slabs of a solid are wider by what is rounded on its universe, which may be far larger than they are.
+    let surfaces = tree.cuts().map_or(0, |cuts| cuts.surfaces as u32);
+    let has_slabs =
+        (0..surfaces).any(|id| tree.surface(id).is_none_or(|surface| surface.kind() == SurfaceKind::Slab));
     for ((&point, &exact), &answer) in points.iter().zip(&exact).zip(&answers) {
-        assert!(may_be(exact, plain.contains(point)) && may_be(exact, answer), "{point:?}");
+        let is_wider = has_slabs && exact == Membership::Undecided;
+        assert!(may_be(exact, plain.contains(point)), "{point:?}");
+        assert!(may_be(exact, answer) || is_wider, "{point:?}");
     }
     for corners in points.chunks_exact(2).take(8) {
         let min = [0, 1, 2].map(|axis: usize| corners[0][axis].min(corners[1][axis]));

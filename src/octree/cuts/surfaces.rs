@@ -406,9 +406,8 @@ impl<'a> SurfacesRef<'a> {
     /// Checks that the groups take in all slabs of cells one after the other, and that no two have one origin. O(n log n).
     pub(crate) fn check_groups(&self) -> Result<(), Error> {
         let slabs = self.slabs.len() as u64;
-        let wrong = |end: u64| {
-            Error::from(Damage::Surface { surface: self.records.len() as u64 + end.min(slabs) })
-        };
+        let wrong =
+            |end: u64| Error::from(Damage::Surface { surface: self.records.len() as u64 + end.min(slabs) });
         let mut end = 0;
         for group in self.groups {
             if group.end <= end {

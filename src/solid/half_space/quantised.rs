@@ -30,7 +30,7 @@ impl PlacedHalfSpace {
         let &Surface::Slab(ThickPlane { normal, inner, outer, .. }) = &*self.half_space.0 else {
             return None;
         };
-        if !self.placements.is_empty() || !(inner.is_finite() && outer.is_finite()) {
+        if !(self.placements.is_empty() && inner.is_finite() && outer.is_finite()) {
             return None;
         }
         let axis = (0..3).fold(0, |best, i| if normal[i].abs() > normal[best].abs() { i } else { best });

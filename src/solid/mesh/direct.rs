@@ -463,6 +463,7 @@ impl Tracer<'_> {
         let Some(is_inside) = self.side_of_ball(direct, rim, (point, lower), cube, &mut 32)? else {
             return Ok(None);
         };
+        let (near, _) = self.bounding(direct, |_| false, point, |_| true, (near, distance))?;
         Ok(match self.across(direct, point, Some(is_inside), &near)? {
             Some(most) if most >= lower => {
                 Some(self.surface_at(&near, Interval::between(lower, most), Some(is_inside)))
@@ -503,7 +504,13 @@ impl Tracer<'_> {
         if sides.of(near.triangle).is_none() {
             // It may lie within the solid, or outside of it.
             let lower = distance.lower;
-            (near, distance) = self.bounding(direct, sides, point, may_bound, (near, distance))?;
+            (near, distance) = self.bounding(
+                direct,
+                |triangle| sides.of(triangle).is_some(),
+                point,
+                may_bound,
+                (near, distance),
+            )?;
             let most = match sides.of(near.triangle) {
                 Some(_) => Some(distance.upper),
                 None => self.across(direct, point, is_inside, &near)?,
@@ -521,7 +528,7 @@ impl Tracer<'_> {
     fn bounding(
         &self,
         direct: &mut Direct,
-        sides: &Sides,
+        bounds: impl Fn(u32) -> bool,
         point: &[f64; 3],
         may_bound: impl Fn(u32) -> bool,
         first: (NearestPoint, Interval),
@@ -531,7 +538,7 @@ impl Tracer<'_> {
         let (mut seen, mut found) = ([u32::MAX; MOST], first);
         for count in 0..MOST {
             let (near, _) = &found;
-            if sides.of(near.triangle).is_some() || self.parts_the_solid(direct, near)? {
+            if bounds(near.triangle) || self.parts_the_solid(direct, near)? {
                 return Ok(found);
             }
             seen[count] = near.triangle;
