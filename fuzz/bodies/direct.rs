@@ -717,8 +717,9 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     }
     match (upper, outer.first()) {
         (Some(hit), Some(span)) => assert!(span.lower <= hit.t.upper, "{told}"),
-        (None, None) => {}
-        _ => panic!("{told}"),
+        // (Of a ray along a facet one may prove that it meets nothing, and the other not. Nothing is missed, see above.)
+        (None, _) => {}
+        (Some(_), None) => panic!("{told}"),
     }
     if let Some(hit) = full {
         assert!(
