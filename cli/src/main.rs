@@ -25,7 +25,7 @@ mod source;
 mod words;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use commands::*;
 use failure::{Failure, complain};
 use std::process::ExitCode;
@@ -51,65 +51,96 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF) or a volume (NRRD, MetaImage, raw)
+    #[command(
+        about = "Make a solid from a mesh (STL, OBJ, PLY, OFF, 3MF) or a volume (NRRD, MetaImage, raw)"
+    )]
     Voxelize(voxelize::Arguments),
-    /// Make a solid from a scene: primitives and set operations, as OpenSCAD exports them (.csg)
+    #[command(
+        about = "Make a solid from a scene: primitives and set operations, as OpenSCAD exports them (.csg)"
+    )]
     Csg(csg::Arguments),
-    /// Make a tri-dexel model, intervals along rays, of a solid, a mesh, a scene or a volume
+    #[command(
+        about = "Make a tri-dexel model, intervals along rays, of a solid, a mesh, a scene or a volume"
+    )]
     Dexelize(dexelize::Arguments),
-    /// Make an octree, a tri-dexel model or a triangle mesh of any of them
+    #[command(about = "Make an octree, a tri-dexel model or a triangle mesh of any of them")]
     Convert(convert::Arguments),
-    /// Show what a solid consists of (depth, nodes, cells, volume), a mesh (bodies, holes, defects) or a scene
+    #[command(
+        about = "Show what a solid consists of (depth, nodes, cells, volume), a mesh (bodies, holes, defects) or a scene"
+    )]
     Info(info::Arguments),
-    /// Check a file completely: exit code 0 if it is good, 1 with the reason if not
+    #[command(about = "Check a file completely: exit code 0 if it is good, 1 with the reason if not")]
     Verify(verify::Arguments),
-    /// All points of any of the solids
+    #[command(about = "All points of any of the solids")]
     Union(boolean::Arguments),
-    /// The points that the solids have in common
+    #[command(about = "The points that the solids have in common")]
     Intersection(boolean::Arguments),
-    /// The first solid without all the others
+    #[command(about = "The first solid without all the others")]
     Difference(boolean::Arguments),
-    /// The points that lie in an odd number of the solids (of two: in just one of them)
+    #[command(about = "The points that lie in an odd number of the solids (of two: in just one of them)")]
     Xor(boolean::Arguments),
-    /// Everything but the solid
+    #[command(about = "Everything but the solid")]
     Complement(boolean::ComplementArguments),
-    /// Say of points on standard input whether the solid contains them
+    #[command(about = "Say of points on standard input whether the solid contains them")]
     Contains(contains::Arguments),
-    /// Say how far points on standard input are from a solid, a mesh or a scene
+    #[command(about = "Say how far points on standard input are from a solid, a mesh or a scene")]
     Distance(distance::Arguments),
-    /// Say what lies beside cells on standard input
+    #[command(about = "Say what lies beside cells on standard input")]
     Neighbours(neighbours::Arguments),
-    /// Say where rays on standard input first meet a solid, a mesh or a scene
+    #[command(about = "Say where rays on standard input first meet a solid, a mesh or a scene")]
     Ray(ray::Arguments),
-    /// Make a picture (PNG), or show one on the terminal
+    #[command(about = "Make a picture (PNG), or show one on the terminal")]
     Render(render::Arguments),
-    /// Write how far a solid, a mesh or a scene reaches in each column of cells: a height map
+    #[command(
+        about = "Write how far a solid, a mesh or a scene reaches in each column of cells: a height map"
+    )]
     Heights(heights::Arguments),
-    /// Write the surface of a solid, a mesh or a scene as a triangle mesh
+    #[command(about = "Write the surface of a solid, a mesh or a scene as a triangle mesh")]
     Mesh(mesh::Arguments),
-    /// Write the cells of a solid as a volume (NRRD or raw)
+    #[command(about = "Write the cells of a solid as a volume (NRRD or raw)")]
     Bitmap(bitmap::Arguments),
-    /// Write the voxels of a solid, a mesh or a scene as records (NPZ or CSV), or make a solid of records
+    #[command(
+        about = "Write the voxels of a solid, a mesh or a scene as records (NPZ or CSV), or make a solid of records"
+    )]
     Voxels(voxels::Arguments),
-    /// Say whether two solids or meshes overlap, by how much, and how far they are apart
+    #[command(about = "Say whether two solids or meshes overlap, by how much, and how far they are apart")]
     Interfere(interfere::Arguments),
-    /// Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones
+    #[command(
+        about = "Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones"
+    )]
     Measure(measure::Arguments),
-    /// Say how much of a solid lies in a ball, a box or another solid: cells, and the volume in common
+    #[command(
+        about = "Say how much of a solid lies in a ball, a box or another solid: cells, and the volume in common"
+    )]
     Within(within::Arguments),
-    /// Give a solid a channel: a colour, a temperature, a material at every point inside
+    #[command(about = "Give a solid a channel: a colour, a temperature, a material at every point inside")]
     Attribute(attribute::Arguments),
-    /// Say which value a channel has at points on standard input
+    #[command(about = "Say which value a channel has at points on standard input")]
     Sample(sample::Arguments),
-    /// Say what a channel amounts to in a solid: least, greatest, mean, integral; or for each material
+    #[command(
+        about = "Say what a channel amounts to in a solid: least, greatest, mean, integral; or for each material"
+    )]
     Summary(summary::Arguments),
-    /// Show the main job end to end on a mechanical part that the program makes itself
+    #[command(about = "Show the main job end to end on a mechanical part that the program makes itself")]
     Demo(demo::Arguments),
+}
+
+/// The command line, with help that says of each command first what it does, and then how.
+fn command_line() -> clap::Command {
+    let mut all = Arguments::command();
+    for own in all.get_subcommands_mut() {
+        if let (Some(about), Some(long)) = (own.get_about(), own.get_long_about()) {
+            let text = format!("{about}.\n\n{long}");
+            *own = own.clone().long_about(text);
+        }
+    }
+    all
 }
 
 fn main() -> ExitCode {
     signals::watch();
-    let arguments = match Arguments::try_parse() {
+    let parsed = command_line().try_get_matches();
+    let arguments = match parsed.and_then(|mut matches| Arguments::from_arg_matches_mut(&mut matches)) {
         Ok(arguments) => arguments,
         Err(error) => return refuse_usage(&error),
     };
@@ -194,7 +225,6 @@ fn usage_line(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_definition_of_the_arguments_is_sound() {

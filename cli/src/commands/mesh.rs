@@ -14,8 +14,6 @@ use leafless::lattice::MAX_DEPTH;
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Writes the surface of a solid as a closed triangle mesh.
-///
 /// The surface separates samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
 /// cells, and vertices lie where the edges between corners cross the surface. Samples of a volume are its voxels, and of
 /// a solid from a file (.lfl) its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
