@@ -9,8 +9,9 @@ use leafless::file::{from_bytes, to_bytes};
 use leafless::mesh::MeshMoments;
 use leafless::solid::HalfSpace;
 use leafless::{
-    Cell, Control, Csg, FillRule, Frame, Membership, MeshSolid, Octree, Solid, SurfaceOptions, TriangleMesh,
-    build_extended, compact, complement, contains, difference, exchange, intersection, measure, union, xor,
+    Affine, AnySolid, Cell, Control, Csg, FillRule, Frame, Membership, MeshSolid, Octree, Solid,
+    SurfaceOptions, TriangleMesh, build_extended, compact, complement, contains, difference, exchange,
+    intersection, measure, union, xor,
 };
 
 type Point = [f64; 3];
@@ -364,4 +365,103 @@ fn a_million_points_of_smooth_parts() {
     for name in ["fandisk.obj", "bunny-closed.stl", "busted.STL"] {
         million(name, 1e-3);
     }
+}
+
+/// Turned and scaled by five, about two axes: all of it is exact for points of not too many bits.
+const TURNS: [[[f64; 4]; 3]; 2] = [
+    [[3.0, -4.0, 0.0, 0.0], [4.0, 3.0, 0.0, 0.0], [0.0, 0.0, 5.0, 0.0]],
+    [[5.0, 0.0, 0.0, 0.0], [0.0, 3.0, -4.0, 0.0], [0.0, 4.0, 3.0, 0.0]],
+];
+
+/// A stored mesh that is turned again and again: no point is told wrong. Returns the numbers of nodes and of points that are told, of
+/// `count` each time.
+fn turned_stored(name: &str, trial: &Trial, turns: usize, count: usize) -> Vec<(u64, usize)> {
+    let mut random = Random(0x7057);
+    let (low, high) = trial.mesh.bounds();
+    let reach = low.iter().chain(&high).fold(0.0, |most: f64, c| most.max(c.abs()));
+    let unit = 2f64.powi(reach.log2().ceil() as i32 - 45);
+    let mut points = trial.points(&mut random, count);
+    points.iter_mut().for_each(|p| *p = p.map(|c| (c / unit).round() * unit + 0.0));
+    // (On a facet that is parallel to its rays the oracle decides by a shift: such points count as undecided.)
+    let truth_off_surface = |p: Point| {
+        let truth = trial.truth(p)?;
+        let beside =
+            |k: usize| trial.truth(at(|i| p[i] + if i == k / 2 { [-unit, unit][k % 2] } else { 0.0 }));
+        (0..6).all(|k| beside(k) == Some(truth)).then_some(truth)
+    };
+    let truth: Vec<_> = points.iter().map(|&p| truth_off_surface(p)).collect();
+    let source = points.clone();
+    let (mut tree, mut tolerance, mut found) = (trial.tree.clone(), trial.tolerance, Vec::new());
+    for rows in TURNS.iter().cycle().take(turns) {
+        let map = Affine::new(*rows).unwrap();
+        let moved = AnySolid::new(tree).placed(&map).unwrap();
+        tolerance *= 5.0;
+        let options = SurfaceOptions { tolerance: Some(tolerance) };
+        let frame = options.frame(&Solid::bounds(&moved).unwrap()).unwrap();
+        let frame = frame.with_depth(frame.depth().min(trial.frame.depth() + 1)).unwrap();
+        tree = build_extended(&moved, &frame, &options, &alone()).unwrap();
+        tree.view().check().unwrap();
+        points.iter_mut().for_each(|p| *p = map.apply(*p));
+        let mut answers = vec![Membership::Undecided; points.len()];
+        contains(&tree, &frame, &points, &mut answers, &alone()).unwrap();
+        for ((p, answer), truth) in source.iter().zip(&answers).zip(&truth) {
+            let is_wrong = match answer {
+                Membership::Inside => *truth == Some(false),
+                Membership::Outside => *truth == Some(true),
+                Membership::Undecided => false,
+            };
+            let away =
+                || trial.corners().map(|corners| distance(*p, corners).0).fold(f64::INFINITY, f64::min);
+            assert!(
+                !is_wrong,
+                "{name}, {:?}, {tolerance}: {p:?} is told {answer:?}, {:e} away",
+                trial.fill,
+                away()
+            );
+        }
+        let known = answers.iter().filter(|answer| **answer != Membership::Undecided).count();
+        found.push((tree.statistics().nodes(), known));
+    }
+    found
+}
+
+#[test]
+fn stored_meshes_that_are_turned() {
+    let mut random = Random(0x1A7E6);
+    for (name, soup) in soups(&mut random) {
+        let fill = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive][random.below(3) as usize];
+        let trial = Trial::new(shapes::mesh(&soup), fill, 1e-2, 6);
+        for (nodes, known) in turned_stored(name, &trial, 2, 1_000) {
+            assert!(known > 100, "{name}: {known} of 1000, {nodes} nodes");
+        }
+    }
+}
+
+#[test]
+fn turned_prisms_take_few_cells() {
+    for count in [8u32, 24] {
+        let polygon: Vec<[f64; 2]> = (0..count)
+            .map(|k| (f64::from(k) + 0.5) * std::f64::consts::TAU / f64::from(count))
+            .map(|angle| [0.5 * angle.cos(), 0.5 * angle.sin()])
+            .collect();
+        let part = turned(&shapes::prism(&polygon, [0.0; 2], -0.25, 0.25));
+        let trial = Trial::new(shapes::mesh(&part), FillRule::NonZero, 1e-5, 20);
+        let own = trial.tree.statistics().nodes();
+        let found = turned_stored("prism", &trial, 1, 2_000);
+        println!("{count} sides: {own} nodes, turned {found:?}");
+        assert!(
+            found.iter().all(|&(nodes, known)| nodes <= 4 * own && known > 1_000),
+            "{own} nodes, {found:?}"
+        );
+    }
+}
+
+#[test]
+fn machined_parts_that_are_turned_take_few_cells() {
+    let Some((mesh, size)) = opened("featuretype.STL") else { return };
+    let trial = Trial::new(mesh, FillRule::NonZero, 1e-6 * size, 20);
+    let own = trial.tree.statistics().nodes();
+    let found = turned_stored("featuretype.STL", &trial, 1, 5_000);
+    println!("{own} nodes, turned {found:?}");
+    assert!(found.iter().all(|&(nodes, known)| nodes <= 4 * own && known > 3_000), "{own} nodes, {found:?}");
 }

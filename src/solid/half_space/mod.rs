@@ -366,6 +366,14 @@ impl Placed {
         }
     }
 
+    /// Of a plane with a width, more than what its ends are moved outward by, as for what is rounded of a value.
+    pub(crate) fn layer_slack(&self) -> Option<f64> {
+        match self {
+            Placed::Slab(slab) => Some(slab.slack()),
+            _ => None,
+        }
+    }
+
     /// Whether a piece of the surface may lie in a face of a cell that the surface crosses. (Planes that do so cross no cell
     /// beside the face.)
     pub(crate) fn may_hold_face(&self) -> bool {

@@ -4,9 +4,9 @@ use super::bounds::{Octants, Sides};
 use super::linear;
 use super::map::ExactMap;
 use super::tangent::Tangent;
-use super::{HalfSpace, Surface};
+use super::{HalfSpace, PlacedHalfSpace, Surface};
 use crate::cut::Slab;
-use crate::lattice::exact::Dyadic;
+use crate::lattice::exact::{Dyadic, sqrt};
 use crate::lattice::{Cube, Interval, axes};
 use crate::octree::cuts::{CellSlab, Origin};
 use alloc::sync::Arc;
@@ -46,6 +46,33 @@ impl HalfSpace {
         let (normal, cell_slab) = ([x, y, z], Some(slab));
         HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer, identity, cell_slab })))
     }
+
+    /// Normal and ends of a plane with a width; `None` of others.
+    pub(crate) fn layer_ends(&self) -> Option<([f64; 3], [f64; 2])> {
+        match &*self.0 {
+            &Surface::Slab(ThickPlane { normal, inner, outer, .. }) => Some((normal, [inner, outer])),
+            _ => None,
+        }
+    }
+
+    /// A layer of another identity that is so many times as wide; `None` if that were wider than `most`, and of what has no width.
+    pub(crate) fn widened(&self, times: f64, most: f64) -> Option<HalfSpace> {
+        let (normal, [inner, outer]) = self.layer_ends()?;
+        let length = sqrt(normal.iter().map(|c| c * c).sum::<f64>());
+        let (width, room) = (times * (outer - inner), 0.5 * (times - 1.0) * (outer - inner));
+        let is_thin = width > 0.0 && width <= most * length;
+        is_thin.then(|| HalfSpace::slab(normal, (inner - room).next_down(), (outer + room).next_up(), None))
+    }
+}
+
+impl PlacedHalfSpace {
+    /// What its own space has as a unit, in model units before it is moved: of a slab of a cell the edge of the universe.
+    pub(crate) fn unit(&self) -> f64 {
+        match (&*self.half_space.0, self.placements.first()) {
+            (Surface::Slab(ThickPlane { cell_slab: Some(_), .. }), Some(universe)) => universe.rows()[0][0],
+            _ => 1.0,
+        }
+    }
 }
 
 /// Which slab it is. A slab stands for a set that is not known, so that only its origin tells it from others: two with the same
@@ -75,6 +102,8 @@ pub(crate) struct PlacedSlab {
     /// The offsets, moved outward by more than all that is rounded on the universe.
     inner: f64,
     outer: f64,
+    /// More than that.
+    slack: f64,
 }
 
 impl PlacedSlab {
@@ -97,7 +126,12 @@ impl PlacedSlab {
             let size: f64 = normal.iter().map(|c| 2.0 * c.abs()).sum::<f64>() + offset.abs();
             if size.is_finite() { 16.0 * f64::EPSILON * size } else { 0.0 }
         };
-        PlacedSlab { normal, inner: inner - slack(inner), outer: outer + slack(outer) }
+        let (below, above) = (slack(inner), slack(outer));
+        PlacedSlab { normal, inner: inner - below, outer: outer + above, slack: below.max(above) }
+    }
+
+    pub(crate) fn slack(&self) -> f64 {
+        self.slack
     }
 
     fn at(&self, t: [f64; 3]) -> f64 {

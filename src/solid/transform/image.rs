@@ -12,23 +12,24 @@ pub(super) struct LatticeMap {
     offset: [f64; 3],
     /// How far what [`image`](Self::image) computes for boxes of the universe may be off. Zero: not at all.
     pub(super) error: [f64; 3],
+    /// Whether nothing is rounded along an axis, on which but one axis of the source counts.
+    exact: [bool; 3],
 }
 
 impl LatticeMap {
     /// The map p ↦ linear · (p − before) + after of model space. `linear` may be off by 5 · 2^-53,
-    /// relatively, in each entry; none of it is if the map is `monomial`, and then its entries are powers of
-    /// two, one a row.
+    /// relatively, in each entry; none of a row is that is `monomial`, and then it has one entry, which is a power of two.
     fn new(
         linear: &[[f64; 3]; 3],
         before: [f64; 3],
         after: [f64; 3],
-        monomial: bool,
+        monomial: [bool; 3],
         from: &Frame,
         to: &Frame,
     ) -> LatticeMap {
         let (step, cell) = (from.cell_size(), to.cell_size());
-        let mut map = LatticeMap { linear: [[0.0; 3]; 3], offset: [0.0; 3], error: [0.0; 3] };
-        let mut exact = monomial;
+        let mut map =
+            LatticeMap { linear: [[0.0; 3]; 3], offset: [0.0; 3], error: [0.0; 3], exact: monomial };
         for i in 0..3 {
             let (mut offset, mut size) = (after[i] - to.origin()[i], after[i].abs() + to.origin()[i].abs());
             let mut reach = 0.0;
@@ -36,7 +37,7 @@ impl LatticeMap {
                 let entry = linear[i][j] * step / cell;
                 map.linear[i][j] = entry;
                 reach += entry.abs() * from.cells() as f64;
-                exact &= two_product(entry, cell) == (linear[i][j] * step, 0.0);
+                map.exact[i] &= two_product(entry, cell) == (linear[i][j] * step, 0.0);
                 offset += linear[i][j] * (from.origin()[j] - before[j]);
                 size += linear[i][j].abs() * (from.origin()[j].abs() + before[j].abs());
             }
@@ -45,7 +46,10 @@ impl LatticeMap {
             // bring five more.
             map.error[i] = 32.0 * f64::EPSILON * (reach + size / cell);
         }
-        if exact && (0..3).all(|i| map.offset_is_exact(i, &linear[i], before, after[i], from, to)) {
+        for i in 0..3 {
+            map.exact[i] = map.exact[i] && map.offset_is_exact(i, &linear[i], before, after[i], from, to);
+        }
+        if map.exact == [true; 3] {
             map.error = [0.0; 3];
         }
         map
@@ -118,6 +122,11 @@ impl LatticeMap {
         edge
     }
 
+    /// Whether nothing is rounded along an axis.
+    pub(super) fn is_exact_along(&self, axis: usize) -> bool {
+        self.exact[axis]
+    }
+
     pub(super) fn is_exact(&self) -> bool {
         self.error == [0.0; 3]
     }
@@ -167,9 +176,20 @@ impl Maps {
         let rows = placement.rows();
         let linear = rows.map(|[x, y, z, _]| [x, y, z]);
         let offset = rows.map(|[_, _, _, t]| t);
-        let monomial = placement.is_monomial();
-        let inward = LatticeMap::new(inverse, offset, [0.0; 3], monomial, frame, own);
-        let outward = LatticeMap::new(&linear, [0.0; 3], offset, monomial, own, frame);
+        // An axis that goes to one axis, to which no other goes, comes back exactly.
+        let (mut inverse, mut to, mut from) = (*inverse, [false; 3], [false; 3]);
+        for (i, row) in linear.iter().enumerate() {
+            let is_power = |c: f64| c.is_normal() && c.to_bits() & ((1 << 52) - 1) == 0;
+            let Some(j) = (0..3).find(|&j| row[j] != 0.0) else { continue };
+            let is_lone = (0..3).all(|k| k == j || row[k] == 0.0) && is_power(row[j]);
+            to[i] = is_lone;
+            if is_lone && (0..3).all(|k| k == i || linear[k][j] == 0.0) {
+                inverse[j] = axes(|k| if k == i { 1.0 / row[j] } else { 0.0 });
+                from[j] = true;
+            }
+        }
+        let inward = LatticeMap::new(&inverse, offset, [0.0; 3], from, frame, own);
+        let outward = LatticeMap::new(&linear, [0.0; 3], offset, to, own, frame);
         Maps { inward, outward, grain: inward.grain() }
     }
 }

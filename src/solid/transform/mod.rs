@@ -2,6 +2,8 @@
 
 mod faces;
 mod image;
+mod polytope;
+mod regions;
 mod same;
 mod slabs;
 mod splits;

@@ -5,13 +5,19 @@
 //! by the sides on which the target and the cell itself lie, exactly, and by bounds over a box around the piece that they have in
 //! common, in the target's coordinates and in those of the cell. Only where that does not suffice it is told by bounds of pairs, too.
 //!
+//! Where there are layers, pieces are convex bodies, and their values are told apart state by state ([`regions`](super::regions)). Layers
+//! of one plane that hold each other count as the widest of them, which is known in fewer places, and a surface that lies in a layer
+//! all over the target counts as that layer.
+//!
 //! Signs are those of the surfaces, so nothing is rounded that counts. From there on the cells below know nothing but the function.
 
 use super::faces::{LatticePlane, lattice_planes, lone};
 use super::image::Maps;
+use super::polytope::Polytope;
+use super::regions::{self, Flat, Found, Regions};
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::exact::Dyadic;
+use crate::lattice::exact::{Dyadic, sqrt};
 use crate::lattice::{Affine, Cell, Frame, axes};
 use crate::memory;
 use crate::octree::Tag;
@@ -36,9 +42,18 @@ pub(super) struct Surfaces {
     before: Vec<Placed>,
     /// On that of the frame.
     after: Vec<Placed>,
+    /// For each of them the next wider layer of the same plane, if there is one.
+    wider: Vec<Option<u32>>,
     /// The last of them, if they are planes of the solid's own lattice.
     planes: Vec<LatticePlane>,
 }
+
+/// By so much a layer is widened, and by the next once more, where two cells of the source cannot be told from each other otherwise:
+/// their facets meet in the wall between them, or nearly there, and one facet's width takes up more of it than the other's.
+const WIDER: [f64; 4] = [3.0, 3.0, 8.0, 32.0];
+
+/// A layer that would be wider than that share of a finest cell stays as it is.
+const MOST_WIDENED: f64 = 1.0;
 
 impl core::fmt::Debug for Surfaces {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
@@ -88,6 +103,9 @@ impl Surfaces {
         };
         let mut place_all = || {
             list.iter().try_for_each(|surface| place(&mut own, surface))?;
+            let (wider, widened) = wider(&list, MOST_WIDENED * inner.frame().cell_size())?;
+            widened.iter().try_for_each(|surface| place(&mut own, surface))?;
+            own.wider = wider;
             let planes = lattice_planes(&mut worker, inner.exterior(), &own.before)?;
             for &plane in &planes {
                 place(&mut own, &plane_of(inner.frame(), plane))?;
@@ -105,6 +123,15 @@ impl Surfaces {
 
     fn first_plane(&self) -> usize {
         self.moved.len() - self.planes.len()
+    }
+
+    fn wider(&self, index: u32) -> Option<u32> {
+        self.wider.get(index as usize).copied().flatten()
+    }
+
+    /// Whether there are layers that may be told apart by their widths.
+    fn has_layers(&self) -> bool {
+        self.after.iter().any(|placed| placed.layer_slack().is_some())
     }
 
     pub(super) fn bytes(&self) -> usize {
@@ -155,6 +182,49 @@ impl Surfaces {
     }
 }
 
+/// For each surface the next wider layer of the same plane, and those that are added for that.
+#[allow(clippy::type_complexity)]
+fn wider(list: &[PlacedHalfSpace], most: f64) -> Result<(Vec<Option<u32>>, Vec<PlacedHalfSpace>), Error> {
+    /// Most layers of one plane.
+    const NEAR: usize = 4;
+    let mut wider = memory::filled(list.len(), None)?;
+    let mut layers = Vec::new();
+    for (number, surface) in list.iter().enumerate() {
+        if let Some((normal, ends)) = surface.half_space.layer_ends() {
+            let mut key = memory::collected(normal.map(f64::to_bits).into_iter())?;
+            for map in &*surface.placements {
+                key.try_reserve(12)?;
+                key.extend(map.rows().as_flattened().iter().map(|c| c.to_bits()));
+            }
+            memory::push(&mut layers, (key, ends, number))?;
+        }
+    }
+    // Wider layers of a plane stand behind it.
+    layers.sort_by(|(a, [from, to], _), (b, [other_from, other_to], _)| {
+        a.cmp(b).then(other_from.total_cmp(from)).then(to.total_cmp(other_to))
+    });
+    let mut added = Vec::new();
+    for (place, (key, ends, number)) in layers.iter().enumerate() {
+        let holds = |other: &&(Vec<u64>, [f64; 2], usize)| {
+            other.0 == *key && other.1[0] < ends[0] && other.1[1] > ends[1]
+        };
+        if let Some((_, _, other)) = layers[place + 1..].iter().take(NEAR).find(holds) {
+            wider[*number] = Some(*other as u32);
+            continue;
+        }
+        let (mut at, mut last, unit) = (*number, list[*number].clone(), list[*number].unit());
+        for times in WIDER {
+            let Some(half_space) = last.half_space.widened(times, most / unit) else { break };
+            last.half_space = half_space;
+            wider[at] = Some(wider.len() as u32);
+            at = wider.len();
+            memory::push(&mut wider, None)?;
+            memory::push(&mut added, last.clone())?;
+        }
+    }
+    Ok((wider, added))
+}
+
 /// A plane of a lattice as a half-space, which lies above it.
 fn plane_of(frame: &Frame, (axis, at): LatticePlane) -> PlacedHalfSpace {
     let step = &Dyadic::new(f64::from(at)) * &Dyadic::new(frame.cell_size());
@@ -180,15 +250,14 @@ fn variables(known: &OpenSurfaces) -> impl Iterator<Item = (usize, u32)> + Clone
 
 /// The same function of those surfaces alone on which it depends.
 fn shortened(known: OpenSurfaces) -> OpenSurfaces {
-    let mut own = OpenSurfaces::constant(false);
-    let mut table = known.table();
-    for (i, index) in variables(&known) {
-        // (Numbers ascend, so that none is taken that is still to come.)
-        if let Some(to) = own.number(index) {
-            table = table.renamed(i, to, false);
-        }
+    regions::renamed(&known, |index| index)
+}
+
+/// Calls a surface by the name of another everywhere.
+fn rename(values: &mut [OpenSurfaces], from: u32, to: u32) {
+    for value in values.iter_mut().filter(|value| value.indices().contains(&from)) {
+        *value = regions::renamed(value, |index| if index == from { to } else { index });
     }
-    own.with_table(table)
 }
 
 /// A cell for which a function is looked for.
@@ -203,6 +272,8 @@ pub(super) struct Target<'s> {
     /// A box around its inverse image.
     low: [f64; 3],
     high: [f64; 3],
+    /// The length of a finest cell of the solid's own frame, in half edges.
+    finest: f64,
     /// What was found out of surfaces.
     met: Vec<Met>,
 }
@@ -214,6 +285,7 @@ struct Met {
     /// The side on which all of the target lies.
     side: Option<bool>,
     bounds: Option<Bounds>,
+    flat: Flat,
 }
 
 /// Bounds of a function over a target, from its centre in half edges.
@@ -247,7 +319,9 @@ impl<'s> Target<'s> {
         let centre = corner.map(|c| c + half);
         let (image, _) = maps.inward.image(centre, 0.0);
         let (low, high) = maps.inward.around(corner, edge);
-        Target { surfaces, maps, cell, centre, half, image, low, high, met: Vec::new() }
+        let lengths = axes(|j| maps.outward.linear.iter().map(|row| row[j] * row[j]).sum::<f64>());
+        let finest = sqrt(lengths.into_iter().fold(f64::INFINITY, f64::min)) / half;
+        Target { surfaces, maps, cell, centre, half, image, low, high, finest, met: Vec::new() }
     }
 
     /// What lies beyond the universe of `cells` finest cells, as pieces that may overlap.
@@ -271,6 +345,9 @@ impl<'s> Target<'s> {
     pub(super) fn function(&mut self, sources: &[Source]) -> Result<Option<OpenSurfaces>, Error> {
         let mut pieces = memory::with_capacity(sources.len())?;
         pieces.extend(sources.iter().filter_map(|source| self.piece(source)));
+        if self.surfaces.has_layers() {
+            return self.by_regions(&pieces);
+        }
         // What is known of each piece by the sides of its own surfaces alone.
         let mut all = OpenSurfaces::constant(false);
         let mut values = memory::with_capacity(pieces.len())?;
@@ -302,6 +379,170 @@ impl<'s> Target<'s> {
             }
         }
         Ok(None)
+    }
+
+    /// The same where there are layers.
+    fn by_regions(&mut self, pieces: &[Piece<'_>]) -> Result<Option<OpenSurfaces>, Error> {
+        /// So often layers are made wider.
+        const MOST_TRIES: usize = 12;
+        let mut bodies = memory::with_capacity(pieces.len())?;
+        let mut values = memory::with_capacity(pieces.len())?;
+        for piece in pieces {
+            let Some(body) = self.body(piece.source) else { continue };
+            let mut value = piece.source.known;
+            for (i, index) in variables(&piece.source.known) {
+                if let Some(inside) = self.place(piece, &body, index)? {
+                    value = value.with_table(value.table().with(i, inside));
+                }
+            }
+            memory::push(&mut bodies, (piece, body))?;
+            memory::push(&mut values, shortened(value))?;
+        }
+        self.unite(&mut values);
+        let mut with_planes = false;
+        for _ in 0..MOST_TRIES {
+            let mut all = OpenSurfaces::constant(false);
+            if with_planes {
+                self.add_planes(&mut all);
+            }
+            if !values.iter().all(|value| value.indices().iter().all(|&index| all.number(index).is_some())) {
+                return Ok(None);
+            }
+            let conflict = match self.regions(&all, &bodies, &values)? {
+                Found::Function(table, known) => {
+                    return Ok(Some(shortened(all.with_table(table.simplified(known)))));
+                }
+                Found::Nothing => return Ok(None),
+                Found::Conflict(piece, ..) => piece,
+            };
+            if self.absorb(&all, &mut values)? || self.widen(&all, &mut values, conflict) {
+                continue;
+            }
+            let mut other = all;
+            if with_planes || !self.add_planes(&mut other) {
+                return Ok(None);
+            }
+            with_planes = true;
+        }
+        Ok(None)
+    }
+
+    /// Of several layers of one plane takes the widest alone.
+    fn unite(&self, values: &mut [OpenSurfaces]) {
+        let is_used =
+            |values: &[OpenSurfaces], index: u32| values.iter().any(|value| value.indices().contains(&index));
+        for k in 0..values.len() {
+            for i in 0..values[k].indices().len() {
+                let Some(&index) = values[k].indices().get(i) else { break };
+                let (mut at, mut widest) = (index, index);
+                while let Some(next) = self.surfaces.wider(at) {
+                    at = next;
+                    if is_used(values, at) {
+                        widest = at;
+                    }
+                }
+                if widest != index {
+                    rename(values, index, widest);
+                }
+            }
+        }
+    }
+
+    /// Lets layers stand for surfaces that lie in them all over the target; `false` if none does.
+    fn absorb(&mut self, all: &OpenSurfaces, values: &mut [OpenSurfaces]) -> Result<bool, Error> {
+        let mut left = *all;
+        let mut is_any = false;
+        for &wide in all.indices() {
+            for &thin in all.indices() {
+                let are_left = [wide, thin].iter().all(|index| left.indices().contains(index));
+                if wide != thin && are_left && self.met(wide)?.flat.holds(&self.met(thin)?.flat) {
+                    rename(values, thin, wide);
+                    left = regions::renamed(&left, |index| if index == thin { wide } else { index });
+                    is_any = true;
+                }
+            }
+        }
+        Ok(is_any)
+    }
+
+    /// Makes layers wider that the values depend on and a piece does not know of, or, if there are none, that it does; `false` if no
+    /// layer can be made wider.
+    fn widen(&self, all: &OpenSurfaces, values: &mut [OpenSurfaces], piece: usize) -> bool {
+        let own = values[piece];
+        for is_known in [false, true] {
+            let mut is_wider = false;
+            for &index in all.indices().iter().filter(|index| own.indices().contains(index) == is_known) {
+                if let Some(wider) = self.surfaces.wider(index) {
+                    rename(values, index, wider);
+                    is_wider = true;
+                }
+            }
+            if is_wider {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn regions(
+        &mut self,
+        all: &OpenSurfaces,
+        bodies: &[(&Piece<'_>, Polytope)],
+        values: &[OpenSurfaces],
+    ) -> Result<Found, Error> {
+        let mut regions = Regions::default();
+        for ((piece, body), value) in bodies.iter().zip(values) {
+            let mut places = [0; OpenSurfaces::MOST];
+            for (place, index) in places.iter_mut().zip(value.indices()) {
+                *place = all.indices().iter().position(|known| known == index).unwrap_or(0);
+            }
+            let mut seen = [(Flat::ANY, None); OpenSurfaces::MOST];
+            for (seen, &index) in seen.iter_mut().zip(all.indices()) {
+                *seen = (self.met(index)?.flat, self.place(piece, body, index)?);
+            }
+            let value = value.table().spread(&places[..value.indices().len()]);
+            if !regions.take(body, &seen[..all.indices().len()], value, self.finest)? {
+                return Ok(Found::Nothing);
+            }
+        }
+        Ok(regions.joined())
+    }
+
+    /// The side of a surface on which all of a piece lies, if that is known.
+    fn place(&mut self, piece: &Piece<'_>, body: &Polytope, index: u32) -> Result<Option<bool>, Error> {
+        if (index as usize) < self.surfaces.first_plane() {
+            let met = self.met(index)?;
+            if let Some(side) = met.side.or_else(|| met.flat.places(body).known()) {
+                return Ok(Some(side));
+            }
+            // What is exact may touch.
+            if met.flat.layer.is_some() {
+                return Ok(None);
+            }
+        }
+        self.side(piece, index)
+    }
+
+    /// What a source has in common with the target, in half edges from its centre; `None` if that is nothing.
+    fn body(&self, source: &Source) -> Option<Polytope> {
+        let inward = &self.maps.inward;
+        let mut body = Polytope::cube();
+        for axis in 0..3 {
+            let row = inward.linear[axis].map(|c| c * self.half);
+            if inward.is_exact_along(axis) {
+                // What only touches does not count.
+                let reach = row.iter().map(|c| c.abs()).sum::<f64>();
+                let (low, high) = (self.image[axis] - reach, self.image[axis] + reach);
+                if source.high[axis] <= low || source.low[axis] >= high {
+                    return None;
+                }
+            }
+            let slack = 2.0 * inward.error[axis] + ROUNDING * row.iter().map(|c| c.abs()).sum::<f64>();
+            for (end, sign) in [(source.low[axis], 1.0), (source.high[axis], -1.0)] {
+                body = body.clipped(row.map(|c| sign * c), sign * (self.image[axis] - end) + slack)?;
+            }
+        }
+        Some(body)
     }
 
     /// Adds the planes of the solid's own lattice that the target's image reaches on both sides of; `false` if there are none, or too
@@ -399,7 +640,13 @@ impl<'s> Target<'s> {
         let placed = &self.surfaces.after[index as usize];
         let side = lone(placed, self.cell)?.side(0);
         let bounds = if side.is_none() { Bounds::of(placed, self.cell) } else { None };
-        let met = Met { index, side, bounds };
+        let tangent = placed.tangent(centre(self.cell), half_edge(self.cell));
+        let flat = tangent.map_or(Flat::ANY, |Tangent { gradient, low, high }| {
+            // (The ends are moved outward, and so are the bounds.)
+            let layer = placed.layer_slack().map(|slack| 3.0 * slack);
+            Flat { gradient, low, high, layer }
+        });
+        let met = Met { index, side, bounds, flat };
         memory::push(&mut self.met, met)?;
         Ok(met)
     }

@@ -1,0 +1,263 @@
+//! One function of few surfaces that says what pieces of a target say, told apart by where layers are known.
+//!
+//! At a point a surface is known to be on one side, or the point lies in the width of a layer: that is the *state* of the point. What
+//! a table says there it says for all sides of the layers in whose widths the point lies. So a function may stand for a piece if for
+//! each state that occurs in the piece it says what the piece does, or nothing. It must not say anything where the piece says
+//! nothing. To say nothing where the piece does is to lose, which is allowed along lines: where two facets meet in a wall between
+//! two cells of the source, one of these knows both planes and the other one of them, and it is but in the widths around their edge
+//! that the other plane counts in that, too.
+
+use super::polytope::Polytope;
+use crate::error::Error;
+use crate::memory;
+use crate::solid::OpenSurfaces;
+use crate::solid::half_space::table::Table;
+use alloc::vec::Vec;
+
+/// Most states in a target.
+const MOST_STATES: usize = 2048;
+
+/// Linear bounds of a surface's function over a target, from its centre in half edges.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Flat {
+    pub(super) gradient: [f64; 3],
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// Whether it is a layer, and then more than what `low` and `high` are off by.
+    pub(super) layer: Option<f64>,
+}
+
+/// Where a point may lie: where the function is positive, in the width of a layer, and where it is negative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Places {
+    pub(super) inside: bool,
+    pub(super) within: bool,
+    pub(super) outside: bool,
+}
+
+impl Places {
+    /// On one side.
+    pub(super) fn side(inside: bool) -> Places {
+        Places { inside, within: false, outside: !inside }
+    }
+
+    /// The side, if that is all.
+    pub(super) fn known(self) -> Option<bool> {
+        (!self.within && self.inside != self.outside).then_some(self.inside)
+    }
+}
+
+impl Flat {
+    /// Of which nothing is known.
+    pub(super) const ANY: Flat =
+        Flat { gradient: [0.0; 3], low: f64::NEG_INFINITY, high: f64::INFINITY, layer: None };
+
+    /// Where points of a body lie. (What is no number may be anywhere.)
+    #[allow(clippy::neg_cmp_op_on_partial_ord)]
+    pub(super) fn places(&self, body: &Polytope) -> Places {
+        let (least, most) = body.extremes(self.gradient);
+        match self.layer {
+            Some(margin) => Places {
+                inside: !(most + self.low + margin < 0.0),
+                within: !(least + self.low > 0.0 || most + self.high < 0.0),
+                outside: !(least + self.high - margin > 0.0),
+            },
+            None => Places {
+                inside: !(most + self.high < 0.0),
+                within: false,
+                outside: !(least + self.low > 0.0),
+            },
+        }
+    }
+
+    /// Whether it is a layer that is known nowhere in the cube but where the other is, and there to be on the same side.
+    pub(super) fn holds(&self, other: &Flat) -> bool {
+        let Some(margin) = self.layer else { return false };
+        let length = |flat: &Flat| {
+            let [x, y, z] = flat.gradient;
+            libm::sqrt(x * x + y * y + z * z)
+        };
+        let share = length(other) / length(self);
+        let (mut reach, mut size) = (0.0, 0.0);
+        for axis in 0..3 {
+            let (own, others) = (share * self.gradient[axis], other.gradient[axis]);
+            reach += (others - own).abs();
+            size += own.abs() + others.abs();
+        }
+        let ends = [self.low, self.high].map(|end| share * end);
+        size += ends[0].abs() + ends[1].abs() + other.low.abs() + other.high.abs();
+        let room = reach + share * margin + 16.0 * f64::EPSILON * size;
+        // (What is no number is not less.)
+        ends[0] + room <= other.low && other.high <= ends[1] - room
+    }
+
+    /// What of a body lies in one of the places.
+    fn part(&self, body: &Polytope, place: Place) -> Option<Polytope> {
+        let (up, down) = (self.gradient, self.gradient.map(|c| -c));
+        match (place, self.layer) {
+            (Place::Inside, Some(margin)) => body.clipped(up, self.low + margin),
+            (Place::Inside, None) => body.clipped(up, self.high),
+            (Place::Outside, Some(margin)) => body.clipped(down, margin - self.high),
+            (Place::Outside, None) => body.clipped(down, -self.low),
+            (Place::Within, _) => body.clipped(up, self.high)?.clipped(down, -self.low),
+        }
+    }
+
+    /// How wide it is, in half edges.
+    fn width(&self) -> f64 {
+        let [x, y, z] = self.gradient;
+        (self.high - self.low) / libm::sqrt(x * x + y * y + z * z)
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Place {
+    Inside,
+    Within,
+    Outside,
+}
+
+/// What is found of pieces.
+pub(super) enum Found {
+    /// A function, and the combinations of signs for which it is known.
+    Function(Table, Table),
+    /// None, because of this piece.
+    Conflict(usize),
+    /// None.
+    Nothing,
+}
+
+/// A state that occurs in a piece.
+struct State {
+    piece: usize,
+    /// The combinations of signs that it has.
+    signs: u64,
+    /// Whether a layer's width counts.
+    is_wide: bool,
+    /// Whether to say nothing is a loss that does not matter.
+    may_be_lost: bool,
+}
+
+/// States of pieces, to be joined.
+#[derive(Default)]
+pub(super) struct Regions {
+    states: Vec<State>,
+    /// What each piece says.
+    values: Vec<Table>,
+}
+
+/// Each surface, and where the points of a piece lie if that is known otherwise.
+pub(super) type Seen<'f> = [(Flat, Option<bool>)];
+
+impl Regions {
+    /// Takes in a piece, which says `value` of these surfaces; `false` if there are too many states. What is lost must lie within
+    /// `finest` of a line.
+    pub(super) fn take(
+        &mut self,
+        body: &Polytope,
+        seen: &Seen<'_>,
+        value: Table,
+        finest: f64,
+    ) -> Result<bool, Error> {
+        memory::push(&mut self.values, value)?;
+        self.divide(body, seen, 0, (u64::MAX, 0.0), finest)
+    }
+
+    /// Of those that lie in places of the first surfaces: these combinations of signs; the greatest width of a layer in which they are.
+    fn divide(
+        &mut self,
+        body: &Polytope,
+        seen: &Seen<'_>,
+        number: usize,
+        (signs, width): (u64, f64),
+        finest: f64,
+    ) -> Result<bool, Error> {
+        /// What is lost may be so many times as thick as the layers are wide: planes may meet at a small angle.
+        const SLENDER: f64 = 256.0;
+        let Some(&(flat, side)) = seen.get(number) else {
+            let piece = self.values.len() - 1;
+            let (value, is_wide) = (self.values[piece].0 & signs, width > 0.0);
+            let is_one = value == 0 || value == signs;
+            let may_be_lost = is_wide && is_one && body.is_needle(finest.min(SLENDER * width));
+            if self.states.iter().rev().take_while(|state| state.piece == piece).any(|state| {
+                state.signs == signs && state.is_wide == is_wide && state.may_be_lost == may_be_lost
+            }) {
+                return Ok(true);
+            }
+            memory::push(&mut self.states, State { piece, signs, is_wide, may_be_lost })?;
+            return Ok(self.states.len() <= MOST_STATES);
+        };
+        let places = side.map_or_else(|| flat.places(body), Places::side);
+        let all = [
+            (Place::Inside, places.inside, Table::of(number, false).0),
+            (Place::Within, places.within, u64::MAX),
+            (Place::Outside, places.outside, Table::of(number, true).0),
+        ];
+        let is_cut = all.iter().filter(|(_, may_be, _)| *may_be).count() > 1;
+        for (place, _, own) in all.into_iter().filter(|(_, may_be, _)| *may_be) {
+            let width = if matches!(place, Place::Within) { width.max(flat.width()) } else { width };
+            let known = (signs & own, width);
+            let is_done = match is_cut {
+                false => self.divide(body, seen, number + 1, known, finest)?,
+                true => match flat.part(body, place) {
+                    Some(part) => self.divide(&part, seen, number + 1, known, finest)?,
+                    None => true,
+                },
+            };
+            if !is_done {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// One function that says what all pieces say.
+    pub(super) fn joined(&self) -> Found {
+        let (mut holds, mut fails) = (0, 0);
+        // What is known of points outside of all widths first.
+        for is_wide in [false, true] {
+            for state in self.states.iter().filter(|state| state.is_wide == is_wide) {
+                let value = self.values[state.piece].0;
+                let open = if is_wide { state.signs & !(holds | fails) } else { state.signs };
+                (holds, fails) = (holds | value & open, fails | !value & open);
+                if holds & fails != 0 {
+                    return Found::Conflict(state.piece);
+                }
+            }
+        }
+        for state in &self.states {
+            let one = |table: u64| match table & state.signs {
+                0 => Some(false),
+                all if all == state.signs => Some(true),
+                _ => None,
+            };
+            let is_right = match (one(holds), one(self.values[state.piece].0)) {
+                (Some(own), value) => value == Some(own),
+                (None, Some(_)) => state.may_be_lost,
+                (None, None) => true,
+            };
+            if !is_right {
+                return Found::Conflict(state.piece);
+            }
+        }
+        if holds | fails == 0 {
+            return Found::Nothing;
+        }
+        Found::Function(Table(holds), Table(holds | fails))
+    }
+}
+
+/// The same function with surfaces called otherwise; some may become one.
+pub(super) fn renamed(known: &OpenSurfaces, name: impl Fn(u32) -> u32) -> OpenSurfaces {
+    let mut own = OpenSurfaces::constant(false);
+    let mut table = known.table();
+    for (i, &index) in known.indices().iter().enumerate() {
+        if table.depends_on(i) {
+            // (Numbers ascend, so that none is taken that is still to come.)
+            if let Some(to) = own.number(name(index)) {
+                table = table.renamed(i, to, false);
+            }
+        }
+    }
+    own.with_table(table)
+}
