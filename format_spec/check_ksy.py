@@ -86,7 +86,7 @@ SEEN_BY = {
     "section-metadata-length": {"section.end_of_entry"},
     "section-required": {"section.end_of_entry"},
     "section-missing": {"section.end_of_table"},
-    "section-cuts": {"cell_slab_group.end", None},
+    "section-cuts": {"cell_slab_group.end", "moments.end_of_moments", None},
     "section-end": {"section.end_of_table"},
     "file-length": {LENGTH},
     "object-mirror": OBJECT_FIELDS,
@@ -121,6 +121,7 @@ SEEN_BY = {
     "cut-group": None,
     "cut-uniform": None,
     "cut-ids": None,
+    "moments": {"moment_number.value", "moment_bounds.end_of_bounds"},
     "surface-record": {"surface.kind", "surface.terms", None},
     "surface-number": None,
     "surface-origin": {"surface.origin_low", "surface.origin_high", None},
@@ -319,7 +320,7 @@ def channel(number, record):
 
 def cuts(data, root):
     """What the file says of cuts, as the lines of a text, with doubles as numbers."""
-    keys = ("cuts", "surface", "placement", "slab-origin", "cell-slab", "cell-slab-group")
+    keys = ("cuts", "surface", "placement", "slab-origin", "cell-slab", "cell-slab-group", "moments")
     told = {key: [] for key in keys}
     if root.cut_heads is None:
         return told
@@ -363,6 +364,10 @@ def cuts(data, root):
         told["cell-slab"].append([f"{len(surfaces) + i} {level} {at[0]} {at[1]} {at[2]} {slab.index}", *normal, inner, outer])
     for i, group in enumerate(groups):
         told["cell-slab-group"].append(f"{i} {group.origin.low:016x} {group.origin.high:016x} {group.end}")
+    if root.moments:
+        bounds = [root.moments.volume, *root.moments.first_moments, *root.moments.second_moments]
+        ends = [end.value for own in bounds for end in (own.lower, own.upper)]
+        told["moments"].append([number.value for number in root.moments.point] + ends)
     return told
 
 
@@ -455,7 +460,7 @@ def check_valid(data, stated, description):
             given = answer(root, [float.fromhex(word) for word in point])
             if given != expected:
                 raise Mismatch(f"point {value}: {given}")
-        elif key in ("origin", "edge", "displacement"):
+        elif key in ("origin", "edge", "displacement", "moments"):
             told[key].append(doubles(value))
         elif key in ("origin-decimal", "edge-decimal"):
             told[key].append([float(word) for word in value.split(" ")])

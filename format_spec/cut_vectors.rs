@@ -22,9 +22,10 @@ const PLACEMENTS: u64 = 21;
 const ORIGINS: u64 = 22;
 const CELL_SLABS: u64 = 23;
 const GROUPS: u64 = 24;
+const MOMENTS: u64 = 25;
 
 /// The same with their names, types and components.
-const KINDS: [(u64, &str, (u64, u64)); 10] = [
+const KINDS: [(u64, &str, (u64, u64)); 11] = [
     (HEADS, "cut heads", (U8, 1)),
     (IDS, "cut ids", (U8, 1)),
     (BLOCKS, "cut blocks", (U32, 2)),
@@ -35,6 +36,7 @@ const KINDS: [(u64, &str, (u64, u64)); 10] = [
     (ORIGINS, "origins", (U64, 2)),
     (CELL_SLABS, "cell slabs", (U64, 2)),
     (GROUPS, "cell slab groups", (U64, 3)),
+    (MOMENTS, "moments", (F64, 23)),
 ];
 
 /// Whether the sections of a kind are for cuts.
@@ -254,11 +256,17 @@ pub enum Cut {
 pub struct Cuts {
     surfaces: Vec<Surface>,
     cut: Arc<dyn Fn(Cell) -> Cut + Send + Sync>,
+    /// A point, and both ends of the volume, of the first and of the second moments about it.
+    moments: Option<[f64; 23]>,
 }
 
 impl Cuts {
     fn new(surfaces: Vec<Surface>, cut: impl Fn(Cell) -> Cut + Send + Sync + 'static) -> Cuts {
-        Cuts { surfaces, cut: Arc::new(cut) }
+        Cuts { surfaces, cut: Arc::new(cut), moments: None }
+    }
+
+    fn moments(self, moments: [f64; 23]) -> Cuts {
+        Cuts { moments: Some(moments), ..self }
     }
 
     /// One table of all of up to three surfaces for all cells.
@@ -564,6 +572,7 @@ impl Stored {
                 .flat_map(|&([low, high], end)| [low, high, end])
                 .flat_map(u64::to_le_bytes)
                 .collect(),
+            cuts.moments.iter().flatten().flat_map(|c| c.to_le_bytes()).collect(),
         ];
         let sections = KINDS.iter().zip(bytes).filter(|(_, bytes)| !bytes.is_empty());
         sections.map(|(&(kind, _, element), bytes)| Section::new(kind, element, bytes)).collect()
@@ -633,6 +642,9 @@ impl Model {
         }
         for (i, ([low, high], end)) in stored.groups.iter().enumerate() {
             facts.push(("cell-slab-group", format!("{i} {low:016x} {high:016x} {end}")));
+        }
+        if let Some(numbers) = &cuts.moments {
+            facts.push(("moments", numbers.map(hex).join(" ")));
         }
         facts
     }
@@ -731,6 +743,56 @@ fn ball(depth: u8) -> Model {
         }
     };
     Model::plain(depth, shape).cuts(Cuts::everywhere(vec![Surface::ball(centre, radius)], POSITIVE))
+}
+
+/// The moments of a ball about a point. What is rounded is less than 2^-48 of each of them.
+fn moments_of_ball(centre: [f64; 3], radius: f64, point: [f64; 3]) -> [f64; 23] {
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
+    let d = [0, 1, 2].map(|i| centre[i] - point[i]);
+    let own = radius * radius / 5.0;
+    let second = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
+        .map(|(i, j)| volume * (d[i] * d[j] + if i == j { own } else { 0.0 }));
+    let all = [volume].into_iter().chain(d.map(|d| volume * d)).chain(second);
+    // (Zero has no sign.)
+    let ends = all.flat_map(|c| [-1.0, 1.0].map(|sign| c + sign * c.abs() / 2f64.powi(48) + 0.0));
+    point.into_iter().chain(ends).collect::<Vec<_>>().try_into().expect("23 numbers")
+}
+
+/// A ball that keeps its moments, about a point that is not its centre.
+fn ball_with_moments() -> Model {
+    let model = ball(1);
+    let moments = moments_of_ball([0.6875, 0.8125, 0.90625], 0.28125, [0.6875, 1.0, -0.25]);
+    let cuts = model.cuts.clone().expect("cuts").moments(moments);
+    model.cuts(cuts)
+}
+
+/// Half of an octant, a box whose moments about its centre are exact.
+fn box_with_moments() -> Model {
+    let shape = |cell: Cell| match (cell.level, cell.octant()) {
+        (0, _) => Tag::Branch,
+        (_, 0) => Tag::Partial,
+        _ => Tag::Empty,
+    };
+    let mut moments = [0.0; 23];
+    moments[..5].copy_from_slice(&[0.75, 0.5, 0.5, 0.5, 0.5]);
+    // ∫ (x − c)² is the volume times a twelfth of the square of the edge; 1/24 is between two doubles.
+    let twenty_fourth = 1.0 / 24.0;
+    for (i, c) in [twenty_fourth / 4.0, twenty_fourth, twenty_fourth].into_iter().enumerate() {
+        moments[11 + 2 * i..13 + 2 * i].copy_from_slice(&[f64::next_down(c), f64::next_up(c)]);
+    }
+    let plane = Cuts::everywhere(vec![Surface::plane(1.0, 0.0, 0.0, -0.5)], POSITIVE);
+    Model::plain(1, shape).cuts(plane.moments(moments))
+}
+
+/// A PARTIAL universe of which nothing is known, and moments that say nothing either.
+fn nothing_with_moments() -> Model {
+    let mut moments = [0.0; 23];
+    for (i, c) in moments[3..].iter_mut().enumerate().skip(1) {
+        *c = if i % 2 == 0 { -f64::MAX } else { f64::MAX };
+    }
+    moments[0] = f64::from_bits(1);
+    moments[1] = -f64::MAX;
+    whole(5, Cuts::new(vec![], |_| Cut::Nothing).moments(moments)).exterior(Tag::Empty)
 }
 
 /// A universe that is PARTIAL, with cuts.
@@ -1002,6 +1064,15 @@ pub(super) fn valid() -> Vec<Valid> {
         Surface::new(Kind::Torus, &[1.5, 0.25, 1.0, 30.0]).placed(&(0..64).map(shift).collect::<Vec<_>>());
     let about = "a torus that is moved by as many maps as a surface may be";
     add("cut-chain", about, whole(2, Cuts::everywhere(vec![chain], POSITIVE)));
+    let about = "a ball that keeps its moments, about a point that is not its centre";
+    add("cut-moments", about, ball_with_moments());
+    add(
+        "cut-moments-exact",
+        "a box whose moments are known without rounding, or nearly so",
+        box_with_moments(),
+    );
+    let about = "moments with the greatest and the least numbers, of a universe of which nothing is known";
+    add("cut-moments-wide", about, nothing_with_moments());
     let nothing = |_| Cut::Nothing;
     let about = "cuts of which nothing is known: no ids, no surfaces";
     let model = Model::plain(3, noise(3, 5, CERTIFIED)).cuts(Cuts::new(vec![], nothing));
@@ -1060,7 +1131,8 @@ pub(super) fn valid() -> Vec<Valid> {
         parts.sections.push(Section::new(HEADS, (U8, 3), vec![0xF0; 9]).of(1));
         parts.sections.push(Section::new(ORIGINS, (F32, 1), vec![1; 4]).of(2).flagged(1));
         parts.sections.push(Section::new(GROUPS, (U16, 1), vec![2; 2]).of(1));
-        parts.sections.push(Section::new(25, (U16, 1), vec![2; 4]));
+        parts.sections.push(Section::new(MOMENTS, (U16, 1), vec![2; 2]).of(1));
+        parts.sections.push(Section::new(MOMENTS + 1, (U16, 1), vec![2; 4]));
         parts.sections.push(Section::new(APPLICATION, (U8, 1), vec![3; 4]));
     });
     let about = "the blocks and the first cuts lie in one place with other sections";
@@ -1100,6 +1172,7 @@ pub(super) fn invalid(list: &mut List) {
     list.way = Way::Verification;
     records(list);
     slabs_of_cells(list);
+    moments(list);
     surfaces(list);
 }
 
@@ -1116,7 +1189,13 @@ fn pop(bytes: &mut Vec<u8>, count: usize) {
 }
 
 fn tables_of_sections(list: &mut List) {
-    let (model, cell_slabs) = (all_kinds(), cell_slabs());
+    let (model, cell_slabs, moments) = (all_kinds(), cell_slabs(), box_with_moments());
+    // One that has sections of a kind.
+    let with = |kind: u64| match kind {
+        MOMENTS => &moments,
+        CELL_SLABS | GROUPS => &cell_slabs,
+        _ => &model,
+    };
     let add = |list: &mut List,
                rule,
                of: &str,
@@ -1130,14 +1209,13 @@ fn tables_of_sections(list: &mut List) {
     for (kind, name, element) in KINDS {
         let of = name.replace(' ', "-");
         let about = "a section of cuts of another type";
-        let model = if kind < CELL_SLABS { &model } else { &cell_slabs };
-        add(list, "section-size", &of, about, section(name), model, &|parts| {
+        add(list, "section-size", &of, about, section(name), with(kind), &|parts| {
             let section = parts.section(kind);
             // Bytes of the same length.
             section.element = if element == (U8, 1) { (U8, section.bytes.len() as u64) } else { (U8, 4) };
         });
         let about = "a section of cuts that is required";
-        add(list, "section-required", &of, about, field("section flags", 1), model, &|parts| {
+        add(list, "section-required", &of, about, field("section flags", 1), with(kind), &|parts| {
             parts.section(kind).flags = 1;
         });
     }
@@ -1168,6 +1246,14 @@ fn tables_of_sections(list: &mut List) {
     let about = "slabs of cells, and nothing else of cuts";
     cuts(list, "cell-slabs-alone", about, "cell slabs", &cell_slabs_alone(), &|parts| {
         [HEADS, IDS, BLOCKS, FIRST].into_iter().for_each(|kind| drop(parts.take(kind)));
+    });
+    let about = "moments, and nothing else of cuts";
+    cuts(list, "moments-alone", about, "moments", &nothing_with_moments(), &|parts| {
+        [HEADS, BLOCKS, FIRST].into_iter().for_each(|kind| drop(parts.take(kind)));
+    });
+    cuts(list, "moments-two", "moments of two solids", "moments", &moments, &|parts| {
+        let bytes = &mut parts.section(MOMENTS).bytes;
+        bytes.extend_from_within(..);
     });
     for (kind, of) in [(CELL_SLABS, "cell-slabs"), (GROUPS, "cell-slab-groups")] {
         cuts(list, of, "a section of cuts is absent", "cell slab groups", &cell_slabs, &|parts| {
@@ -1229,7 +1315,7 @@ fn tables_of_sections(list: &mut List) {
     list.way = Way::Verification;
     for (kind, name, _) in KINDS {
         let of = name.replace(' ', "-");
-        let mut bytes = Parts::of(if kind < CELL_SLABS { &model } else { &cell_slabs }).bytes();
+        let mut bytes = Parts::of(with(kind)).bytes();
         let at = super::offset_of(&bytes, 0, kind);
         bytes[at] ^= 1;
         list.add("section-crc", &of, "a bit of a section of cuts has fallen over", checksum(name), bytes);
@@ -1501,6 +1587,36 @@ fn slabs_of_cells(list: &mut List) {
     };
     let about = "a slab of a cell that is not legal, behind records";
     add("cell-slab", "behind", about, surface(2), &mixed, &|parts| part(parts, 1, 61, 2, 3));
+}
+
+/// Moments that are none.
+fn moments(list: &mut List) {
+    let model = ball_with_moments();
+    // Places: the point from 0 on, the volume from 3, the first moments from 5, the second ones from 11.
+    let legal = model.cuts.as_ref().and_then(|cuts| cuts.moments).expect("moments");
+    assert!(legal[3] > 0.0 && legal[7] < 0.0 && legal[5..7] == [0.0; 2]);
+    for (of, about, place, value) in [
+        ("nan", "an end of the volume that is no number", 4, f64::NAN),
+        ("nan-point", "a coordinate of the point that is no number", 1, f64::NAN),
+        ("nan-negative", "an end of a second moment that is no number, with a sign", 21, -f64::NAN),
+        ("infinite", "an infinite volume", 4, f64::INFINITY),
+        ("infinite-point", "a point that lies nowhere", 0, f64::INFINITY),
+        ("negative-infinite", "a second moment without a lower end", 21, f64::NEG_INFINITY),
+        ("negative-zero", "-0 as the lower end of a first moment", 5, -0.0),
+        ("negative-zero-upper", "-0 as the upper end of a first moment", 6, -0.0),
+        ("negative-zero-point", "-0 in the point", 0, -0.0),
+        ("negative-zero-volume", "-0 as the lower end of the volume", 3, -0.0),
+        ("order", "a first moment whose lower end is above the upper one", 5, f64::from_bits(1)),
+        ("order-volume", "a volume whose lower end is above the upper one", 3, legal[4].next_up()),
+        ("order-first", "a first moment whose upper end is below the lower one", 8, legal[7].next_down()),
+        ("order-second", "the last second moment, whose upper end is below the lower one", 22, -f64::MAX),
+        ("negative-volume", "a volume that may be less than nothing", 3, -f64::from_bits(1)),
+    ] {
+        let bytes = changed(&model, |parts| {
+            put(&mut parts.section(MOMENTS).bytes, 8 * place, value.to_bits(), 8);
+        });
+        list.add("moments", of, about, "Damaged(Moments)".to_owned(), bytes);
+    }
 }
 
 /// How many surfaces a table has.

@@ -105,6 +105,9 @@ instances:
   find_cell_slab_groups:
     type: finder(section_kind::cell_slab_groups)
     doc: The place of the solid's section `cell slab groups` in the table.
+  find_moments:
+    type: finder(section_kind::moments)
+    doc: The place of the solid's section `moments` in the table.
   cut_heads:
     pos: find_cut_heads.section.ofs_body
     size: find_cut_heads.section.len_body
@@ -167,6 +170,13 @@ instances:
     type: cell_slab_groups
     if: find_cell_slab_groups.is_found
     doc: What those were made from.
+    doc-ref: specification.md §5.8
+  moments:
+    pos: find_moments.section.ofs_body
+    size: find_moments.section.len_body
+    type: moments
+    if: find_moments.is_found
+    doc: Bounds of the volume of the solid, and of its first and second moments.
     doc-ref: specification.md §5.8
   windows:
     pos: find_windows.section.ofs_body
@@ -633,7 +643,7 @@ types:
           : kind_code <= 10 or (is_of_cuts and _root.header.version_minor >= 4)))
         doc: Whether this description knows the section. It knows those of the solid.
       is_of_cuts:
-        value: (kind_code >= 11 and kind_code <= 15) or (kind_code >= 20 and kind_code <= 24)
+        value: (kind_code >= 11 and kind_code <= 15) or (kind_code >= 20 and kind_code <= 25)
         doc: Whether it is one of the sections of cuts, if it is known.
       is_starts:
         value: kind_code >= 33 and (kind_code - 33) % 5 == 0
@@ -699,7 +709,7 @@ types:
           : kind == section_kind::rel or kind == section_kind::brick_indices ? 2
           : kind == section_kind::cut_heads or kind == section_kind::cut_ids ? 1
           : kind_code >= 13 and kind_code <= 15 ? 3
-          : kind == section_kind::surface_numbers ? 6
+          : kind == section_kind::surface_numbers or kind == section_kind::moments ? 6
           : kind == section_kind::placements ? 0
           : kind_code < 32 ? 4
           : column == 1 and (_root.header.form & 1) != 0 ? 6
@@ -716,6 +726,7 @@ types:
           : kind == section_kind::windows or kind == section_kind::surfaces ? 4
           : kind == section_kind::cut_blocks or kind == section_kind::origins or kind == section_kind::cell_slabs ? 2
           : kind == section_kind::placements ? 13
+          : kind == section_kind::moments ? 23
           : column >= 1 and column <= 3 ? 2
           : 1).as<u1>
         doc: The components of a known section.
@@ -1042,6 +1053,74 @@ types:
         valid:
           min: 1
         doc: How many cell slabs there are up to the last of the group. (`cell-slab-group`, in part)
+  moments:
+    doc: |
+      Bounds of the volume of the solid, and of its first and second moments about a point, in model units. (`moments`)
+    doc-ref: specification.md §5.8
+    seq:
+      - id: point
+        size: 8
+        type: moment_number
+        repeat: expr
+        repeat-expr: 3
+        doc: The point that the moments are about.
+      - id: volume
+        size: 16
+        type: moment_bounds(true)
+        doc: The volume, which is not negative.
+      - id: first_moments
+        size: 16
+        type: moment_bounds(false)
+        repeat: expr
+        repeat-expr: 3
+        doc: The integral of x - p along x, y and z, where p is the point.
+      - id: second_moments
+        size: 16
+        type: moment_bounds(false)
+        repeat: expr
+        repeat-expr: 6
+        doc: The integral of the products of two coordinates of x - p, in the order xx, yy, zz, xy, xz, yz.
+      - id: end_of_moments
+        size: 0
+        valid:
+          expr: _io.eof
+        doc: No bytes. There is one set of moments. (`section-cuts`, in part)
+  moment_number:
+    doc: |
+      A finite number. Negative zero is illegal. (`moments`)
+    seq:
+      - id: value
+        type: f8
+        valid:
+          expr: >-
+            (_ > 0.0 and _ <= 1.7976931348623157e+308) or (_ < 0.0 and _ >= -1.7976931348623157e+308)
+            or (_ == 0.0 and sign_byte == 0)
+        doc: The number.
+    instances:
+      sign_byte:
+        pos: 7
+        type: u1
+        doc: The byte whose highest bit is the sign. It tells the two zeros apart, which compare as equal.
+  moment_bounds:
+    doc: An interval that contains a moment.
+    params:
+      - id: is_volume
+        type: bool
+        doc: Whether it is that of the volume.
+    seq:
+      - id: lower
+        size: 8
+        type: moment_number
+        doc: The lower end.
+      - id: upper
+        size: 8
+        type: moment_number
+        doc: The upper end.
+      - id: end_of_bounds
+        size: 0
+        valid:
+          expr: lower.value <= upper.value and (lower.value >= 0.0 or not is_volume)
+        doc: No bytes. The ends are in order, and a volume is not negative. (`moments`)
   objects:
     doc: What the file holds. Each section belongs to one of these objects.
     doc-ref: specification.md §2.6, §5.1
@@ -1778,6 +1857,9 @@ enums:
     24:
       id: cell_slab_groups
       doc: What those were made from, 24 bytes each.
+    25:
+      id: moments
+      doc: Bounds of the moments of the solid, 184 bytes.
     32:
       id: windows
       doc: Rays of each direction, 16 bytes each.

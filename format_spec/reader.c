@@ -387,7 +387,8 @@ enum {
     KIND_PLACEMENTS,
     KIND_ORIGINS,
     KIND_CELL_SLABS,
-    KIND_CELL_SLAB_GROUPS
+    KIND_CELL_SLAB_GROUPS,
+    KIND_MOMENTS
 };
 
 /* Types of objects (§5.1). */
@@ -1758,6 +1759,12 @@ static void print_cuts(const struct lfl_reader *r)
         const unsigned char *p = item(r, KIND_CELL_SLAB_GROUPS, i);
         printf("cell-slab-group: %" PRIu64 " %016" PRIx64 " %016" PRIx64, i, u64(p), u64(p + 8));
         printf(" %" PRIu64 "\n", u64(p + 16));
+    }
+    if (count_of(r, KIND_MOMENTS) != 0) {
+        printf("moments:");
+        for (k = 0; k < MOMENTS_NUMBERS; k++)
+            printf(" %a", from_bits(moments_bits(r, k)));
+        putchar('\n');
     }
 }
 

@@ -10,13 +10,16 @@
 enum { TABLE_SURFACES = 3, MAX_NUMBERS = 10, MAX_MAPS = 64, HEAD_NOTHING = 0x00, HEAD_SPLIT = 0xFF, CUTS_OF_BLOCK = 32 };
 enum { PLANE, QUADRIC, POWERS, TORUS, SLAB, SURFACE_KINDS };
 
+/* A point, and both ends of ten moments. */
+enum { MOMENTS_NUMBERS = 3 + 2 * 10 };
+
 /* Numbers of a surface of each kind. */
 static const unsigned number_count[SURFACE_KINDS] = {4, 10, 10, 4, 5};
 
 static int is_cut_kind(uint32_t kind)
 {
     return (kind >= KIND_CUT_HEADS && kind <= KIND_SURFACES) ||
-           (kind >= KIND_SURFACE_NUMBERS && kind <= KIND_CELL_SLAB_GROUPS);
+           (kind >= KIND_SURFACE_NUMBERS && kind <= KIND_MOMENTS);
 }
 
 static struct demand demanded_of_cuts(uint32_t kind)
@@ -31,6 +34,7 @@ static struct demand demanded_of_cuts(uint32_t kind)
     case KIND_SURFACE_NUMBERS: d.element_type = TYPE_F64; break;
     case KIND_PLACEMENTS: d.element_type = TYPE_RECORD, d.components = 13; break;
     case KIND_CELL_SLAB_GROUPS: d.element_type = TYPE_U64, d.components = 3; break;
+    case KIND_MOMENTS: d.element_type = TYPE_F64, d.components = MOMENTS_NUMBERS; break;
     default: d.element_type = TYPE_U64, d.components = 2; break; /* origins, cell slabs */
     }
     return d;
@@ -58,7 +62,7 @@ static const char *check_cut_sections(const struct lfl_reader *r)
 {
     static const unsigned others[] = {KIND_CUT_IDS,         KIND_CUT_BLOCKS, KIND_CUT_FIRST, KIND_SURFACES,
                                       KIND_SURFACE_NUMBERS, KIND_PLACEMENTS, KIND_ORIGINS,   KIND_CELL_SLABS,
-                                      KIND_CELL_SLAB_GROUPS};
+                                      KIND_CELL_SLAB_GROUPS, KIND_MOMENTS};
     enum { OTHERS = sizeof others / sizeof *others };
     uint64_t heads = count_of(r, KIND_CUT_HEADS), records = count_of(r, KIND_SURFACES);
     uint64_t slabs = count_of(r, KIND_CELL_SLABS);
@@ -83,6 +87,7 @@ static const char *check_cut_sections(const struct lfl_reader *r)
     REFUSE_IF(count_of(r, KIND_ORIGINS) != 0 && records == 0, "section-cuts");
     REFUSE_IF((count_of(r, KIND_CELL_SLAB_GROUPS) != 0) != (slabs != 0), "section-cuts");
     REFUSE_IF(count_of(r, KIND_CELL_SLAB_GROUPS) > slabs, "section-cuts");
+    REFUSE_IF(count_of(r, KIND_MOMENTS) > 1, "section-cuts");
     return NULL;
 }
 
@@ -476,6 +481,24 @@ static const char *verify_cuts_in_order(const struct lfl_reader *r, unsigned cha
     return NULL;
 }
 
+/* Number i of the moments, which must be there. */
+static uint64_t moments_bits(const struct lfl_reader *r, unsigned i) { return u64(item(r, KIND_MOMENTS, 0) + 8 * i); }
+
+static const char *verify_moments(const struct lfl_reader *r)
+{
+    unsigned i;
+    if (count_of(r, KIND_MOMENTS) == 0)
+        return NULL;
+    for (i = 0; i < MOMENTS_NUMBERS; i++) {
+        uint64_t bits = moments_bits(r, i);
+        REFUSE_IF(!take_apart(bits).finite || bits == UINT64_C(1) << 63, "moments");
+    }
+    REFUSE_IF(from_bits(moments_bits(r, 3)) < 0.0, "moments");
+    for (i = 3; i < MOMENTS_NUMBERS; i += 2)
+        REFUSE_IF(from_bits(moments_bits(r, i)) > from_bits(moments_bits(r, i + 1)), "moments");
+    return NULL;
+}
+
 static const char *verify_surfaces(const struct lfl_reader *r)
 {
     uint64_t i, doubles = 0, maps = 0, origins = 0, m;
@@ -579,7 +602,7 @@ static const char *verify_cuts(const struct lfl_reader *r)
         error = verify_cuts_in_order(r, level, known, &met);
     free(level);
     free(met.count);
-    if (error != NULL || (error = verify_surfaces(r)) != NULL)
+    if (error != NULL || (error = verify_moments(r)) != NULL || (error = verify_surfaces(r)) != NULL)
         return error;
     return verify_placements(r);
 }

@@ -31,9 +31,12 @@ pub const PLACEMENTS: u32 = 21;
 pub const ORIGINS: u32 = 22;
 pub const CELL_SLABS: u32 = 23;
 pub const GROUPS: u32 = 24;
+pub const MOMENTS: u32 = 25;
 /// Those of cuts.
-pub const CUTS: [u32; 10] =
-    [CUT_HEADS, CUT_IDS, CUT_BLOCKS, CUT_FIRST, SURFACES, NUMBERS, PLACEMENTS, ORIGINS, CELL_SLABS, GROUPS];
+pub const CUTS: [u32; 11] = [
+    CUT_HEADS, CUT_IDS, CUT_BLOCKS, CUT_FIRST, SURFACES, NUMBERS, PLACEMENTS, ORIGINS, CELL_SLABS, GROUPS,
+    MOMENTS,
+];
 
 /// Fields of the header: offset and length.
 pub const HEADER_FIELDS: [(usize, usize); 28] = [
@@ -742,6 +745,10 @@ impl File {
         }
         self.set(CELL_SLABS, slabs);
         self.set(GROUPS, groups);
+        // Those of one solid.
+        if let Some(moments) = self.section(MOMENTS) {
+            moments.bytes.truncate(8 * 23);
+        }
     }
 
     /// The table's order, the elements of the solid's sections, and the counts.
@@ -770,6 +777,7 @@ impl File {
                 PLACEMENTS if has_cuts => (0, 13),
                 ORIGINS | CELL_SLABS if has_cuts => (4, 2),
                 GROUPS if has_cuts => (4, 3),
+                MOMENTS if has_cuts => (6, 23),
                 _ => continue,
             };
             put(&mut section.entry, 8, kind | components << 8, 4);

@@ -2,7 +2,7 @@
 
 use super::layout::{
     BASE, CELL_SLABS, CUT_BLOCKS, CUT_FIRST, CUT_HEADS, CUT_IDS, CUTS, ENTRIES, ENTRY_FIELDS, File, GROUPS,
-    HEADER_FIELDS, INDICES, LEVELS, METADATA, NUMBERS, OBJECTS, ORIGINS, PLACEMENTS, PLANES, RECORD,
+    HEADER_FIELDS, INDICES, LEVELS, METADATA, MOMENTS, NUMBERS, OBJECTS, ORIGINS, PLACEMENTS, PLANES, RECORD,
     RECORD_FIELDS, REL, Repairs, SEGMENTS, SURFACES, Section, number, put,
 };
 use super::{Random, halves, joined};
@@ -331,7 +331,12 @@ fn change_cuts(file: &mut File, random: &mut Random) {
             (GROUPS, [5, 6, 2, 0, 0, 3u64].into_iter().flat_map(u64::to_le_bytes).collect(), 0x304),
         ];
         let count = if random.one_in(3) { 6 } else { 8 };
-        for (kind, bytes, element) in parts.into_iter().take(count) {
+        // A point, and wide bounds of all moments about it.
+        let wide: Vec<f64> = (0..20).map(|i| [-1e6, 1e6][i % 2]).collect();
+        let moments = [&[0.5, 0.0, -2.0, 0.0][..], &wide[1..]].concat();
+        let moments = moments.iter().flat_map(|c: &f64| c.to_le_bytes()).collect();
+        let moments = random.one_in(2).then_some((MOMENTS, moments, 0x1706));
+        for (kind, bytes, element) in parts.into_iter().take(count).chain(moments) {
             let mut section = Section::new(kind, bytes);
             put(&mut section.entry, 8, element, 2);
             file.sections.push(section);
@@ -340,7 +345,7 @@ fn change_cuts(file: &mut File, random: &mut Random) {
             .sections
             .sort_by_key(|section| (number(&section.entry, 4, 4), number(&section.entry, 0, 4)));
     }
-    match random.below(16) {
+    match random.below(17) {
         0..3 => change_number(file, CUT_HEADS, 1, random),
         3 => change_number(file, CUT_IDS, 1, random),
         4 => change_number(file, if random.one_in(3) { GROUPS } else { CELL_SLABS }, 8, random),
@@ -350,6 +355,7 @@ fn change_cuts(file: &mut File, random: &mut Random) {
         9..12 => change_double(file, NUMBERS, random),
         12 | 13 => change_double(file, PLACEMENTS, random),
         14 => change_number(file, if random.one_in(2) { ORIGINS } else { PLACEMENTS }, 8, random),
+        15 => change_double(file, MOMENTS, random),
         _ => {
             let gone = CUTS[random.below(CUTS.len())];
             if let Some(i) = file.sections.iter().position(|section| section.is(gone)) {

@@ -88,14 +88,15 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
     let mut exact = vec![Membership::Inside; points.len()];
     contains(&solid, &frame, points, &mut exact, &CONTROL).expect("it is a solid");
-    // Slabs of a solid are wider by what is rounded on its universe, which may be far larger than they are.
+    // Slabs of a solid are wider by what is rounded on its universe, which may be far larger than they are. Of a tree that is not
+    // verified, such as one whose octants should be one PARTIAL universe, the solid may know less.
     let surfaces = tree.cuts().map_or(0, |cuts| cuts.surfaces as u32);
     let has_slabs =
         (0..surfaces).any(|id| tree.surface(id).is_none_or(|surface| surface.kind() == SurfaceKind::Slab));
     for ((&point, &exact), &answer) in points.iter().zip(&exact).zip(&answers) {
-        let is_wider = has_slabs && exact == Membership::Undecided;
+        let is_wider = (has_slabs || !verified) && exact == Membership::Undecided;
         assert!(may_be(exact, plain.contains(point)), "{point:?}");
-        assert!(may_be(exact, answer) || is_wider, "{point:?}");
+        assert!(may_be(exact, answer) || is_wider, "{point:?}: {exact:?}, {answer:?}");
     }
     for corners in points.chunks_exact(2).take(8) {
         let min = [0, 1, 2].map(|axis: usize| corners[0][axis].min(corners[1][axis]));
@@ -135,7 +136,8 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     let cell = (frame.edge() / f64::from(frame.cells())).powi(3);
     let slack = 1e-9 * frame.edge().powi(3);
     assert!(measured.lower <= measured.upper, "{measured:?}");
-    if verified {
+    // Stored moments need not agree with the cells.
+    if verified && tree.moments().is_none() {
         assert!(
             measured.lower <= most as f64 * cell + slack && measured.upper >= least as f64 * cell - slack,
             "{measured:?}, {least} to {most} cells"

@@ -93,6 +93,7 @@
 //! | 22 | origins | two u64 | what slabs were made from |
 //! | 23 | cell slabs | two u64 | slabs of single cells |
 //! | 24 | cell slab groups | three u64 | what these were made from |
+//! | 25 | moments | 23 f64 | 1, if the moments of the solid are known |
 //! | 32 | windows of a tri-dexel model | four u32 | directions |
 //! | 33, 38, 43 | starts along x, y, z | u32 | rays of the window + 1 |
 //! | 34, 39, 44 | spans along x, y, z | two u32 or f64 | intervals |

@@ -4,14 +4,14 @@
 
 use crate::bodies;
 use crate::bodies::layout::{
-    BASE, BRICKS, CELL_SLABS, CUTS, File, GROUPS, LEVELS, NUMBERS, PLACEMENTS, PLANES, REL, Repairs,
+    BASE, BRICKS, CELL_SLABS, CUTS, File, GROUPS, LEVELS, MOMENTS, NUMBERS, PLACEMENTS, PLANES, REL, Repairs,
     SURFACES, Section, put,
 };
 use crate::bodies::{Aligned, Random, joined, read_in_all_ways, seeds, walk};
 use crate::common::on_all_processors;
 use leafless::error::{Damage, FormatError};
 use leafless::octree::Cursor;
-use leafless::{Error, Solid, file, union};
+use leafless::{Error, Solid, SurfaceOptions, build_extended, file, measure, union};
 use std::path::Path;
 
 // ---- inputs ---------------------------------------------------------------------------------------------
@@ -588,6 +588,41 @@ fn tables_without_records_are_not_taken_for_one() {
     let both = union(own.view(), others.view(), &bodies::CONTROL).unwrap();
     assert_eq!(both.view().cuts().unwrap().surfaces, 2 * count);
     both.view().check().unwrap();
+}
+
+/// Moments that are legal need not be those of any solid.
+#[test]
+fn moments_of_nothing_that_is() {
+    let vectors = Path::new(env!("CARGO_MANIFEST_DIR")).join("format_spec/vectors/valid");
+    let bytes = std::fs::read(vectors.join("cut-moments-exact.lfl")).unwrap();
+    let file = File::parse(&bytes).unwrap();
+    let some = [0.0, f64::from_bits(1), f64::MIN_POSITIVE, 1e-160, 0.1, 1.0, 3e7, 1e160, f64::MAX];
+    let mut random = Random(4);
+    for _ in 0..3000 {
+        let mut draw = |least: f64| {
+            let value = some[random.below(some.len())];
+            if random.one_in(2) && value != 0.0 { (-value).max(least) } else { value }
+        };
+        let mut numbers = vec![draw(f64::MIN), draw(f64::MIN), draw(f64::MIN)];
+        for moment in 0..10 {
+            let least = if moment == 0 { 0.0 } else { f64::MIN };
+            let mut ends = [draw(least), draw(least)];
+            ends.sort_unstable_by(f64::total_cmp);
+            numbers.extend(ends);
+        }
+        let mut file = file.clone();
+        file.section(MOMENTS).unwrap().bytes = numbers.iter().flat_map(|c| c.to_le_bytes()).collect();
+        let bytes = file.assemble(&Repairs::FRAME);
+        let tree = file::from_bytes(&bytes).unwrap();
+        let found = measure(&tree, tree.frame(), 0.0, &bodies::CONTROL).unwrap();
+        assert!(found.exact && [found.volume.lower, found.volume.upper] == numbers[3..5]);
+        let tensors = [found.inertia_about_origin, found.inertia_about_centroid];
+        let known = tensors.iter().flatten().flatten().chain(found.centroid.iter().flatten());
+        known.for_each(|interval| assert!(interval.lower <= interval.upper, "{numbers:?}: {found:?}"));
+        let again =
+            build_extended(&tree, tree.frame(), &SurfaceOptions::default(), &bodies::CONTROL).unwrap();
+        assert!(again.view().moments() == tree.view().moments() && file::to_bytes(&tree).unwrap() == bytes);
+    }
 }
 
 /// Every head, every count and every id of the cuts of small files, with right checksums.
