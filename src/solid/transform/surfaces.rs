@@ -384,7 +384,7 @@ impl<'s> Target<'s> {
     /// The same where there are layers.
     fn by_regions(&mut self, pieces: &[Piece<'_>]) -> Result<Option<OpenSurfaces>, Error> {
         /// So often layers are made wider.
-        const MOST_TRIES: usize = 12;
+        const MOST_TRIES: usize = 4;
         let mut bodies = memory::with_capacity(pieces.len())?;
         let mut values = memory::with_capacity(pieces.len())?;
         for piece in pieces {
