@@ -815,7 +815,10 @@ fn ask_point(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
         }
         // (From far away many points are as near, but for rounding.)
         if to == DistanceTo::Boundary && size < 1e6 * scene.size {
-            bounds_the_solid(scene, near.point, facet, &told);
+            // (Next to nothing from the surface, all that is near is as near, but for rounding.)
+            if size > margin {
+                bounds_the_solid(scene, near.point, facet, &told);
+            }
             no_boundary_is_nearer(scene, p, size, margin, &told);
             if let Some(truth) = truth.filter(|_| scene.is_open && size > margin) {
                 let way = [0; 3].map(|_| bytes.fraction());

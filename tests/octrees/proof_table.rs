@@ -429,6 +429,15 @@ const WAYS: &[Way] = &[
         proven: SAME,
     },
     Way {
+        name: "extended without moments",
+        through: &["octree/octree.rs without_moments"],
+        make: |a| {
+            let tree = build_extended(&a.csg(), &frame(DEPTH), &SurfaceOptions::default(), &CONTROL)?;
+            of_ball(tree.without_moments())
+        },
+        proven: SAME,
+    },
+    Way {
         name: "built of extended",
         through: &["op/extended/build.rs build_extended", "op/build.rs build"],
         make: |a| {

@@ -16,8 +16,9 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::path::Path;
 
-/// Writes the cells of a solid as a volume of bytes, 255 inside and 0 outside, a byte for each cell of the finest level
-/// in the whole universe. `leafless voxelize` makes the same solid of it.
+/// Each cell of the finest level in the whole universe is a byte, 255 inside and 0 outside.
+///
+/// `leafless voxelize` makes the same solid of the volume.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), or `-` for standard input

@@ -29,8 +29,9 @@ pub struct Arguments {
     common: Common,
 }
 
-/// Solid where there was none, and none where there was some; also outside of the bounds, but for tri-dexel models, which
-/// end at them.
+/// Solid where there was none, and none where there was some.
+///
+/// That is so outside of the bounds, too, but for tri-dexel models, which end at them.
 #[derive(Args)]
 pub struct ComplementArguments {
     /// Solid or tri-dexel model (.lfl) or volume (NRRD, MetaImage), or `-` for standard input

@@ -14,8 +14,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// Makes a flanged, ribbed and drilled part and a tool to cut it with, writes both as STL files, reads them
-/// back, turns them into octrees of 1024³ cells, cuts, saves, maps, verifies and queries the result. Every
-/// file stays in the folder to be looked at.
+/// back, turns them into octrees of 1024³ cells, cuts, saves, maps, verifies and queries the result.
+///
+/// Every file stays in the folder to be looked at.
 #[derive(Args)]
 pub struct Arguments {
     /// Folder for the files; made if it does not exist [default: leafless-demo in the folder for temporary

@@ -12,9 +12,9 @@ use leafless::lattice::MAX_DEPTH;
 use leafless::query::{Columns, Heights, Side, heights};
 use std::ffi::OsString;
 
-/// Writes a height map: for each column of cells along an axis, how far the solid reaches in it. Heights are in the
-/// solid's units. Columns lie in rows: along a row the first of the other two axes ascends, from row to row the
-/// second. What is empty is `nan`.
+/// Columns are those of cells along an axis. Heights are in the solid's units; what is empty is `nan`.
+///
+/// Columns lie in rows: along a row the first of the other two axes ascends, from row to row the second.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input

@@ -19,6 +19,7 @@ use std::time::Instant;
 /// a solid from a file (.lfl) its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
 /// A solid from a file whose cells keep surfaces is split to --depth; with --method mc and dual, vertices lie where rays through
 /// cell centres cross these surfaces.
+///
 /// Samples of a tri-dexel model are the centres of its cells, and vertices lie where its rays leave the solid.
 #[derive(Args)]
 pub struct Arguments {

@@ -11,7 +11,9 @@ use leafless::Octree;
 use std::ffi::OsString;
 
 /// Checks every checksum, the order and the links of all nodes, that the tree is in canonical form, and that
-/// the level table describes it; of a tri-dexel model the order of all intervals. The exit code is 0 if the file is good and 1, with the reason, if it is not.
+/// the level table describes it; of a tri-dexel model the order of all intervals.
+///
+/// The exit code is 0 if the file is good and 1, with the reason, if it is not.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), or `-` for standard input

@@ -132,16 +132,6 @@ impl CellSlab {
     }
 }
 
-/// Slabs of cells that have one origin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub(crate) struct CellSlabGroup {
-    /// Two zeros if they have none.
-    pub origin: super::Origin,
-    /// How many slabs of cells there are up to the last of the group.
-    pub end: u64,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

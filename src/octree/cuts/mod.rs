@@ -22,7 +22,7 @@ mod record;
 mod surfaces;
 mod writer;
 
-pub(crate) use cell_slab::{CellSlab, CellSlabGroup, Steps};
+pub(crate) use cell_slab::{CellSlab, Steps};
 pub(crate) use figure::{Division, Figure, FigureLine};
 pub(crate) use ids::{CellIds, Ids, OwnedIds, bytes, width};
 pub(crate) use moments::StoredMoments;
@@ -30,7 +30,8 @@ pub use read::{CellFunction, StoredSurface};
 pub(crate) use record::Head;
 pub use surfaces::SurfaceKind;
 pub(crate) use surfaces::{
-    MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceRecord, SurfaceWriter, Surfaces, SurfacesRef, Universe,
+    CellSlabGroup, MOST_MAPS, MOST_TERMS, Origin, Placement, SurfaceRecord, SurfaceWriter, Surfaces,
+    SurfacesRef, Universe,
 };
 pub(crate) use writer::{Cut, CutWriter, Names};
 

@@ -1,6 +1,6 @@
 //! The table of surfaces: each is the boundary of the points where a function is positive, given in numbers that are exact.
 
-use super::cell_slab::{CellSlab, CellSlabGroup};
+use super::cell_slab::CellSlab;
 use crate::error::{Damage, Error};
 use crate::lattice::{Affine, Frame, valid};
 use crate::memory;
@@ -137,6 +137,16 @@ pub(crate) struct Placement {
 
 /// What slabs were made from: a fingerprint of 128 bits, the lower half first.
 pub(crate) type Origin = [u64; 2];
+
+/// Slabs of cells that have one origin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct CellSlabGroup {
+    /// Two zeros if they have none.
+    pub origin: Origin,
+    /// How many slabs of cells there are up to the last of the group.
+    pub end: u64,
+}
 
 /// The universe of a tree, in whose units its slabs of cells are.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
