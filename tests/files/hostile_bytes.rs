@@ -216,8 +216,8 @@ fn files_cut_at_every_length() {
 fn every_byte_and_the_first_bits_flipped() {
     let counts = on_all_processors(&small_files(), |bytes| {
         let (mut viewed, mut verified) = (0, 0);
-        let bits = (0..256.min(bytes.len())).flat_map(|at| (0..8).map(move |bit| (at, 1u8 << bit)));
-        let all = (0..bytes.len()).flat_map(|at| [(at, 0xFF), (at, 0x01)]);
+        let bits = (0..128.min(bytes.len())).flat_map(|at| (0..8).map(move |bit| (at, 1u8 << bit)));
+        let all = (0..bytes.len()).map(|at| (at, if at % 2 == 0 { 0xFF } else { 0x01 }));
         for (at, flip) in bits.chain(all) {
             let mut flipped = bytes.clone();
             flipped[at] ^= flip;
@@ -458,8 +458,8 @@ fn damage_files(count: usize, seed: u64) {
 
 #[test]
 fn changed_files_get_past_the_checks() {
-    damage_files(3000, 1);
-    let reached = change_files(6000, 7);
+    damage_files(1000, 1);
+    let reached = change_files(2000, 7);
     println!("{reached:?}");
     assert!(reached.viewed > reached.inputs / 3 && reached.verified > reached.inputs / 8, "{reached:?}");
     assert!(reached.viewed - reached.verified > reached.inputs / 8, "{reached:?}");

@@ -640,7 +640,7 @@ fn child() {
 }
 
 /// Runs an operation until no request of more than `spared` bytes is left that could be refused. Returns how
-/// many came back as an error, and how many ended the process. If these are many, requests are left out.
+/// many came back as an error, and how many ended the process. After the first of these, requests are left out.
 fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     let (mut first, mut errors) = (1, 0);
@@ -669,7 +669,7 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
         assert!(size <= SMALL, "{name}: request {n} is one of {size} bytes and cannot be refused");
         errors += n - first;
         fatal += 1;
-        first = if fatal < 5 { n + 1 } else { n + 1 + n / 2 };
+        first = if fatal < 3 { n + 1 } else { 2 * n + 1 };
         // What a process leaves behind that was ended.
         for name in names(directory.path()) {
             assert!(name == "tree.lfl" || name.starts_with(".leafless-"));

@@ -241,6 +241,7 @@ fn the_checks_see_lies() {
 }
 
 /// Every damage to every shape, and those variants that are to be filled by `only`: every other one.
+/// Of one rule `only` half of the variants are examined.
 fn damage_all(
     seed: u64,
     detail: usize,
@@ -259,7 +260,7 @@ fn damage_all(
             }
             number += 1;
             let fill = RULES[(number + seed as usize) % 2];
-            if only.is_some_and(|only| only != fill) {
+            if only.is_some_and(|only| only != fill || number % 4 < 2) {
                 continue;
             }
             let is_aligned = aligned && damage != Damage::JitterSlightly;
@@ -289,7 +290,7 @@ fn damage_all(
 fn damaged_shapes(fill: FillRule) {
     let effort = Effort { points: 250, centres: 160, corners: 40, shares: 50 };
     let (variants, total) = damage_all(2, 0, 0, Some(fill), effort);
-    assert!(variants > 280);
+    assert!(variants > 130);
     // Most of what no triangle meets is decided, though many of these soups are nothing but holes.
     assert!(total.clear_open * 5 < total.clear);
     total.judge();

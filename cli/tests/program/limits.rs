@@ -138,12 +138,12 @@ fn in_turn(paths: &[PathBuf], allowed: &str, every: usize) {
 #[test]
 fn trees_of_one_cell_take_little() {
     let place = Place::new();
-    in_turn(&trees(&place), LITTLE, 1);
+    in_turn(&trees(&place), LITTLE, 4);
 }
 
 #[test]
 fn test_vectors_take_little() {
-    in_turn(&vectors(), LITTLE, 7);
+    in_turn(&vectors(), LITTLE, 17);
 }
 
 /// Minutes: `--test program limits:: -- --ignored`.

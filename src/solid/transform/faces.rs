@@ -2,7 +2,11 @@
 //!
 //! A surface in a plane of the lattice crosses no cell, so that no cell keeps it: the cells on both sides are just something else.
 //! Once it is moved it crosses cells as any other.
+//!
+//! Where facets meet in such a plane the cells on both sides may know one of them each. That plane is a seam: no part of the boundary,
+//! but where it is known on which side one is, it is known which facet counts.
 
+use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame};
 use crate::memory;
@@ -19,10 +23,15 @@ pub(super) type LatticePlane = (usize, u32);
 
 /// Most planes that are kept, and most cells that are split to find them. A solid with more is one of cells.
 const MOST_PLANES: usize = 32;
-const MOST_SPLITS: usize = 1 << 14;
+const MOST_SPLITS: usize = 1 << 20;
 
-/// So many times faces are divided to see whether cells are decided on both sides.
+/// Most seams that are kept: of the largest cells.
+const MOST_SEAMS: usize = 1 << 13;
+
+/// So many times faces are divided to see whether cells are decided on both sides, and most cells of all faces that are split for
+/// that.
 const MOST_DIVISIONS: u8 = 4;
+const MOST_DIVIDED: usize = 1 << 14;
 
 /// A cell, or all that lies beyond the universe, and what it is, if that is known.
 struct Node<P> {
@@ -31,23 +40,45 @@ struct Node<P> {
     known: Option<OpenSurfaces>,
 }
 
-struct Walk<'w, W> {
+struct Walk<'w, 'c, W> {
     inner: &'w mut W,
     own: &'w Frame,
     placed: &'w [Placed],
+    control: &'w Control<'c>,
     left: usize,
-    found: Vec<LatticePlane>,
+    left_of_faces: usize,
+    faces: Vec<LatticePlane>,
+    seams: Vec<LatticePlane>,
 }
 
-/// The planes, in order; none if they are too many. `placed`: the surfaces on the universe of the solid's own frame.
+/// Planes of a solid's own lattice, each list in order.
+#[derive(Debug, Default)]
+pub(super) struct LatticePlanes {
+    /// In which faces lie.
+    pub(super) faces: Vec<LatticePlane>,
+    /// Which lie between cells that are not surely one function of surfaces.
+    pub(super) seams: Vec<LatticePlane>,
+}
+
+/// The planes; none if the faces lie in too many, or there are too many cells. `placed`: the surfaces on the universe of the solid's own frame.
 pub(super) fn lattice_planes<W: Worker>(
     inner: &mut W,
     exterior: Tag,
     placed: &[Placed],
-) -> Result<Vec<LatticePlane>, Error> {
+    control: &Control<'_>,
+) -> Result<LatticePlanes, Error> {
     let (own, mark) = (*inner.frame(), inner.mark());
     let root = inner.root()?;
-    let mut walk = Walk { inner, own: &own, placed, left: MOST_SPLITS, found: Vec::new() };
+    let mut walk = Walk {
+        inner,
+        own: &own,
+        placed,
+        control,
+        left: MOST_SPLITS,
+        left_of_faces: MOST_DIVIDED,
+        faces: Vec::new(),
+        seams: Vec::new(),
+    };
     let root = walk.node(Cell::ROOT, root)?;
     walk.within(&root)?;
     if exterior != Tag::Partial {
@@ -59,29 +90,35 @@ pub(super) fn lattice_planes<W: Worker>(
             walk.between(&root, &beyond, axis)?;
         }
     }
-    let (mut found, left) = (walk.found, walk.left);
+    let Walk { mut faces, mut seams, left, .. } = walk;
     inner.release(mark);
-    found.sort_unstable();
-    found.dedup();
-    if left == 0 || found.len() > MOST_PLANES {
-        found.clear();
+    if left == 0 || faces.len() > MOST_PLANES {
+        return Ok(LatticePlanes::default());
     }
-    Ok(found)
+    faces.sort_unstable();
+    seams.sort_unstable();
+    seams.dedup();
+    seams.retain(|plane| faces.binary_search(plane).is_err());
+    if seams.len() > MOST_SEAMS {
+        seams.sort_by_key(|&(_, at)| core::cmp::Reverse(at.trailing_zeros()));
+        seams.truncate(MOST_SEAMS);
+        seams.sort_unstable();
+    }
+    Ok(LatticePlanes { faces, seams })
 }
 
-impl<W: Worker> Walk<'_, W> {
+impl<W: Worker> Walk<'_, '_, W> {
     fn node(&mut self, cell: Cell, verdict: Verdict<W::Part>) -> Result<Node<W::Part>, Error> {
         let known = known(self.inner, cell, &verdict)?;
         Ok(Node { cell: Some(cell), verdict, known })
     }
 
-    /// The children of a PARTIAL cell; `None` of others, and at the end of the depth or of all splits.
+    /// The children of a PARTIAL cell; `None` of others, and at the end of the depth.
     fn divided(&mut self, node: &Node<W::Part>) -> Result<Option<Vec<Node<W::Part>>>, Error> {
         let (Some(cell), Verdict::Partial(part)) = (node.cell, &node.verdict) else { return Ok(None) };
-        if cell.level == self.own.depth() || self.left == 0 {
+        if cell.level == self.own.depth() {
             return Ok(None);
         }
-        self.left -= 1;
         let mut children = memory::with_capacity(8)?;
         for (k, verdict) in OCTANTS.into_iter().zip(self.inner.split(cell, part)?) {
             children.push(self.node(cell.child(k), verdict)?);
@@ -89,9 +126,21 @@ impl<W: Worker> Walk<'_, W> {
         Ok(Some(children))
     }
 
-    /// The same of a cell that is no function of surfaces.
+    /// The same of a cell that is no function of surfaces, while any may be split.
     fn children(&mut self, node: &Node<W::Part>) -> Result<Option<Vec<Node<W::Part>>>, Error> {
-        if node.known.is_some() { Ok(None) } else { self.divided(node) }
+        if node.known.is_some() || self.left == 0 || self.faces.len() > MOST_PLANES {
+            return Ok(None);
+        }
+        self.left -= 1;
+        self.control.check()?;
+        self.divided(node)
+    }
+
+    /// The same of a cell beside a face.
+    fn divided_at_face(&mut self, node: &Node<W::Part>) -> Result<Option<Vec<Node<W::Part>>>, Error> {
+        let Some(left) = self.left_of_faces.checked_sub(1) else { return Ok(None) };
+        self.left_of_faces = left;
+        self.divided(node)
     }
 
     fn within(&mut self, node: &Node<W::Part>) -> Result<(), Error> {
@@ -111,11 +160,14 @@ impl<W: Worker> Walk<'_, W> {
     fn between(&mut self, a: &Node<W::Part>, b: &Node<W::Part>, axis: usize) -> Result<(), Error> {
         let (lower, upper) = (self.children(a)?, self.children(b)?);
         if lower.is_none() && upper.is_none() {
-            if self.is_boundary(a, b, axis, MOST_DIVISIONS)? {
-                let shift = |cell: Cell| cell.at[axis] << (self.own.depth() - cell.level);
-                let plane = b.cell.map_or(self.own.cells(), shift);
-                memory::push(&mut self.found, (axis, plane))?;
+            let shift = |cell: Cell| cell.at[axis] << (self.own.depth() - cell.level);
+            let plane = (axis, b.cell.map_or(self.own.cells(), shift));
+            if self.faces.contains(&plane) || self.agree(a, b)? {
+                return Ok(());
             }
+            let is_face = self.is_boundary(a, b, axis, MOST_DIVISIONS)?;
+            let planes = if is_face { &mut self.faces } else { &mut self.seams };
+            memory::push(planes, plane)?;
             return Ok(());
         }
         for (k, l) in pairs(axis) {
@@ -143,12 +195,14 @@ impl<W: Worker> Walk<'_, W> {
         }
         if let Some((is_lower, octant)) = beside(a, b, axis) {
             // Of the larger cell only that child counts which the other lies beside.
-            let Some(children) = self.divided(if is_lower { a } else { b })? else { return Ok(false) };
+            let Some(children) = self.divided_at_face(if is_lower { a } else { b })? else {
+                return Ok(false);
+            };
             let child = &children[usize::from(octant)];
             let (a, b) = if is_lower { (child, b) } else { (a, child) };
             return self.is_boundary(a, b, axis, divisions);
         }
-        let (lower, upper) = (self.divided(a)?, self.divided(b)?);
+        let (lower, upper) = (self.divided_at_face(a)?, self.divided_at_face(b)?);
         if divisions == 0 || lower.is_none() && upper.is_none() {
             return Ok(false);
         }

@@ -7,11 +7,12 @@
 //!
 //! Where there are layers, pieces are convex bodies, and their values are told apart state by state ([`regions`](super::regions)). Layers
 //! of one plane that hold each other count as the widest of them, which is known in fewer places, and a surface that lies in a layer
-//! all over the target counts as that layer.
+//! all over the target counts as that layer. Where that does not suffice either, because facets meet in a wall between two cells each of
+//! which knows one of them, the wall itself becomes a surface: on one side of it the solid is one function, on the other another.
 //!
 //! Signs are those of the surfaces, so nothing is rounded that counts. From there on the cells below know nothing but the function.
 
-use super::faces::{LatticePlane, lattice_planes, lone};
+use super::faces::{LatticePlane, LatticePlanes, lattice_planes, lone};
 use super::image::Maps;
 use super::polytope::Polytope;
 use super::regions::{self, Flat, Found, Regions};
@@ -44,8 +45,8 @@ pub(super) struct Surfaces {
     after: Vec<Placed>,
     /// For each of them the next wider layer of the same plane, if there is one.
     wider: Vec<Option<u32>>,
-    /// The last of them, if they are planes of the solid's own lattice.
-    planes: Vec<LatticePlane>,
+    /// The last of them: planes of the solid's own lattice, seams after faces.
+    planes: LatticePlanes,
 }
 
 /// By so much a layer is widened, and by the next once more, where two cells of the source cannot be told from each other otherwise:
@@ -106,8 +107,11 @@ impl Surfaces {
             let (wider, widened) = wider(&list, MOST_WIDENED * inner.frame().cell_size())?;
             widened.iter().try_for_each(|surface| place(&mut own, surface))?;
             own.wider = wider;
-            let planes = lattice_planes(&mut worker, inner.exterior(), &own.before)?;
-            for &plane in &planes {
+            let mut planes = lattice_planes(&mut worker, inner.exterior(), &own.before, control)?;
+            if !own.has_layers() {
+                planes.seams.clear();
+            }
+            for &plane in planes.faces.iter().chain(&planes.seams) {
                 place(&mut own, &plane_of(inner.frame(), plane))?;
             }
             own.planes = planes;
@@ -122,7 +126,18 @@ impl Surfaces {
     }
 
     fn first_plane(&self) -> usize {
-        self.moved.len() - self.planes.len()
+        self.first_seam() - self.planes.faces.len()
+    }
+
+    fn first_seam(&self) -> usize {
+        self.moved.len() - self.planes.seams.len()
+    }
+
+    /// A plane of the lattice by its number.
+    fn plane(&self, index: u32) -> Option<LatticePlane> {
+        let number = (index as usize).checked_sub(self.first_plane())?;
+        let LatticePlanes { faces, seams } = &self.planes;
+        faces.get(number).or_else(|| seams.get(number - faces.len())).copied()
     }
 
     fn wider(&self, index: u32) -> Option<u32> {
@@ -384,7 +399,7 @@ impl<'s> Target<'s> {
     /// The same where there are layers.
     fn by_regions(&mut self, pieces: &[Piece<'_>]) -> Result<Option<OpenSurfaces>, Error> {
         /// So often layers are made wider.
-        const MOST_TRIES: usize = 4;
+        const MOST_TRIES: usize = 2;
         let mut bodies = memory::with_capacity(pieces.len())?;
         let mut values = memory::with_capacity(pieces.len())?;
         for piece in pieces {
@@ -399,11 +414,14 @@ impl<'s> Target<'s> {
             memory::push(&mut values, shortened(value))?;
         }
         self.unite(&mut values);
-        let mut with_planes = false;
-        for _ in 0..MOST_TRIES {
+        let (mut with_planes, mut with_seams) = (false, false);
+        for tries in 0.. {
             let mut all = OpenSurfaces::constant(false);
             if with_planes {
                 self.add_planes(&mut all);
+            }
+            if with_seams {
+                self.add_seams(&mut all, &bodies);
             }
             if !values.iter().all(|value| value.indices().iter().all(|&index| all.number(index).is_some())) {
                 return Ok(None);
@@ -415,14 +433,18 @@ impl<'s> Target<'s> {
                 Found::Nothing => return Ok(None),
                 Found::Conflict(piece, ..) => piece,
             };
-            if self.absorb(&all, &mut values)? || self.widen(&all, &mut values, conflict) {
+            let is_open = tries < MOST_TRIES;
+            if is_open && (self.absorb(&all, &mut values)? || self.widen(&all, &mut values, conflict)) {
                 continue;
             }
             let mut other = all;
-            if with_planes || !self.add_planes(&mut other) {
+            if !with_planes && self.add_planes(&mut other) {
+                with_planes = true;
+            } else if !with_seams && self.add_seams(&mut other, &bodies) {
+                with_seams = true;
+            } else {
                 return Ok(None);
             }
-            with_planes = true;
         }
         Ok(None)
     }
@@ -550,10 +572,32 @@ impl<'s> Target<'s> {
     fn add_planes(&self, all: &mut OpenSurfaces) -> bool {
         let before = all.indices().len();
         let first = self.surfaces.first_plane();
-        for (index, &(axis, at)) in (first as u32..).zip(&self.surfaces.planes) {
+        for (index, &(axis, at)) in (first as u32..).zip(&self.surfaces.planes.faces) {
             let at = f64::from(at);
             if self.low[axis] < at && at < self.high[axis] && all.number(index).is_none() {
                 return false;
+            }
+        }
+        all.indices().len() > before
+    }
+
+    /// Adds the seams between these pieces; `false` if there are none, or too many.
+    fn add_seams(&self, all: &mut OpenSurfaces, bodies: &[(&Piece<'_>, Polytope)]) -> bool {
+        let before = all.indices().len();
+        let first = self.surfaces.first_seam();
+        let sources = || bodies.iter().map(|(piece, _)| piece.source);
+        for low in sources() {
+            for axis in 0..3 {
+                let at = low.low[axis];
+                if !sources().any(|high| high.high[axis] == at) {
+                    continue;
+                }
+                let Ok(number) = self.surfaces.planes.seams.binary_search(&(axis, at as u32)) else {
+                    continue;
+                };
+                if all.number((first + number) as u32).is_none() {
+                    return false;
+                }
             }
         }
         all.indices().len() > before
@@ -613,8 +657,7 @@ impl<'s> Target<'s> {
 
     /// The side of a surface on which all of a piece lies, if that is known.
     fn side(&mut self, piece: &Piece<'_>, index: u32) -> Result<Option<bool>, Error> {
-        let plane = (index as usize).checked_sub(self.surfaces.first_plane());
-        if let Some(&(axis, at)) = plane.and_then(|plane| self.surfaces.planes.get(plane)) {
+        if let Some((axis, at)) = self.surfaces.plane(index) {
             let (above, below) =
                 (piece.source.low[axis] >= f64::from(at), piece.source.high[axis] <= f64::from(at));
             return Ok((above || below).then_some(above));
