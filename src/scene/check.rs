@@ -27,7 +27,7 @@ const REFUSED: [&str; 9] =
 const MANY: u32 = MOST_SIDES + 1;
 
 /// What a call stands for.
-enum Shape {
+pub(super) enum Shape {
     /// Neither a solid nor a figure: a group without anything in it.
     Nothing,
     Figure(Box<Figure>),
@@ -108,7 +108,7 @@ impl Checker<'_> {
         })
     }
 
-    fn node(&mut self, node: Node) -> Result<Shape, Error> {
+    pub(super) fn node(&mut self, node: Node) -> Result<Shape, Error> {
         memory::push(&mut self.nodes, node)?;
         Ok(Shape::Solid(self.nodes.len() - 1))
     }
@@ -126,6 +126,10 @@ impl Checker<'_> {
             "intersection" => self.intersection(call, first),
             "difference" => self.difference(call, first),
             "multmatrix" => self.multmatrix(call, first),
+            "translate" => self.translate(call, first),
+            "rotate" => self.rotate(call, first),
+            "scale" => self.scale(call, first),
+            "mirror" => self.mirror(call, first),
             "linear_extrude" => self.linear_extrude(call, first),
             "rotate_extrude" => self.rotate_extrude(call, first),
             "square" => self.square(call),
@@ -145,7 +149,8 @@ impl Checker<'_> {
                     "import" => self.import(call)?,
                     "octree" => self.octree(call)?,
                     _ => {
-                        let hint = "CSG dumps, as OpenSCAD exports them, have none";
+                        let hint = "CSG dumps have none; of a model in the language of OpenSCAD, \
+                                    `openscad -o model.csg model.scad` makes one";
                         return Err(self
                             .tree
                             .fault(call.at, format!("unknown call {}: {hint}", shown(name))));
@@ -192,7 +197,7 @@ impl Checker<'_> {
         })
     }
 
-    fn union(&mut self, first: usize) -> Result<Shape, Error> {
+    pub(super) fn union(&mut self, first: usize) -> Result<Shape, Error> {
         match self.operands(first)? {
             Operands::Nothing => Ok(Shape::Nothing),
             Operands::Figures(mut figures) if figures.len() == 1 => {
@@ -238,35 +243,6 @@ impl Checker<'_> {
 
     fn no_arguments(&self, call: &Call<'_>) -> Result<(), Error> {
         Given::new(self.tree, call, [], &[]).map(|_| ())
-    }
-
-    fn multmatrix(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
-        let given = Given::new(self.tree, call, ["m"], &[])?;
-        let matrix = given.required(0)?;
-        let rows = matrix.list::<4>()?;
-        let mut m = [[0.0; 4]; 4];
-        for (row, item) in m.iter_mut().zip(rows) {
-            *row = item.numbers()?;
-        }
-        if m[3] != [0.0, 0.0, 0.0, 1.0] {
-            return Err(rows[3].fault("the last row must be [0, 0, 0, 1]"));
-        }
-        let [x, y, z, _] = m;
-        match self.union(first)? {
-            Shape::Nothing => Ok(Shape::Nothing),
-            Shape::Figure(figure) => {
-                // Of a figure only what happens in its plane counts.
-                let rows = [[x[0], x[1], x[3]], [y[0], y[1], y[3]]];
-                figure.placed(rows).map(Shape::from).map_err(|error| matrix.fault(format!("{error}")))
-            }
-            Shape::Solid(node) => match Affine::new([x, y, z]) {
-                Ok(placement) if placement.is_identity() => Ok(Shape::Solid(node)),
-                Ok(placement) => self.node(Node::Placed(node, placement)),
-                // A solid that is pressed flat is nothing.
-                Err(_) if is_singular([x, y, z]) => self.node(Node::Solid(Csg::empty())),
-                Err(error) => Err(matrix.fault(format!("{error}"))),
-            },
-        }
     }
 
     /// The figure that a block consists of.
@@ -362,11 +338,6 @@ impl Checker<'_> {
         }
         fan.map(|fan| self.at(call, figure.turned(fan))).transpose()
     }
-}
-
-/// Whether a matrix of finite numbers maps space onto a plane, a line or a point.
-fn is_singular(rows: [[f64; 4]; 3]) -> bool {
-    matches!(Affine::new(rows), Err(Error::Argument { problem: Affine::SINGULAR, .. }))
 }
 
 impl From<Figure> for Shape {

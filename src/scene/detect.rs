@@ -3,7 +3,7 @@
 use super::grammar::first_call;
 
 /// Calls of the language, and those that are refused by name.
-const CALLS: [&str; 32] = [
+const CALLS: [&str; 36] = [
     "group",
     "union",
     "color",
@@ -11,6 +11,10 @@ const CALLS: [&str; 32] = [
     "intersection",
     "difference",
     "multmatrix",
+    "translate",
+    "rotate",
+    "scale",
+    "mirror",
     "cube",
     "sphere",
     "cylinder",

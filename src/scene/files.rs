@@ -48,7 +48,8 @@ impl Checker<'_> {
         if read.mesh.triangles().is_empty() {
             return Err(file.fault(format!("{}", MeshError::Empty)));
         }
-        self.solid_mesh(call, file.text()?, read.mesh, fill)
+        // Files have hair cracks, because their coordinates are rounded.
+        self.solid_mesh(call, file.text()?, read.mesh.sewn()?, fill)
     }
 
     pub(super) fn import(&mut self, call: &Call<'_>) -> Result<Node, Error> {

@@ -7,6 +7,7 @@ mod facets;
 mod files;
 mod grammar;
 mod lower;
+mod moves;
 mod options;
 mod report;
 
@@ -27,7 +28,7 @@ use alloc::vec::Vec;
 /// # The language
 ///
 /// That of the CSG dumps which OpenSCAD exports (`openscad -o part.csg part.scad`), with some calls of our
-/// own. Numbers mean just the doubles that they are read as.
+/// own, and those that move things from OpenSCAD's language. Numbers mean just the doubles that they are read as.
 ///
 /// Circles, balls, cylinders and solids of revolution are exact, unless `$fn` is given and not more than 12:
 /// then they are the polygons, prisms and polyhedra that OpenSCAD draws, so that a hexagonal nut is one.
@@ -40,6 +41,7 @@ use alloc::vec::Vec;
 /// | `group` `union` `color` `render` | the union of what is in the block |
 /// | `intersection` `difference` | set operations |
 /// | `multmatrix(m)` | the union of the block under a matrix of 4 × 4; the last row is `[0, 0, 0, 1]` |
+/// | `translate(v)` `rotate(a, v)` `scale(v)` `mirror(v)` | the same, as OpenSCAD's own language says it; quarter turns are exact |
 /// | `cube(size, center)` `sphere(r)` `cylinder(h, r1, r2, center, r)` | solids, cones included |
 /// | `polyhedron(points, faces)` | what a mesh encloses by [`FillRule::NonZero`](crate::FillRule::NonZero) |
 /// | `square(size, center)` `circle(r)` `polygon(points, paths)` | figures of the plane |

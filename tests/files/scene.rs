@@ -137,6 +137,42 @@ fn operations() {
     check(&format!("{turned} {turned} cube([4, 2, 4]);"), 32.0, 64.0);
 }
 
+/// What OpenSCAD's own language says instead of a matrix.
+#[test]
+fn moves() {
+    let turned = |rows: &str, what: &str| format!("multmatrix([{rows}, [0, 0, 0, 1]]) {what}");
+    let (part, figure) = ("cube([3, 2, 1]);", "linear_extrude(height = 2) ");
+    let plate = "{ square([3, 1]); }";
+    for (call, rows) in [
+        ("translate([1, -2, 0.5])", "[1, 0, 0, 1], [0, 1, 0, -2], [0, 0, 1, 0.5]"),
+        ("translate(v = [1, 2])", "[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 0]"),
+        ("scale(2)", "[2, 0, 0, 0], [0, 2, 0, 0], [0, 0, 2, 0]"),
+        ("scale([0.5, 2])", "[0.5, 0, 0, 0], [0, 2, 0, 0], [0, 0, 1, 0]"),
+        ("rotate(90)", "[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0]"),
+        ("rotate(a = -90, v = [0, 2, 0])", "[0, 0, -1, 0], [0, 1, 0, 0], [1, 0, 0, 0]"),
+        // About x first, about z last.
+        ("rotate([90, 0, 90])", "[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0]"),
+        ("rotate([0, 180])", "[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0]"),
+        ("rotate(30, [0, 0, 0])", "[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]"),
+        ("mirror([3, 0, 0])", "[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]"),
+        ("mirror([1, -1])", "[0, 1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0]"),
+        ("mirror([0, 0, 0])", "[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]"),
+    ] {
+        same(&format!("{call} {part}"), &turned(rows, part));
+        if !call.contains("90, 0, 90") && !call.contains("v = [0, 2") {
+            same(&format!("{figure} {call} {plate}"), &format!("{figure} {}", turned(rows, plate)));
+        }
+    }
+    check("rotate([10, 20, 30]) translate([1, 2, 0]) cube([2, 3, 4]);", 24.0, 52.0);
+    let turn = in_cube("rotate(30) cube([6, 1, 1]);");
+    assert_eq!(turn.contains([4.0, 2.9, 0.5]), Membership::Inside);
+    assert_eq!(turn.contains([4.0, 1.9, 0.5]), Membership::Outside);
+    is_nothing("scale([1, 1, 0]) cube(2);");
+    let (line, column, problem) = refusal("union() {\n  translate([1]) cube(1); }");
+    assert_eq!((line, column, &*problem), (2, 13, "expected 3 items, found 1"));
+    assert_eq!(refusal("rotate() cube(1);").2, "`a` is missing");
+}
+
 #[test]
 fn nothing() {
     for text in [
@@ -650,6 +686,20 @@ fn files_beside_the_scene() {
         assert!(volume.upper - volume.lower <= width, "{text}: {volume:?}");
     };
     check("mesh(\"block.stl\");", 2.0, 0.0);
+    // Hair cracks are closed, as they are wherever a file is read.
+    let mut cracked = String::new();
+    for (at, triangle) in block().triangles().iter().enumerate() {
+        for vertex in triangle.map(|vertex| block().vertices()[vertex as usize]) {
+            let [x, y, z] = vertex.map(|c| c + if at == 0 { 1e-8 } else { 0.0 });
+            writeln!(cracked, "v {x} {y} {z}").unwrap();
+        }
+        writeln!(cracked, "f -3 -2 -1").unwrap();
+    }
+    std::fs::write(folder.path().join("cracked.obj"), cracked).unwrap();
+    std::fs::write(folder.path().join("scene.csg"), "import(\"cracked.obj\");").unwrap();
+    let scene = leafless::scene::open_scene(folder.path().join("scene.csg")).unwrap();
+    let report = scene.report().meshes[0].report;
+    assert!(report.sewn > 0 && report.boundary_edges == 0, "{report:?}");
     check(
         "import(file = \"block.stl\", origin = [0, 0], scale = 1, center = false, convexity = 1, timestamp = 17);",
         2.0,
@@ -728,7 +778,7 @@ fn errors_say_where() {
         ("group() { # 7; }", (1, 13), "expected a call or `}`"),
         // Calls.
         ("group() {\n  cubus(1);\n}", (2, 3), "unknown call `cubus`"),
-        ("translate([1, 0, 0]) cube(1);", (1, 1), "unknown call `translate`"),
+        ("part(1) cube(1);", (1, 1), "openscad -o model.csg model.scad"),
         ("group() { hull() { cube(1); } }", (1, 11), "`hull` is not supported"),
         ("minkowski(convexity = 0) { cube(1); cube(2); }", (1, 1), "`minkowski` is not supported"),
         ("linear_extrude(height = 1) text(text = \"A\");", (1, 28), "`text` is not supported"),
