@@ -37,6 +37,9 @@ pub enum ResolveName {
     Outer,
 }
 
+/// What is told of undecided cells where nobody said what they count as.
+pub const UNDECIDED: &str = "note: its undecided cells count as inside; --resolve inner leaves them out";
+
 impl From<ResolveName> for Rule {
     fn from(name: ResolveName) -> Rule {
         match name {
@@ -89,6 +92,11 @@ pub fn formats(names: [&'static str; 5]) -> impl TypedValueParser<Value = MeshFo
 /// How wide an interval may be.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     number(text, "a number not below 0", |tolerance| tolerance >= 0.0)
+}
+
+/// How long something may take.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    number(text, "a number of seconds above 0", |seconds| seconds > 0.0 && seconds < 1e9)
 }
 
 /// A number of threads: far more than processors help nobody.

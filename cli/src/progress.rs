@@ -1,19 +1,25 @@
-//! Long work: a bar for whoever waits at a terminal, and an end before memory runs out.
+//! Long work: a bar for whoever waits at a terminal, lines for a log, an end before memory runs out or when time is up.
 
+use crate::failure::complain;
 use crate::memory;
 use indicatif::{ProgressBar, ProgressStyle};
 use leafless::{Control, Error};
 use std::io::IsTerminal;
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, OnceLock};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Work that is done before this needs no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// Where there is no terminal, a line is told as often as this.
+const PACE: Duration = Duration::from_secs(5);
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
 /// Runs `work` on so many threads (0: one a processor), with a progress bar called `label` once it has taken
-/// more than a second, if standard error is a terminal. Work that would take more memory than is allowed ends with a
+/// more than a second, if standard error is a terminal, and else with a line every few seconds. Work that would take more memory than is allowed ends with a
 /// sentence that says so.
 pub fn watched<R>(
     label: &'static str,
@@ -21,20 +27,25 @@ pub fn watched<R>(
     work: impl FnOnce(&Control<'_>) -> Result<R, Error>,
 ) -> Result<R, String> {
     let start = Instant::now();
-    let bar = OnceLock::new();
+    let (bar, told) = (OnceLock::new(), Told::new(label));
     let show = |done: f64| {
         if start.elapsed() > PATIENCE {
             let bar = bar.get_or_init(|| started(label, start));
             bar.set_position((done * STEPS as f64) as u64);
         }
     };
-    let progress: Option<&(dyn Fn(f64) + Sync)> =
-        if std::io::stderr().is_terminal() { Some(&show) } else { None };
+    let note = |done: f64| {
+        if let Some(told) = &told {
+            told.note(done);
+        }
+    };
+    let progress: &(dyn Fn(f64) + Sync) = if told.is_some() { &note } else { &show };
     let max_bytes = Some(memory::affordable());
-    let result = work(&Control { threads, progress, max_bytes, ..Control::default() });
+    let result = work(&Control { threads, progress: Some(progress), max_bytes, ..Control::default() });
     if let Some(bar) = bar.get() {
         bar.finish_and_clear();
     }
+    drop(told);
     result.map_err(|error| match error {
         // The only limit that is set here; others are the library's own, and say what they are.
         Error::Limit { what: "bytes", limit } => format!(
@@ -48,6 +59,8 @@ pub fn watched<R>(
             memory::told(needed),
             memory::told(limit)
         ),
+        // Nothing else cancels.
+        Error::Cancelled => "the time of --seconds was over before anything was known: give more".into(),
         Error::OutOfMemory => {
             "the system has no memory left: take fewer levels of cells (one less takes about a quarter)".into()
         }
@@ -61,4 +74,96 @@ fn started(label: &'static str, start: Instant) -> ProgressBar {
         Ok(style) => bar.with_style(style.progress_chars("=> ")),
         Err(_) => bar,
     }
+}
+
+/// Runs work that does not say how far it is; every few seconds a line says that it goes on.
+pub fn at_work<R>(label: &'static str, work: impl FnOnce() -> R) -> R {
+    let told = Told::new(label);
+    let result = work();
+    drop(told);
+    result
+}
+
+/// A thread that tells every few seconds of work that is going on, until this is dropped.
+struct Told {
+    /// Thousandths that are done.
+    done: Arc<AtomicU32>,
+    thread: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Told {
+    /// `None` at a terminal.
+    fn new(label: &'static str) -> Option<Told> {
+        if std::io::stderr().is_terminal() {
+            return None;
+        }
+        let done = Arc::new(AtomicU32::new(0));
+        let (end, ended) = channel();
+        let seen = done.clone();
+        let tell = move || {
+            let start = Instant::now();
+            while ended.recv_timeout(PACE) == Err(RecvTimeoutError::Timeout) {
+                let time = start.elapsed().as_secs();
+                let part = match seen.load(Relaxed) {
+                    0 => String::new(),
+                    done => format!(", {} % done", done / 10),
+                };
+                complain(&format!("{label}: at work for {time} s{part}"));
+            }
+        };
+        // Without the thread there are no lines.
+        let thread = std::thread::Builder::new().name("progress".into()).stack_size(1 << 17).spawn(tell).ok();
+        Some(Told { done, thread: thread.map(|thread| (end, thread)) })
+    }
+
+    fn note(&self, done: f64) {
+        self.done.store((done * 1000.0) as u32, Relaxed);
+    }
+}
+
+impl Drop for Told {
+    fn drop(&mut self) {
+        if let Some((end, thread)) = self.thread.take() {
+            drop(end);
+            // No line comes after the result. (The thread does not panic.)
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Splits of the first attempt within a time.
+const FIRST_SPLITS: u64 = 1 << 10;
+
+/// Does work with four times as many splits each time, until it `is_done` or the time is over, and returns what the last attempt
+/// that came to its end found. Without a time it is done once.
+pub fn within_time<R>(
+    seconds: Option<f64>,
+    control: &Control<'_>,
+    work: impl Fn(&Control<'_>) -> Result<R, Error>,
+    is_done: impl Fn(&R) -> bool,
+) -> Result<R, Error> {
+    let Some(seconds) = seconds else { return work(control) };
+    let is_over = AtomicBool::new(false);
+    let (end, ended) = channel::<()>();
+    std::thread::scope(|scope| {
+        let is_over = &is_over;
+        scope.spawn(move || {
+            let _ = ended.recv_timeout(Duration::from_secs_f64(seconds));
+            is_over.store(true, Relaxed);
+        });
+        let most = control.max_splits.unwrap_or(u64::MAX);
+        let (mut best, mut splits) = (None, FIRST_SPLITS.min(most));
+        let result = loop {
+            let control = Control { max_splits: Some(splits), cancel: Some(is_over), ..*control };
+            match work(&control) {
+                Ok(found) if splits == most || is_done(&found) => break Ok(found),
+                Ok(found) => best = Some(found),
+                Err(Error::Cancelled) => break best.ok_or(Error::Cancelled),
+                Err(error) => break Err(error),
+            }
+            splits = splits.saturating_mul(4).min(most);
+        };
+        drop(end);
+        result
+    })
 }

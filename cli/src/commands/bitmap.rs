@@ -1,7 +1,7 @@
 //! `leafless bitmap`: the cells of a solid as a volume.
 
 use crate::failure::{Failure, Of, complain};
-use crate::options::{ResolveName, threads};
+use crate::options::{ResolveName, UNDECIDED, threads};
 use crate::progress::watched;
 use crate::sink::Output;
 use crate::source::input::Input;
@@ -32,7 +32,8 @@ pub struct Arguments {
     /// Compress the samples of a NRRD
     #[arg(long)]
     gzip: bool,
-    /// What undecided cells count as, and cells of the level that are cut further
+    /// What undecided cells count as, and cells of the level that are cut further. Without it: what their centres are, where
+    /// cells keep surfaces, and outer in other files, which is told
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
     /// Level of the cells, 0 to the solid's depth. Without it: the finest one, or 8 if the cells keep surfaces
@@ -87,21 +88,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Usage(problem));
     }
     // Its own cells are large, and say little: the surfaces decide smaller ones.
+    let rule = arguments.resolve.map_or(Rule::Sampled, Rule::from);
     let octree = match keeps_surfaces {
-        true => watched("bitmap", arguments.threads, |control| {
-            plain(&octree, level.max(1), Rule::Certified, control)
-        })
-        .of(&input)?,
+        true => watched("bitmap", arguments.threads, |control| plain(&octree, level.max(1), rule, control))
+            .of(&input)?,
         false => octree,
     };
     if arguments.level.is_none() && level < frame.depth() {
         let warning = "warning: its cells keep surfaces, which decide cells of level";
         complain(&format!("{input}: {warning} {level}; --level chooses another"));
     }
-    if arguments.resolve.is_none() && (level < octree.frame().depth() || !octree.view().is_binary()) {
-        let problem = "has undecided cells, or cells that are cut further, which are neither inside nor outside: \
-                       choose --resolve inner or --resolve outer";
-        return Err(Failure::of(&input, problem));
+    let is_open =
+        arguments.resolve.is_none() && (level < octree.frame().depth() || !octree.view().is_binary());
+    if is_open {
+        complain(&format!("{input}: {UNDECIDED}"));
     }
     if octree.view().exterior() != Tag::Empty {
         let warning = "warning: the solid may go on outside of its bounds, which a volume does not tell";
@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let n = 1u32 << level;
     let spacing = frame.edge() / f64::from(n);
     let grid = VoxelGrid::new([n; 3], frame.origin(), [spacing; 3]).of(&input)?;
-    let is_outer = arguments.resolve == Some(ResolveName::Outer);
+    let is_outer = is_open || arguments.resolve == Some(ResolveName::Outer);
     let made = watched("bitmap", arguments.threads, |control| {
         let samples = samples(&octree, level, is_outer, control)?;
         let inside = samples.iter().filter(|&&sample| sample != 0).count() as u64;

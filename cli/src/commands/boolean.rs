@@ -4,16 +4,21 @@ use crate::failure::Failure;
 use crate::making::boolean::{Combining, combine};
 use crate::making::operands::Operation;
 use crate::sink::Output;
+use crate::source::file::Taking;
 use crate::source::input::Input;
+use crate::source::mesh::Reading;
 use crate::source::placing::{Placing, Step};
-use crate::source::volume::Sampling;
+use crate::source::scene::Drawing;
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use leafless::Frame;
 use leafless::attribute::CarryRule;
 use std::ffi::OsString;
 
-/// The solids must lie on one frame: voxelize them with the same --bounds and --depth. The result may replace
-/// one of them. Tri-dexel models can be combined with each other, made with the same --bounds and --resolution.
+/// Solids from files (.lfl) must lie on one frame: `leafless voxelize --like part.lfl` makes one on that of another. Meshes, scenes and
+/// volumes are cut into cells on the frame of the first solid; without any, on the voxels of a volume that comes first, or on a cube
+/// around all of them: `leafless xor old.stl new.stl -o changes.lfl`. The result may replace one of the files. Tri-dexel models can be
+/// combined with each other, made with the same --bounds and --resolution.
 ///
 /// --translate, --rotate, --scale and --place move the file that they stand behind, and put it onto the frame of the first file:
 /// `leafless difference part.lfl pin.lfl --rotate z,30 pin.lfl --rotate z,60 -o out.lfl` cuts two pins. What was moved by whole cells and
@@ -34,7 +39,8 @@ pub struct Arguments {
 /// That is so outside of the bounds, too, but for tri-dexel models, which end at them.
 #[derive(Args)]
 pub struct ComplementArguments {
-    /// Solid or tri-dexel model (.lfl) or volume (NRRD, MetaImage), or `-` for standard input
+    /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
+    /// standard input
     file: OsString,
     #[command(flatten)]
     common: Common,
@@ -48,8 +54,17 @@ struct Common {
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = crate::options::threads)]
     threads: usize,
+    /// Lower corner and edge length of the cube of cells, for meshes, scenes and volumes without a solid among them. Without it: the
+    /// voxels of a volume that comes first, or the cube around all of them
+    #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = crate::options::bounds, allow_hyphen_values = true)]
+    bounds: Option<Frame>,
+    /// Levels of cells there, 1 to 20. Without it: 10, or those of the voxels
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
+    depth: Option<u8>,
     #[command(flatten)]
-    sampling: Sampling,
+    reading: Reading,
+    #[command(flatten)]
+    drawing: Drawing,
     /// Whose value of a channel counts where several solids have one: that of the first, the last, the greatest, or
     /// the mean. Without it: that of the first
     #[arg(long, value_name = "NAME=left|right|max|mean", value_parser = carry)]
@@ -62,8 +77,11 @@ struct Common {
 
 impl Common {
     fn combine(&self, operation: Operation, files: &[(Input, Placing)]) -> Result<(), Failure> {
-        let Common { threads, sampling, carry, plain, .. } = self;
-        let combining = Combining { operation, sampling, carry, plain: *plain, threads: *threads };
+        let Common { threads, reading, drawing, carry, plain, bounds, depth, .. } = self;
+        let (bounds, depth, plain, threads) = (*bounds, *depth, *plain, *threads);
+        let (reading, drawing, placing) = (reading.clone(), drawing.clone(), Placing::default());
+        let taking = &Taking { reading, drawing, placing };
+        let combining = Combining { operation, taking, bounds, depth, carry, plain, threads };
         combine(&combining, files, &Output::from(&*self.output))
     }
 }
@@ -88,9 +106,9 @@ impl Args for Operands {
         let files =
             Arg::new("files").value_name("FILE").required(true).num_args(1..).action(ArgAction::Append);
         let files = files.value_parser(value_parser!(OsString)).help(
-            "Solids or tri-dexel models (.lfl) or volumes (NRRD, MetaImage), two or more; one of them may be `-` for standard \
-             input. --translate, --rotate, --scale and --place move the file that they stand behind, and put it onto the frame of \
-             the first one: `difference part.lfl pin.lfl --rotate z,30 pin.lfl --rotate z,60 -o out.lfl`",
+            "Solids or tri-dexel models (.lfl), meshes (STL, OBJ, PLY, OFF, 3MF), scenes (.csg) or volumes (NRRD, MetaImage), two \
+             or more; one of them may be `-` for standard input. --translate, --rotate, --scale and --place move the file that they stand behind, and put it onto the common \
+             frame: `difference part.lfl pin.lfl --rotate z,30 pin.lfl --rotate z,60 -o out.lfl`",
         );
         Placing::augment_args(command.arg(files))
     }

@@ -33,8 +33,6 @@ use std::time::Instant;
 /// is, surfaces and channels included: on the image of its own cube, or, if that is not along the axes, on a cube around its
 /// image. Moved by whole cells and quarter turns, an octree stays exact; otherwise its cells blur by about one.
 #[derive(Args)]
-// Of meshes, `--to` says the unit everywhere else.
-#[command(mut_arg("to", |unit| unit.long("to-unit")))]
 pub struct Arguments {
     /// Octree or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-`
     /// for standard input

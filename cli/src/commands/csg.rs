@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::making::job::Job;
+use crate::making::like::Like;
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
 use crate::making::surfaces::Surfaces;
 use crate::options::{bounds, number, octree_rules, threads};
@@ -37,8 +38,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
-    /// times as long. With --surfaces it may be left out
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64), required_unless_present = "surfaces")]
+    /// times as long. With --surfaces and --like it may be left out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64), required_unless_present_any = ["surfaces", "like"])]
     depth: Option<u8>,
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_parser = octree_rules(), default_value = "certified")]
@@ -61,6 +62,8 @@ pub struct Arguments {
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]
+    like: Like,
+    #[command(flatten)]
     drawing: Drawing,
     #[command(flatten)]
     placing: Placing,
@@ -78,7 +81,8 @@ fn thickness(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { depth, rule, adaptive, surfaces, touch, bounds, threads, json, .. } = *arguments;
+    let Arguments { rule, adaptive, surfaces, touch, threads, json, .. } = *arguments;
+    let (bounds, depth) = arguments.like.frame(arguments.bounds, arguments.depth, surfaces.are_kept())?;
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     job.output.check()?;

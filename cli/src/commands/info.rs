@@ -1,6 +1,8 @@
 //! `leafless info`: what a solid, a mesh or a scene consists of.
 
 use crate::failure::{Failure, Of};
+use crate::progress::at_work;
+use crate::report::fitness::Fitness;
 use crate::report::{dexels, mesh, octree, scene, volume};
 use crate::sink::print_told;
 use crate::source::content::Content;
@@ -19,6 +21,11 @@ use std::ffi::OsString;
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
     file: OsString,
+    /// Say in a line whether a mesh is fit to be printed and to be made a solid of: closed, all facets facing outward, no triangles
+    /// that intersect, repeat others or have no thickness between them, no edge of more than two. The exit code is 0 if it is, and 1
+    /// with the reasons if not
+    #[arg(long)]
+    check: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -31,6 +38,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Taking { reading, drawing, placing } = taking;
     let found = Found::look(input, reading.told())?;
     let bytes = found.length();
+    if arguments.check && found.content != Content::Mesh {
+        let problem = "is none; `leafless verify` checks the file of a solid";
+        return Err(Failure::Usage(format!("--check is for meshes: {input} {problem}")));
+    }
     match found.content {
         Content::Solid => {
             taking.refuse(input, "a solid")?;
@@ -59,7 +70,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Content::Mesh => {
             drawing.refuse(input, "a mesh")?;
             let (file, fill) = found.mesh(reading, placing)?;
-            let (info, report) = (mesh::Info::new(input, &file, fill, bytes)?, file.mesh.report().of(input)?);
+            if arguments.check {
+                let fitness = at_work("info", || Fitness::new(input, &file.mesh))?;
+                return match (fitness.fit, as_json) {
+                    (true, _) => print_told(as_json, &fitness, Fitness::text),
+                    (false, true) => print_told(true, &fitness, Fitness::text)
+                        .and_then(|()| Err(Failure::of(input, fitness.verdict()))),
+                    (false, false) => Err(Failure::of(input, fitness.verdict())),
+                };
+            }
+            let info = at_work("info", || mesh::Info::new(input, &file, fill, bytes))?;
+            let report = file.mesh.report().of(input)?;
             print_told(as_json, &info, |info| info.text(&report))
         }
     }

@@ -1,8 +1,8 @@
 //! `leafless interfere`: do two solids overlap, and how far are they apart?
 
 use crate::failure::{Failure, Of};
-use crate::memory;
-use crate::options::bounds;
+use crate::options::{bounds, seconds};
+use crate::progress::{watched, within_time};
 use crate::report::bounds::{Proven, stop_word};
 use crate::sink::print_told;
 use crate::source::file::Taking;
@@ -43,9 +43,12 @@ pub struct Arguments {
     /// Lower corner and edge length of the cube to look at. Without it: the cube around both
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
-    /// Cells to split at most, for each of the three answers
-    #[arg(long, value_name = "N", default_value_t = 100_000)]
-    splits: u64,
+    /// Cells to split at most, for each of the three answers. Without it: 100000, or as many as --seconds allow
+    #[arg(long, value_name = "N")]
+    splits: Option<u64>,
+    /// Seconds after which it ends with what is known by then. The result then depends on the machine
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    seconds: Option<f64>,
     /// Take the cells of solids from files (.lfl) for the solids themselves, whatever they prove of what they
     /// were made from
     #[arg(long)]
@@ -93,7 +96,7 @@ impl Range {
 }
 
 /// Why a verdict is undecided, in a word and in a sentence.
-fn reason(found: &Interference, splits: u64) -> Option<(&'static str, &'static str)> {
+fn reason(found: &Interference, is_spent: bool) -> Option<(&'static str, &'static str)> {
     let certified = |proof: Proof| proof.full && proof.empty;
     match found.verdict {
         // (What lies outside of such a solid's universe is not proven, either.)
@@ -103,8 +106,8 @@ fn reason(found: &Interference, splits: u64) -> Option<(&'static str, &'static s
         Overlap::Undecided if found.clipped => {
             Some(("clipped", "both solids may go on outside of the bounds; give larger --bounds"))
         }
-        Overlap::Undecided if found.splits.iter().sum::<u64>() >= splits => {
-            Some(("budget", "the splits are spent; give more --splits"))
+        Overlap::Undecided if is_spent => {
+            Some(("budget", "the splits are spent; give more --splits or --seconds"))
         }
         Overlap::Undecided => {
             Some(("depth", "cells of the finest level are undecided; give a greater --depth"))
@@ -169,14 +172,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         first.has_exact_surfaces(&Affine::IDENTITY, &frame) && second.has_exact_surfaces(&placement, &frame);
     let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
     let second = Prepared::new(second.placed(b, &placement, &frame)?);
-    let max_bytes = Some(memory::affordable());
-    let control = Control { max_splits: Some(arguments.splits), max_bytes, ..Control::default() };
-    let (found, near, evaluations) =
-        ask([&first, &second], is_exact, &frame, &control).map_err(|error| Failure::of(a, error))?;
-    let report = Report::new(&inputs, &frame, &found, &near, evaluations, arguments.splits);
-    print_told(arguments.json, &report, |report| {
-        text(&found, report, reason(&found, arguments.splits).map(|reason| reason.1))
-    })
+    let splits = arguments.splits.or(if arguments.seconds.is_some() { None } else { Some(SPLITS) });
+    let asked = watched("interfere", 0, |control| {
+        let control = Control { max_splits: splits, ..*control };
+        let both = [&first, &second];
+        let ask = |control: &Control<'_>| ask(both, is_exact, &frame, control);
+        within_time(arguments.seconds, &control, ask, |asked| !asked.is_spent)
+    });
+    let Asked { found, near, evaluations, is_spent } = asked.of(a)?;
+    let reason = reason(&found, is_spent);
+    let report = Report::new(&inputs, &frame, &found, &near, evaluations, reason.map(|reason| reason.0));
+    print_told(arguments.json, &report, |report| text(&found, report, reason.map(|reason| reason.1)))
 }
 
 /// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole;
@@ -215,6 +221,19 @@ fn common_frame(
     Ok(frame)
 }
 
+/// Splits for each answer if nobody says how many, or how long.
+const SPLITS: u64 = 100_000;
+
+/// What was found.
+struct Asked {
+    found: Interference,
+    near: Clearance,
+    /// Of half-spaces, for the verdict.
+    evaluations: u64,
+    /// Whether more splits might tell more.
+    is_spent: bool,
+}
+
 /// Most memory to find out whether solids touch on common surfaces, which takes little if they do.
 const TOUCHING: u64 = 1 << 24;
 
@@ -230,20 +249,17 @@ fn touch([a, b]: [&Prepared; 2], frame: &Frame, control: &Control<'_>) -> Result
     }
 }
 
-/// The verdict; then how much, or how far; and the evaluations of half-spaces for the verdict.
-fn ask(
-    [a, b]: [&Prepared; 2],
-    is_exact: bool,
-    frame: &Frame,
-    control: &Control<'_>,
-) -> Result<(Interference, Clearance, u64), Error> {
+/// The verdict; then how much, or how far.
+fn ask([a, b]: [&Prepared; 2], is_exact: bool, frame: &Frame, control: &Control<'_>) -> Result<Asked, Error> {
+    let spends = |splits: [u64; 2]| control.max_splits.is_some_and(|most| splits.iter().sum::<u64>() >= most);
     let mut found = interference(a, b, frame, f64::INFINITY, control)?;
     if found.verdict == Overlap::Undecided && is_exact && !found.clipped && touch([a, b], frame, control)? {
         (found.verdict, found.volume) = (Overlap::Disjoint, Interval::exactly(0.0));
     }
-    let evaluated = evaluations(a.solid()) + evaluations(b.solid());
+    let evaluations = evaluations(a.solid()) + evaluations(b.solid());
     if found.verdict == Overlap::Overlapping {
-        found.volume = interference(a, b, frame, 0.0, control)?.volume;
+        let measured = interference(a, b, frame, 0.0, control)?;
+        found.volume = measured.volume;
         let near = Clearance {
             distance: Interval::exactly(0.0),
             nearest: None,
@@ -252,9 +268,11 @@ fn ask(
             proofs: found.proofs,
             clipped: found.clipped,
         };
-        return Ok((found, near, evaluated));
+        return Ok(Asked { found, near, evaluations, is_spent: spends(measured.splits) });
     }
-    Ok((found, clearance(a, b, frame, 4.0 * frame.cell_size(), control)?, evaluated))
+    let near = clearance(a, b, frame, 4.0 * frame.cell_size(), control)?;
+    let is_open = found.verdict == Overlap::Undecided && spends(found.splits);
+    Ok(Asked { found, is_spent: is_open || near.stop_reason == StopReason::Budget, near, evaluations })
 }
 
 impl Report {
@@ -264,7 +282,7 @@ impl Report {
         found: &Interference,
         near: &Clearance,
         evaluations: u64,
-        splits: u64,
+        reason: Option<&'static str>,
     ) -> Report {
         Report {
             a: a.to_string(),
@@ -274,7 +292,7 @@ impl Report {
                 Overlap::Overlapping => "overlapping",
                 Overlap::Undecided => "undecided",
             },
-            reason: reason(found, splits).map(|reason| reason.0),
+            reason,
             overlap: Range::new(found.volume, found.clipped),
             clearance: Range::new(near.distance, near.clipped),
             clearance_measured: stop_word(near.stop_reason),

@@ -1,30 +1,32 @@
 //! `leafless measure`: volume, centroid, inertia and bounds of a solid.
 
 use crate::failure::{Failure, Of};
-use crate::options::{bounds, threads, tolerance};
-use crate::progress::watched;
+use crate::options::{bounds, seconds, threads, tolerance};
+use crate::progress::{watched, within_time};
 use crate::report::bounds::{Proven, Volume, stop_word};
+use crate::report::density::{Density, density, times};
 use crate::report::scene::Curves;
 use crate::sink;
+use crate::source::corners::Corners;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::moved::frame_of;
 use crate::source::placing::image;
 use crate::source::solid::{Source, evaluations};
-use crate::words::{count, measured, put_line};
+use crate::words::{count, measured, number, put_line};
 use clap::Args;
 use leafless::lattice::MAX_DEPTH;
 use leafless::mesh::MeshMoments;
 use leafless::query::{Extent, StopReason, SurfaceArea, surface_area};
 use leafless::solid::Prepared;
 use leafless::{
-    Affine, Control, Error, Frame, Interval, MassProperties, MeshSolid, Solid, Tolerance, bounding_box,
-    measure,
+    Affine, Control, Error, FillRule, Frame, Interval, MassProperties, MeshSolid, Solid, Tolerance,
+    TriangleMesh, bounding_box, measure,
 };
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Measures a solid of density 1 without making an octree of it: the cells of which most is in doubt are split first,
+/// Measures a solid of density 1, or of --density, without making an octree of it: the cells of which most is in doubt are split first,
 /// until the volume is known well enough. All numbers are intervals that hold the true ones.
 ///
 /// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as
@@ -44,6 +46,13 @@ pub struct Arguments {
     /// Cells to split at most. Without it: 67108864, a minute or so
     #[arg(long, value_name = "N")]
     splits: Option<u64>,
+    /// Seconds after which it ends with what is known by then. The result then depends on the machine
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+    /// Mass of a cubic unit, which makes the volume a mass and the inertia that of this mass; or with a unit, g/cm3, kg/dm3, kg/m3
+    /// or lb/in3, if the unit of the model is known or told by --unit: --unit mm --density 7.85g/cm3 tells grams
+    #[arg(long, value_name = "D", value_parser = density, allow_hyphen_values = true)]
+    density: Option<Density>,
     /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
@@ -123,6 +132,10 @@ impl From<[[Interval; 3]; 3]> for Bounds<[[f64; 3]; 3]> {
 struct Report {
     input: String,
     volume: Volume,
+    /// Absent (null) without a density.
+    mass: Option<Volume>,
+    /// Of the mass and the inertia: `g`, or empty where the density has no unit.
+    mass_unit: &'static str,
     /// What of the solid is proven; what is not counts as undecided.
     proof: Proven,
     /// Absent (null) if nothing is proven to be inside.
@@ -135,6 +148,8 @@ struct Report {
     max: Option<Bounds<[f64; 3]>>,
     /// Of the boundary; absent (null) if nothing is known of it.
     area: Option<Volume>,
+    /// How far vertices of the mesh were moved, at most, before its area was measured.
+    area_displacement: f64,
     area_measured: &'static str,
     area_splits: u64,
     /// Why it ended.
@@ -164,38 +179,121 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => None,
     };
     let is_stored = source.own_frame().is_some();
+    let density = arguments.density.map(|density| density.of_cube(source.unit())).transpose();
+    let density = density.map_err(|problem| Failure::Usage(format!("--density: {problem}")))?;
     let (placement, frame) = place(arguments, &input, &source)?;
+    let (corners, sewn) = match &source {
+        Source::Mesh(mesh, fill, _) => {
+            (Some(Corners::new(&input, mesh, *fill)?), as_sewn(&input, mesh, *fill)?)
+        }
+        _ => (None, None),
+    };
     let solid = Prepared::new(source.placed(&input, &placement, &frame)?);
     let asked = arguments.tolerance.is_some() || arguments.splits.is_some();
     let relative = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
     // What is flat or empty has no volume to be relative to.
     let absolute = arguments.absolute.unwrap_or(if asked { 0.0 } else { 1e-9 * frame.edge().powi(3) });
     let tolerance = Tolerance { relative, absolute };
+    let asking =
+        Asking { solid: &solid, frame: &frame, tolerance, corners: corners.as_ref(), sewn: sewn.as_ref() };
     let found = watched("measure", arguments.threads, |control| {
         let control = Control { max_splits: arguments.splits, ..*control };
-        let mass = measure(&solid, &frame, tolerance, &control)?;
-        let evaluated = evaluations(solid.solid());
-        let quiet = Control { progress: None, ..control };
-        let extent = sides(&solid, &frame, relative, &quiet)?;
+        let is_done = |found: &Found| found.mass.stop_reason != StopReason::Budget;
+        within_time(arguments.seconds, &control, |control| asking.ask(control), is_done)
+    });
+    let mut found = found.of(&input)?;
+    if let Some((mass, _)) = density {
+        found.weigh(mass);
+    }
+    let unit = density.map_or("", |density| density.1);
+    let text = if arguments.json {
+        let report = report(&input, &frame, &found, unit);
+        sink::json(&Report { curves, ..report })?
+    } else {
+        text(&found, &frame, curves.as_ref(), (is_stored, arguments.seconds.is_some()), unit)
+    };
+    sink::print(text.as_bytes())
+}
+
+/// What is measured, and how well.
+struct Asking<'a> {
+    solid: &'a Prepared,
+    frame: &'a Frame,
+    tolerance: Tolerance,
+    /// Of a mesh the corners of its triangles.
+    corners: Option<&'a Corners>,
+    /// Of a mesh whose hair cracks were closed that mesh, as it then is.
+    sewn: Option<&'a MeshSolid>,
+}
+
+/// What was found.
+struct Found {
+    mass: MassProperties,
+    /// What was multiplied by the density, if there is one.
+    weight: Option<Interval>,
+    extent: Extent,
+    surface: SurfaceArea,
+    /// How far vertices of the mesh were moved whose area this is.
+    area_displacement: f64,
+    evaluations: u64,
+    /// Of a mesh why its moments were not known without splitting cells, if they were not.
+    inexact: Option<Option<String>>,
+}
+
+impl Asking<'_> {
+    fn ask(&self, control: &Control<'_>) -> Result<Found, Error> {
+        let Asking { solid, frame, tolerance, corners, sewn } = *self;
+        let mass = measure(solid, frame, tolerance, control)?;
+        let evaluations = evaluations(solid.solid());
+        let quiet = Control { progress: None, ..*control };
         // `measure` has found it out before, as a rule.
         let inexact = match solid.solid().get::<MeshSolid>() {
             Some(mesh) => Some(inexact_reason(mesh, mass.clipped, &quiet)?),
             None => None,
         };
-        let most = Some(arguments.splits.unwrap_or(AREA_SPLITS));
-        let surface = surface_area(solid.solid(), &frame, relative, &Control { max_splits: most, ..quiet })?;
-        Ok((mass, surface, extent, evaluated, inexact))
-    });
-    let (mass, surface, extent, evaluated, inexact) = found.of(&input)?;
-    let text = if arguments.json {
-        let exact = inexact.as_ref().map(Option::is_none);
-        let inexact_reason = inexact.flatten();
-        let report = report(&input, &frame, &mass, &surface, &extent, evaluated);
-        sink::json(&Report { curves, exact, inexact_reason, ..report })?
-    } else {
-        text(&mass, &surface, &extent, curves.as_ref(), is_stored, inexact.as_ref())
-    };
-    sink::print(text.as_bytes())
+        let extent = match corners {
+            Some(corners) if corners.are_exact() && inexact == Some(None) => Extent {
+                corners: Some(corners.exact()),
+                occupied: true,
+                proof: mass.proof,
+                clipped: false,
+                stop_reason: StopReason::Tolerance,
+                splits: 0,
+            },
+            _ => sides(solid, frame, tolerance.relative, &quiet)?,
+        };
+        let within = |found| corners.map_or(found, |corners| corners.within(found));
+        let extent = Extent { corners: extent.corners.map(within), ..extent };
+        let most = Some(control.max_splits.unwrap_or(AREA_SPLITS));
+        let few = Control { max_splits: most, ..quiet };
+        let mut surface = surface_area(solid.solid(), frame, tolerance.relative, &few)?;
+        let mut area_displacement = 0.0;
+        // A surface that is known to lie beside the mesh may have any area; that of the mesh is told instead.
+        if let Some(sewn) = sewn.filter(|_| !is_known(&surface)) {
+            surface = surface_area(sewn, frame, tolerance.relative, &few)?;
+            area_displacement = mass.proof.displacement();
+        }
+        Ok(Found { mass, weight: None, extent, surface, area_displacement, evaluations, inexact })
+    }
+}
+
+impl Found {
+    /// Makes the volume a mass, if a cubic unit has this one, and the inertia that of this mass.
+    fn weigh(&mut self, mass: f64) {
+        self.weight = Some(times(self.mass.volume, mass));
+        for tensor in [&mut self.mass.inertia_about_centroid, &mut self.mass.inertia_about_origin] {
+            *tensor = tensor.map(|row| row.map(|entry| times(entry, mass)));
+        }
+    }
+}
+
+/// A mesh whose hair cracks were closed, as if it had never had any.
+fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<MeshSolid>, Failure> {
+    if mesh.displacement() == 0.0 {
+        return Ok(None);
+    }
+    let same = TriangleMesh::new(mesh.vertices().to_vec(), mesh.triangles().to_vec()).of(input)?;
+    MeshSolid::new(same, fill).of(input).map(Some)
 }
 
 /// What is left to move, and the frame to look at. A solid from a file is moved as a solid: cells of any size tell of it what its own
@@ -225,17 +323,13 @@ fn inexact_reason(mesh: &MeshSolid, clipped: bool, control: &Control<'_>) -> Res
     })
 }
 
-fn report(
-    input: &Input,
-    frame: &Frame,
-    mass: &MassProperties,
-    surface: &SurfaceArea,
-    extent: &Extent,
-    evaluations: u64,
-) -> Report {
+fn report(input: &Input, frame: &Frame, found: &Found, mass_unit: &'static str) -> Report {
+    let Found { mass, surface, extent, .. } = found;
     Report {
         input: input.to_string(),
         volume: mass.volume.into(),
+        mass: found.weight.map(Into::into),
+        mass_unit,
         proof: mass.proof.into(),
         centroid: mass.centroid.map(Into::into),
         inertia: mass.inertia_about_centroid.into(),
@@ -243,18 +337,19 @@ fn report(
         min: extent.corners.map(|[min, _]| min.into()),
         max: extent.corners.map(|[_, max]| max.into()),
         area: is_known(surface).then(|| surface.area.into()),
+        area_displacement: found.area_displacement,
         area_measured: stop_word(surface.stop_reason),
         area_splits: surface.splits,
         measured: stop_word(mass.stop_reason),
         splits: mass.splits,
-        evaluations,
+        evaluations: found.evaluations,
         level: mass.level,
         depth: frame.depth(),
         origin: frame.origin(),
         edge: frame.edge(),
         clipped: mass.clipped,
-        exact: None,
-        inexact_reason: None,
+        exact: found.inexact.as_ref().map(Option::is_none),
+        inexact_reason: found.inexact.clone().flatten(),
         curves: None,
     }
 }
@@ -265,20 +360,31 @@ fn is_known(surface: &SurfaceArea) -> bool {
 
 /// The same for people.
 fn text(
-    mass: &MassProperties,
-    surface: &SurfaceArea,
-    extent: &Extent,
+    found: &Found,
+    frame: &Frame,
     curves: Option<&Curves>,
-    is_stored: bool,
-    inexact: Option<&Option<String>>,
+    (is_stored, is_timed): (bool, bool),
+    unit: &str,
 ) -> String {
+    let Found { mass, surface, extent, inexact, .. } = found;
     let mut text = String::new();
     let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
     line("volume", measured(mass.volume));
+    if let Some(weight) = found.weight {
+        line("mass", format!("{} {unit}", measured(weight)).trim_end().to_owned());
+    }
     let area = match is_known(surface) {
+        true if found.area_displacement > 0.0 => format!(
+            "{}, of the mesh with hair cracks closed: vertices were moved by {} or less",
+            measured(surface.area),
+            number(found.area_displacement)
+        ),
         true => measured(surface.area),
         false if is_stored => "not known: a file does not tell what its surface is like between cells".into(),
-        false => "not known".into(),
+        false => match inexact {
+            Some(Some(reason)) => format!("not known: {reason}"),
+            _ => "not known".into(),
+        },
     };
     line("area", area);
     if let Some(doubt) = Proven::from(mass.proof).doubt() {
@@ -300,8 +406,13 @@ fn text(
     }
     if let Some([min, max]) = extent.corners {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            line(&format!("least {name}"), measured(min[axis]));
-            line(&format!("greatest {name}"), measured(max[axis]));
+            // What goes on beyond the cube may reach any further.
+            let (start, end) = (frame.origin()[axis], frame.origin()[axis] + frame.edge());
+            let wall = |is_wall: bool| {
+                if is_wall && mass.clipped { ", where the cube ends that is looked at" } else { "" }
+            };
+            line(&format!("least {name}"), measured(min[axis]) + wall(min[axis].lower <= start));
+            line(&format!("greatest {name}"), measured(max[axis]) + wall(max[axis].upper >= end));
         }
     }
     if let Some(curves) = curves.and_then(Curves::text) {
@@ -320,6 +431,7 @@ fn text(
     let ended = match (mass.stop_reason, is_stored) {
         (StopReason::Tolerance, _) => "",
         _ if mass.exact => "",
+        (StopReason::Budget, _) if is_timed => ", when the time was over",
         (StopReason::Budget, _) => ", which were all that may be split",
         (StopReason::Exhausted, true) => ", and the file knows no more",
         (StopReason::Exhausted, false) => ", and there is nothing left to split at this depth",

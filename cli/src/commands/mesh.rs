@@ -16,7 +16,7 @@ use std::time::Instant;
 
 /// The surface separates samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
 /// cells, and vertices lie where the edges between corners cross the surface. Samples of a volume are its voxels, and of
-/// a solid from a file (.lfl) its cells at their finest level; what is undecided there has no sign, so that --resolve must say what it counts as.
+/// a solid from a file (.lfl) its cells at their finest level; what is undecided there counts as inside, unless --resolve says otherwise.
 /// A solid from a file whose cells keep surfaces is split to --depth; with --method mc and dual, vertices lie where rays through
 /// cell centres cross these surfaces.
 ///

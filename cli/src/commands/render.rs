@@ -24,8 +24,6 @@ use std::time::Instant;
 /// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A mesh, a scene, a
 /// volume, or a solid from a file whose cells keep surfaces is shown itself, without an octree.
 #[derive(Args)]
-// Of arrays without a header, `--samples` says the extents everywhere else.
-#[command(mut_arg("extents", |extents| extents.long("array-samples")))]
 pub struct Arguments {
     /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
     /// standard input

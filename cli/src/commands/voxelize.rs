@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::making::job::Job;
+use crate::making::like::Like;
 use crate::making::octree_of_mesh::{self, Voxelizing};
 use crate::making::surfaces::Surfaces;
 use crate::options::{bounds, octree_rules, threads};
@@ -36,7 +37,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
-    /// times as long. With --surfaces it may be left out, and so may it for a volume: then its voxels are the finest cells
+    /// times as long. With --surfaces and --like it may be left out, and so may it for a volume: then its voxels are the finest
+    /// cells
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// What becomes of the finest cells that the surface passes through
@@ -55,6 +57,8 @@ pub struct Arguments {
     /// around its middle, its edge 33/32 of its longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
+    #[command(flatten)]
+    like: Like,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
@@ -65,7 +69,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { rule, surfaces, placing, depth, bounds, threads, json, .. } = *arguments;
+    let Arguments { rule, surfaces, placing, threads, json, .. } = *arguments;
+    let (bounds, depth) = arguments.like.frame(arguments.bounds, arguments.depth, surfaces.are_kept())?;
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     let (input, reading) = (&job.input, &arguments.reading);

@@ -1,27 +1,28 @@
 //! The set operations on solids of either kind.
 
 use crate::failure::{Failure, Of, complain};
-use crate::making::octree_of_volume::{of_voxels, on, voxels};
+use crate::making::operand::Common;
 use crate::making::operands::{Operation, Place, check_places, facts, warn_of_units};
 use crate::progress::watched;
 use crate::report::{dexels, octree};
 use crate::sink::Output;
-use crate::source::file::Stored;
+use crate::source::file::{Stored, Taking};
 use crate::source::input::Input;
-use crate::source::moved::{self, Onto};
 use crate::source::placing::Placing;
-use crate::source::volume::Sampling;
+use crate::source::solid::Shape;
 use crate::words::{count, counted, seconds, short};
 use leafless::attribute::{CarryRule, carry_channels};
-use leafless::exchange::VolumeFormat;
 use leafless::{Control, Error, Frame, Octree, OctreeRef, Rule, TriDexel};
 use std::time::Instant;
 
 /// What is made of solids.
 pub struct Combining<'a> {
     pub operation: Operation,
-    /// How volumes among them are taken.
-    pub sampling: &'a Sampling,
+    /// How meshes, scenes and volumes among them are taken.
+    pub taking: &'a Taking,
+    /// The cube that they are combined on, and its levels, if none of them has its own.
+    pub bounds: Option<Frame>,
+    pub depth: Option<u8>,
     /// Rules for channels by their names.
     pub carry: &'a [(String, CarryRule)],
     /// Whether the result has no surfaces, and the level of its cells if that is asked for.
@@ -91,18 +92,20 @@ fn plain(result: Octree, combining: &Combining) -> Result<Octree, String> {
     }
 }
 
-/// Complains of what was moved out of the frame, if that is missing in the result.
+/// Complains of what reaches beyond the frame that it was put onto, if that is missing in the result.
 fn warn_of_clipping(files: &[(Input, Placing)], octrees: &[Octree], result: &Octree) {
     if !result.view().is_clipped() {
         return;
     }
     for ((input, placing), octree) in files.iter().zip(octrees) {
-        if placing.map().is_some() && octree.view().is_clipped() {
-            let first = &files[0].0;
-            complain(&format!(
-                "{input}: warning: where it was moved to it may reach beyond the frame of {first}, and was cut off"
-            ));
+        if !octree.view().is_clipped() || input.begins_as_solid() && placing.map().is_none() {
+            continue;
         }
+        let place = if placing.map().is_some() { "where it was moved to " } else { "" };
+        complain(&format!(
+            "{input}: warning: {place}it may reach beyond the frame of {}, and was cut off",
+            files[0].0
+        ));
     }
 }
 
@@ -141,10 +144,12 @@ enum Operands {
 /// Reads all operands, of which there is one at least. What is proven of the result is proven only if the operands are
 /// what their makers wrote.
 fn operands(files: &[(Input, Placing)], combining: &Combining) -> Result<Operands, Failure> {
+    let read = |(input, placing): &(Input, Placing)| Shape::among_others(input, combining.taking, placing);
+    let shapes = files.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
+    let common = Common::new(files, &shapes, (combining.bounds, combining.depth))?;
     let (mut octrees, mut models) = (Vec::new(), Vec::new());
-    let mut frame = None;
-    for (i, (input, placing)) in files.iter().enumerate() {
-        match operand(input, placing, &mut frame, combining)? {
+    for (i, ((input, placing), shape)) in files.iter().zip(shapes).enumerate() {
+        match common.place(input, placing, shape, combining.threads)? {
             Stored::Octree(octree) => octrees.push(octree),
             Stored::Dexels(model) => models.push(model),
         }
@@ -165,42 +170,6 @@ fn operands(files: &[(Input, Placing)], combining: &Combining) -> Result<Operand
         return Err(Failure::Usage("--plain is for octrees: tri-dexel models keep no surfaces".into()));
     }
     Ok(Operands::Dexels(models))
-}
-
-/// A solid from a file, or the voxels of a volume that are inside. It is moved onto the frame of the first one, which is found out
-/// where it is not known yet.
-fn operand(
-    input: &Input,
-    placing: &Placing,
-    first: &mut Option<Frame>,
-    combining: &Combining,
-) -> Result<Stored, Failure> {
-    let threads = combining.threads;
-    let bytes = if input.begins_as_solid() { None } else { Some(input.read()?) };
-    let stored = match bytes {
-        None => Stored::read(input, true)?.0,
-        Some(bytes) if combining.sampling.is_raw() || VolumeFormat::detect(&bytes).is_some() => {
-            let volume = combining.sampling.read(input, &bytes)?;
-            let Some(map) = placing.map() else {
-                let octree = of_voxels(&volume, input, threads)?;
-                first.get_or_insert(*octree.frame());
-                return Ok(Stored::Octree(octree));
-            };
-            let frame = match first {
-                Some(frame) => *frame,
-                None => *first.insert(*voxels(&volume, input)?),
-            };
-            let moved = volume.placed(map).of(input)?;
-            return Ok(Stored::Octree(on(&moved, input, &frame, Rule::Sampled, threads)?));
-        }
-        Some(bytes) => Stored::of_bytes(input, &bytes)?,
-    };
-    let own = match &stored {
-        Stored::Octree(octree) => octree.frame(),
-        Stored::Dexels(model) => model.frame(),
-    };
-    let frame = *first.get_or_insert(*own);
-    moved::stored(input, stored, placing, Onto::Frame(&frame), threads)
 }
 
 fn of(operation: Operation, trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {

@@ -46,7 +46,6 @@ struct Report {
 /// Makes a tri-dexel model of a file, and saves it.
 pub fn make(job: &Job, taking: &Taking, rule: Rule, mut storing: Storing) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
-    storing.options.rule = rule;
     output.check()?;
     output.check_spares(input, "input")?;
     let (shape, fingerprint) = Shape::read(input, taking)?;
@@ -54,9 +53,11 @@ pub fn make(job: &Job, taking: &Taking, rule: Rule, mut storing: Storing) -> Res
         return Err(Failure::of(input, "is a tri-dexel model already"));
     };
     let frame = frame(job, &source)?;
+    let rule = decided(rule, input, &source, &frame);
+    storing.options.rule = rule;
     let metadata = metadata(input, &source, fingerprint, rule)?;
     warn(input, &source, &frame);
-    let (model, odd) = made(source, job, &frame, rule, &storing)?;
+    let (model, odd) = made(source, job, &frame, &storing)?;
     let model = model.with_metadata(metadata);
     let bytes = output.save_dexels(&model)?;
     let info = Info::new(&model, bytes).with_odd(odd);
@@ -98,25 +99,34 @@ fn frame(job: &Job, source: &Source) -> Result<Frame, Failure> {
     }
 }
 
+/// The rule by which cells are decided. Those of an octree have no centres that could be asked where they are undecided, as are
+/// cells that are cut further than the lattice goes.
+fn decided(rule: Rule, input: &Input, source: &Source, frame: &Frame) -> Rule {
+    let is_open = match source {
+        Source::Octree(octree) if source.is_of_cells() => {
+            frame.depth() < octree.frame().depth() || !octree.view().is_binary()
+        }
+        _ => false,
+    };
+    if rule != Rule::Sampled || !is_open {
+        return rule;
+    }
+    let note = "note: its undecided cells count as inside; --rule inner (of `leafless convert` --resolve) leaves them out";
+    complain(&format!("{input}: {note}"));
+    Rule::Outer
+}
+
 /// The model, and how many rays of each direction pierce an open mesh an odd number of times.
 fn made(
     source: Source,
     job: &Job,
     frame: &Frame,
-    rule: Rule,
     storing: &Storing,
 ) -> Result<(TriDexel, [u64; 3]), Failure> {
     let input = &job.input;
     let is_of_cells = source.is_of_cells();
     match source {
         Source::Octree(octree) if is_of_cells => {
-            // Cells that are cut further than the lattice goes are undecided there.
-            let is_coarser = frame.depth() < octree.frame().depth();
-            if rule == Rule::Sampled && (is_coarser || !octree.view().is_binary()) {
-                let problem = "has undecided cells, which are neither inside nor outside: choose --rule inner or --rule \
-                               outer (of `leafless convert` --resolve), or make it anew from its source with --rule sampled";
-                return Err(Failure::of(input, problem));
-            }
             Ok((of_solid::<Octree>(&octree, job, frame, storing)?, [0; 3]))
         }
         Source::Mesh(mesh, fill, _) => {

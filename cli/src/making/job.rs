@@ -61,6 +61,17 @@ pub struct Timings {
     pub total: f64,
 }
 
+/// The rule that an octree's file names. What is certified of a source that proves less proves no more than that.
+pub fn proven_rule(rule: Rule, octree: &Octree) -> Rule {
+    let proof = octree.proof();
+    match (rule, proof.full, proof.empty) {
+        (Rule::Certified, true, false) => Rule::Inner,
+        (Rule::Certified, false, true) => Rule::Outer,
+        (Rule::Certified, false, false) => Rule::Sampled,
+        _ => rule,
+    }
+}
+
 /// What a result's file says of its making, to begin with: nothing that differs from run to run.
 pub fn named(input: &Input) -> Metadata {
     let mut metadata = Metadata::new();

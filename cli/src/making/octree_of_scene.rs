@@ -1,7 +1,7 @@
 //! Octrees of scenes.
 
 use crate::failure::{Failure, Of, complain};
-use crate::making::job::{Job, Timings, facts};
+use crate::making::job::{Job, Timings, facts, proven_rule};
 use crate::making::surfaces::{Surfaces, deep_enough};
 use crate::options::{name_of, rule_name};
 use crate::progress::watched;
@@ -108,6 +108,8 @@ pub fn make(
         (None, Some(t)) => build(&Adaptive::new(&solid, t)?, &frame, rule, control),
         (None, None) => build(&solid, &frame, rule, control),
     });
+    let octree = octree.of(input)?;
+    let rule = proven_rule(rule, &octree);
     let mut metadata = facts(input, fingerprint, rule, None);
     if let Some(thickness) = adaptive {
         metadata.insert("adaptive", number(thickness));
@@ -118,7 +120,7 @@ pub fn make(
     if let TouchName::Paper = touch {
         metadata.insert("touch", name_of(touch));
     }
-    let octree = octree.of(input)?.with_metadata(metadata);
+    let octree = octree.with_metadata(metadata);
     let build = building.elapsed().as_secs_f64();
 
     let saving = Instant::now();

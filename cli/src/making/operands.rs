@@ -52,9 +52,14 @@ pub fn check_places(inputs: &[Input], places: &[Place<'_>], depth: &str) -> Resu
         if place.frame != places[0].frame {
             let (first, other, whole) = (&inputs[0], place.text(), places[0].text());
             let problem = format!("lies on another frame ({other}) than {first} ({whole})");
+            let like = if depth == "--depth" {
+                format!(", or one by `leafless voxelize --like {first}`")
+            } else {
+                String::new()
+            };
             return Err(Failure::of(
                 input,
-                format!("{problem}: make both with the same --bounds and {depth}"),
+                format!("{problem}: make both with the same --bounds and {depth}{like}"),
             ));
         }
     }

@@ -1,7 +1,7 @@
 //! Octrees without surfaces, of octrees whose cells keep some.
 
 use crate::failure::{Failure, Of};
-use crate::making::job::Job;
+use crate::making::job::{Job, proven_rule};
 use crate::options::rule_name;
 use crate::progress::watched;
 use crate::report::octree::Info;
@@ -24,6 +24,7 @@ struct Report {
 pub fn make(job: &Job, octree: &Octree, depth: u8, rule: Rule) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
     let cells = watched("convert", job.threads, |control| plain(octree, depth, rule, control)).of(input)?;
+    let rule = proven_rule(rule, &cells);
     let mut metadata = cells.metadata().clone();
     metadata.insert("rule", rule_name(rule));
     let cells = cells.with_metadata(metadata);

@@ -1,16 +1,17 @@
 //! Surfaces of solids of any kind, as triangle meshes.
 
-use crate::failure::{Failure, Of};
+use crate::failure::{Failure, Of, complain};
 use crate::making::dexel_surface::{self, Followed};
 use crate::making::job::Job;
-use crate::options::name_of;
+use crate::options::{UNDECIDED, name_of};
 use crate::progress::watched;
+use crate::report::octree::Info;
 use crate::sink::written::{self, Losses};
 use crate::source::file::Taking;
 use crate::source::mesh::format_name;
 use crate::source::solid::{Shape, Source};
 use crate::source::volume::Voxels;
-use crate::words::{counted, number};
+use crate::words::{counted, number, short};
 use clap::ValueEnum;
 use leafless::dexel::{DexelFormat, DexelNormals};
 use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
@@ -22,7 +23,7 @@ use leafless::surface::{
     simple_marching_cubes_solid,
 };
 use leafless::{
-    Affine, AnySolid, Control, Error, Frame, Octree, Rule, TriDexel, TriangleMesh, build, dexelize,
+    Affine, AnySolid, Control, Error, Frame, Interval, Octree, Rule, TriDexel, TriangleMesh, build, dexelize,
     marching_cubes,
 };
 use serde::Serialize;
@@ -115,6 +116,13 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     }
     let shape = Shape::before_moving(input, taking)?.0;
     let is_stored = shape.is_stored();
+    let certain = match &shape {
+        // Vertices that are samples lie beside the surface; those of the other methods lie on it.
+        Shape::Source(source) if !matches!(wanted.method, Method::Mc | Method::Dual) => {
+            certain_volume(source).of(input)?
+        }
+        _ => None,
+    };
     let mut is_copy = false;
     let (unit, mesh, followed) = match shape {
         Shape::Dexels(model) => {
@@ -133,6 +141,14 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
         }
         Shape::Source(source) => (source.unit(), extract(source, job, wanted)?, None),
     };
+    if let Some(certain) = certain.filter(|certain| !certain.contains(mesh.volume())) {
+        let (volume, name) = (short(mesh.volume()), name_of(wanted.method));
+        let [least, greatest] = [certain.lower, certain.upper].map(short);
+        let problem = format!(
+            "the surface by --method {name} has a volume of {volume}, and the solid one from {least} to {greatest}"
+        );
+        complain(&format!("{input}: warning: {problem}: --method mc, and smaller cells, come nearer"));
+    }
     // The surface of a stored solid is sharper than that of what would be made of the solid in another place.
     let mesh = if is_stored { taking.placing.mesh(mesh).of(input)? } else { mesh };
     let options = WriteOptions { text: wanted.text, unit, normals: wanted.normals };
@@ -186,6 +202,23 @@ fn format(named: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat, 
             "has none of the extensions .ply, .stl, .obj, .off and .3mf: name the format with --write";
         Failure::Usage(format!("{}: {problem}", path.display()))
     })
+}
+
+/// What is certain of the volume of a solid: of a closed mesh its own, to a hundredth, and of an octree what its cells prove.
+fn certain_volume(source: &Source) -> Result<Option<Interval>, Error> {
+    match source {
+        Source::Octree(octree) if octree.proof().is_certified() && !octree.view().is_clipped() => {
+            Ok(Some(Info::new(octree, 0).volume.interval()))
+        }
+        Source::Mesh(mesh, ..) => {
+            let report = mesh.report()?;
+            let bodies = report.overlapping_bodies + report.undecided_bodies + report.inside_out_bodies;
+            let volume = mesh.volume();
+            let is_known = report.is_closed() && report.triangles > 0 && bodies == 0 && volume > 0.0;
+            Ok(Interval::new(0.99 * volume, 1.01 * volume).filter(|_| is_known))
+        }
+        _ => Ok(None),
+    }
 }
 
 /// The surface of a tri-dexel model.
@@ -262,11 +295,11 @@ fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, F
             return Err(Failure::Usage("--bounds is for meshes and scenes: a solid has its own".into()));
         }
         let octree = coarser(octree, job)?;
-        if resolve.is_none() && !octree.view().is_binary() {
-            let problem = "has undecided cells, which are neither inside nor outside: choose --resolve inner or \
-                           --resolve outer, or make it anew from its source with --rule sampled";
-            return Err(Failure::of(input, problem));
+        let is_open = resolve.is_none() && !octree.view().is_binary();
+        if is_open {
+            complain(&format!("{input}: {UNDECIDED}"));
         }
+        let resolve = if is_open { Some(Resolve::Outer) } else { resolve };
         return watched("mesh", job.threads, |control| of_cells(&octree, resolve, wanted, control)).of(input);
     }
     let is_plain = job.depth.is_none() && job.bounds.is_none() && wanted.resolve.is_none();

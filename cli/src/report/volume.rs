@@ -10,6 +10,10 @@ use serde::Serialize;
 pub struct Info {
     format: String,
     samples: &'static str,
+    /// The least and the greatest sample; absent (null) where none is finite.
+    range: Option<[f64; 2]>,
+    /// Samples from this one on are inside.
+    threshold: f64,
     extents: [u32; 3],
     /// Of a volume whose axes are not x, y and z: before it is turned.
     spacing: [f64; 3],
@@ -24,6 +28,8 @@ impl Info {
         Info {
             format: volume.format.clone(),
             samples: volume.kind.name(),
+            range: volume.volume.value_range(),
+            threshold: volume.threshold,
             extents: grid.extents(),
             spacing: grid.spacing(),
             corner: grid.corner(),
@@ -37,8 +43,16 @@ impl Info {
         let [x, y, z] = self.extents;
         let place = |p: [f64; 3]| p.map(number).join(", ");
         let unit = self.unit.map_or_else(String::new, |unit| format!(" {unit}"));
+        let range = self.range.map_or("none is finite".into(), |[least, greatest]| {
+            format!(
+                "from {} to {}, inside from {} on",
+                number(least),
+                number(greatest),
+                number(self.threshold)
+            )
+        });
         format!(
-            "{} volume, {x} x {y} x {z} samples of type {}\nvoxels {}{unit}, from {}\n",
+            "{} volume, {x} x {y} x {z} samples of type {}: {range}\nvoxels {}{unit}, from {}\n",
             self.format,
             self.samples,
             place(self.spacing),

@@ -30,9 +30,13 @@ impl Content {
             Ok(told)
         } else if VolumeFormat::detect(bytes).is_some() {
             Ok(Content::Volume)
+        } else if let Some(refusal) = stranger(bytes, extension) {
+            Err(Failure::of(input, refusal))
         } else if MeshFormat::detect(bytes, None).is_some() {
             Ok(Content::Mesh)
-        } else if scene::is_scene(bytes) || extension.eq_ignore_ascii_case("csg") {
+        } else if scene::is_scene(bytes)
+            || ["csg", "scad"].iter().any(|scene| extension.eq_ignore_ascii_case(scene))
+        {
             Ok(Content::Scene)
         } else if MeshFormat::from_extension(extension).is_some() {
             Ok(Content::Mesh)
@@ -44,6 +48,31 @@ impl Content {
             Err(Failure::of(input, format_args!("neither the content nor the name is that of {kinds}")))
         }
     }
+}
+
+/// Why a file is not read, if it is of a kind that people try.
+fn stranger(bytes: &[u8], extension: &str) -> Option<String> {
+    let is_one_of = |names: &[&str]| names.iter().any(|name| extension.eq_ignore_ascii_case(name));
+    if bytes.starts_with(b"ISO-10303-21;") || is_one_of(&["step", "stp", "igs", "iges"]) {
+        return Some(
+            "is a CAD model (STEP or IGES), whose curved faces are not read: export a mesh of it as STL, OBJ or 3MF, with as \
+             small a deviation as you need"
+                .into(),
+        );
+    }
+    // What is no text may be the triangles of an STL; but then its length or its name says so.
+    let is_guess = MeshFormat::detect(bytes, Some("obj")) == Some(MeshFormat::Obj)
+        && MeshFormat::detect(bytes, None) == Some(MeshFormat::Stl);
+    if is_one_of(&["raw"])
+        || is_guess && !extension.is_empty() && MeshFormat::from_extension(extension).is_none()
+    {
+        return Some(format!(
+            "is no mesh, and has no header that tells what it is ({} bytes): if it is a volume, say how many samples it has along \
+             x, y and z, and their type: --extents 512,512,300 --type u16",
+            bytes.len()
+        ));
+    }
+    None
 }
 
 #[cfg(test)]
@@ -65,6 +94,7 @@ mod tests {
             ("-", None),
             ("a.csg", Some(Content::Scene)),
             ("a.CSG", Some(Content::Scene)),
+            ("a.scad", Some(Content::Scene)),
             ("a.lfl", Some(Content::Solid)),
             ("a.stl", Some(Content::Mesh)),
         ] {

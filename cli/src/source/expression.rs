@@ -38,19 +38,10 @@ impl Expressions {
                     text.len()
                 ));
             }
-            let mut open = 0i64;
-            for c in text.chars() {
-                open += i64::from(c == '(') - i64::from(c == ')');
-                if open < 0 {
-                    break;
-                }
-            }
-            if open != 0 {
-                return Err(format!("\"{text}\": parentheses do not match"));
-            }
+            let infix = infix(text).map_err(|problem| format!("\"{text}\": {problem}"))?;
             let refused = |error: exmex::ExError| format!("\"{text}\": {}", error.msg());
-            let value = FlatEx::<f64, Operators, Literals>::parse(text).map_err(refused)?;
-            let range = FlatEx::<Range, Operators, Literals>::parse(text).map_err(refused)?;
+            let value = FlatEx::<f64, Operators, Literals>::parse(&infix).map_err(refused)?;
+            let range = FlatEx::<Range, Operators, Literals>::parse(&infix).map_err(refused)?;
             let mut variables = Vec::new();
             for name in value.var_names() {
                 let place = ["x", "y", "z"].iter().position(|known| known == name);
@@ -76,6 +67,53 @@ impl Expressions {
         }
         Some(value)
     }
+}
+
+/// The expression with functions of two numbers between these, as in `((a)min(b))`. The parser of expressions takes them so in each
+/// other, and not as they are written.
+fn infix(text: &str) -> Result<String, &'static str> {
+    const FUNCTIONS: [&str; 2] = ["min", "max"];
+    // Of each parenthesis that is open its function, if it has two arguments, and whether the first one is complete.
+    let mut open: Vec<(Option<&str>, bool)> = Vec::new();
+    let (mut written, mut rest) = (String::with_capacity(2 * text.len()), text);
+    while let Some(c) = rest.chars().next() {
+        let word = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        let behind = rest[word..].trim_start();
+        if let Some(name) = FUNCTIONS.into_iter().find(|&name| name == &rest[..word])
+            && let Some(behind) = behind.strip_prefix('(')
+        {
+            open.push((Some(name), false));
+            written.push_str("((");
+            rest = behind;
+            continue;
+        }
+        match (c, open.last_mut()) {
+            ('(', _) => {
+                open.push((None, true));
+                written.push('(');
+            }
+            (')', _) => match open.pop() {
+                None => return Err("parentheses do not match"),
+                Some((Some(_), false)) => return Err("min and max take two numbers each: min(a,b)"),
+                Some((function, _)) => written.push_str(if function.is_some() { "))" } else { ")" }),
+            },
+            (',', Some((Some(name), is_second @ false))) => {
+                written.extend([")", name, "("]);
+                *is_second = true;
+            }
+            (',', _) => {
+                return Err("a comma stands between the two numbers of min and max alone: min(a,min(b,c))");
+            }
+            _ => {
+                let end = word.max(c.len_utf8());
+                written.push_str(&rest[..end]);
+                rest = &rest[end..];
+                continue;
+            }
+        }
+        rest = &rest[1..];
+    }
+    if open.is_empty() { Ok(written) } else { Err("parentheses do not match") }
 }
 
 impl Attribute for Expressions {
@@ -404,6 +442,9 @@ mod tests {
             ("(x+y)*z", -4.5),
             ("min(x, y) + max(x, z)", 1.0),
             ("min(x + 1, y*2) - 1", -5.0),
+            ("min(1, max(0, x))", 0.5),
+            ("min(max(x, y), min(max(y, z), z*2)) + max (1, 2)", 2.5),
+            ("max(-1, min(x + min(y, z), 2) ^ 2)", 2.25),
             ("abs(y) + sqrt(z+1)", 4.0),
             ("floor(x) + ceil(x) + round(z/2)", 3.0),
             ("sin(0) + cos(0)", 1.0),
@@ -416,7 +457,24 @@ mod tests {
         for text in ["sqrt(y)", "ln(y)", "0/0", "min(sqrt(y), 1)"] {
             assert_eq!(parse(text).value(p), None, "{text}");
         }
-        for text in ["", "x +", "w", "x y", "foo(x)", "(x", "1..2", "x^^2", "x;y", "é"] {
+        for text in [
+            "",
+            "x +",
+            "w",
+            "x y",
+            "foo(x)",
+            "(x",
+            "1..2",
+            "x^^2",
+            "x;y",
+            "é",
+            "min(x)",
+            "min(x, y, z)",
+            "x, y",
+            "sin(x, y)",
+            "min(x, y",
+            "max((x, y), 1)",
+        ] {
             assert!(Expressions::parse(&[text.to_owned()]).is_err(), "{text}");
         }
         let colour = Expressions::parse(&["x".into(), "2*y".into()]).unwrap();
@@ -450,6 +508,7 @@ mod tests {
             "cos(x/9)",
             "min(x, y*z)",
             "max(x^2, y) - 0.1",
+            "min(1, max(0, x*y))",
             "floor(x*2) + ceil(y) - round(z)",
             "1/(x^2 + 1)",
             "(x - 0.3)/(y - 0.7)",

@@ -29,6 +29,12 @@ impl Taking {
         Taking { placing: Placing::default(), ..self.clone() }
     }
 
+    /// Those of the options that have a meaning for such a file, and where it is moved to.
+    pub fn about(&self, content: Content, placing: &Placing) -> Taking {
+        let drawing = if content == Content::Scene { self.drawing.clone() } else { Drawing::default() };
+        Taking { reading: self.reading.about(content), drawing, placing: *placing }
+    }
+
     /// Refuses the options of reading where a stored solid is read: `what` it is.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
         self.reading.refuse(input, what)?;

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, Of, complain};
 use crate::options::formats;
+use crate::progress::at_work;
 use crate::source::content::Content;
 use crate::source::input::Input;
 use crate::source::placing::Placing;
@@ -14,7 +15,8 @@ use leafless::mesh::MeshReport;
 use leafless::{Error, FillRule, Frame, TriangleMesh, exchange};
 
 /// How a mesh file is to be taken.
-#[derive(Clone, Args)]
+#[derive(Clone, Default, Args)]
+#[command(next_help_heading = "Meshes (STL, OBJ, PLY, OFF, 3MF)")]
 pub struct Reading {
     /// Format of the mesh file. Without it the content tells, and the extension of the name
     #[arg(long, value_parser = formats(["stl", "obj", "ply", "off", "3mf"]))]
@@ -24,7 +26,7 @@ pub struct Reading {
     #[arg(long, value_name = "UNIT", value_parser = unit)]
     unit: Option<LengthUnit>,
     /// Unit to convert the mesh to
-    #[arg(long, value_name = "UNIT", value_parser = unit)]
+    #[arg(long = "to-unit", value_name = "UNIT", value_parser = unit)]
     to: Option<LengthUnit>,
     /// Which points count as inside a mesh. Without it: positive for 3MF, as that format demands, and nonzero for
     /// all others
@@ -78,6 +80,15 @@ impl Reading {
         }
     }
 
+    /// Those of the options that have a meaning for such a file.
+    pub fn about(&self, content: Content) -> Reading {
+        match content {
+            Content::Volume => Reading { sampling: self.sampling.clone(), ..Reading::default() },
+            Content::Mesh => Reading { sampling: Sampling::default(), ..self.clone() },
+            Content::Solid | Content::Scene => Reading::default(),
+        }
+    }
+
     /// Refuses the options for meshes and volumes where something else is read: `what` it is.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
         self.sampling.refuse(input, what)?;
@@ -94,7 +105,7 @@ impl Reading {
         let given = [
             ("--format", self.format.is_some()),
             ("--unit", self.unit.is_some()),
-            ("--to", self.to.is_some()),
+            ("--to-unit", self.to.is_some()),
             ("--fill", self.fill.is_some()),
         ];
         match given.into_iter().find(|option| option.1) {
@@ -131,13 +142,13 @@ impl Reading {
         // Together with the unit a factor is rounded once.
         let factor = placing.factor();
         let options = MeshOptions { format, unit, target, scale: factor.unwrap_or(1.0) };
-        let mut file = exchange::read_mesh(&bytes, &options).of(input)?;
+        let mut file = at_work("read", || exchange::read_mesh(&bytes, &options)).of(input)?;
         for warning in &file.warnings {
             complain(&format!("{input}: warning: {warning}"));
         }
         // Sewing needs memory of its own.
         drop(bytes);
-        file.mesh = file.mesh.sewn().of(input)?;
+        file.mesh = at_work("read", || file.mesh.sewn()).of(input)?;
         if factor.is_none() {
             file.mesh = placing.mesh(file.mesh).of(input)?;
         }

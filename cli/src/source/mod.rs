@@ -5,8 +5,10 @@
 //! there. A `solid` is any of them; a `target` is one that questions are put to.
 
 pub mod content;
+pub mod corners;
 pub mod expression;
 pub mod file;
+pub mod histogram;
 pub mod input;
 pub mod mesh;
 pub mod moved;

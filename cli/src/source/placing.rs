@@ -124,7 +124,11 @@ impl Args for Placing {
     fn augment_args(command: Command) -> Command {
         command.args(MOVES.map(|Move { name, value, help, map }| {
             let argument = Arg::new(name).long(name).value_name(value).help(help);
-            argument.action(ArgAction::Append).allow_hyphen_values(true).value_parser(map)
+            argument
+                .help_heading("Moves")
+                .action(ArgAction::Append)
+                .allow_hyphen_values(true)
+                .value_parser(map)
         }))
     }
 

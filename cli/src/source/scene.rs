@@ -1,6 +1,6 @@
 //! Scenes, as files of the program's users.
 
-use crate::failure::{Failure, Of, complain};
+use crate::failure::{Failure, Of, Problem, complain};
 use crate::memory;
 use crate::source::input::Input;
 use crate::source::mesh::openness;
@@ -11,7 +11,8 @@ use leafless::scene::{Facets, Scene, SceneOptions};
 use std::path::Path;
 
 /// How a scene is to be taken.
-#[derive(Clone, Args)]
+#[derive(Clone, Default, Args)]
+#[command(next_help_heading = "Scenes (.csg)")]
 pub struct Drawing {
     /// Which circles, cylinders, balls and solids of revolution of a scene are polygons, as OpenSCAD draws them.
     /// Without it: those with a $fn of 12 or less
@@ -51,7 +52,16 @@ impl Drawing {
 /// or in the current folder if it comes from standard input. Complains of meshes in it that bound no solid.
 pub fn scene_of(input: &Input, text: &[u8], drawing: &Drawing) -> Result<Scene, Failure> {
     let folder = input.path().and_then(Path::parent).unwrap_or(Path::new(""));
-    let scene = drawing.options().read(text, Some(folder)).of(input)?;
+    let scene = drawing.options().read(text, Some(folder)).map_err(|error| {
+        // The models of OpenSCAD are programs; what they come to is a scene.
+        let name =
+            input.path().filter(|path| path.extension().is_some_and(|end| end.eq_ignore_ascii_case("scad")));
+        let hint = name.map_or_else(String::new, |path| {
+            let dump = path.with_extension("csg");
+            format!(" (make a scene of it by `openscad -o {} {}`)", dump.display(), path.display())
+        });
+        Failure::of(input, format_args!("{}{hint}", error.text()))
+    })?;
     let doubtful = scene.report().meshes.iter().filter_map(|mesh| Some((mesh, openness(&mesh.report)?)));
     for (at, (mesh, how)) in doubtful.enumerate() {
         let place = format!("{input}: line {}, column {}", mesh.line, mesh.column);

@@ -53,7 +53,17 @@ impl Shape {
 
     /// The same, but that a stored solid lies where its file says.
     pub fn before_moving(input: &Input, taking: &Taking) -> Result<(Shape, Option<String>), Failure> {
+        Shape::of(input, Found::look(input, taking.reading.told())?, taking)
+    }
+
+    /// The same of one of several files of all kinds: an option is for those that it has a meaning for.
+    pub fn among_others(input: &Input, taking: &Taking, placing: &Placing) -> Result<Shape, Failure> {
         let found = Found::look(input, taking.reading.told())?;
+        let taking = taking.about(found.content, placing);
+        Ok(Shape::of(input, found, &taking)?.0)
+    }
+
+    fn of(input: &Input, found: Found<'_>, taking: &Taking) -> Result<(Shape, Option<String>), Failure> {
         if found.content != Content::Solid {
             let fingerprint = found.fingerprint();
             return Ok((Shape::Source(Source::of(input, found, taking)?), Some(fingerprint)));

@@ -48,7 +48,7 @@ impl Values {
         let bytes = from.read()?;
         match Content::of(from, &bytes, sampling.is_raw().then_some(Content::Volume))? {
             Content::Volume => {
-                let voxels = sampling.read(from, &bytes)?;
+                let voxels = sampling.read_values(from, &bytes)?;
                 Ok(Values::plain(voxels.attribute(interpolation).of(from)?))
             }
             Content::Mesh => {

@@ -2,9 +2,10 @@
 
 use crate::failure::{Failure, Of, Problem, complain};
 use crate::options::{list, number, numbers};
+use crate::source::histogram;
 use crate::source::input::Input;
 use crate::source::placing::{after, image};
-use crate::words::counted;
+use crate::words::{counted, number as told};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use leafless::attribute::{Attribute, Interpolation, MovedAttribute, VolumeAttribute};
@@ -15,14 +16,16 @@ use leafless::solid::{Band, Samples, VoxelGrid};
 use leafless::{Affine, AnySolid, Control, Error, Frame, Volume};
 
 /// Which voxels of a volume are inside, and what the bytes of one without a header mean.
-#[derive(Clone, Args)]
+#[derive(Clone, Default, Args)]
+#[command(next_help_heading = "Volumes (NRRD, MetaImage, raw)")]
 pub struct Sampling {
     /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of the
-    /// samples' type, 0 for floating point numbers
+    /// samples' type, 0 for floating point numbers; if all samples lie on one side of that, the number that parts their
+    /// histogram best (by Otsu's method), which is told
     #[arg(long, value_name = "T", value_parser = threshold, allow_hyphen_values = true)]
     threshold: Option<f64>,
     /// Read the file as a raw volume, which has no header: an array of so many samples along x, y and z, x fastest
-    #[arg(long = "samples", value_name = "NX,NY,NZ", value_parser = extents)]
+    #[arg(long, value_name = "NX,NY,NZ", value_parser = extents)]
     extents: Option<[u32; 3]>,
     /// Type of the samples of a raw volume. Without it: u8
     #[arg(long = "type", value_parser = kinds(), requires = "extents")]
@@ -104,8 +107,8 @@ impl Sampling {
 
     /// Refuses the options for volumes where something else is read: `what` it is.
     pub fn refuse(&self, input: &Input, what: &str) -> Result<(), Failure> {
-        // (All others need --samples.)
-        let given = [("--threshold", self.threshold.is_some()), ("--samples", self.is_raw())];
+        // (All others need --extents.)
+        let given = [("--threshold", self.threshold.is_some()), ("--extents", self.is_raw())];
         match given.into_iter().find(|option| option.1) {
             Some((option, _)) => Err(Failure::Usage(format!("{option} is for volumes: {input} is {what}"))),
             None => Ok(()),
@@ -114,6 +117,20 @@ impl Sampling {
 
     /// The volume in a file with these bytes, whose samples may be in another file beside it.
     pub fn read(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
+        self.parted(input, bytes, default_threshold)
+    }
+
+    /// The same where samples are values, so that nobody asks which of them are inside.
+    pub fn read_values(&self, input: &Input, bytes: &[u8]) -> Result<Voxels, Failure> {
+        self.parted(input, bytes, |_, _, kind| kind.half_range())
+    }
+
+    fn parted(
+        &self,
+        input: &Input,
+        bytes: &[u8],
+        default: impl Fn(&Input, &Samples<'_>, SampleKind) -> f64,
+    ) -> Result<Voxels, Failure> {
         let found = match self.extents {
             Some(extents) => self.without_header(input, bytes, extents)?,
             None => with_header(input, bytes)?,
@@ -123,7 +140,7 @@ impl Sampling {
             complain(&format!("{input}: warning: {samples} rounded to single precision"));
         }
         let Found { samples, grid, placement, unit, format, kind, .. } = found;
-        let threshold = self.threshold.unwrap_or(kind.half_range());
+        let threshold = self.threshold.unwrap_or_else(|| default(input, &samples, kind));
         let band = Band::at_least(threshold).of(input)?;
         let volume = Volume::new(samples, &grid, band, &Control::default()).of(input)?;
         let solid = AnySolid::new(volume.clone());
@@ -143,6 +160,28 @@ impl Sampling {
         let (samples, rounded) = read_raw_volume(bytes, &layout).of(input)?;
         Ok(Found { samples, grid, placement: None, unit: None, format: "raw".into(), kind, rounded })
     }
+}
+
+/// The threshold if the user names none.
+fn default_threshold(input: &Input, samples: &Samples<'_>, kind: SampleKind) -> f64 {
+    let half = kind.half_range();
+    let Some([least, greatest]) = histogram::range(samples) else { return half };
+    if least < half && half <= greatest {
+        return half;
+    }
+    // (What is the same everywhere is all inside, or all outside.)
+    let Some(best) = histogram::best_threshold(samples) else { return half };
+    let range = format!(
+        "its samples go from {} to {}, all on one side of {}",
+        told(least),
+        told(greatest),
+        told(half)
+    );
+    complain(&format!(
+        "{input}: note: {range}: they are inside from {} on, which parts them best; --threshold chooses another",
+        told(best)
+    ));
+    best
 }
 
 fn with_header(input: &Input, bytes: &[u8]) -> Result<Found, Failure> {

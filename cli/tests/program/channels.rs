@@ -174,7 +174,7 @@ fn channels_of_volumes_and_of_other_solids() {
     told(path, &["attribute", "block.lfl", "--name", "a", "--from", "v.nrrd", "--nearest", "--store", "u8"]);
     told(
         path,
-        &["attribute", "block.lfl", "--name", "b", "--from", "v.raw", "--samples", "8,8,8", "--depth", "6"],
+        &["attribute", "block.lfl", "--name", "b", "--from", "v.raw", "--extents", "8,8,8", "--depth", "6"],
     );
     assert_eq!(sample(path, &["block.lfl", "--name", "a"], "2.7 2 2\n3.2 2 2\n"), ["20", "30"]);
     // At the centre of the cell from 3.25 to 3.375.

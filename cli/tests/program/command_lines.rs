@@ -337,7 +337,8 @@ fn attack(seed: u64, runs: u64) {
         let code = done.code.unwrap_or(-1);
         assert!((0..=2).contains(&code), "{done:?}");
         codes[code as usize] += 1;
-        let mut lines = done.errors.lines().filter(|line| !line.contains("warning"));
+        let mut lines =
+            done.errors.lines().filter(|line| !line.contains(": warning: ") && !line.contains(": note: "));
         assert!(!done.errors.contains("panicked") && !done.errors.contains("os error"), "{done:?}");
         if code != 0 {
             // The last line says why.

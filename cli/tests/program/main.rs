@@ -15,6 +15,7 @@ mod interfere;
 mod limits;
 mod moves;
 mod near;
+mod newcomer;
 mod pictures;
 mod place;
 mod proof_table;

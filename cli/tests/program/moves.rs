@@ -177,11 +177,11 @@ fn volumes_are_moved() {
         place.run(line).good();
         volume(&place.run("info out.lfl --json").good().json())
     };
-    let raw = "full.raw -o out.lfl --samples 2,2,2";
+    let raw = "full.raw -o out.lfl --extents 2,2,2";
     assert_eq!(volume_of(&format!("voxelize {raw} --rotate x,90 --translate 0,0,1")), (8.0, 8.0));
     let (lower, upper) = volume_of(&format!("voxelize {raw} --rotate z,45 --depth 6"));
     assert!((lower - 8.0).abs() < 0.5 || lower <= 8.0 && 8.0 <= upper, "{lower} to {upper}");
-    let mesh = place.run("mesh full.raw -o out.ply --samples 2,2,2 --translate 0,0,5").good();
+    let mesh = place.run("mesh full.raw -o out.ply --extents 2,2,2 --translate 0,0,5").good();
     assert!(!mesh.text().is_empty() && corners(&place, "out.ply")[0][2] >= 4.0);
 }
 
@@ -214,7 +214,7 @@ fn meshes_keep_surfaces() {
     place.run("voxelize cube.stl -o no.lfl --surfaces=2").bad(2, &["--surfaces", "above 0"]);
     place.write("full.raw", [255u8; 8]);
     place
-        .run("voxelize full.raw -o no.lfl --samples 2,2,2 --surfaces=1e-4")
+        .run("voxelize full.raw -o no.lfl --extents 2,2,2 --surfaces=1e-4")
         .bad(2, &["--surfaces", "full.raw"]);
 }
 

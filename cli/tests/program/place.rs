@@ -65,6 +65,11 @@ impl Place {
     }
 }
 
+/// What was told, but for the lines that a slow machine gets while the program is at work.
+fn without_progress(errors: &str) -> String {
+    errors.split_inclusive('\n').filter(|line| !line.contains(": at work for ")).collect()
+}
+
 /// What a run of the program came to.
 pub struct Run {
     line: String,
@@ -86,7 +91,7 @@ impl Run {
             line: line.to_owned(),
             code: output.status.code(),
             bytes: output.stdout,
-            errors: String::from_utf8(output.stderr).unwrap(),
+            errors: without_progress(&String::from_utf8(output.stderr).unwrap()),
         }
     }
 
@@ -98,6 +103,17 @@ impl Run {
     #[track_caller]
     pub fn good(self) -> Run {
         assert!(self.code == Some(0) && self.errors.is_empty(), "{self:?}");
+        self
+    }
+
+    /// Success with one line on standard error, a note or a warning, with these words in it.
+    #[track_caller]
+    pub fn noted(self, words: &[&str]) -> Run {
+        assert_eq!((self.code, self.errors.lines().count()), (Some(0), 1), "{self:?}");
+        assert!(self.errors.contains(": note: ") || self.errors.contains(": warning: "), "{self:?}");
+        for word in words {
+            assert!(self.errors.contains(word), "{word:?} is not in {self:?}");
+        }
         self
     }
 

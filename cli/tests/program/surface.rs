@@ -17,7 +17,9 @@ fn mesh(place: &Place, name: &str) -> TriangleMesh {
 }
 
 fn json(place: &Place, line: &str) -> Value {
-    serde_json::from_slice(&place.run(line).good().bytes).unwrap()
+    let run = place.run(line);
+    // (Surfaces whose vertices are samples say that they are too large.)
+    if run.errors.contains("has a volume") { run.noted(&["--method"]) } else { run.good() }.json()
 }
 
 const BOUNDS: &str = "--bounds -3,-3,-3,6";
@@ -74,9 +76,9 @@ fn vertices_lie_on_the_surface() {
 fn undecided_cells_are_resolved_as_one_asks() {
     let place = ball();
     place.run(&format!("csg ball.csg -o ball.lfl --depth 6 {BOUNDS}")).good();
-    place.run("mesh ball.lfl -o ball.ply").bad(1, &["ball.lfl", "undecided", "--resolve"]);
+    place.run("mesh ball.lfl -o open.ply").noted(&["ball.lfl", "undecided", "--resolve"]);
     place.run("mesh ball.lfl -o ball.ply --resolve source").bad(1, &["ball.lfl", "source", "inner"]);
-    place.run("mesh ball.lfl -o ball.ply --depth 3").bad(1, &["ball.lfl", "undecided", "--resolve"]);
+    place.run("mesh ball.lfl -o coarse.ply --depth 3").noted(&["ball.lfl", "undecided", "--resolve"]);
     place.run("mesh ball.lfl -o ball.ply --depth 7").bad(2, &["--depth"]);
     place.run("mesh ball.lfl -o ball.ply --bounds 0,0,0,1").bad(2, &["--bounds"]);
     assert!(!place.files().contains(&"ball.ply".to_owned()));
@@ -272,7 +274,7 @@ fn losses_are_said() {
     assert_eq!(place.run("convert cube.csg -o cube.stl --resolution 32 --lossy").code, Some(0));
     place.run("dexelize cube.csg -o cube.lfl --resolution 32 --normals 32").good();
     place.write("cube.raw", [255; 27]);
-    let volume = "mesh cube.raw --samples 3,3,3 --corner 1e9,1e9,1e9";
+    let volume = "mesh cube.raw --extents 3,3,3 --corner 1e9,1e9,1e9";
     for line in ["mesh cube.lfl", "mesh cube.lfl --method dual", volume] {
         place.run(&format!("{line} -o new.stl")).bad(1, &["new.stl", "32-bit"]);
         same_as_read(&place, &json(&place, &format!("{line} -o new.ply --json")));
@@ -345,6 +347,7 @@ fn solids_from_files_are_meshed_at_coarser_levels() {
         place.run(&format!("mesh coarse.lfl -o coarse.ply --resolve {resolve}"));
         assert_eq!(place.bytes("fine.ply"), place.bytes("coarse.ply"), "{resolve}");
     }
-    place.run("mesh cube.lfl -o no.ply --depth 2").bad(1, &["undecided", "--resolve"]);
+    place.run("mesh cube.lfl -o open.ply --depth 2").noted(&["undecided", "--resolve"]);
+    assert_eq!(place.bytes("open.ply"), place.bytes("fine.ply"));
     place.run("mesh cube.lfl -o no.ply --depth 6").bad(2, &["--depth 6", "cube.lfl", "5"]);
 }

@@ -74,7 +74,7 @@ fn content_decides_what_a_file_is() {
 fn options_of_meshes_are_refused_elsewhere() {
     let place = solids();
     place.write("part.csg", PLATE);
-    for option in ["--fill positive", "--unit in", "--to mm"] {
+    for option in ["--fill positive", "--unit in", "--to-unit mm"] {
         let name = option.split(' ').next().unwrap();
         for (command, file) in [
             ("measure part.csg", "part.csg is a scene"),

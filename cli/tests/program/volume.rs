@@ -86,8 +86,10 @@ fn booleans_take_volumes() {
         assert_eq!(volume(&rest), (count, count), "{operand}");
     }
     place.run("complement ball.nrrd -o outside.lfl").good();
-    place.run("union ball.lfl flat.nrrd -o none.lfl").bad(1, &["flat.nrrd"]);
-    assert!(!place.files().contains(&"none.lfl".to_owned()));
+    // Voxels that are no cubes are sampled on the cells of the solid, whose cube they leave.
+    place
+        .run("union ball.lfl flat.nrrd -o both.lfl")
+        .noted(&["flat.nrrd", "reach beyond the frame of ball.lfl"]);
 }
 
 #[test]
@@ -126,8 +128,8 @@ fn raw_volumes() {
     let wanted = inside() as f64;
     let wide: Vec<u8> = samples().iter().flat_map(|&sample| (u16::from(sample) << 8).to_be_bytes()).collect();
     place.write("wide.bin", [&b"abcde"[..], &wide].concat());
-    let bytes = "--samples 16,14,12";
-    let words = "--samples 16,14,12 --type u16 --big-endian --skip 5 --spacing 1,1,1";
+    let bytes = "--extents 16,14,12";
+    let words = "--extents 16,14,12 --type u16 --big-endian --skip 5 --spacing 1,1,1";
     for (file, options) in [("ball.raw", bytes), ("wide.bin", words)] {
         let report = json(&place, &format!("voxelize {file} -o raw.lfl {options} --json"));
         assert_eq!((report["depth"].as_u64(), volume(&report)), (Some(4), (wanted, wanted)), "{report}");
@@ -140,19 +142,19 @@ fn raw_volumes() {
         place.run(&format!("difference {file} ball.lfl -o none.lfl {options}")).good();
         assert_eq!(volume(&json(&place, "info none.lfl --json")), (0.0, 0.0));
     }
-    let moved = "--samples 16,14,12 --spacing 0.5 --corner -4,1,2.5 --threshold 10";
+    let moved = "--extents 16,14,12 --spacing 0.5 --corner -4,1,2.5 --threshold 10";
     let told = json(&place, &format!("info ball.raw {moved} --json"));
     assert_eq!(told["corner"], serde_json::json!([-4.0, 1.0, 2.5]));
     let (lower, upper) = volume(&json(&place, &format!("measure ball.raw {moved} --json")));
     let all = samples().len() as f64 / 8.0;
     assert!(lower <= all && all <= upper);
-    place.run("info ball.raw --samples 16,14,13").bad(1, &["ball.raw"]);
-    place.run("info ball.raw --samples 16,14").bad(2, &["--samples", "nx,ny,nz"]);
-    place.run("info ball.raw --samples 16,14,0").bad(2, &["extents"]);
-    place.run("info ball.raw --spacing 2").bad(2, &["--samples"]);
-    place.run("info ball.raw --samples 16,14,12 --spacing 1,2").bad(2, &["--spacing"]);
-    place.run("info ball.raw --samples 16,14,12 --type text").bad(2, &["--type"]);
-    place.run("info ball.lfl --samples 16,14,12").bad(2, &["--samples", "ball.lfl"]);
+    place.run("info ball.raw --extents 16,14,13").bad(1, &["ball.raw"]);
+    place.run("info ball.raw --extents 16,14").bad(2, &["--extents", "nx,ny,nz"]);
+    place.run("info ball.raw --extents 16,14,0").bad(2, &["extents"]);
+    place.run("info ball.raw --spacing 2").bad(2, &["--extents"]);
+    place.run("info ball.raw --extents 16,14,12 --spacing 1,2").bad(2, &["--spacing"]);
+    place.run("info ball.raw --extents 16,14,12 --type text").bad(2, &["--type"]);
+    place.run("info ball.lfl --extents 16,14,12").bad(2, &["--extents", "ball.lfl"]);
 }
 
 /// Cells become voxels, and these the same cells.
@@ -171,7 +173,7 @@ fn bitmaps() {
     let read = |name: &str| place.bytes(name);
     assert!(read("packed.nrrd").len() < read("cells.nrrd").len() / 4);
     assert_eq!(read("cells.raw").len(), 4096);
-    for (file, options) in [("cells.nrrd", ""), ("packed.nrrd", ""), ("cells.raw", "--samples 16,16,16")] {
+    for (file, options) in [("cells.nrrd", ""), ("packed.nrrd", ""), ("cells.raw", "--extents 16,16,16")] {
         place.run(&format!("voxelize {file} -o again.lfl {options}")).good();
         place.run("xor ball.lfl again.lfl -o rest.lfl").good();
         assert_eq!(volume(&json(&place, "info rest.lfl --json")), (0.0, 0.0), "{file}");
@@ -180,7 +182,7 @@ fn bitmaps() {
         assert_eq!((&ball["cells"], &ball["origin"]), (&again["cells"], &again["origin"]), "{file}");
     }
     // Coarser, and with undecided cells.
-    place.run("bitmap ball.lfl -o coarse.raw --level 3").bad(1, &["ball.lfl", "--resolve"]);
+    place.run("bitmap ball.lfl -o coarse.raw --level 3").noted(&["ball.lfl", "--resolve"]);
     let inside = |resolve: &str| {
         let line = format!("bitmap ball.lfl -o coarse.raw --level 3 --resolve {resolve} --json");
         json(&place, &line)["inside"].as_u64().unwrap() * 8
