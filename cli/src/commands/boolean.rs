@@ -1,8 +1,8 @@
 //! `leafless union`, `intersection`, `difference`, `xor` and `complement`.
 
 use crate::failure::Failure;
-use crate::making::boolean::{Combining, combine};
-use crate::making::operands::Operation;
+use crate::making::boolean::combine;
+use crate::making::operands::{Combining, Operation};
 use crate::sink::Output;
 use crate::source::file::Taking;
 use crate::source::input::Input;
@@ -19,6 +19,9 @@ use std::ffi::OsString;
 /// volumes are cut into cells on the frame of the first solid; without any, on the voxels of a volume that comes first, or on a cube
 /// around all of them: `leafless xor old.stl new.stl -o changes.lfl`. The result may replace one of the files. Tri-dexel models can be
 /// combined with each other, made with the same --bounds and --resolution.
+///
+/// Meshes, scenes and volumes make a triangle mesh, too, if the output has the extension .stl, .ply, .obj, .off or .3mf, as
+/// `leafless mesh` makes one of a scene: `leafless difference part.stl tool.stl -o cut.stl`.
 ///
 /// --translate, --rotate, --scale and --place move the file that they stand behind, and put it onto the frame of the first file:
 /// `leafless difference part.lfl pin.lfl --rotate z,30 pin.lfl --rotate z,60 -o out.lfl` cuts two pins. What was moved by whole cells and
@@ -48,7 +51,7 @@ pub struct ComplementArguments {
 
 #[derive(Args)]
 struct Common {
-    /// File to write, or `-` for standard output; it is written whole or not at all
+    /// File to write, or `-` for standard output; it is written whole or not at all. The extension of a mesh makes it one
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Threads to use; 0: as many as there are processors. The result is the same
@@ -58,7 +61,7 @@ struct Common {
     /// voxels of a volume that comes first, or the cube around all of them
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = crate::options::bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
-    /// Levels of cells there, 1 to 20. Without it: 10, or those of the voxels
+    /// Levels of cells there, 1 to 20. Without it: 10, or 8 for a triangle mesh, or those of the voxels
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
     depth: Option<u8>,
     #[command(flatten)]

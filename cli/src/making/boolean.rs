@@ -1,39 +1,30 @@
 //! The set operations on solids of either kind.
 
 use crate::failure::{Failure, Of, complain};
+use crate::making::combined_surface;
 use crate::making::operand::Common;
-use crate::making::operands::{Operation, Place, check_places, facts, warn_of_units};
+use crate::making::operands::{Combining, Operation, Place, check_places, facts, warn_of_units};
 use crate::progress::watched;
 use crate::report::{dexels, octree};
 use crate::sink::Output;
-use crate::source::file::{Stored, Taking};
+use crate::source::file::Stored;
 use crate::source::input::Input;
 use crate::source::placing::Placing;
 use crate::source::solid::Shape;
 use crate::words::{count, counted, seconds, short};
 use leafless::attribute::{CarryRule, carry_channels};
-use leafless::{Control, Error, Frame, Octree, OctreeRef, Rule, TriDexel};
+use leafless::exchange::MeshFormat;
+use leafless::{Control, Error, Octree, OctreeRef, Rule, TriDexel};
 use std::time::Instant;
-
-/// What is made of solids.
-pub struct Combining<'a> {
-    pub operation: Operation,
-    /// How meshes, scenes and volumes among them are taken.
-    pub taking: &'a Taking,
-    /// The cube that they are combined on, and its levels, if none of them has its own.
-    pub bounds: Option<Frame>,
-    pub depth: Option<u8>,
-    /// Rules for channels by their names.
-    pub carry: &'a [(String, CarryRule)],
-    /// Whether the result has no surfaces, and the level of its cells if that is asked for.
-    pub plain: Option<Option<u8>>,
-    pub threads: usize,
-}
 
 /// Reads the operands, at least one (a difference has two), moves them, combines them, saves the result.
 pub fn combine(combining: &Combining, files: &[(Input, Placing)], output: &Output) -> Result<(), Failure> {
     let (start, operation) = (Instant::now(), combining.operation);
     output.check()?;
+    let extension = output.path().and_then(|path| path.extension()?.to_str());
+    if let Some(format) = extension.and_then(MeshFormat::from_extension) {
+        return combined_surface::make(combining, files, output, format);
+    }
     let operands = operands(files, combining)?;
     let inputs: Vec<Input> = files.iter().map(|file| file.0.clone()).collect();
     let inputs = &inputs[..];
@@ -62,7 +53,14 @@ pub fn combine(combining: &Combining, files: &[(Input, Placing)], output: &Outpu
             let info = octree::Info::new(&result, bytes);
             let kept = info.kept_text().map_or(String::new(), |kept| format!(", {kept}"));
             let nodes = counted(info.nodes, "node", "nodes");
-            let told = format!("volume {}, {nodes}{kept}", info.volume_text());
+            // Nobody has said how large the cells of other files are.
+            let is_made = inputs.iter().any(|input| !input.begins_as_solid());
+            let cells = if is_made {
+                format!(", cells of {}", short(result.frame().cell_size()))
+            } else {
+                String::new()
+            };
+            let told = format!("volume {}{cells}, {nodes}{kept}", info.volume_text());
             (counted(number, "solid", "solids"), told, bytes, time)
         }
         Operands::Dexels(models) => {

@@ -4,6 +4,7 @@
 //! arguments of a subcommand, so that several can ask for the same.
 
 pub mod boolean;
+pub mod combined_surface;
 pub mod dexel_surface;
 pub mod dexels;
 pub mod job;

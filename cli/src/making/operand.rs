@@ -24,7 +24,7 @@ pub type Wanted = (Option<Frame>, Option<u8>);
 
 /// Where operands are combined.
 pub struct Common {
-    frame: Frame,
+    pub frame: Frame,
     /// Whether cells keep surfaces, as those of an operand do.
     keeps_surfaces: bool,
 }

@@ -1,8 +1,10 @@
 //! The operands of set operations: where they lie, and what their files say.
 
 use crate::failure::{Failure, Of, complain};
+use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::words::number;
+use leafless::attribute::CarryRule;
 use leafless::{Frame, Metadata};
 
 /// What is made of the solids.
@@ -25,6 +27,21 @@ impl Operation {
             Operation::Complement => "complement",
         }
     }
+}
+
+/// What is made of solids.
+pub struct Combining<'a> {
+    pub operation: Operation,
+    /// How meshes, scenes and volumes among them are taken.
+    pub taking: &'a Taking,
+    /// The cube that they are combined on, and its levels, if none of them has its own.
+    pub bounds: Option<Frame>,
+    pub depth: Option<u8>,
+    /// Rules for channels by their names.
+    pub carry: &'a [(String, CarryRule)],
+    /// Whether the result has no surfaces, and the level of its cells if that is asked for.
+    pub plain: Option<Option<u8>>,
+    pub threads: usize,
 }
 
 /// Where an operand lies, and what its file says.

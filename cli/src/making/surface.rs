@@ -105,7 +105,7 @@ pub enum ResolveName {
 
 /// Makes the surface of a file, and writes it.
 pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> {
-    let Job { input, output, start, .. } = job;
+    let Job { input, output, .. } = job;
     output.check()?;
     let format = format(wanted.format, output.path())?;
     if wanted.normals && !matches!(format, MeshFormat::Ply | MeshFormat::Obj) {
@@ -151,6 +151,24 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     }
     // The surface of a stored solid is sharper than that of what would be made of the solid in another place.
     let mesh = if is_stored { taking.placing.mesh(mesh).of(input)? } else { mesh };
+    let method = if is_copy { "copy".into() } else { name_of(wanted.method) };
+    write(job, format, wanted, Made { mesh, unit, method, followed })
+}
+
+/// A surface that was made.
+pub struct Made {
+    pub mesh: TriangleMesh,
+    pub unit: Option<LengthUnit>,
+    /// How, in a word.
+    pub method: String,
+    /// How exactly it follows rays, if it does.
+    pub followed: Option<Followed>,
+}
+
+/// Writes a surface, and says what it is.
+pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Result<(), Failure> {
+    let Job { input, output, start, .. } = job;
+    let Made { mesh, unit, method, followed } = made;
     let options = WriteOptions { text: wanted.text, unit, normals: wanted.normals };
     let (kept, losses) = written::kept(&mesh, format, &options, wanted.lossy, output)?;
     let bytes = write_mesh(&mesh, format, &options).of(output)?;
@@ -167,7 +185,7 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     let told = Report {
         input: input.to_string(),
         output: output.to_string(),
-        method: if is_copy { "copy".into() } else { name_of(wanted.method) },
+        method,
         format: format_name(format),
         unit: unit.filter(|_| format == MeshFormat::ThreeMf).map(LengthUnit::symbol),
         vertices: report.vertices,
@@ -371,7 +389,7 @@ fn of_cells(
 }
 
 /// The surface of a solid that is sampled at the corners of cells.
-fn of_solid(
+pub fn of_solid(
     solid: &AnySolid,
     frame: &Frame,
     wanted: &Wanted,

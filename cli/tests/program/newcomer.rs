@@ -114,6 +114,34 @@ fn set_operations_take_files_of_any_kind() {
     place.run("union cube.lfl slab.stl -o out.lfl --unit mm --fill positive").good();
 }
 
+/// This cut with that, as a mesh in one command.
+#[test]
+fn set_operations_make_meshes() {
+    let place = solids();
+    place.write("pin.csg", "translate([2, 2, 0]) cylinder(h = 4, r = 0.5);");
+    let bored = 8.0 - PI * 0.5;
+    for (line, volume) in [
+        ("difference cube.stl pin.csg -o out.stl --bounds 0,0,0,4 --depth 6", bored),
+        ("difference cube.stl pin.csg -o out.ply", bored),
+        ("union cube.stl slab.stl -o out.obj --bounds 0,0,0,8", 39.0),
+        ("intersection cube.stl slab.stl -o out.off --bounds 0,0,0,8", 1.0),
+        ("xor cube.stl slab.stl -o out.3mf --bounds 0,0,0,8 --unit mm", 38.0),
+    ] {
+        let told = place.run(line);
+        // (An STL has less room for digits.)
+        let told = if line.contains("-o out.stl") { told } else { told.good() };
+        assert!(told.code == Some(0) && told.text().contains("closed"), "{told:?}");
+        let output = line.split("-o ").nth(1).unwrap().split(' ').next().unwrap();
+        let info = place.run(&format!("info {output} --json")).good().json();
+        let found = info["volume"].as_f64().unwrap();
+        assert!((found / volume - 1.0).abs() < 0.03, "{line}: {found} {volume}");
+    }
+    place.run("difference cube.lfl slab.stl -o no.stl").bad(2, &["no.stl", "cube.lfl", "`leafless mesh`"]);
+    place.run("complement cube.stl -o no.stl").bad(2, &["no.stl", "complement"]);
+    place.run("difference cube.stl slab.stl -o no.stl --plain").bad(2, &["no.stl", "--plain"]);
+    assert!(!place.files().contains(&"no.stl".to_owned()));
+}
+
 /// A volume whose samples the middle of their type does not part.
 #[test]
 fn thresholds_come_from_the_histogram() {
