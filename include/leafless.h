@@ -1196,7 +1196,9 @@ typedef struct leafless_mesh_file_info {
 } leafless_mesh_file_info;
 
 /// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
-/// triangles. Of bytes no name is known that could tell the format.
+/// triangles. Hair cracks, which files have because their numbers are rounded, are closed as by
+/// leafless_mesh_sewn; leafless_mesh_inspect tells how many vertices moved and how far. Of bytes no name is
+/// known that could tell the format.
 ///
 /// - Buffers: `source`, one struct, with LEAFLESS_ACCESS_COPY; `options`, one struct, or NULL; `found`, one
 ///   struct, or NULL if it is not wanted; `mesh`, one pointer.
