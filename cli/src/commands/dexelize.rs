@@ -20,7 +20,7 @@ use std::time::Instant;
 /// cells are.
 ///
 /// Rays of meshes, scenes of half-spaces and stored octrees are exact. A stored octree has a frame of its own, and
-/// cells that may be undecided: these count as outside by the rule inner and as inside by the rule outer.
+/// cells that may be undecided: these count as inside, which is told, unless the rule inner leaves them out.
 ///
 /// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input
 /// gives equal bytes, for any number of threads.

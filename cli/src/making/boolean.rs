@@ -95,15 +95,14 @@ fn warn_of_clipping(files: &[(Input, Placing)], octrees: &[Octree], result: &Oct
     if !result.view().is_clipped() {
         return;
     }
+    let stored = files.iter().find(|(input, _)| input.begins_as_solid());
+    let frame = stored.map_or("the common cube".into(), |(input, _)| format!("the frame of {input}"));
     for ((input, placing), octree) in files.iter().zip(octrees) {
         if !octree.view().is_clipped() || input.begins_as_solid() && placing.map().is_none() {
             continue;
         }
         let place = if placing.map().is_some() { "where it was moved to " } else { "" };
-        complain(&format!(
-            "{input}: warning: {place}it may reach beyond the frame of {}, and was cut off",
-            files[0].0
-        ));
+        complain(&format!("{input}: warning: {place}it may reach beyond {frame}, and was cut off"));
     }
 }
 

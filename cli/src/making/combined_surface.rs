@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::making::job::Job;
-use crate::making::operand::Common;
+use crate::making::operand::{Common, askew};
 use crate::making::operands::{Combining, Operation};
 use crate::making::surface::{Made, Wanted, of_solid, write};
 use crate::options::name_of;
@@ -42,7 +42,13 @@ pub fn make(
         ));
     }
     let depth = combining.depth.unwrap_or(DEPTH);
-    let frame = Common::new(files, &shapes, (combining.bounds, Some(depth)))?.frame;
+    let has_voxels = matches!(&shapes[0], Shape::Source(Source::Volume(volume)) if volume.frame.is_some());
+    let frame = match combining.bounds {
+        None if !has_voxels => askew(files, &shapes, depth)?,
+        // The voxels have a size of their own.
+        None => Common::new(files, &shapes, (None, combining.depth))?.frame,
+        bounds => Common::new(files, &shapes, (bounds, Some(depth)))?.frame,
+    };
     let sources = shapes.into_iter().filter_map(|shape| match shape {
         Shape::Source(source) => Some(source),
         Shape::Dexels(_) => None,

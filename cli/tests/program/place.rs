@@ -66,7 +66,7 @@ impl Place {
 }
 
 /// What was told, but for the lines that a slow machine gets while the program is at work.
-fn without_progress(errors: &str) -> String {
+pub fn without_progress(errors: &str) -> String {
     errors.split_inclusive('\n').filter(|line| !line.contains(": at work for ")).collect()
 }
 
