@@ -59,7 +59,8 @@ pub struct Arguments {
     /// its own or a coarser one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..MAX_DEPTH as i64))]
     depth: Option<u8>,
-    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
+    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: a cube around it, in whose lattice no face
+    /// lies as a rule where vertices lie on the surface
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]

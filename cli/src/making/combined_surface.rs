@@ -1,8 +1,9 @@
 //! Set operations whose result is a triangle mesh.
 
 use crate::failure::{Failure, Of};
+use crate::making::askew;
 use crate::making::job::Job;
-use crate::making::operand::{Common, askew};
+use crate::making::operand::{Common, reach};
 use crate::making::operands::{Combining, Operation};
 use crate::making::surface::{Made, Wanted, of_solid, write};
 use crate::options::name_of;
@@ -44,7 +45,10 @@ pub fn make(
     let depth = combining.depth.unwrap_or(DEPTH);
     let has_voxels = matches!(&shapes[0], Shape::Source(Source::Volume(volume)) if volume.frame.is_some());
     let frame = match combining.bounds {
-        None if !has_voxels => askew(files, &shapes, depth)?,
+        None if !has_voxels => {
+            let (low, high, _) = reach(files, &shapes)?;
+            askew::cube(low, high, depth).of(&files[0].0)?
+        }
         // The voxels have a size of their own.
         None => Common::new(files, &shapes, (None, combining.depth))?.frame,
         bounds => Common::new(files, &shapes, (bounds, Some(depth)))?.frame,

@@ -3,6 +3,7 @@
 //! A subcommand says in a `job` what it wants; each file here makes one kind of result of it. Nothing here knows the
 //! arguments of a subcommand, so that several can ask for the same.
 
+pub mod askew;
 pub mod boolean;
 pub mod combined_surface;
 pub mod dexel_surface;

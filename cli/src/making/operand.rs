@@ -127,19 +127,8 @@ fn around(files: &[(Input, Placing)], shapes: &[Shape], depth: u8) -> Result<Fra
     if ends { Frame::fitted(low, high, depth) } else { Frame::around(low, high, depth) }.of(&files[0].0)
 }
 
-/// The same where samples of a surface are taken at corners of cells. No face at a round number, and none in a plane of symmetry, lies
-/// in a plane of the lattice: there triangles would have hardly any area.
-pub fn askew(files: &[(Input, Placing)], shapes: &[Shape], depth: u8) -> Result<Frame, Failure> {
-    let (mut low, high, _) = reach(files, shapes)?;
-    let longest = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-    for (end, part) in low.iter_mut().zip([89.0, 97.0, 101.0]) {
-        *end -= longest / part;
-    }
-    Frame::around(low, high, depth).of(&files[0].0)
-}
-
 /// The corners of a box around all operands, none of which is stored, and whether nothing lies beyond.
-fn reach(files: &[(Input, Placing)], shapes: &[Shape]) -> Result<([f64; 3], [f64; 3], bool), Failure> {
+pub fn reach(files: &[(Input, Placing)], shapes: &[Shape]) -> Result<([f64; 3], [f64; 3], bool), Failure> {
     let (mut low, mut high, mut ends) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], true);
     for ((input, _), shape) in files.iter().zip(shapes) {
         let Shape::Source(source) = shape else { continue };

@@ -1,6 +1,7 @@
 //! Surfaces of solids of any kind, as triangle meshes.
 
 use crate::failure::{Failure, Of, complain};
+use crate::making::askew;
 use crate::making::dexel_surface::{self, Followed};
 use crate::making::job::Job;
 use crate::options::{UNDECIDED, name_of};
@@ -331,7 +332,15 @@ fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, F
     // A volume has its own samples, if its voxels are cubes; an octree has those of its lattice at any depth.
     let has_own =
         source.own_frame().is_some() && (job.depth.is_none() || matches!(source, Source::Octree(_)));
-    let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?;
+    let is_crossed =
+        wanted.method == Method::Mc && wanted.vertices == At::Crossing && wanted.resolve.is_none();
+    let frame = match &source {
+        Source::Mesh(..) | Source::Scene(_) if is_crossed && job.bounds.is_none() => {
+            let (low, high) = source.bounds(input)?;
+            askew::cube(low, high, job.depth.unwrap_or(DEPTH)).of(input)?
+        }
+        source => source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?,
+    };
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
     watched("mesh", job.threads, |control| match wanted.resolve {
         None if !has_own => of_solid(&solid, &frame, wanted, control),

@@ -111,7 +111,8 @@ fn volumes_hold_the_truth_where_things_are_moved() {
         let report = place.run(&format!("{line} --json")).good().json();
         assert!(report["closed"] == true, "{report}");
     }
-    assert_eq!(corners(&place, "out.ply")[0][0], 8.0);
+    // (No vertex need lie at the very pole.)
+    assert!((8.0..8.001).contains(&corners(&place, "out.ply")[0][0]));
     // Sampled cells stay decided.
     place.run("voxelize cube.stl -o sampled.lfl --depth 5 --bounds 0,0,0,8 --rule sampled").good();
     place.run("convert sampled.lfl -o out.lfl --rotate z,30").good();
