@@ -108,6 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     job.output.check_spares(&job.input, "scene")?;
+    job.output.check_name()?;
     let found = Found::look(&job.input, None)?;
     let splitting = Splitting { rule, adaptive, surfaces, touch };
     octree_of_scene::make(&job, found, (&arguments.drawing, &arguments.placing), splitting)

@@ -77,6 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     surfaces.check_rule(rule)?;
     job.output.check()?;
     job.output.check_spares(input, "mesh")?;
+    job.output.check_name()?;
     let found = Found::look(input, reading.told())?;
     octree_of_mesh::make(&job, found, &Voxelizing { reading, placing: &placing, rule, surfaces })
 }

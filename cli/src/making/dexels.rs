@@ -48,6 +48,7 @@ pub fn make(job: &Job, taking: &Taking, rule: Rule, mut storing: Storing) -> Res
     let Job { input, output, start, .. } = job;
     output.check()?;
     output.check_spares(input, "input")?;
+    output.check_name()?;
     let (shape, fingerprint) = Shape::read(input, taking)?;
     let Shape::Source(source) = shape else {
         return Err(Failure::of(input, "is a tri-dexel model already"));

@@ -7,6 +7,7 @@ pub mod written;
 
 use crate::failure::{Failure, Of, Problem};
 use crate::source::input::Input;
+use leafless::exchange::MeshFormat;
 use leafless::{Error, Octree, TriDexel, file};
 use serde::Serialize;
 use std::ffi::OsStr;
@@ -72,6 +73,16 @@ impl Output {
             && from.canonicalize().is_ok_and(|from| to.canonicalize().is_ok_and(|to| from == to))
         {
             return Err(Failure::of(self, format_args!("is the {what} itself, which is not overwritten")));
+        }
+        Ok(())
+    }
+
+    /// Refuses the name of a mesh for a solid (.lfl), which no program would look for there.
+    pub fn check_name(&self) -> Result<(), Failure> {
+        let extension = self.path().and_then(|path| path.extension()?.to_str());
+        if extension.is_some_and(|extension| MeshFormat::from_extension(extension).is_some()) {
+            let problem = "its name is that of a mesh, and a solid is written (.lfl); `leafless mesh` and `convert` make meshes";
+            return Err(Failure::Usage(format!("{self}: {problem}")));
         }
         Ok(())
     }

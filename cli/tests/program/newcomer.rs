@@ -140,6 +140,9 @@ fn set_operations_make_meshes() {
     place.run("difference cube.lfl slab.stl -o no.stl").bad(2, &["no.stl", "cube.lfl", "`leafless mesh`"]);
     place.run("complement cube.stl -o no.stl").bad(2, &["no.stl", "complement"]);
     place.run("difference cube.stl slab.stl -o no.stl --plain").bad(2, &["no.stl", "--plain"]);
+    for line in ["voxelize cube.stl --depth 4", "csg pin.csg --depth 4", "dexelize cube.stl"] {
+        place.run(&format!("{line} -o no.stl")).bad(2, &["no.stl", "a mesh", "`leafless mesh`"]);
+    }
     assert!(!place.files().contains(&"no.stl".to_owned()));
 }
 
