@@ -20,7 +20,7 @@ use std::time::Instant;
 /// rule every cell is proven inside, proven outside, or undecided.
 ///
 /// A scene is a text in the language of the CSG dumps that OpenSCAD writes (`openscad -o part.csg
-/// part.scad`): group union difference intersection multmatrix color render cube sphere cylinder polyhedron
+/// part.scad`): group union difference intersection multmatrix translate rotate scale mirror color render cube sphere cylinder polyhedron
 /// linear_extrude rotate_extrude square circle polygon, import of meshes, and some of ours:
 /// halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R) quadric([10 numbers]) torus(major,minor)
 /// mesh("file.stl") octree("file.lfl"). Curved surfaces are exact, but for those with a $fn of 12 or less, which
