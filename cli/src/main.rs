@@ -40,7 +40,7 @@ use std::process::ExitCode;
 #[command(after_help = "\
 Try `leafless demo` first. A file named `-` is standard input or standard output.
 Files are mapped, not loaded: let no other program rewrite one in place while it is read here. Long work \
-shows a bar at a terminal; elsewhere a line on standard error tells every five seconds how far it is.")]
+shows a bar at a terminal; elsewhere a line on standard error tells every five seconds, later every thirty, how far it is.")]
 struct Arguments {
     /// Most memory to take, as 512M or 2G; what would take more is refused. Without it: what the machine has to spare,
     /// and 16G at most

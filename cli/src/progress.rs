@@ -13,8 +13,10 @@ use std::time::{Duration, Instant};
 
 /// Work that is done before this needs no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Where there is no terminal, a line is told as often as this.
+/// Where there is no terminal, a line is told as often as this, …
 const PACE: Duration = Duration::from_secs(5);
+/// … and after a minute as often as this: a night's work fills no log.
+const SLOW_PACE: Duration = Duration::from_secs(30);
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
@@ -102,7 +104,8 @@ impl Told {
         let seen = done.clone();
         let tell = move || {
             let start = Instant::now();
-            while ended.recv_timeout(PACE) == Err(RecvTimeoutError::Timeout) {
+            let pace = || if start.elapsed() < Duration::from_secs(60) { PACE } else { SLOW_PACE };
+            while ended.recv_timeout(pace()) == Err(RecvTimeoutError::Timeout) {
                 let time = start.elapsed().as_secs();
                 let part = match seen.load(Relaxed) {
                     0 => String::new(),
