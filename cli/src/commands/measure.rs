@@ -182,13 +182,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let density = arguments.density.map(|density| density.of_cube(source.unit())).transpose();
     let density = density.map_err(|problem| Failure::Usage(format!("--density: {problem}")))?;
     let (placement, frame) = place(arguments, &input, &source)?;
-    let (corners, sewn) = match &source {
+    let is_scene = matches!(source, Source::Scene(_));
+    let own = match &source {
         Source::Mesh(mesh, fill, _) => {
-            (Some(Corners::new(&input, mesh, *fill)?), as_sewn(&input, mesh, *fill)?)
+            Some((Corners::new(&input, mesh, *fill)?, as_sewn(&input, mesh, *fill)?))
         }
-        _ => (None, None),
+        _ => None,
     };
     let solid = Prepared::new(source.placed(&input, &placement, &frame)?);
+    let own = match solid.solid().sole_mesh().filter(|_| is_scene) {
+        // By any rule it is the same solid, unless bodies are inside out.
+        Some(mesh) => {
+            let corners = Corners::new(&input, mesh, FillRule::Positive)?;
+            let sewn = if corners.are_exact() { as_sewn(&input, mesh, FillRule::Positive)? } else { None };
+            Some((corners, sewn))
+        }
+        None => own,
+    };
+    let (corners, sewn) = own.map_or((None, None), |(corners, sewn)| (Some(corners), sewn));
     let asked = arguments.tolerance.is_some() || arguments.splits.is_some();
     let relative = arguments.tolerance.unwrap_or(if arguments.splits.is_some() { 0.0 } else { 0.01 });
     // What is flat or empty has no volume to be relative to.
@@ -252,14 +263,18 @@ impl Asking<'_> {
             None => None,
         };
         let extent = match corners {
-            Some(corners) if corners.are_exact() && inexact == Some(None) => Extent {
-                corners: Some(corners.exact()),
-                occupied: true,
-                proof: mass.proof,
-                clipped: false,
-                stop_reason: StopReason::Tolerance,
-                splits: 0,
-            },
+            Some(corners)
+                if corners.are_exact() && (mass.exact || inexact == Some(None)) && !mass.clipped =>
+            {
+                Extent {
+                    corners: Some(corners.exact()),
+                    occupied: true,
+                    proof: mass.proof,
+                    clipped: false,
+                    stop_reason: StopReason::Tolerance,
+                    splits: 0,
+                }
+            }
             _ => sides(solid, frame, tolerance.relative, &quiet)?,
         };
         let within = |found| corners.map_or(found, |corners| corners.within(found));

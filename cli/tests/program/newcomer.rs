@@ -236,6 +236,12 @@ fn measure_and_info_agree() {
     place.write("scene.csg", "import(\"cracked.obj\");");
     let info = report("info scene.csg --json");
     assert_eq!(info["meshes"][0]["closed"], true, "{info}");
+    let told = report("measure scene.csg --json");
+    assert!(
+        told["area_displacement"].as_f64().unwrap() > 0.0 && (ends(&told["area"]).1 - 22.0).abs() < 1e-7,
+        "{told}"
+    );
+    assert!((told["max"]["upper"][0].as_f64().unwrap() - 3.0).abs() < 1e-8, "{told}");
 }
 
 /// The figures of the part of the trial: 12.81 ± 0.12 for 12.7, and an area that was not known.
