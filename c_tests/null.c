@@ -318,6 +318,10 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_placed, solid, leafless_solid_placed(solid, matrix, (leafless_motion *)out, NULL));
     NULL_POINTER(leafless_solid_describe, solid, leafless_solid_describe(NULL, (leafless_solid_info *)out));
     NULL_POINTER(leafless_solid_describe, info, leafless_solid_describe(solid, NULL));
+    NULL_POINTER(leafless_solid_resampled, operand, leafless_solid_resampled(NULL, &frame, matrix, solid_result));
+    NULL_POINTER(leafless_solid_resampled, own, leafless_solid_resampled(solid, NULL, matrix, solid_result));
+    NULL_POINTER(leafless_solid_resampled, matrix, leafless_solid_resampled(solid, &frame, NULL, solid_result));
+    NULL_POINTER(leafless_solid_resampled, solid, leafless_solid_resampled(solid, &frame, matrix, NULL));
     NULL_POINTER(leafless_solid_transformed, operand,
                  leafless_solid_transformed(NULL, &frame, matrix, solid_result));
     NULL_POINTER(leafless_solid_transformed, own, leafless_solid_transformed(solid, NULL, matrix, solid_result));

@@ -249,6 +249,10 @@ static void uses(void) {
     NULL_POINTER(leafless_octree_from_tridexel, octree, leafless_octree_from_tridexel(model, NULL, NULL));
     MAY_BE_NULL(leafless_octree_from_tridexel, options, leafless_octree_from_tridexel(model, NULL, &tree));
     leafless_octree_free(tree);
+    NULL_POINTER(leafless_octree_from_tridexel_ends, tridexel, leafless_octree_from_tridexel_ends(NULL, NULL, octree));
+    NULL_POINTER(leafless_octree_from_tridexel_ends, octree, leafless_octree_from_tridexel_ends(model, NULL, NULL));
+    MAY_BE_NULL(leafless_octree_from_tridexel_ends, options, leafless_octree_from_tridexel_ends(model, NULL, &tree));
+    leafless_octree_free(tree);
     NULL_POINTER(leafless_solid_from_tridexel, tridexel, leafless_solid_from_tridexel(NULL, false, NULL, result));
     NULL_POINTER(leafless_solid_from_tridexel, solid, leafless_solid_from_tridexel(model, false, NULL, NULL));
     MAY_BE_NULL(leafless_solid_from_tridexel, options, leafless_solid_from_tridexel(model, true, NULL, &again));

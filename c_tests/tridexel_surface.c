@@ -121,6 +121,37 @@ static void octrees_and_solids(void) {
     tree = NULL;
     OK(leafless_octree_from_tridexel(again, NULL, &tree));
     CHECK(check_same(tree, expected));
+    /* By the ends: what is decided is as the centres say. */
+    {
+        leafless_octree *ends = NULL;
+        leafless_statistics centres, bounds;
+        OK(leafless_octree_from_tridexel_ends(model, NULL, &ends));
+        OK(leafless_octree_describe(ends, &info));
+        CHECK(!info.proof.full && !info.proof.empty && !info.is_binary);
+        OK(leafless_octree_statistics(tree, &centres));
+        OK(leafless_octree_statistics(ends, &bounds));
+        CHECK(bounds.volume_model.lower < centres.volume_model.lower);
+        CHECK(centres.volume_model.upper < bounds.volume_model.upper);
+        leafless_octree_free(ends);
+    }
+    /* Sampled again on a lattice that is twice as coarse, and turned. */
+    {
+        const double turned[12] = {0.8, -0.6, 0, 0, 0.6, 0.8, 0, 0, 0, 0, 1, 0};
+        leafless_frame coarse = frame;
+        leafless_solid *cells = NULL, *moved = NULL;
+        leafless_octree *again_sampled = NULL;
+        coarse.depth = DEPTH - 1;
+        OK(leafless_solid_from_octree(tree, &cells));
+        OK(leafless_solid_transformed(cells, &frame, turned, &moved));
+        CHECK(leafless_octree_build(moved, &coarse, LEAFLESS_RULE_SAMPLED, NULL, &again_sampled) ==
+              LEAFLESS_E_NOT_SAMPLED);
+        leafless_solid_free(moved);
+        OK(leafless_solid_resampled(cells, &frame, turned, &moved));
+        OK(leafless_octree_build(moved, &coarse, LEAFLESS_RULE_SAMPLED, NULL, &again_sampled));
+        leafless_octree_free(again_sampled);
+        leafless_solid_free(moved);
+        leafless_solid_free(cells);
+    }
     /* As a solid on another frame. */
     OK(leafless_solid_from_tridexel(model, false, NULL, &solid));
     OK(leafless_octree_build(solid, &other, LEAFLESS_RULE_CERTIFIED, NULL, &anew));

@@ -3558,6 +3558,25 @@ typedef struct leafless_clearance {
 leafless_status leafless_solid_transformed(const leafless_solid *operand, const leafless_frame *own,
     const double matrix[12], leafless_solid **solid);
 
+/// As leafless_solid_transformed, but that LEAFLESS_RULE_SAMPLED decides every centre, by the cell of the
+/// solid's own frame from which it comes: that cell is FULL, or its own centre lies inside.
+///
+/// So an octree that is made of samples is sampled again, on a lattice that is turned, coarser or finer,
+/// where leafless_solid_transformed is refused with LEAFLESS_E_NOT_SAMPLED. A surface is displaced by up to
+/// half a diagonal of the solid's own cells. A centre that comes from a face between two cells belongs to the
+/// one above. Other rules, and all that is said of cells, are as for leafless_solid_transformed.
+///
+/// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t;
+///   `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: as leafless_solid_transformed. An octree by LEAFLESS_RULE_SAMPLED is refused with
+///   LEAFLESS_E_NOT_SAMPLED only if a centre comes from a cell that is itself undecided:
+///   leafless_octree_resolve decides those before.
+/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Untrusted input: any solid and numbers.
+leafless_status leafless_solid_resampled(const leafless_solid *operand, const leafless_frame *own,
+    const double matrix[12], leafless_solid **solid);
+
 /// Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume
 /// is refined until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work
 /// with the proof.
@@ -5239,14 +5258,33 @@ leafless_status leafless_tridexel_surface(const leafless_tridexel *tridexel,
 /// nothing.
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
-/// - Result: `*octree`, with the model's facts "name" and "units" and no others; the same for any number of
-///   threads.
+/// - Result: `*octree`, with the model's facts "name" and "units" and no others, and, if the model stores
+///   materials, a channel "material" with the number of the material at the centre of each cell (U32); the
+///   same for any number of threads.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
 /// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
 ///   where its depth is not your own choice.
 leafless_status leafless_octree_from_tridexel(const leafless_tridexel *tridexel,
+    const leafless_options *options, leafless_octree **octree);
+
+/// The octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays through it
+/// are inside all the way, EMPTY if all are outside all the way, and PARTIAL if an end lies in it or the
+/// directions disagree.
+///
+/// A decided cell agrees with every ray through it; what is thinner than a cell is undecided where a ray
+/// meets it, and not lost. Between the rays nothing is known: the cells prove nothing of the solid that the
+/// rays came from, and the volumes of FULL and of PARTIAL cells are no proven bounds.
+///
+/// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
+/// - Result: `*octree`, with facts and a channel as from leafless_octree_from_tridexel.
+/// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
+///   where its depth is not your own choice.
+leafless_status leafless_octree_from_tridexel_ends(const leafless_tridexel *tridexel,
     const leafless_options *options, leafless_octree **octree);
 
 /// A tri-dexel model as a solid on any frame: the inside of its surface by marching cubes.

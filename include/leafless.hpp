@@ -466,6 +466,7 @@ public:
         leafless_distance_to to, double tolerance_model, const leafless_options *options,
         span<leafless_point_distance> distances) const;
     [[nodiscard]] returns<leafless::solid> transformed(const leafless_frame &own, const affine &matrix) const;
+    [[nodiscard]] returns<leafless::solid> resampled(const leafless_frame &own, const affine &matrix) const;
     [[nodiscard]] returns<leafless_interference> interfere(const leafless::solid &b,
         const leafless_frame &frame, double tolerance_model, const leafless_options *options = nullptr) const;
     returns<void> interfere_many(const leafless::solid &b, const leafless_frame &own,
@@ -597,6 +598,8 @@ public:
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_surface_options *surface = nullptr,
         const leafless_options *options = nullptr) const;
     [[nodiscard]] static returns<leafless::octree> from_tridexel(const leafless::tridexel &tridexel,
+        const leafless_options *options = nullptr);
+    [[nodiscard]] static returns<leafless::octree> from_tridexel_ends(const leafless::tridexel &tridexel,
         const leafless_options *options = nullptr);
     [[nodiscard]] static returns<leafless::octree> read(const leafless_source &source);
     returns<void> write(const leafless_sink &sink) const;
@@ -1419,6 +1422,12 @@ inline returns<leafless::solid> solid::transformed(const leafless_frame &own, co
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
+inline returns<leafless::solid> solid::resampled(const leafless_frame &own, const affine &matrix) const {
+    leafless_solid *solid_handle = nullptr;
+    const leafless_status status = leafless_solid_resampled(get(), &own, matrix.data(), &solid_handle);
+    return detail::finish(status, leafless::solid(solid_handle));
+}
+
 inline returns<leafless_interference> solid::interfere(const leafless::solid &b, const leafless_frame &frame,
     double tolerance_model, const leafless_options *options) const {
     leafless_interference interference{};
@@ -1964,6 +1973,14 @@ inline returns<leafless::octree> octree::from_tridexel(const leafless::tridexel 
     const leafless_options *options) {
     leafless_octree *octree_handle = nullptr;
     const leafless_status status = leafless_octree_from_tridexel(tridexel.get(), options, &octree_handle);
+    return detail::finish(status, leafless::octree(octree_handle));
+}
+
+inline returns<leafless::octree> octree::from_tridexel_ends(const leafless::tridexel &tridexel,
+    const leafless_options *options) {
+    leafless_octree *octree_handle = nullptr;
+    const leafless_status status = leafless_octree_from_tridexel_ends(tridexel.get(), options,
+        &octree_handle);
     return detail::finish(status, leafless::octree(octree_handle));
 }
 

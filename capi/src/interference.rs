@@ -1,6 +1,6 @@
 //! Two solids: do they overlap, by how much, how far are they apart?
 
-use super::boundary::{buffer, filled, guard, out, output, shared, slice};
+use super::boundary::{Failure, buffer, filled, guard, out, output, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::csg::placement;
 use super::frame::{frame, frame_of, leafless_frame, leafless_interval};
@@ -169,18 +169,53 @@ pub unsafe extern "C" fn leafless_solid_transformed(
     solid: *mut *mut leafless_solid,
 ) -> leafless_status {
     guard(|| unsafe {
-        let operand = shared(operand, "operand")?.solid.solid();
-        let own = frame_of(own, "own")?;
-        let placement = placement(matrix)?;
-        if operand.nesting() >= AnySolid::MOST_NESTED {
-            return Err(Error::Limit {
-                what: "transforms within each other",
-                limit: AnySolid::MOST_NESTED.into(),
-            }
-            .into());
-        }
-        let solid = out(solid, "solid")?;
-        solid.write(give(Transform::new(operand.clone(), &own, &placement)))
+        let (placed, solid) = (transformed(operand, own, matrix)?, out(solid, "solid")?);
+        solid.write(give(placed))
+    })
+}
+
+/// A solid on its own frame under a map.
+unsafe fn transformed(
+    operand: *const leafless_solid,
+    own: *const leafless_frame,
+    matrix: *const f64,
+) -> Result<Transform<AnySolid>, Failure> {
+    let operand = unsafe { shared(operand, "operand") }?.solid.solid();
+    let (own, placement) = unsafe { (frame_of(own, "own")?, placement(matrix)?) };
+    if operand.nesting() >= AnySolid::MOST_NESTED {
+        let limit = AnySolid::MOST_NESTED.into();
+        return Err(Error::Limit { what: "transforms within each other", limit }.into());
+    }
+    Ok(Transform::new(operand.clone(), &own, &placement))
+}
+
+/// As leafless_solid_transformed, but that LEAFLESS_RULE_SAMPLED decides every centre, by the cell of the solid's own frame
+/// from which it comes: that cell is FULL, or its own centre lies inside.
+///
+/// So an octree that is made of samples is sampled again, on a lattice that is turned, coarser or finer, where
+/// leafless_solid_transformed is refused with LEAFLESS_E_NOT_SAMPLED. A surface is displaced by up to half a diagonal of the
+/// solid's own cells. A centre that comes from a face between two cells belongs to the one above. Other rules, and all that is
+/// said of cells, are as for leafless_solid_transformed.
+///
+/// - Buffers: `own`, one struct; `matrix`, 12 numbers, the rows of [M | t], where a point p goes to M p + t;
+///   `solid`, one pointer.
+/// - Result: `*solid`.
+/// - Errors: as leafless_solid_transformed. An octree by LEAFLESS_RULE_SAMPLED is refused with LEAFLESS_E_NOT_SAMPLED only if a
+///   centre comes from a cell that is itself undecided: leafless_octree_resolve decides those before.
+/// - Ownership: the operand is shared and may be freed; give `*solid` back with leafless_solid_free.
+/// - Untrusted input: any solid and numbers.
+///
+/// cbindgen:ptrs-as-arrays=[[matrix; 12]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_resampled(
+    operand: *const leafless_solid,
+    own: *const leafless_frame,
+    matrix: *const f64,
+    solid: *mut *mut leafless_solid,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (placed, solid) = (transformed(operand, own, matrix)?, out(solid, "solid")?);
+        solid.write(give(placed.nearest()))
     })
 }
 

@@ -9,10 +9,11 @@ use super::solid::{give as give_solid, leafless_solid};
 use super::status::leafless_status;
 use super::tridexel::leafless_tridexel;
 use super::voxel::leafless_voxel_kind::{self, *};
-use leafless::Metadata;
-use leafless::op::octree_from_dexels;
+use leafless::attribute::dexel_materials;
+use leafless::op::{octree_from_dexel_ends, octree_from_dexels};
 use leafless::surface::{DexelSolid, DexelSurfaceReport, dual_contouring_dexels, marching_cubes_dexels};
 use leafless::voxel::{LongVoxel, VoxelKind, dexel_voxels};
+use leafless::{Control, Error, Metadata, Octree, TriDexel};
 use leafless_dexel_surface_method::*;
 
 /// How the surface of a tri-dexel model is extracted.
@@ -159,7 +160,8 @@ pub unsafe extern "C" fn leafless_tridexel_surface(
 /// The octree of a tri-dexel model: a finest cell is FULL if its centre lies inside, else EMPTY. It proves nothing.
 ///
 /// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
-/// - Result: `*octree`, with the model's facts "name" and "units" and no others; the same for any number of threads.
+/// - Result: `*octree`, with the model's facts "name" and "units" and no others, and, if the model stores materials, a channel
+///   "material" with the number of the material at the centre of each cell (U32); the same for any number of threads.
 /// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
 /// - Threads: any; uses as many as `options` says.
@@ -174,9 +176,50 @@ pub unsafe extern "C" fn leafless_octree_from_tridexel(
     guard(|| unsafe {
         let model = &shared(tridexel, "tridexel")?.model;
         let octree = out(octree, "octree")?;
-        let made = controlled(options, |control| octree_from_dexels(model.view(), control))?;
+        let made = controlled(options, |control| {
+            with_materials(octree_from_dexels(model.view(), control)?, model, control)
+        })?;
         octree.write(give_octree(made.with_metadata(Metadata::common([model.metadata()])?)))
     })
+}
+
+/// The octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays through it are inside all the
+/// way, EMPTY if all are outside all the way, and PARTIAL if an end lies in it or the directions disagree.
+///
+/// A decided cell agrees with every ray through it; what is thinner than a cell is undecided where a ray meets it, and not lost.
+/// Between the rays nothing is known: the cells prove nothing of the solid that the rays came from, and the volumes of FULL and
+/// of PARTIAL cells are no proven bounds.
+///
+/// - Buffers: `options`, one struct or NULL; `octree`, one pointer.
+/// - Result: `*octree`, with facts and a channel as from leafless_octree_from_tridexel.
+/// - Errors: LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `tridexel` stays as it is; give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any model, of which a damaged one is refused (LEAFLESS_E_DAMAGED); set `max_bytes`
+///   where its depth is not your own choice.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_octree_from_tridexel_ends(
+    tridexel: *const leafless_tridexel,
+    options: *const leafless_options,
+    octree: *mut *mut leafless_octree,
+) -> leafless_status {
+    guard(|| unsafe {
+        let model = &shared(tridexel, "tridexel")?.model;
+        let octree = out(octree, "octree")?;
+        let made = controlled(options, |control| {
+            with_materials(octree_from_dexel_ends(model.view(), control)?, model, control)
+        })?;
+        octree.write(give_octree(made.with_metadata(Metadata::common([model.metadata()])?)))
+    })
+}
+
+/// An octree of a model, with the model's materials as a channel.
+fn with_materials(octree: Octree, model: &TriDexel, control: &Control<'_>) -> Result<Octree, Error> {
+    let quiet = Control { progress: None, ..*control };
+    match dexel_materials(model.view(), octree.view(), &quiet)? {
+        Some(channel) => octree.with_channel(channel),
+        None => Ok(octree),
+    }
 }
 
 /// A tri-dexel model as a solid on any frame: the inside of its surface by marching cubes.

@@ -7,6 +7,7 @@
 mod carry;
 mod channel;
 mod detail;
+mod dexel_materials;
 mod edit;
 mod fill;
 mod function;
@@ -22,6 +23,7 @@ pub use crate::octree::channel::{Channel, ChannelRef, ScalarType, ValueType};
 pub use carry::{CarryRule, ChannelOperand, carry_channel, carry_channels};
 pub use channel::MovedAttribute;
 pub use detail::{Criterion, Detail};
+pub use dexel_materials::dexel_materials;
 pub use function::{ConstantAttribute, FunctionAttribute};
 pub use materials::{MaterialProperties, materials};
 pub use sampled::{FillOptions, fill_channel};

@@ -6,11 +6,70 @@
 use super::item::Item;
 use super::place::{Place, Span};
 use super::view::{OTHERS, Rows, RowsRef, TriDexelRef, with_rows};
+use core::ops::Range;
 
 /// Edge of a block of cells.
 pub(crate) const BLOCK: u32 = 64;
 
+/// What rays say of a box of finest cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Passage {
+    /// No ray is inside anywhere in it.
+    Outside,
+    /// Every ray is inside all the way through it, in one material.
+    Inside(u32),
+    /// Every ray is inside all the way through it, in several materials.
+    Mixed,
+    /// A ray begins or ends in it, or one is inside and another one outside.
+    Crossed,
+}
+
+impl Passage {
+    fn and(self, other: Passage) -> Passage {
+        match (self, other) {
+            (a, b) if a == b => a,
+            (Passage::Outside | Passage::Crossed, _) | (_, Passage::Outside | Passage::Crossed) => {
+                Passage::Crossed
+            }
+            _ => Passage::Mixed,
+        }
+    }
+}
+
 impl TriDexelRef<'_> {
+    /// What the rays along an axis say of the cells in these ranges; `None` without rays. An end in a face of the box is not in
+    /// it. O(rays in the box · log intervals of a ray), less where the first rays differ.
+    pub(crate) fn passage(&self, axis: usize, cells: &[Range<u32>; 3]) -> Option<Passage> {
+        let rows = self.rays.get(axis)?.as_ref()?;
+        let ([u, v], depth) = (OTHERS[axis], self.frame.depth());
+        let mut found: Option<Passage> = None;
+        for second in cells[v].clone() {
+            for first in cells[u].clone() {
+                let one = with_rows!(rows, rows => passage(rows, [first, second], &cells[axis], depth));
+                let both = found.map_or(one, |found| found.and(one));
+                if both == Passage::Crossed {
+                    return Some(both);
+                }
+                found = Some(both);
+            }
+        }
+        found
+    }
+
+    /// The same of the rays along all axes; `None` without any.
+    pub(crate) fn passages(&self, cells: &[Range<u32>; 3]) -> Option<Passage> {
+        let mut found: Option<Passage> = None;
+        for axis in 0..3 {
+            let Some(one) = self.passage(axis, cells) else { continue };
+            let both = found.map_or(one, |found| found.and(one));
+            if both == Passage::Crossed {
+                return Some(both);
+            }
+            found = Some(both);
+        }
+        found
+    }
+
     /// Whether the centre of a finest cell lies inside. Where the directions differ, as those of arrays from elsewhere
     /// may, the highest axis that has rays decides. A cell outside of the universe does not lie inside. O(log intervals
     /// of a ray).
@@ -65,6 +124,36 @@ fn without_centres<S: Span>(rows: &RowsRef<'_, S>, depth: u8) -> u64 {
         }
     }
     count
+}
+
+/// What a ray says of the cells in a range.
+fn passage<S: Span>(rows: &RowsRef<'_, S>, ray: [u32; 2], cells: &Range<u32>, depth: u8) -> Passage {
+    let range = rows.ray(ray);
+    let [low, high] = [cells.start, cells.end].map(|plane| S::Place::rounded(f64::from(plane), depth));
+    let list = &rows.columns.spans[range.clone()];
+    let first = list.partition_point(|span| span.ends()[1] <= low);
+    let Some([start, mut end]) = list.get(first).map(|span| span.ends()) else { return Passage::Outside };
+    if start >= high {
+        return Passage::Outside;
+    }
+    if start > low {
+        return Passage::Crossed;
+    }
+    let material =
+        |i: usize| rows.columns.materials.and_then(|m| m.get(range.start + i)).copied().unwrap_or(0);
+    let mut found = Passage::Inside(material(first));
+    // Intervals of several materials touch.
+    let mut next = first + 1;
+    while end < high {
+        match list.get(next).map(|span| span.ends()) {
+            Some([start, to]) if start <= end => {
+                found = found.and(Passage::Inside(material(next)));
+                (end, next) = (to, next + 1);
+            }
+            _ => return Passage::Crossed,
+        }
+    }
+    found
 }
 
 /// The interval of the ray that holds the centre of cell k.

@@ -41,7 +41,7 @@ pub(crate) use arrays::{Form, ModelArrays};
 pub(crate) use assemble::{Piece, assembled};
 pub use beam::{Beam, BeamEnd};
 pub(crate) use beam::{Scratch, first_above};
-pub(crate) use centres::BLOCK;
+pub(crate) use centres::{BLOCK, Passage};
 pub use change::DexelChange;
 pub(crate) use columns::{ColumnsRef, NormalsRef};
 pub use editor::DexelEditor;

@@ -4,6 +4,7 @@ mod boolean;
 mod build;
 mod dexel_centres;
 mod dexel_edit;
+mod dexel_ends;
 mod dexelize;
 mod extended;
 mod lazy;
@@ -16,6 +17,7 @@ pub use boolean::{
 pub(crate) use build::build_on;
 pub use build::{build, compact, resolve};
 pub use dexel_centres::octree_from_dexels;
+pub use dexel_ends::octree_from_dexel_ends;
 pub use dexelize::{DexelOptions, dexelize};
 pub use extended::{SurfaceOptions, build_extended, plain};
 pub use lazy::{LazyOctree, Refinement};

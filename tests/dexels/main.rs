@@ -7,6 +7,7 @@ mod dexel_algebra;
 
 mod ends;
 mod faces;
+mod made_of;
 mod models;
 mod open;
 mod real_meshes;

@@ -11,9 +11,10 @@ use crate::allocator::{most_held, refusing};
 use crate::bodies::{Aligned, Random};
 use crate::common::on_all_processors;
 use crate::{bodies, zip};
+use leafless::attribute::dexel_materials;
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
 use leafless::mesh::{Polyhedron, PolyhedronArrays};
-use leafless::op::{DexelOptions, Zone, octree_from_dexels, resolve, union_of};
+use leafless::op::{DexelOptions, Zone, octree_from_dexel_ends, octree_from_dexels, resolve, union_of};
 use leafless::query::{
     Columns, DistanceTo, Obstacle, PointTable, SectionPlane, Side, cells_in, classify_box, classify_in,
     columns, distances, heights, interference_at, line_of_sight, ray_spans, section_area, surface_area,
@@ -347,7 +348,10 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("dexel surfaces", [balls], {
         marching_cubes_dexels(balls[0].view(), &CONTROL)?;
         dual_contouring_dexels(balls[0].view(), &CONTROL)?;
-        octree_from_dexels(balls[0].view(), &CONTROL)?;
+        octree_from_dexel_ends(balls[0].view(), &CONTROL)?;
+        let cells = octree_from_dexels(balls[0].view(), &CONTROL)?;
+        let steel = balls[0].view().with_material(1, &CONTROL)?;
+        dexel_materials(steel.view(), cells.view(), &CONTROL)?;
         dexel_voxels(balls[0].view(), &[], &CONTROL)
     });
     let seen = build(&Csg::ball([15.0; 3], 9.0).unwrap(), &frame(), Rule::Certified, &CONTROL).unwrap();

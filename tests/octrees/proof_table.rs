@@ -14,7 +14,8 @@ use leafless::attribute::{
     fill_channel,
 };
 use leafless::op::{
-    DexelOptions, Zone, difference_of, intersection_of, octree_from_dexels, resolve, union_of, xor_of,
+    DexelOptions, Zone, difference_of, intersection_of, octree_from_dexel_ends, octree_from_dexels, resolve,
+    union_of, xor_of,
 };
 use leafless::solid::{Adaptive, Band, Prepared, Samples, SplitCounter, Transform, VoxelGrid};
 use leafless::surface::DexelSolid;
@@ -582,6 +583,12 @@ const WAYS: &[Way] = &[
         proven: SAME,
     },
     Way {
+        name: "moved to the nearest cells",
+        through: &["solid/transform/mod.rs nearest"],
+        make: |a| of(whole(&Transform::of(a.tree.clone(), &placement()).nearest())?, moved),
+        proven: SAME,
+    },
+    Way {
         name: "adaptive",
         through: &["Adaptive", "solid/adaptive.rs new"],
         make: |a| asked(&Adaptive::new(&a.tree, 0.1)?),
@@ -704,6 +711,17 @@ const WAYS: &[Way] = &[
             let options = DexelOptions { rule, ..DexelOptions::default() };
             let model = dexelize(&a.tree, &frame(DEPTH), &options, &CONTROL)?;
             of_ball(octree_from_dexels(model.view(), &CONTROL)?)
+        },
+        proven: NOTHING,
+    },
+    Way {
+        name: "tri-dexel model to an octree by its ends",
+        through: &["op/dexel_ends.rs octree_from_dexel_ends"],
+        make: |a| {
+            let rule = if a.rule == Rule::Certified { Rule::Inner } else { Rule::Sampled };
+            let options = DexelOptions { rule, ..DexelOptions::default() };
+            let model = dexelize(&a.tree, &frame(DEPTH), &options, &CONTROL)?;
+            of_ball(octree_from_dexel_ends(model.view(), &CONTROL)?)
         },
         proven: NOTHING,
     },

@@ -1,10 +1,13 @@
 //! What long operations tell of their progress: it rises, ends with all of the work, and has no gap that holds most of it.
 
 use crate::common::Random;
-use leafless::attribute::{FillOptions, FunctionAttribute, ScalarType, ValueType, fill_channel};
+use leafless::attribute::{
+    FillOptions, FunctionAttribute, ScalarType, ValueType, dexel_materials, fill_channel,
+};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::{
-    DexelOptions, Zone, difference_of, intersection_of, octree_from_dexels, resolve, union_of, xor_of,
+    DexelOptions, Zone, difference_of, intersection_of, octree_from_dexel_ends, octree_from_dexels, resolve,
+    union_of, xor_of,
 };
 use leafless::query::{
     Columns, DistanceTo, Obstacle, SectionPlane, Side, cells_in, columns, distances, heights,
@@ -183,6 +186,10 @@ fn all_operations(depth: u8) -> Vec<Told> {
     heard.of("marching cubes of dexels", |control| marching_cubes_dexels(model.view(), control));
     heard.of("dual contouring", |control| dual_contouring_dexels(model.view(), control));
     heard.of("octree of dexels", |control| octree_from_dexels(model.view(), control));
+    heard.of("octree of ends of dexels", |control| octree_from_dexel_ends(model.view(), control));
+    let (steel, whole) = (model.view().with_material(1, &Control::default()).unwrap(), model.view());
+    let cells = octree_from_dexels(whole, &Control::default()).unwrap();
+    heard.of("materials of dexels", |control| dexel_materials(steel.view(), cells.view(), control));
     heard.of("solid of dexels", |control| DexelSolid::new(model.view(), control));
     heard.of("voxels of dexels", |control| dexel_voxels(model.view(), &[], control));
 

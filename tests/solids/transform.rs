@@ -597,3 +597,79 @@ fn measures_of_what_is_moved_converge_with_the_number_of_splits() {
         assert!(products[2] < allowed * products[0], "{name}: {products:?}");
     }
 }
+
+/// Octrees of samples, sampled again on lattices that are turned, coarser and finer.
+#[test]
+fn nearest_cells_decide_every_centre() {
+    let frame = lattice_frame(6);
+    let (middle, edge) = (frame.origin().map(|c| c + 0.5 * frame.edge()), frame.edge());
+    let ball = Csg::ball(middle, 0.3 * edge).unwrap();
+    let volume = 4.0 / 3.0 * PI * (0.3 * edge).powi(3);
+    let control = Control::default();
+    let tree = build(&ball, &frame, Rule::Sampled, &control).unwrap();
+    let [x, y, _] = middle;
+    // By 30 degrees around the axis through the middle.
+    let (sin, cos) = (0.5, 0.75f64.sqrt());
+    let turned = Affine::new([
+        [cos, -sin, 0.0, x - cos * x + sin * y],
+        [sin, cos, 0.0, y - sin * x - cos * y],
+        [0.0, 0.0, 1.0, 0.0],
+    ])
+    .unwrap();
+    let shifted = Affine::translation([0.5 * frame.cell_size(), 0.0, 0.0]).unwrap();
+    for placement in [Affine::IDENTITY, turned, shifted] {
+        let plain = Transform::of(tree.clone(), &placement);
+        let nearest = Transform::of(tree.clone(), &placement).nearest();
+        for depth in [4, 5, 6, 7] {
+            let onto = frame.with_depth(depth).unwrap();
+            let moved = build(&nearest, &onto, Rule::Sampled, &control).unwrap();
+            assert!(moved.view().is_binary() && !moved.proof().full && !moved.proof().empty);
+            let found = moved.statistics().volume().lower;
+            assert!((found / volume - 1.0).abs() < 0.03, "{placement:?} {depth}: {found} {volume}");
+            // Where the plain transform tells, both tell the same.
+            match build(&plain, &onto, Rule::Sampled, &control) {
+                Ok(same) => assert_eq!(same, moved),
+                Err(error) => assert!(matches!(error, Error::NotSampled), "{error}"),
+            }
+            // Cells are those of the plain transform.
+            let certified = |solid| build(solid, &onto, Rule::Certified, &control).unwrap();
+            assert_eq!(certified(&nearest), certified(&plain));
+        }
+    }
+    // What failed: a lattice twice as coarse under a map that rounds.
+    let coarse = frame.with_depth(5).unwrap();
+    let refused = build(&Transform::of(tree.clone(), &turned), &coarse, Rule::Sampled, &control);
+    assert!(matches!(refused, Err(Error::NotSampled)));
+    // Cells that are undecided stay so.
+    let open = build(&ball, &frame, Rule::Certified, &control).unwrap();
+    let nearest = Transform::of(open, &turned).nearest();
+    assert!(matches!(build(&nearest, &coarse, Rule::Sampled, &control), Err(Error::NotSampled)));
+}
+
+/// Each centre by the cell that holds its inverse image, looked up one by one.
+#[test]
+fn nearest_cells_are_those_that_hold_the_inverse_image() {
+    let own = Frame::new([0.0; 3], 8.0, 4).unwrap();
+    let onto = Frame::new([-3.0, 1.0, 0.0], 16.0, 4).unwrap();
+    let tree = build(&Csg::ball([3.7, 4.2, 4.4], 3.1).unwrap(), &own, Rule::Sampled, &Control::default());
+    let tree = tree.unwrap();
+    let placement = Affine::new([[0.8, -0.6, 0.0, 3.1], [0.6, 0.8, 0.0, 1.7], [0.1, 0.0, 1.1, 0.3]]).unwrap();
+    let back = placement.inverse().unwrap();
+    let moved = Transform::of(tree.clone(), &placement).nearest();
+    let moved = build(&moved, &onto, Rule::Sampled, &Control::default()).unwrap();
+    let mut inside = 0;
+    for i in 0..4096u32 {
+        let cell = [i & 15, i >> 4 & 15, i >> 8];
+        let centre = [0, 1, 2].map(|axis| onto.origin()[axis] + f64::from(cell[axis]) + 0.5);
+        let image = back.apply(centre);
+        // Of what lies in a plane of the lattice rounding decides.
+        if image.iter().any(|x| (2.0 * x - (2.0 * x).round()).abs() < 1e-9) {
+            continue;
+        }
+        let source = own.cell_of(image);
+        let expected = source.map_or(Tag::Empty, |source| tree.view().tag_at(source));
+        assert_eq!(moved.view().tag_at(cell), expected, "{cell:?}");
+        inside += u32::from(expected == Tag::Full);
+    }
+    assert!(inside > 100);
+}

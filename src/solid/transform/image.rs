@@ -329,6 +329,19 @@ impl<'m> Point<'m> {
         Point { map, at: map.image(cell.at.map(|a| a as f64 + 0.5), 0.0).0 }
     }
 
+    /// Whether a cell holds the point, as it was computed: of a face between two cells one of both does.
+    pub(super) fn is_in(&self, corner: [f64; 3], edge: f64) -> bool {
+        (0..3).all(|axis| self.is_between(axis, corner[axis], corner[axis] + edge))
+    }
+
+    fn is_between(&self, axis: usize, low: f64, high: f64) -> bool {
+        let x = self.at[axis];
+        match self.map.linear[axis].iter().find(|&&c| c != 0.0) {
+            Some(&c) if c < 0.0 => low < x && x <= high,
+            _ => low <= x && x < high,
+        }
+    }
+
     /// Whether it may lie beyond the universe of this many cells, as a bit.
     pub(super) fn reaches_beyond(&self, cells: f64) -> u8 {
         if self.map.is_exact() {
@@ -347,12 +360,9 @@ impl Target for Point<'_> {
         let holds = (0..3).all(|axis| {
             let (x, error) = (self.at[axis], self.map.error[axis]);
             let (low, high) = (corner[axis], corner[axis] + edge);
-            if error != 0.0 {
-                return !(x + error < low || x - error > high);
-            }
-            match self.map.linear[axis].iter().find(|&&c| c != 0.0) {
-                Some(&c) if c < 0.0 => low < x && x <= high,
-                _ => low <= x && x < high,
+            match error {
+                0.0 => self.is_between(axis, low, high),
+                _ => !(x + error < low || x - error > high),
             }
         });
         holds as u8

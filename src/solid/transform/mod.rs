@@ -42,7 +42,7 @@ use surfaces::Surfaces;
 /// What sticks out of the solid's own universe is as [`exterior`](Classifier::exterior) tells: undecided,
 /// unless the solid is proven to end inside. Centres ([`Rule::Sampled`](crate::Rule::Sampled)) are decided
 /// where cells of the solid's own depth decide them, or, if the placement is an offset of whole cells, by the
-/// solid.
+/// solid. With [`nearest`](Self::nearest) every centre is decided.
 ///
 /// What the solid knows of its surface in cells ([`Enclosure`]) is known of the result: one slab a cell, as thin as the
 /// surface is flat there, and where nothing blurs the solid's own enclosure, exactly.
@@ -69,6 +69,7 @@ pub struct Transform<S> {
     solid: Arc<S>,
     own: Option<Frame>,
     placement: Affine,
+    nearest: bool,
 }
 
 /// A solid on its own frame, under an affine placement, on another frame.
@@ -84,6 +85,8 @@ pub struct TransformClassifier<C> {
     proof: Proof,
     /// Of a stored solid that keeps surfaces.
     surfaces: Option<Arc<Surfaces>>,
+    /// Whether the cell that a centre comes from decides it.
+    nearest: bool,
 }
 
 /// A worker on a placed solid: lists of cells of the solid's own frame, one for each PARTIAL cell.
@@ -96,6 +99,7 @@ pub struct TransformWorker<W: Worker> {
     /// What is known of the space around the solid's own universe.
     exterior: Tag,
     surfaces: Option<Arc<Surfaces>>,
+    nearest: bool,
     known: Vec<Known<W::Part>>,
     /// Per list its end among the cells, and the height that the solid's own memory had when it was made.
     lists: Vec<(usize, usize)>,
@@ -145,7 +149,7 @@ impl<S: Solid> Transform<S> {
     /// The image under `placement` of a solid that is known on the frame `own`, and there to no more than its
     /// depth.
     pub fn new(solid: S, own: &Frame, placement: &Affine) -> Transform<S> {
-        Transform { solid: Arc::new(solid), own: Some(*own), placement: *placement }
+        Transform { solid: Arc::new(solid), own: Some(*own), placement: *placement, nearest: false }
     }
 
     /// The image under `placement` of a solid that is known on a frame of its own ([`home`](Solid::home)), or
@@ -154,7 +158,33 @@ impl<S: Solid> Transform<S> {
     /// that are no larger.
     pub fn of(solid: S, placement: &Affine) -> Transform<S> {
         let own = solid.home();
-        Transform { solid: Arc::new(solid), own, placement: *placement }
+        Transform { solid: Arc::new(solid), own, placement: *placement, nearest: false }
+    }
+
+    /// The same, but that centres are decided by the nearest centre of the solid's own frame: a finest cell is FULL under
+    /// [`Rule::Sampled`](crate::Rule::Sampled) if the own cell from which its centre comes is, or has its own centre inside.
+    /// So an octree that is made of samples is sampled again, on a lattice that is turned, coarser or finer. This is how
+    /// voxels have always been moved: the nearest voxel, without interpolation. A surface is displaced by up to half a
+    /// diagonal of the solid's own cells. Verdicts on cells stay as they are, and so do the other rules.
+    ///
+    /// A centre that comes from a face between cells belongs to the cell above, as it does where cells hold points. Only a
+    /// centre that comes from a cell of which the solid itself does not know whether its centre lies inside, like a
+    /// PARTIAL cell of a stored octree, is [`Error::NotSampled`]: [`resolve`](crate::op::resolve) decides those before.
+    ///
+    /// ```
+    /// use leafless::{Affine, Control, Csg, Frame, Rule, build, solid::Transform};
+    /// let (frame, control) = (Frame::new([0.0; 3], 16.0, 6)?, Control::default());
+    /// let tree = build(&Csg::ball([8.0; 3], 4.0)?, &frame, Rule::Sampled, &control)?;
+    /// let turned = Affine::new([[0.8, -0.6, 0.0, 3.0], [0.6, 0.8, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]])?;
+    /// let moved = Transform::of(tree, &turned).nearest();
+    /// // Centres of cells that are twice as large come from corners of the tree's own.
+    /// let coarse = build(&moved, &Frame::new([0.0; 3], 16.0, 5)?, Rule::Sampled, &control)?;
+    /// assert!((coarse.statistics().volume().lower / 268.1 - 1.0).abs() < 0.05);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    #[must_use]
+    pub fn nearest(self) -> Transform<S> {
+        Transform { nearest: true, ..self }
     }
 
     /// The solid that is moved.
@@ -201,6 +231,7 @@ impl<S: Solid> Solid for Transform<S> {
         };
         let mut placed =
             TransformClassifier::new(self.solid.on(&own, control)?, &self.placement, frame, self.bounds());
+        placed.nearest = self.nearest;
         if self.solid.home().is_some() {
             placed.keep_surfaces(control)?;
         }
@@ -212,7 +243,8 @@ impl<S: Solid> Solid for Transform<S> {
     }
 
     fn fingerprint(&self) -> Option<Fingerprint> {
-        let transform = Fingerprinter::new("transform").part(self.solid.fingerprint()?);
+        let name = if self.nearest { "nearest transform" } else { "transform" };
+        let transform = Fingerprinter::new(name).part(self.solid.fingerprint()?);
         let transform = match &self.own {
             Some(own) => {
                 let [x, y, z] = own.origin();
@@ -225,7 +257,7 @@ impl<S: Solid> Solid for Transform<S> {
 
     /// What has not been moved yet is moved but once.
     fn placed(&self, placement: &Affine) -> Result<Option<Self>, Error> {
-        let moved = || Transform { solid: self.solid.clone(), own: self.own, placement: *placement };
+        let moved = || Transform { placement: *placement, ..self.clone() };
         Ok(self.placement.is_identity().then(moved))
     }
 
@@ -236,7 +268,7 @@ impl<S: Solid> Solid for Transform<S> {
 
 impl<S> Clone for Transform<S> {
     fn clone(&self) -> Self {
-        Transform { solid: self.solid.clone(), own: self.own, placement: self.placement }
+        Transform { solid: self.solid.clone(), ..*self }
     }
 }
 
@@ -249,7 +281,18 @@ impl<C: Classifier> TransformClassifier<C> {
         let proof = inner.proof();
         let proof = proof.moved(placement.stretched(proof.displacement()));
         let placement = *placement;
-        TransformClassifier { inner, own, maps, frame: *frame, bounds, placement, proof, surfaces: None }
+        let frame = *frame;
+        TransformClassifier {
+            inner,
+            own,
+            maps,
+            frame,
+            bounds,
+            placement,
+            proof,
+            surfaces: None,
+            nearest: false,
+        }
     }
 
     /// Lets cells be decided by the moved surfaces of the solid, if it keeps any. O(surfaces).
@@ -311,6 +354,7 @@ impl<C: Classifier> Classifier for TransformClassifier<C> {
             frame: self.frame,
             exterior: self.inner.exterior(),
             surfaces: self.surfaces.clone(),
+            nearest: self.nearest,
             known: Vec::new(),
             lists: Vec::new(),
             at_hand: Vec::new(),
@@ -819,12 +863,32 @@ impl<W: Worker> TransformWorker<W> {
         match [empty, full, undecided, part].map(|met| met != 0) {
             [true, false, false, false] => (Some(false), None),
             [false, true, false, false] => (Some(true), None),
+            _ if self.nearest => self.at_nearest(point),
             _ => match self.at_hand.as_slice() {
                 [((cell, Verdict::Partial(part)), _)] if point.map.keeps_centres() => {
                     (None, Some((*cell, part.clone())))
                 }
                 _ => (None, None),
             },
+        }
+    }
+
+    /// The same of the one cell from which the centre comes, as it was computed.
+    #[allow(clippy::type_complexity)]
+    fn at_nearest(&self, point: &Point<'_>) -> (Option<bool>, Option<(Cell, W::Part)>) {
+        let holds = |cell: Cell| {
+            let (corner, edge) = extent(&self.own, cell);
+            point.is_in(corner, edge)
+        };
+        let decided = |tag| match tag {
+            Tag::Empty => Some(false),
+            Tag::Full => Some(true),
+            Tag::Partial | Tag::Branch => None,
+        };
+        match self.at_hand.iter().find(|((cell, _), _)| holds(*cell)) {
+            Some(((cell, Verdict::Partial(part)), _)) => (None, Some((*cell, part.clone()))),
+            Some(((_, verdict), _)) => (decided(verdict.tag()), None),
+            None => (decided(self.exterior), None),
         }
     }
 
