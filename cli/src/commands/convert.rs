@@ -24,7 +24,9 @@ use std::time::Instant;
 /// Makes an octree, a tri-dexel model or a triangle mesh of any of them, or of a scene or a volume, as
 /// `leafless voxelize`, `csg`, `dexelize` and `mesh` do where nothing more is asked for.
 ///
-/// Of a tri-dexel model an octree has the cells whose centres lie inside. Of an octree a tri-dexel model has just
+/// Of a tri-dexel model an octree has the cells whose centres lie inside, and the materials as the channel `material`. With --by-ends
+/// a cell is inside or outside if all rays through it are so all the way, and undecided if one begins or ends in it: what is thinner
+/// than a cell is not lost. Neither proves anything of the part between the rays. Of an octree a tri-dexel model has just
 /// the cells, exactly; undecided ones count as --resolve says. An octree of a mesh or a scene is certified, and its
 /// undecided cells stay so without --resolve. Of an octree whose cells keep surfaces, an octree without them has the cells that the
 /// surfaces decide. A mesh that becomes a mesh keeps its triangles, unless --resolution, --bounds or --resolve asks for samples.
@@ -48,6 +50,9 @@ pub struct Arguments {
     /// What cells count as that the surface passes through, or that are undecided
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
+    /// Let the ends of a tri-dexel model's intervals decide the cells of an octree, and not the centres of cells
+    #[arg(long, conflicts_with = "resolve")]
+    by_ends: bool,
     /// Cells to an axis of the cube around a mesh or scene, a power of two. Without it: 256, and of a volume the voxels; a mesh that
     /// becomes a mesh keeps its triangles
     #[arg(long, value_name = "N", value_parser = resolution)]
@@ -87,6 +92,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     let taking = &arguments.taking;
     let Some(kind) = kind(arguments, &job)? else { return moved(&job, taking, resolve) };
+    let by_ends = arguments.by_ends;
+    if by_ends && kind != KindName::Octree {
+        return Err(Failure::Usage("--by-ends is for --to octree".into()));
+    }
     match kind {
         KindName::Mesh => {
             let resolve = resolve.map(|resolve| match resolve {
@@ -100,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let rule = resolve.map_or(Rule::Sampled, Rule::from);
             dexels::make(&job, taking, rule, Storing::default())
         }
-        KindName::Octree => to_octree(&job, taking, resolve),
+        KindName::Octree => to_octree(&job, taking, resolve, by_ends),
     }
 }
 
@@ -183,7 +192,7 @@ fn from_dexels(
     job: &Job,
     taking: &Taking,
     model: TriDexel,
-    resolve: Option<ResolveName>,
+    (resolve, by_ends): (Option<ResolveName>, bool),
 ) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     output.check()?;
@@ -201,10 +210,14 @@ fn from_dexels(
         Some(map) => source::moved::dexels(input, &model, map, Onto::Image, job.threads)?,
         None => model,
     };
-    octree_from_dexels::make(job, &model)
+    octree_from_dexels::make(job, &model, by_ends)
 }
 
-fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result<(), Failure> {
+fn refused_by_ends(input: &Input) -> Failure {
+    Failure::Usage(format!("--by-ends is for tri-dexel models, which {input} is not"))
+}
+
+fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>, by_ends: bool) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     if input.path().is_none_or(|path| !path.is_file()) {
         let problem = "must be a regular file, because it is looked at first; `leafless voxelize` and `leafless csg` \
@@ -214,9 +227,13 @@ fn to_octree(job: &Job, taking: &Taking, resolve: Option<ResolveName>) -> Result
     if input.begins_as_solid() {
         // A damaged file is told to be damaged.
         return match Stored::read(input, true)?.0 {
+            Stored::Dexels(model) => from_dexels(job, taking, model, (resolve, by_ends)),
+            Stored::Octree(_) if by_ends => Err(refused_by_ends(input)),
             Stored::Octree(octree) => from_octree(job, taking, octree, resolve),
-            Stored::Dexels(model) => from_dexels(job, taking, model, resolve),
         };
+    }
+    if by_ends {
+        return Err(refused_by_ends(input));
     }
     let found = Found::look(input, taking.reading.told())?;
     let rule = resolve.map_or(Rule::Certified, Rule::from);

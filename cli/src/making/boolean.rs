@@ -71,7 +71,7 @@ pub fn combine(combining: &Combining, files: &[(Input, Placing)], output: &Outpu
             let bytes = output.save_dexels(&result)?;
             let info = dexels::Info::new(&result, bytes);
             let intervals = counted(info.intervals, "interval", "intervals");
-            let told = format!("volume about {}, {intervals}", short(info.mean_volume()));
+            let told = format!("{}, {intervals}", info.volume_text());
             (counted(number, "tri-dexel model", "tri-dexel models"), told, bytes, start.elapsed())
         }
     };

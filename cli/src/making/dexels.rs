@@ -9,7 +9,7 @@ use crate::report::dexels::Info;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::{Shape, Source};
-use crate::words::{count, counted, number, seconds, short};
+use crate::words::{count, counted, number, seconds};
 use leafless::op::DexelOptions;
 use leafless::{Affine, Frame, MeshSolid, Metadata, Octree, Rule, Solid, Tag, TriDexel, dexelize};
 use serde::Serialize;
@@ -36,8 +36,10 @@ struct Report {
     rays: u64,
     /// Rays that pierce an open mesh an odd number of times, in all directions.
     odd_rays: u64,
-    /// The mean over all directions: an estimate, in cubic model units.
+    /// What the direction estimates whose rays cross the solid most often, in cubic model units.
     volume: f64,
+    /// The least and the greatest that the directions estimate.
+    volume_range: [f64; 2],
     seconds: f64,
     #[serde(flatten)]
     info: Info,
@@ -69,7 +71,8 @@ pub fn make(job: &Job, taking: &Taking, rule: Rule, mut storing: Storing) -> Res
         resolution: frame.cells(),
         rays: info.rays(),
         odd_rays: info.odd_rays(),
-        volume: info.mean_volume(),
+        volume: info.best_volume(),
+        volume_range: info.volume_range(),
         seconds: start.elapsed().as_secs_f64(),
         info,
     };
@@ -211,10 +214,10 @@ impl Report {
             }
         };
         format!(
-            "{}: tri-dexel model of {n} x {n} x {n} cells along {}, volume about {}, {}, {} bytes{odd}, in {}\n",
+            "{}: tri-dexel model of {n} x {n} x {n} cells along {}, {}, {}, {} bytes{odd}, in {}\n",
             self.output,
             self.info.axes(),
-            short(self.volume),
+            self.info.volume_text(),
             counted(self.info.intervals, "interval", "intervals"),
             count(self.info.bytes),
             seconds(self.seconds),

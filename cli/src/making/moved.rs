@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::making::job::Job;
 use crate::report::{dexels, octree};
 use crate::source::file::Stored;
-use crate::words::{count, counted, seconds, short};
+use crate::words::{count, counted, seconds};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -48,8 +48,8 @@ pub fn save(job: &Job, moved: &Stored) -> Result<(), Failure> {
             let report = Report::new(job, dexels::Info::new(model, bytes));
             output.tell(job.json, &report, |Report { seconds: time, info, .. }| {
                 format!(
-                    "{output}: moved tri-dexel model, volume about {}, {}, {} bytes, in {}\n",
-                    short(info.mean_volume()),
+                    "{output}: moved tri-dexel model, {}, {}, {} bytes, in {}\n",
+                    info.volume_text(),
                     counted(info.intervals, "interval", "intervals"),
                     count(bytes),
                     seconds(*time),

@@ -1,6 +1,6 @@
 //! What is told of tri-dexel models.
 
-use crate::words::{count, counted, number, put_line};
+use crate::words::{count, counted, number, put_line, short};
 use leafless::TriDexel;
 use leafless::dexel::{DexelEnds, DexelNormals};
 use serde::Serialize;
@@ -95,10 +95,36 @@ impl Info {
         self.directions.iter().filter_map(|direction| direction.odd_rays).sum()
     }
 
-    /// The mean of what the directions estimate; 0 without any.
-    pub fn mean_volume(&self) -> f64 {
-        let sum: f64 = self.directions.iter().map(|direction| direction.volume).sum();
-        sum / self.directions.len().max(1) as f64
+    /// What the direction estimates whose rays cross the solid most often: of equal ones the first. 0 without any.
+    ///
+    /// Each direction is exact along its rays, and samples across them. It is off where the surface runs along the rays, by about a
+    /// cell of it; the more rays cross the solid, the less of the surface does.
+    pub fn best_volume(&self) -> f64 {
+        self.best().map_or(0.0, |direction| direction.volume)
+    }
+
+    fn best(&self) -> Option<&Direction> {
+        self.directions.iter().reduce(|best, other| if other.rays > best.rays { other } else { best })
+    }
+
+    /// The least and the greatest that directions estimate.
+    pub fn volume_range(&self) -> [f64; 2] {
+        let volumes = || self.directions.iter().map(|direction| direction.volume);
+        match self.directions.len() {
+            0 => [0.0; 2],
+            _ => [volumes().fold(f64::INFINITY, f64::min), volumes().fold(f64::NEG_INFINITY, f64::max)],
+        }
+    }
+
+    /// The volume, and what other directions say, for people.
+    pub fn volume_text(&self) -> String {
+        let about = format!("volume about {}", short(self.best_volume()));
+        match (self.volume_range().map(short), self.best()) {
+            ([low, high], Some(Direction { axis, .. })) if low != high => {
+                format!("{about} (along {axis}, which has most rays; {low} to {high} along all)")
+            }
+            _ => about,
+        }
     }
 
     /// The axes that rays run along.

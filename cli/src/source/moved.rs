@@ -10,6 +10,7 @@ use leafless::attribute::{FillOptions, MovedAttribute, fill_channel};
 use leafless::dexel::{DexelFormat, DexelNormals};
 use leafless::lattice::MAX_DEPTH;
 use leafless::op::DexelOptions;
+use leafless::solid::Transform;
 use leafless::surface::{dual_contouring_dexels, marching_cubes_dexels};
 use leafless::{
     Affine, Bounds, Control, Error, FillRule, Frame, MeshSolid, Octree, Proof, Rule, SurfaceOptions, Tag,
@@ -60,9 +61,13 @@ pub fn octree(
     };
     let solid = Source::Octree(Box::new(own.clone())).placed(input, map, &frame)?;
     let moved = watched("move", threads, |control| {
-        let moved = match keeps_surfaces {
-            true => build_extended(&solid, &frame, &SurfaceOptions::default(), control)?,
-            false => build(&solid, &frame, rule, control)?,
+        let moved = match (keeps_surfaces, rule) {
+            (true, _) => build_extended(&solid, &frame, &SurfaceOptions::default(), control)?,
+            // On every lattice, and under every map.
+            (false, Rule::Sampled) => {
+                build(&Transform::of(own.clone(), map).nearest(), &frame, Rule::Sampled, control)?
+            }
+            (false, rule) => build(&solid, &frame, rule, control)?,
         };
         with_channels(moved.with_metadata_from(&own), &own, map, control)
     });

@@ -282,7 +282,7 @@ impl Source {
     }
 }
 
-/// The cells of a solid on a frame. If it is an octree whose cells keep surfaces, these decide, and its channels come along.
+/// The cells of a solid on a frame. If it is an octree of the same cube, its channels come along, and surfaces that its cells keep decide.
 pub fn cells_of<S: Solid>(
     solid: &S,
     octree: Option<&Octree>,
@@ -290,7 +290,7 @@ pub fn cells_of<S: Solid>(
     control: &Control<'_>,
 ) -> Result<Octree, Error> {
     let cells = build(solid, frame, Rule::Certified, control)?;
-    Ok(match octree.filter(|octree| octree.view().cuts().is_some()) {
+    Ok(match octree.filter(|octree| octree.frame().same_universe(frame)) {
         Some(octree) => cells.with_metadata_from(octree).with_channels_from(octree),
         None => cells,
     })

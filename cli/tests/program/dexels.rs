@@ -526,3 +526,73 @@ fn depth_20_takes_no_time() {
     assert_eq!((&told["vanished"], &told["without_centres"]), (&0.into(), &1.into()));
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
+
+#[test]
+fn materials_travel_to_octrees_records_samples_and_pictures() {
+    let place = models();
+    place.write("low.stl", stl(&block([1.0; 3], [7.0, 7.0, 4.0])));
+    place.write("high.stl", stl(&block([1.0, 1.0, 4.0], [7.0; 3])));
+    for (name, material) in [("low", 3), ("high", 8)] {
+        let line =
+            format!("dexelize {name}.stl -o {name}.dex --resolution 32 {BOUNDS} --material {material}");
+        place.run(&line).good();
+    }
+    place.run("union low.dex high.dex -o both.dex").good();
+    let told = place.run("convert both.dex --to octree -o both.lfl").good();
+    assert!(told.text().contains("channel material"), "{told:?}");
+    let sampled = place.run_with("sample both.lfl", b"2 2 2\n2 2 6\n0.1 0.1 0.1\n").good();
+    assert_eq!(sampled.text(), "3\n8\nnone\n");
+    place.run("voxels both.lfl -o both.csv --channel material").good();
+    let records = place.bytes("both.csv");
+    let records = String::from_utf8(records).unwrap();
+    assert!(records.lines().next().unwrap().contains("material") || records.lines().count() > 2, "{records}");
+}
+
+#[test]
+fn ends_decide_cells_where_that_is_asked_for() {
+    let place = models();
+    // No centre of a cell of an eighth lies in the sheet.
+    place.write("sheet.stl", stl(&block([1.0, 1.0, 4.08], [7.0, 7.0, 4.11])));
+    place.run(&format!("dexelize sheet.stl -o sheet.dex --resolution 64 {BOUNDS}")).good();
+    let centres = json(&place, "convert sheet.dex --to octree -o centres.lfl");
+    let ends = json(&place, "convert sheet.dex --to octree --by-ends -o ends.lfl");
+    assert_eq!((&centres["by"], &ends["by"]), (&"centres".into(), &"ends".into()));
+    assert_eq!(centres["volume"]["upper"], 0.0);
+    assert_eq!((&ends["volume"]["lower"], &ends["volume"]["upper"]), (&0.0.into(), &(36.0 / 8.0).into()));
+    let info = place.run("info ends.lfl").good();
+    assert!(info.text().contains("ends of sampled rays") && info.text().contains("nothing"), "{info:?}");
+    place.run("convert sheet.stl --to octree --by-ends -o never.lfl").bad(2, &["--by-ends", "tri-dexel"]);
+    place.run("convert ends.lfl --to octree --by-ends -o never.lfl").bad(2, &["--by-ends", "tri-dexel"]);
+    place.run("convert sheet.dex --to mesh --by-ends -o never.ply").bad(2, &["--by-ends"]);
+}
+
+#[test]
+fn the_volume_is_that_of_the_direction_with_most_rays() {
+    let place = Place::new();
+    // A plate: rays along x and y see its thickness in steps of a cell.
+    place.write("plate.stl", stl(&block([1.0, 1.0, 3.0], [61.0, 41.0, 5.6])));
+    let report = json(&place, "dexelize plate.stl -o plate.lfl --resolution 64 --bounds 0,0,0,64");
+    let exact = 60.0 * 40.0 * 2.6;
+    let off = |volume: &Value| (volume.as_f64().unwrap() / exact - 1.0).abs();
+    assert!(off(&report["volume"]) < 1e-6, "{report}");
+    let range = report["volume_range"].as_array().unwrap();
+    assert!(range.iter().any(|volume| off(volume) > 0.1), "{report}");
+    let told = place.run("dexelize plate.stl -o plate.lfl --resolution 64 --bounds 0,0,0,64").good();
+    assert!(told.text().contains("volume about 6240 (along z, which has most rays;"), "{told:?}");
+}
+
+#[test]
+fn octrees_of_samples_are_moved_onto_any_lattice() {
+    let place = models();
+    place.run("convert cube.lfl --to octree -o cells.lfl").good();
+    let before = json(&place, "info cells.lfl")["volume"]["lower"].as_f64().unwrap();
+    for cells in [64, 32, 16] {
+        let line = format!(
+            "convert cells.lfl -o moved.lfl --rotate z,30 --translate 2,1,0 {BOUNDS} --resolution {cells}"
+        );
+        let report = json(&place, &line);
+        let volume = report["volume"]["lower"].as_f64().unwrap();
+        assert!((volume / before - 1.0).abs() < 0.1, "{cells}: {volume} {before}");
+        assert_eq!(report["volume"]["upper"].as_f64().unwrap(), volume);
+    }
+}
