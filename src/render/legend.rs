@@ -1,4 +1,4 @@
-//! Legends on finished pictures: colour bars, and names of colours.
+//! Legends on finished pictures: colour bars, names of colours, and scale bars.
 
 use super::picture::Picture;
 use crate::error::Error;
@@ -186,6 +186,64 @@ pub fn draw_names(
         canvas.text(name, [left + x + line + pad, top + y]);
     });
     Some([left, top, width, height])
+}
+
+/// Draws a bar in the lower left corner that is as long as a round number of model units, with the number, and a note above it
+/// unless that is empty: on a light panel of at most half of the width and a third of the height. A picture of a plane that one
+/// looks at along its normal through a [`Parallel`](super::Lens::Parallel) lens has one scale everywhere: its height in model
+/// units, divided by that in pixels.
+///
+/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no legend.
+///
+/// # Errors
+/// [`Error::Argument`] unless `units_per_pixel` lies between 1e-250 and 1e250.
+pub fn draw_scale_bar(
+    picture: &mut Picture,
+    units_per_pixel: f64,
+    note: &str,
+) -> Result<Option<LegendBox>, Error> {
+    if !(1e-250..=1e250).contains(&units_per_pixel) {
+        return Err(Error::Argument {
+            name: "units_per_pixel",
+            problem: "must lie between 1e-250 and 1e250",
+        });
+    }
+    let Some((mut canvas, limit)) = Canvas::new(picture, LegendSide::Bottom) else { return Ok(None) };
+    let (line, pad) = (canvas.line(), canvas.pad());
+    let (step, exponent) = round_below(f64::from(canvas.size[0]) * 0.25 * units_per_pixel);
+    let label = Label::new(step, exponent);
+    let length = ((Ticks::value_of(step, exponent) / units_per_pixel + 0.5) as u32).max(1);
+    let width_of = |text: &str| text.chars().count().min(LONGEST) as u32 * canvas.width_of(1);
+    let width =
+        (2 * pad + (length + pad + width_of(label.as_str())).max(width_of(note))).min(canvas.size[0] / 2);
+    let note_height = if note.is_empty() { 0 } else { line + pad };
+    let height = (2 * pad + note_height + line).min(limit);
+    let covered = [0, canvas.size[1] - height, width, height];
+    canvas.panel(covered);
+    canvas.text(note, [pad, covered[1] + pad]);
+    let (top, tick) = (covered[1] + pad + note_height, line / 2);
+    let thick = 2 * canvas.thin();
+    canvas.fill([pad, top + line / 2 - thick / 2, length, thick], INK_BYTES);
+    for left in [pad, pad + length - thick.min(length)] {
+        canvas.fill([left, top + (line - tick) / 2, thick, tick], INK_BYTES);
+    }
+    canvas.text(label.as_str(), [2 * pad + length, top]);
+    Ok(Some(covered))
+}
+
+/// The greatest number that is 1, 2 or 5 times a power of ten and not above a number: the factor, and the exponent.
+fn round_below(most: f64) -> (i64, i32) {
+    let exponent = libm::floor(libm::log10(most)) as i32;
+    let mut found = (1, exponent - 1);
+    for (step, exponent) in
+        [(5, exponent - 1), (1, exponent), (2, exponent), (5, exponent), (1, exponent + 1)]
+    {
+        // (A number that is one but for rounding is one.)
+        if Ticks::value_of(step, exponent) <= most * (1.0 + 1e-9) {
+            found = (step, exponent);
+        }
+    }
+    found
 }
 
 /// Is called with a name, its colour, and the place of its entry.
@@ -444,6 +502,35 @@ mod tests {
 
     fn labels(range: [f64; 2], most: u32) -> Vec<String> {
         Ticks::new(range, most).labels().map(|(_, label)| label.as_str().to_string()).collect()
+    }
+
+    #[test]
+    fn scale_bars_are_as_long_as_they_say() {
+        for (most, round) in
+            [(1.0, (1, 0)), (4.99, (2, 0)), (0.3, (2, -1)), (75.0, (5, 1)), (0.1, (1, -1)), (9.9e12, (5, 12))]
+        {
+            assert_eq!(round_below(most), round, "{most}");
+        }
+        let blank = alloc::vec![[255; 4]; 400 * 300];
+        let mut picture = Picture::of_colours([400, 300], blank).unwrap();
+        let covered = draw_scale_bar(&mut picture, 0.25, "30 x 20").unwrap().unwrap();
+        assert!(covered[0] == 0 && covered[1] + covered[3] == 300 && covered[2] <= 200);
+        // A quarter of the width is 25 units; the bar is 20 long, or 80 pixels.
+        let is_ink = |pixel: &[u8; 4]| *pixel == INK_BYTES;
+        let row = |y: usize| picture.colours()[400 * y..400 * y + 400].iter();
+        let run = |y: usize| {
+            row(y).fold((0, 0), |(most, now), p| {
+                let now = if is_ink(p) { now + 1 } else { 0 };
+                (most.max(now), now)
+            })
+        };
+        assert_eq!((0..300).map(|y| run(y).0).max(), Some(80));
+        assert!(
+            draw_scale_bar(&mut picture, 0.0, "").is_err()
+                && draw_scale_bar(&mut picture, f64::NAN, "").is_err()
+        );
+        let mut tiny = Picture::of_colours([8, 8], alloc::vec![[255; 4]; 64]).unwrap();
+        assert_eq!(draw_scale_bar(&mut tiny, 1.0, "").unwrap(), None);
     }
 
     #[test]

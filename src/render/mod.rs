@@ -40,7 +40,7 @@ mod window;
 pub use camera::{Camera, FIELD_OF_VIEW, Lens};
 pub use clip::Clip;
 pub use clipped::ClippedLayer;
-pub use legend::{LegendBox, LegendSide, draw_colour_bar, draw_names};
+pub use legend::{LegendBox, LegendSide, draw_colour_bar, draw_names, draw_scale_bar};
 pub use light::{Light, Tones};
 pub use lines::LinesLayer;
 pub use mesh::{MeshEdges, MeshLayer};

@@ -1,7 +1,8 @@
 //! `leafless render`: what does it look like?
 
 use crate::failure::{Failure, Of};
-use crate::making::picture::{Looks, Subject, Values, View, colour, legend_box, numbers, picture};
+use crate::making::clipped::Planes;
+use crate::making::picture::{Looks, Subject, Values, View, colour, facing, legend_boxes, numbers, picture};
 use crate::options::threads;
 use crate::progress::watched;
 use crate::show::{Protocol, Screen};
@@ -22,14 +23,20 @@ use std::time::Instant;
 /// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model, or shows one on the terminal.
 ///
 /// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A mesh, a scene, a
-/// volume, or a solid from a file whose cells keep surfaces is shown itself, without an octree.
+/// volume, or a solid from a file whose cells keep surfaces is shown itself, without an octree. A tri-dexel model that stores
+/// materials is shown by its cells, in the colours of the channel `material`.
+///
+/// What --clip and --clip-box cut away is not shown, and the camera fits what is left. What is cut open shows its inside in
+/// orange; so does a mesh, if it is closed, unless --edges all asks for its triangles.
+///
+/// A slice is seen along its plane's normal, with its scale and the extents of the whole solid along x, y and z beside it.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
     /// standard input
     #[arg(value_name = "FILE")]
     input: OsString,
-    /// File to write (PNG), or `-` for standard output; it is written whole or not at all
+    /// File to write, which is a PNG, or `-` for standard output; it is written whole or not at all
     #[arg(short, long, value_name = "OUT", required_unless_present = "show")]
     output: Option<OsString>,
     /// Show the picture on the terminal, smaller if it does not fit. Without a protocol, the best that the terminal
@@ -129,6 +136,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let problem = "both -o - and --show want standard output: name a file, or leave one of them out";
             return Err(Failure::Usage(problem.into()));
         }
+        check_name(output)?;
         output.check()?;
     }
     arguments.looks.check()?;
@@ -137,7 +145,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shown_size = screen.as_ref().filter(|_| output.is_none()).and_then(Screen::size);
     let size = arguments.size.or(shown_size).unwrap_or(SIZE);
     let shape = Shape::read(&input, &arguments.taking)?.0;
-    let subject = Subject::of(shape, &input, &arguments.looks, arguments.depth, arguments.threads)?;
+    let is_cut = !arguments.clip.is_empty() || arguments.clip_box.is_some();
+    let subject = Subject::of(shape, &input, &arguments.looks, arguments.depth, is_cut, arguments.threads)?;
+    subject.note_undecided(&input, &arguments.looks);
     let channel = match subject.octree() {
         Some(octree) if arguments.channel.is_some() || octree.channels().len() == 1 => {
             Some(find(octree, &input, arguments.channel.as_deref())?)
@@ -153,8 +163,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             (Some(octree), Some(channel)) => Some(Values::new(looks, octree, channel, control)?),
             _ => None,
         };
-        let legend = legend_box(looks, values.as_ref(), size)?;
-        let shot = shot(arguments, size, &subject, legend, control)?;
+        let legends = legend_boxes(looks, &subject, values.as_ref(), size)?;
+        let shot = shot(arguments, size, &subject, legends, control)?;
         let picture = picture(looks, &subject, values.as_ref(), &shot, control)?;
         Ok((shot, picture))
     })
@@ -199,11 +209,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
+/// Pictures are PNG files, whatever their name says: a name that says something else is refused.
+fn check_name(output: &Output) -> Result<(), Failure> {
+    match output.path().and_then(|path| path.extension()) {
+        Some(extension) if !extension.eq_ignore_ascii_case("png") => {
+            let problem = "a picture is written as PNG: choose a name that ends in .png";
+            Err(Failure::Usage(format!("{output}: {problem}")))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn shot(
     arguments: &Arguments,
     size: [u32; 2],
     subject: &Subject,
-    legend: Option<LegendBox>,
+    [legend, scale]: [Option<LegendBox>; 2],
     control: &Control<'_>,
 ) -> Result<Shot, leafless::Error> {
     let [width, height] = size;
@@ -212,33 +233,43 @@ fn shot(
         clip = clip.plane(plane)?;
     }
     let looks = &arguments.looks;
-    let mut points = subject.points(&Control { progress: None, ..*control })?;
+    let mut kept = None;
     if let Some([x0, y0, z0, x1, y1, z1]) = arguments.clip_box {
         let problem = "the lower corner must not be above the upper one";
-        let kept = Bounds::new([x0, y0, z0], [x1, y1, z1])
+        let bounds = Bounds::new([x0, y0, z0], [x1, y1, z1])
             .ok_or(leafless::Error::Argument { name: "clip-box", problem })?;
-        clip = clip.within(&kept)?;
-        let clamped =
-            |point: [f64; 3]| [0, 1, 2].map(|axis| point[axis].clamp(kept.min[axis], kept.max[axis]));
-        // The volume of a hybrid view is not cut.
-        if looks.view != View::Hybrid {
-            points = points.into_iter().map(clamped).collect();
-        }
+        clip = clip.within(&bounds)?;
+        kept = Some(bounds);
     }
+    let planes = match looks.view {
+        // Its volume is not cut.
+        View::Hybrid => Planes::default(),
+        _ => Planes::new(&arguments.clip, kept.as_ref()),
+    };
+    let points = subject.points(&planes, &Control { progress: None, ..*control })?;
     let is_slice = looks.view == View::Slice && arguments.from.is_none() && arguments.eye.is_none();
     let field = (!arguments.ortho && !is_slice).then_some(arguments.fov);
     let camera = match arguments.eye {
         None => {
             let from = arguments.from.unwrap_or(match looks.plane {
-                Some([a, b, c, _]) if is_slice => {
-                    [a.atan2(-b).to_degrees(), c.atan2(a.hypot(b)).to_degrees()]
-                }
+                Some([a, b, c, _]) if is_slice => facing([a, b, c]),
                 None if is_slice => [0.0, 0.0],
                 _ => [30.0, 25.0],
             });
             // What is shown is as far from both sides as the legend is wide.
-            let free = legend.map_or(1.0, |[left, ..]| 2.0 * f64::from(left) / f64::from(width) - 1.0);
-            Camera::fitted(&points, from, field, free.max(LEAST_FREE) * f64::from(width) / f64::from(height))?
+            let free = |end: u32, side: u32| (2.0 * f64::from(end) / f64::from(side) - 1.0).max(LEAST_FREE);
+            let across = legend.map_or(1.0, |[left, ..]| free(left, width));
+            let upward = scale.filter(|_| is_slice).map_or(1.0, |[_, top, ..]| free(top, height));
+            let aspect = across * f64::from(width) / (upward * f64::from(height));
+            let camera = Camera::fitted(&points, from, field, aspect)?;
+            match camera.lens() {
+                Lens::Parallel(high) => {
+                    let (eye, forward) = (camera.eye(), camera.forward());
+                    let at = [0, 1, 2].map(|axis| eye[axis] + forward[axis] * high);
+                    Camera::new(eye, at, camera.up(), Lens::Parallel(high / upward))?
+                }
+                Lens::Perspective(_) => camera,
+            }
         }
         Some(eye) => {
             let at = arguments.at.unwrap_or(middle(&points));
@@ -255,7 +286,7 @@ fn shot(
     Ok(Shot { camera, size, samples, clip, background })
 }
 
-/// The least part of a picture's width that is left between what a legend takes.
+/// The least part of a picture's width or height that is left between what a legend takes.
 const LEAST_FREE: f64 = 0.3;
 
 /// The middle of the box around points.

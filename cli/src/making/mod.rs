@@ -5,6 +5,7 @@
 
 pub mod askew;
 pub mod boolean;
+pub mod clipped;
 pub mod combined_surface;
 pub mod dexel_surface;
 pub mod dexels;

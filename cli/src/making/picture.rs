@@ -1,27 +1,30 @@
 //! What pictures show: solids, meshes and volumes, in each view.
 
-use crate::failure::{Failure, Of};
-use crate::making::dexel_surface;
+use crate::failure::{Failure, Of, complain};
+use crate::making::clipped::Planes;
+use crate::making::{dexel_surface, octree_from_dexels};
 use crate::options;
 use crate::progress::watched;
 use crate::source::input::Input;
+use crate::source::mesh::openness;
 use crate::source::solid::{Shape, Source, cells_of};
+use crate::words::{measured, short};
 use clap::{Args, ValueEnum};
 use leafless::attribute::{Attribute, Channel, Criterion, Detail};
 use leafless::error::MeshError;
-use leafless::lattice::Cube;
+use leafless::lattice::{Cube, MAX_DEPTH};
 use leafless::octree::CellFilter;
-use leafless::op::{DexelOptions, octree_from_dexels};
+use leafless::op::{DexelOptions, resolve};
 use leafless::render::{
-    Clip, ClippedLayer, ColourMap, Compositing, Finish, Layer, LegendBox, LegendSide, MeshEdges, MeshLayer,
-    OctreeLayer, Outline, Picture, Shot, SliceLayer, SlicePlane, SolidLayer, TAG_COLOURS, Transfer,
-    VolumeLayer, draw_colour_bar, draw_names, render,
+    Clip, ClippedLayer, ColourMap, Compositing, Finish, Layer, LegendBox, LegendSide, Lens, MeshEdges,
+    MeshLayer, OctreeLayer, Outline, Picture, Shot, SliceLayer, SlicePlane, SolidLayer, TAG_COLOURS,
+    Transfer, VolumeLayer, draw_colour_bar, draw_names, draw_scale_bar, render,
 };
 use leafless::surface::{Resolve, VertexPlacement, marching_cubes_dexels, marching_cubes_solid};
 use leafless::voxel::{VoxelOptions, VoxelRecords};
 use leafless::{
-    Affine, AnySolid, Bounds, Control, Error, Frame, Octree, Rule, Tag, TriangleMesh, bounding_box, build,
-    dexelize, marching_cubes,
+    Affine, AnySolid, Bounds, Control, Error, FillRule, Frame, Interval, Octree, Proof, Rule, Tag,
+    TriangleMesh, bounding_box, build, dexelize, marching_cubes,
 };
 use serde::Serialize;
 
@@ -31,8 +34,9 @@ pub struct Looks {
     /// What to show
     #[arg(long, value_enum, default_value_t = View::Surface)]
     pub view: View,
-    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0. Without it: the one through the middle that is
-    /// seen best of those along the axes
+    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0. One looks at it against its normal a,b,c: at
+    /// 0,0,1,d from above, at 0,-1,0,d from the front, at 1,0,0,d from the right. +z is upward; where the plane is level, +x is
+    /// to the right. It is never mirrored. Without --plane: the one through the middle that is seen best of those along the axes
     #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
     pub plane: Option<[f64; 4]>,
     /// Colours of values: viridis, cividis, inferno, magma, plasma or grey
@@ -50,7 +54,14 @@ pub struct Looks {
     /// Draw edges: those at which faces meet at more than 30 degrees, or of a mesh those of all its triangles
     #[arg(long, value_enum, value_name = "WHICH", num_args = 0..=1, default_missing_value = "features")]
     edges: Option<Edges>,
-    /// Leave out the legend
+    /// Show a slice without cells: what of the plane is inside. The surface of what is no octree of cells is then drawn as a
+    /// line, of cells as small as a pixel
+    #[arg(long)]
+    no_cells: bool,
+    /// What becomes of the undecided cells of an octree whose cells keep no surfaces
+    #[arg(long, value_enum, default_value_t = Undecided::Shown)]
+    undecided: Undecided,
+    /// Leave out the legend, and the scale and the extents of a slice
     #[arg(long)]
     pub no_legend: bool,
     /// Show the cells of a solid by their faces
@@ -74,7 +85,17 @@ pub enum View {
     Slice,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
+enum Undecided {
+    /// As those that are FULL
+    Shown,
+    /// Translucent, around those that are FULL
+    Faint,
+    /// Only what is FULL is shown
+    Hidden,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 enum Edges {
     /// Where faces meet at more than 30 degrees
     Features,
@@ -90,12 +111,23 @@ impl Looks {
             (self.plane.is_some() && view != View::Slice, "--plane", "slice"),
             (self.faces && !is_surface, "--faces", "surface"),
             (self.edges.is_some() && !is_surface, "--edges", "surface"),
+            (self.undecided != Undecided::Shown && !is_surface, "--undecided", "surface"),
+            (self.no_cells && view != View::Slice, "--no-cells", "slice"),
         ] {
             if is_misplaced {
                 return Err(Failure::Usage(format!("{option} is for --view {of}")));
             }
         }
         Ok(())
+    }
+
+    /// Whether the view shows cells, into which what has none is split.
+    fn is_of_cells(&self) -> bool {
+        match self.view {
+            View::Surface => self.faces,
+            View::Slice => !self.no_cells,
+            View::Volume | View::Hybrid => true,
+        }
     }
 }
 
@@ -137,34 +169,53 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// What the view shows of a file; what has no cells of its own is split to `depth` where it needs them.
+    /// What the view shows of a file; what has no cells of its own is split to `depth` where it needs them. What is cut open is a
+    /// solid, if it bounds one, so that its inside is seen.
     pub fn of(
         shape: Shape,
         input: &Input,
         looks: &Looks,
         depth: u8,
+        is_cut: bool,
         threads: usize,
     ) -> Result<Subject, Failure> {
-        let of_cells = matches!(looks.view, View::Volume | View::Hybrid | View::Slice);
-        match shape {
-            Shape::Dexels(model) if of_cells || looks.faces => {
-                let octree = watched("render", threads, |control| octree_from_dexels(model.view(), control));
-                let octree = octree.of(input)?;
-                Ok(Subject::Octree(Box::new(octree), None))
+        let is_of_cells = looks.is_of_cells();
+        let shape = match shape {
+            // Materials are those of cells.
+            Shape::Dexels(model)
+                if is_of_cells || looks.view == View::Slice || model.view().format().materials =>
+            {
+                let octree =
+                    watched("render", threads, |control| octree_from_dexels::octree(&model, false, control));
+                return Ok(Subject::Octree(Box::new(octree.of(input)?), None));
             }
             Shape::Dexels(model) => {
-                Ok(Subject::Mesh(Box::new(dexel_surface::cubes(&model, input, threads)?.0)))
+                let mesh = dexel_surface::cubes(&model, input, threads)?.0;
+                Shape::Source(Source::Mesh(mesh, FillRule::NonZero, None))
             }
+            shape => shape,
+        };
+        // Edges of all triangles are those of a mesh, which has no inside.
+        let is_capped = match &shape {
+            Shape::Source(Source::Mesh(mesh, ..)) if is_cut && looks.edges != Some(Edges::All) => {
+                openness(&mesh.report().of(input)?).is_none()
+            }
+            _ => false,
+        };
+        match shape {
             Shape::Source(Source::Octree(octree)) if octree.view().cuts().is_none() => {
                 Ok(Subject::Octree(octree, None))
             }
-            Shape::Source(Source::Mesh(mesh, ..)) if !of_cells && !looks.faces => {
+            Shape::Source(Source::Mesh(mesh, ..))
+                if looks.view == View::Surface && !is_of_cells && !is_capped =>
+            {
                 Ok(Subject::Mesh(Box::new(mesh)))
             }
+            Shape::Dexels(_) => Err(Failure::of(input, "is a tri-dexel model")),
             Shape::Source(source) => {
                 let frame = source.frame(input, Some(depth))?;
                 let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
-                if !of_cells && !looks.faces {
+                if !is_of_cells {
                     return Ok(Subject::Solid(Box::new(solid), frame));
                 }
                 let octree = watched("render", threads, |control| {
@@ -184,8 +235,48 @@ impl Subject {
         }
     }
 
-    /// Points that whoever sees sees all of it: corners of coarse cells around it, those of the universe if it is empty.
-    pub fn points(&self, control: &Control<'_>) -> Result<Vec<[f64; 3]>, Error> {
+    /// Says so where undecided cells hide those that are FULL.
+    pub fn note_undecided(&self, input: &Input, looks: &Looks) {
+        let Subject::Octree(octree, None) = self else { return };
+        let volume = octree.statistics().volume();
+        if looks.view != View::Surface
+            || looks.undecided != Undecided::Shown
+            || volume.lower >= 0.5 * volume.upper
+        {
+            return;
+        }
+        complain(&match volume.lower {
+            0.0 => format!("{input}: note: no cell is FULL; all that is shown is undecided"),
+            _ => format!(
+                "{input}: note: undecided cells hide those that are FULL: --undecided faint or hidden shows them"
+            ),
+        });
+    }
+
+    /// Its extents along x, y and z, as far as they are known.
+    fn extents(&self, control: &Control<'_>) -> Result<Option<[[Interval; 2]; 3]>, Error> {
+        let quiet = Control { progress: None, ..*control };
+        let found = match self {
+            // What cells prove does not matter here.
+            Subject::Octree(octree, _) => {
+                let cells = octree.with_proof(Proof::CERTIFIED);
+                bounding_box(&cells, cells.frame(), 0.0, &quiet)?
+            }
+            Subject::Solid(solid, frame) => {
+                let quiet = Control { max_splits: Some(1 << 16), ..quiet };
+                bounding_box(&**solid, &frame.with_depth(MAX_DEPTH)?, 1e-5 * frame.edge(), &quiet)?
+            }
+            Subject::Mesh(mesh) => {
+                let (min, max) = mesh.bounds();
+                return Ok(Some([0, 1, 2].map(|axis| [min[axis], max[axis]].map(Interval::exactly))));
+            }
+        };
+        Ok(found.corners.map(|[min, max]| [0, 1, 2].map(|axis| [min[axis], max[axis]])))
+    }
+
+    /// Points that whoever sees sees all of it that clip planes leave: corners of coarse cells around it, those of the universe if
+    /// it is empty.
+    pub fn points(&self, planes: &Planes, control: &Control<'_>) -> Result<Vec<[f64; 3]>, Error> {
         let coarse = |octree: &Octree| {
             let frame = *octree.frame();
             let finest = COARSE.min(frame.depth());
@@ -194,7 +285,7 @@ impl Subject {
             let mut points = Vec::new();
             for found in leaves.chain(cut) {
                 let (min, max) = Cube { frame: &frame, cell: found.cell }.bounds();
-                points.extend(Bounds { min, max }.corners());
+                planes.of_box(&Bounds { min, max }, &mut points);
             }
             if points.is_empty() {
                 points.extend(Bounds::of(&frame).corners());
@@ -205,9 +296,16 @@ impl Subject {
             Subject::Octree(octree, _) => Ok(coarse(octree)),
             Subject::Mesh(mesh) => {
                 // A file may have vertices that no triangle uses.
-                let mut is_used = vec![false; mesh.vertices().len()];
-                mesh.triangles().iter().flatten().for_each(|&vertex| is_used[vertex as usize] = true);
-                Ok(mesh.vertices().iter().zip(is_used).filter(|(_, used)| *used).map(|(at, _)| *at).collect())
+                let corners = |triangle: &[u32; 3]| triangle.map(|vertex| mesh.vertices()[vertex as usize]);
+                let mut points = Vec::new();
+                for triangle in mesh.triangles() {
+                    planes.of_triangle(corners(triangle), &mut points);
+                }
+                // What is cut away as a whole is as large as before.
+                if points.is_empty() {
+                    points.extend(mesh.triangles().iter().flat_map(corners));
+                }
+                Ok(points)
             }
             Subject::Solid(solid, frame) => {
                 Ok(coarse(&build(&**solid, &frame.with_depth(COARSE)?, Rule::Certified, control)?))
@@ -223,6 +321,8 @@ const COARSE: u8 = 6;
 pub struct Values<'a> {
     channel: &'a Channel,
     transfer: Transfer,
+    /// The value, if there is but one.
+    sole: Option<f64>,
 }
 
 impl<'a> Values<'a> {
@@ -233,7 +333,14 @@ impl<'a> Values<'a> {
         channel: &'a Channel,
         control: &Control<'_>,
     ) -> Result<Values<'a>, Error> {
-        Ok(Values { channel, transfer: transfer(looks, octree, Some(channel), control)? })
+        let quiet = Control { progress: None, ..*control };
+        let found = channel.view()?.summary(Some(octree.view()), None, &quiet)?;
+        let found = found.map(|found| [found.least[0], found.greatest[0]]);
+        let sole = found.and_then(|[low, high]| (low == high && looks.range.is_none()).then_some(low));
+        let wide =
+            |[low, high]: [f64; 2]| if low < high { [low, high] } else { [low, low + low.abs().max(1.0)] };
+        let range = looks.range.or(found.map(wide));
+        Ok(Values { channel, transfer: transfer(looks, octree, range, control)?, sole })
     }
 
     /// The colour of a value on a surface.
@@ -258,29 +365,60 @@ pub fn picture(
         (Subject::Octree(octree, source), View::Hybrid) => {
             hybrid(looks, octree, source.as_deref(), values, shot, control)
         }
-        (Subject::Octree(octree, _), View::Slice) => slice(looks, octree, values, shot, control),
+        (_, View::Slice) => slice(looks, subject, values, shot, control),
         _ => surface(looks, subject, values, shot, control),
     }?;
-    legend(looks, values, &mut picture)?;
+    legend(looks, subject, values, &mut picture)?;
+    if let (false, true, Lens::Parallel(height)) =
+        (looks.no_legend, is_along_normal(looks, shot), shot.camera.lens())
+    {
+        let note = subject
+            .extents(control)?
+            .map_or_else(String::new, |extents| extents.map(extent_text).join(" x "));
+        draw_scale_bar(&mut picture, height / f64::from(shot.size[1]), &note)?;
+    }
     Ok(picture)
 }
 
-/// Where the legend of a picture of this size will lie; `None` if there is none.
-pub fn legend_box(
+/// Whether a slice is seen along its normal, so that it has one scale.
+fn is_along_normal(looks: &Looks, shot: &Shot) -> bool {
+    let [x, y, z] = shot.camera.forward();
+    let across = match looks.plane {
+        Some([a, b, c, _]) => (a * x + b * y + c * z).abs() / a.hypot(b).hypot(c),
+        None => x.abs().max(y.abs()).max(z.abs()),
+    };
+    looks.view == View::Slice && across >= 1.0 - 1e-9
+}
+
+/// How long something is between two planes.
+fn extent_text([low, high]: [Interval; 2]) -> String {
+    let ends = [(high.lower - low.upper).max(0.0), high.upper - low.lower];
+    let length = Interval::new(ends[0], ends[1]).unwrap_or(Interval::ALL);
+    let is_sure = length.upper - length.lower <= 1e-6 * length.upper;
+    if is_sure { short(0.5 * length.lower + 0.5 * length.upper) } else { measured(length) }
+}
+
+/// Where the legend of a picture of this size will lie, and the scale of a slice that is seen along its normal; `None` if there
+/// is none.
+pub fn legend_boxes(
     looks: &Looks,
+    subject: &Subject,
     values: Option<&Values<'_>>,
     size: [u32; 2],
-) -> Result<Option<LegendBox>, Error> {
-    if looks.no_legend || values.is_none() && looks.view != View::Slice {
-        return Ok(None);
+) -> Result<[Option<LegendBox>; 2], Error> {
+    let is_slice = looks.view == View::Slice;
+    if looks.no_legend || values.is_none() && !is_slice {
+        return Ok([None; 2]);
     }
-    let blank = vec![[255; 4]; size[0] as usize * size[1] as usize];
-    legend(looks, values, &mut Picture::of_colours(size, blank)?)
+    let mut blank = Picture::of_colours(size, vec![[255; 4]; size[0] as usize * size[1] as usize])?;
+    let scale = if is_slice { draw_scale_bar(&mut blank, 1.0, "x")? } else { None };
+    Ok([legend(looks, subject, values, &mut blank)?, scale])
 }
 
 /// Draws the legend on the right, and tells where it lies; `None` if there is none.
 fn legend(
     looks: &Looks,
+    subject: &Subject,
     values: Option<&Values<'_>>,
     picture: &mut Picture,
 ) -> Result<Option<LegendBox>, Error> {
@@ -288,13 +426,23 @@ fn legend(
     match values {
         _ if looks.no_legend => Ok(None),
         // Of two numbers the first one has a colour; three are a colour themselves.
-        Some(Values { channel, transfer }) if channel.value_type().components() <= 2 => {
+        Some(Values { channel, transfer, sole: Some(value) }) if channel.value_type().components() == 1 => {
+            let colour = transfer.opaque(Some([*value, 0.0, 0.0, 0.0]), 1);
+            Ok(draw_names(picture, channel.name(), &[(&short(*value), colour)], side))
+        }
+        Some(Values { channel, transfer, .. }) if channel.value_type().components() <= 2 => {
             let colour = |value: f64| transfer.opaque(Some([value, 0.0, 0.0, 0.0]), 1);
             draw_colour_bar(picture, channel.name(), transfer.range(), &colour, side)
         }
         None if is_slice => {
             let names = [("EMPTY", TAG_COLOURS[0]), ("FULL", TAG_COLOURS[1]), ("PARTIAL", TAG_COLOURS[2])];
-            Ok(draw_names(picture, "", &names, side))
+            let shown = match subject {
+                Subject::Octree(..) if looks.no_cells => &names[1..],
+                Subject::Octree(..) => &names[..],
+                // Nothing but the inside has a colour.
+                _ => &[],
+            };
+            Ok(draw_names(picture, "", shown, side))
         }
         _ => Ok(None),
     }
@@ -316,6 +464,25 @@ fn surface(
     };
     let finish = Finish { faces: looks.faces, colour: looks.colour.unwrap_or(plain.colour), edges, ..plain };
     match subject {
+        Subject::Octree(octree, _) if looks.undecided != Undecided::Shown => {
+            let inner = resolve(octree.view(), Rule::Inner, &Control { progress: None, ..*control })?;
+            let colour = values.map(Values::colour);
+            let mut layer = OctreeLayer::new(inner.view(), finish);
+            if let (Some(values), Some(colour)) = (values, &colour) {
+                layer = layer.values(values.channel, colour);
+            }
+            let [red, green, blue, _] = TAG_COLOURS[2];
+            let faint = Finish { colour: [red, green, blue, FAINT], edges: None, cut: [0; 4], ..finish };
+            let around = OctreeLayer::new(octree.view(), faint);
+            match looks.undecided {
+                Undecided::Faint => render(shot, &[&layer, &around], control),
+                _ => render(shot, &[&layer], control),
+            }
+        }
+        _ if looks.undecided != Undecided::Shown => Err(Error::Argument {
+            name: "undecided",
+            problem: "cells are those of octrees that keep no surfaces",
+        }),
         Subject::Octree(octree, _) => {
             let layer = OctreeLayer::new(octree.view(), finish);
             let Some(values) = values else { return render(shot, &[&layer], control) };
@@ -342,26 +509,17 @@ fn surface(
 /// The colour of lines.
 const INK: [u8; 4] = [35, 40, 45, 255];
 
-/// What values look like: for a solid without a channel, all the same.
+/// The opacity of undecided cells around those that are FULL.
+const FAINT: u8 = 50;
+
+/// What values in a range look like: for a solid without a channel, all the same.
 fn transfer(
     looks: &Looks,
     octree: &Octree,
-    channel: Option<&Channel>,
+    range: Option<[f64; 2]>,
     control: &Control<'_>,
 ) -> Result<Transfer, Error> {
-    let range = match (looks.range, channel) {
-        (Some(range), _) => range,
-        (None, Some(channel)) => {
-            let control = Control { progress: None, ..*control };
-            let found = channel.view()?.summary(Some(octree.view()), None, &control)?;
-            match found.map(|found| (found.least[0], found.greatest[0])) {
-                Some((low, high)) if low < high => [low, high],
-                Some((low, _)) => [low, low + low.abs().max(1.0)],
-                None => [0.0, 1.0],
-            }
-        }
-        (None, None) => [0.0, 1.0],
-    };
+    let range = range.or(looks.range).unwrap_or([0.0, 1.0]);
     let extent = bounding_box(octree.view(), octree.frame(), 0.0, &Control { progress: None, ..*control })?;
     let longest = extent.corners.map_or(octree.frame().edge(), |[min, max]| {
         (0..3).map(|axis| max[axis].upper - min[axis].lower).fold(0.0, f64::max)
@@ -472,9 +630,20 @@ fn skin_mesh(
     }
 }
 
+/// From where one looks at a slice along its normal: azimuth and elevation in degrees.
+pub fn facing([a, b, c]: [f64; 3]) -> [f64; 2] {
+    let level = a.hypot(b);
+    // At a level plane one looks with +x to the right. (A negative zero would turn it.)
+    let azimuth = if level <= 1e-9 * c.abs() { 0.0 } else { a.atan2(-b).to_degrees() };
+    [azimuth, c.atan2(level).to_degrees()]
+}
+
+/// Cells of a slice that is shown without them: as small as a pixel, but no more to an axis than 2 to the power of this.
+const FINEST: u8 = 14;
+
 fn slice(
     looks: &Looks,
-    octree: &Octree,
+    subject: &Subject,
     values: Option<&Values<'_>>,
     shot: &Shot,
     control: &Control<'_>,
@@ -484,17 +653,38 @@ fn slice(
         None => {
             let forward = shot.camera.forward();
             let axis = (0..3).max_by(|&i, &j| forward[i].abs().total_cmp(&forward[j].abs())).unwrap_or(2);
-            let quiet = Control { progress: None, ..*control };
-            let extent = bounding_box(octree.view(), octree.frame(), 0.0, &quiet)?;
-            let universe = Bounds::of(octree.frame());
-            let middle =
-                extent.corners.map_or(0.5 * universe.min[axis] + 0.5 * universe.max[axis], |[min, max]| {
-                    0.5 * min[axis].lower + 0.5 * max[axis].upper
-                });
+            let middle = match (subject.extents(control)?, subject) {
+                (Some(extents), _) => 0.5 * extents[axis][0].lower + 0.5 * extents[axis][1].upper,
+                (None, Subject::Octree(octree, _)) => middle_of(octree.frame(), axis),
+                (None, Subject::Solid(_, frame)) => middle_of(frame, axis),
+                (None, Subject::Mesh(_)) => 0.0,
+            };
             SlicePlane::across(axis, middle)?
         }
     };
-    let layer = SliceLayer::new(octree.view(), plane);
+    let [empty, full, partial] = TAG_COLOURS;
+    let (mut layer, mut colours) = match subject {
+        Subject::Octree(octree, _) => (SliceLayer::new(octree.view(), plane), [empty, full, partial]),
+        Subject::Solid(solid, frame) => {
+            let pixel = match shot.camera.lens() {
+                Lens::Parallel(height) => height / f64::from(shot.size[1]),
+                Lens::Perspective(_) => 0.0,
+            };
+            let is_fine = |depth: &u8| frame.edge() / f64::from(1u32 << depth) <= pixel;
+            let depth = (1..FINEST).find(is_fine).unwrap_or(FINEST);
+            (SliceLayer::of_solid(&**solid, &frame.with_depth(depth)?, plane), [empty, full, INK])
+        }
+        Subject::Mesh(_) => return Err(Error::Argument { name: "view", problem: "of a mesh is no slice" }),
+    };
+    if looks.no_cells {
+        colours[0] = [0; 4];
+        colours[1] = looks.colour.unwrap_or(colours[1]);
+        layer = layer.outlines(None).colours(colours);
+    }
     let Some(values) = values else { return render(shot, &[&layer], control) };
     render(shot, &[&layer.values(values.channel, &values.colour())], control)
+}
+
+fn middle_of(frame: &Frame, axis: usize) -> f64 {
+    frame.origin()[axis] + 0.5 * frame.edge()
 }

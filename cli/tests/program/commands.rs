@@ -105,11 +105,8 @@ pub fn attempt(place: &Place, allowed: &str, path: &Path, commands: impl Iterato
         let line = line.replace(" F", &format!(" {}", path.display()));
         let done = run(place, allowed, &line, format!("{}\n", input.trim()).as_bytes());
         assert!(matches!(done.code, Some(0..=2)), "{done:?}");
-        let errors = done
-            .errors
-            .lines()
-            .filter(|line| !line.contains(": warning: ") && !line.contains(": note: "))
-            .count();
+        let is_error = |line: &&str| !line.contains("warning") && !line.contains(": note: ");
+        let errors = done.errors.lines().filter(is_error).count();
         assert_eq!(errors, usize::from(done.code != Some(0)), "{done:?}");
         // The limit was kept by the program itself.
         let is_kept =

@@ -546,6 +546,15 @@ fn materials_travel_to_octrees_records_samples_and_pictures() {
     let records = place.bytes("both.csv");
     let records = String::from_utf8(records).unwrap();
     assert!(records.lines().next().unwrap().contains("material") || records.lines().count() > 2, "{records}");
+    // In a picture each has its colour.
+    place.run("render both.dex -o both.png --size 160x120 --samples 1 --no-legend").good();
+    place.run("render low.dex -o low.png --size 160x120 --samples 1 --no-legend").good();
+    assert_ne!(place.bytes("both.png"), place.bytes("low.png"));
+    for view in ["surface", "slice", "volume"] {
+        place
+            .run(&format!("render both.dex -o out.png --channel material --size 160x120 --view {view}"))
+            .good();
+    }
 }
 
 #[test]

@@ -178,3 +178,192 @@ fn cameras_and_legends_fit_what_is_shown() {
         place.run(&format!("render {line} -o never.png")).bad(2, &[option]);
     }
 }
+
+/// Which quarter of a slice of a corner with three arms is empty: of the box around what is FULL.
+fn empty_quarter(place: &Place, line: &str) -> String {
+    place
+        .run(&format!("render {line} -o out.png --view slice --no-legend --size 200x200 --samples 1"))
+        .good();
+    let (width, _, pixels) = png(place, "out.png");
+    let full = [0, 114, 178];
+    let found = pixels.iter().enumerate().filter(|(_, pixel)| **pixel == full);
+    let places: Vec<[u32; 2]> = found.map(|(i, _)| [i as u32 % width, i as u32 / width]).collect();
+    let span = |axis: usize| {
+        let all = || places.iter().map(|place| place[axis]);
+        (all().min().unwrap(), all().max().unwrap())
+    };
+    let middle = [0, 1].map(|axis| (span(axis).0 + span(axis).1) / 2);
+    let mut empty = Vec::new();
+    for (is_right, is_lower, name) in [
+        (false, false, "upper left"),
+        (true, false, "upper right"),
+        (false, true, "lower left"),
+        (true, true, "lower right"),
+    ] {
+        if !places
+            .iter()
+            .any(|place| (place[0] > middle[0]) == is_right && (place[1] > middle[1]) == is_lower)
+        {
+            empty.push(name);
+        }
+    }
+    empty.join(", ")
+}
+
+#[test]
+fn slices_stand_as_their_planes_say() {
+    let place = Place::new();
+    // Arms along x, y and z from the origin, of different lengths.
+    place.write("arms.csg", "union() { cube([30, 4, 4]); cube([4, 20, 4]); cube([4, 4, 25]); }");
+    for (plane, expected) in [
+        // From above: x to the right, y upward.
+        ("0,0,1,-2", "upper right"),
+        // From below: x to the right, y downward.
+        ("0,0,-1,2", "lower right"),
+        // From the front: x to the right, z upward.
+        ("0,-1,0,2", "upper right"),
+        // From behind: x to the left.
+        ("0,1,0,-2", "upper left"),
+        // From the right: y to the right; from the left: y to the left.
+        ("1,0,0,-2", "upper right"),
+        ("-1,0,0,2", "upper left"),
+        // As from above, whatever the sign of a zero.
+        ("-0,-0,2,-4", "upper right"),
+        ("1e-12,-1e-12,1,-2", "upper right"),
+    ] {
+        for more in ["--depth 6", "--no-cells"] {
+            let line = format!("arms.csg --plane {plane} {more}");
+            assert_eq!(empty_quarter(&place, &line), expected, "{line}");
+        }
+    }
+}
+
+#[test]
+fn slices_have_a_scale_and_may_do_without_cells() {
+    let place = parts();
+    let pixels = |line: &str| {
+        place.run(&format!("render {line} -o out.png --view slice --size 400x300 --samples 1")).good();
+        png(&place, "out.png").2
+    };
+    let count = |pixels: &[[u8; 3]], colour: [u8; 3]| pixels.iter().filter(|pixel| **pixel == colour).count();
+    let outline = [40, 40, 40];
+    for file in ["part.lfl", "cube.stl --depth 5", "dexels.lfl", "scene.csg --depth 5"] {
+        let cells = pixels(&format!("{file} --no-legend"));
+        let plain = pixels(&format!("{file} --no-legend --no-cells"));
+        assert!(count(&cells, outline) > 100, "{file}: {}", count(&cells, outline));
+        assert_eq!(count(&plain, outline), 0, "{file}");
+        assert!(count(&plain, [0, 114, 178]) > 5000, "{file}");
+        // The scale is ink in the lower left corner.
+        let corner = |pixels: &[[u8; 3]]| {
+            let ink = |i: usize| pixels[i] == [20, 20, 20] && i % 400 < 200 && i / 400 > 250;
+            (0..pixels.len()).filter(|&i| ink(i)).count()
+        };
+        assert_eq!(corner(&plain), 0, "{file}");
+        assert!(corner(&pixels(file)) > 100, "{file}");
+    }
+    // A surface is a line, and next to nothing of the picture.
+    let line = count(&pixels("scene.csg --no-cells --no-legend"), [35, 40, 45]);
+    assert!((200..3000).contains(&line), "{line}");
+    place.run("render part.lfl -o never.png --no-cells").bad(2, &["--no-cells", "slice"]);
+}
+
+#[test]
+fn pictures_are_png_whatever_their_names_say() {
+    let place = parts();
+    place.run("render cube.stl -o out.jpg").bad(2, &["out.jpg", "PNG", ".png"]);
+    assert!(!place.path("out.jpg").exists());
+    place.run("render cube.stl -o out.PNG --size 64x64").good();
+    place.run("render cube.stl -o out --size 64x64").good();
+}
+
+#[test]
+fn closed_meshes_are_capped_and_cameras_fit_what_is_left() {
+    let place = parts();
+    place.write("block.csg", "multmatrix([[1,0,0,1],[0,1,0,1],[0,0,1,1],[0,0,0,1]]) cube([6, 6, 6]);");
+    let view = "--size 200x200 --samples 1 --from 0,60";
+    let picture = |line: &str| {
+        // (Of an open mesh there is a warning.)
+        let run = place.run(&format!("render {line} -o out.png {view}"));
+        assert_eq!(run.code, Some(0), "{run:?}");
+        png(&place, "out.png").2
+    };
+    // From above one sees where it is cut, in the colour of a solid that is cut.
+    let cut = "--clip 0,0,-1,4";
+    let solid = picture(&format!("block.csg {cut}"));
+    let colour = solid[100 * 200 + 100];
+    let cap = |pixels: &[[u8; 3]]| pixels.iter().filter(|pixel| **pixel == colour).count() as f64;
+    let expected = cap(&solid);
+    assert!((cap(&picture(&format!("cube.stl {cut}"))) / expected - 1.0).abs() < 0.02, "{expected}");
+    // Its triangles have no inside, and neither has a mesh that is open: one sees walls from within.
+    assert!(cap(&picture(&format!("cube.stl {cut} --edges all"))) < 0.8 * expected, "{expected}");
+    let closed = block([1.0; 3], [7.0; 3]);
+    let open = leafless::TriangleMesh::new(closed.vertices().to_vec(), closed.triangles()[..11].to_vec());
+    place.write("open.stl", stl(&open.unwrap()));
+    assert!(cap(&picture(&format!("open.stl {cut}"))) < 0.8 * expected, "{expected}");
+    // A slice of a sixth of the block fills the picture as the block does.
+    for file in ["cube.stl", "block.csg", "cube.lfl", "dexels.lfl", "open.stl"] {
+        for cut in ["--clip 0,1,0,-6 --clip 1,0,0,-6", "--clip-box 3,3,3,4,4,4"] {
+            // (An open mesh has nothing inside.)
+            if file == "open.stl" && cut.starts_with("--clip-box") {
+                continue;
+            }
+            let pixels = picture(&format!("{file} {cut}"));
+            let marked = |(i, pixel): (usize, &[u8; 3])| (*pixel != [255; 3]).then_some([i % 200, i / 200]);
+            let places: Vec<[usize; 2]> = pixels.iter().enumerate().filter_map(marked).collect();
+            let span = |axis: usize| {
+                let all = || places.iter().map(|place| place[axis]);
+                all().max().unwrap_or(0) - all().min().unwrap_or(0)
+            };
+            assert!(span(0).max(span(1)) > 150, "{file} {cut}: {} {}", span(0), span(1));
+        }
+    }
+}
+
+#[test]
+fn a_constant_channel_has_a_legend_of_one_value() {
+    let place = parts();
+    place.run("attribute part.lfl --name heat --value 7 -o constant.lfl").good();
+    place.run("attribute part.lfl --name heat --expr z -o rising.lfl").good();
+    // Rows of the picture that the legend changes.
+    let rows = |file: &str| {
+        let [with, without] = ["", "--no-legend"].map(|more| {
+            let line = format!("render {file} -o out.png --size 400x300 --samples 1 --from 0,0 {more}");
+            place.run(&line).good();
+            png(&place, "out.png").2
+        });
+        let differs = |row: &usize| (300..400).any(|x| with[400 * row + x] != without[400 * row + x]);
+        (0..300).filter(differs).count()
+    };
+    let (constant, rising) = (rows("constant.lfl"), rows("rising.lfl"));
+    assert!((10..80).contains(&constant) && rising > 200, "{constant} {rising}");
+}
+
+#[test]
+fn what_is_full_is_seen_among_what_is_undecided() {
+    let place = Place::new();
+    // Two revisions, one of which is shorter by a slab; their surfaces lie in cells.
+    place.write("old.stl", stl(&block([1.03; 3], [6.97; 3])));
+    place.write("new.stl", stl(&block([1.03; 3], [6.97, 6.97, 5.03])));
+    for name in ["old", "new"] {
+        place.run(&format!("voxelize {name}.stl -o {name}.lfl --depth 6 --bounds 0,0,0,8")).good();
+    }
+    place.run("difference old.lfl new.lfl -o rest.lfl").good();
+    place.run("intersection new.lfl rest.lfl -o skin.lfl").good();
+    let render = |line: &str| {
+        let run = place.run(&format!("render {line} -o out.png --size 200x200 --samples 1 --json"));
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let report: Value = run.json();
+        (report["covered"].as_u64().unwrap(), run.errors.clone(), png(&place, "out.png").2)
+    };
+    let (shown, note, _) = render("rest.lfl");
+    // A slab of two by six by six is FULL; the skin of the rest is larger.
+    assert!(note.is_empty() || note.contains("--undecided"), "{note}");
+    let (hidden, _, slab) = render("rest.lfl --undecided hidden");
+    let (faint, _, both) = render("rest.lfl --undecided faint");
+    assert!(hidden > 2000 && hidden < shown && faint >= hidden, "{shown} {hidden} {faint}");
+    assert_ne!(slab, both);
+    let (_, note, _) = render("skin.lfl");
+    assert!(note.contains("no cell is FULL"), "{note}");
+    place.run("render old.stl -o never.png --undecided faint").bad(1, &["undecided", "octrees"]);
+    place.run("render rest.lfl -o never.png --view slice --undecided faint").bad(2, &["--undecided"]);
+}
