@@ -3,10 +3,12 @@
 use crate::failure::Failure;
 use crate::making::job::Job;
 use crate::making::like::Like;
+use crate::making::octree_of_dexel_surface;
 use crate::making::octree_of_mesh::{self, Voxelizing};
 use crate::making::surfaces::Surfaces;
 use crate::options::{bounds, octree_rules, threads};
 use crate::sink::Output;
+use crate::source::content::Content;
 use crate::source::file::Found;
 use crate::source::input::Input;
 use crate::source::mesh::Reading;
@@ -25,11 +27,16 @@ use std::time::Instant;
 /// them may stay undecided; a warning says so. Bodies may overlap. Vertices that differ by no more than
 /// single precision can tell are joined, and it is reported how many.
 ///
+/// With --surfaces a tri-dexel model is taken, too, if it stores normals: its surface is reconstructed from the ends and normals of its
+/// intervals (as by `leafless mesh --method dual`), and the octree keeps that. What is certified is then certified of the
+/// reconstructed surface. Nothing is proven of the part that the model was sampled from.
+///
 /// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input
 /// gives equal bytes, for any number of threads.
 #[derive(Args)]
 pub struct Arguments {
-    /// Mesh (STL, OBJ, PLY, OFF or 3MF) or volume (NRRD, MetaImage), or `-` for standard input
+    /// Mesh (STL, OBJ, PLY, OFF or 3MF), volume (NRRD, MetaImage) or, with --surfaces, tri-dexel model (.lfl), or `-` for standard
+    /// input
     #[arg(value_name = "MESH")]
     input: OsString,
     /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
@@ -79,5 +86,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     job.output.check_spares(input, "mesh")?;
     job.output.check_name()?;
     let found = Found::look(input, reading.told())?;
-    octree_of_mesh::make(&job, found, &Voxelizing { reading, placing: &placing, rule, surfaces })
+    let wanted = Voxelizing { reading, placing: &placing, rule, surfaces };
+    match found.content {
+        Content::Solid if surfaces.are_kept() => octree_of_dexel_surface::make(&job, found, &wanted),
+        _ => octree_of_mesh::make(&job, found, &wanted),
+    }
 }

@@ -13,6 +13,7 @@ pub mod job;
 pub mod like;
 pub mod moved;
 pub mod octree_from_dexels;
+pub mod octree_of_dexel_surface;
 pub mod octree_of_mesh;
 pub mod octree_of_scene;
 pub mod octree_of_volume;

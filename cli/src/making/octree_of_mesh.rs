@@ -18,7 +18,7 @@ use leafless::error::MeshError;
 use leafless::exchange::{LengthUnit, MeshFile};
 use leafless::lattice::MAX_DEPTH;
 use leafless::mesh::MeshReport;
-use leafless::{Frame, MeshSolid, Rule, SurfaceOptions, build, build_extended};
+use leafless::{Error, Frame, MeshSolid, Rule, SurfaceOptions, TriangleMesh, build, build_extended};
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Instant;
@@ -90,15 +90,7 @@ pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Fail
     let told = if job.json { Some(Mesh::new(&mesh).of(input)?) } else { None };
     let (min, max) = mesh.bounds();
     let tolerance = surfaces.tolerance((min, max));
-    let depth = job.depth.unwrap_or(MAX_DEPTH);
-    let frame = match &job.bounds {
-        Some(bounds) => bounds.with_depth(depth),
-        None => frame_around(&mesh, depth),
-    };
-    let frame = match (job.depth, tolerance) {
-        (None, Some(tolerance)) => deep_enough(frame.of(input)?, tolerance),
-        _ => frame.of(input)?,
-    };
+    let frame = frame_for(job, &mesh, tolerance).of(input)?;
     let read = start.elapsed().as_secs_f64();
 
     let building = Instant::now();
@@ -145,6 +137,19 @@ pub fn make(job: &Job, found: Found<'_>, wanted: &Voxelizing) -> Result<(), Fail
         info,
     };
     output.report(&json(&report)?)
+}
+
+/// The frame that a mesh is split on, whose surface may be kept to a tolerance.
+pub fn frame_for(job: &Job, mesh: &TriangleMesh, tolerance: Option<f64>) -> Result<Frame, Error> {
+    let depth = job.depth.unwrap_or(MAX_DEPTH);
+    let frame = match &job.bounds {
+        Some(bounds) => bounds.with_depth(depth)?,
+        None => frame_around(mesh, depth)?,
+    };
+    Ok(match (job.depth, tolerance) {
+        (None, Some(tolerance)) => deep_enough(frame, tolerance),
+        _ => frame,
+    })
 }
 
 /// Where the mesh sticks out of the bounds. If it does not, it is open, and what it encloses may.

@@ -591,6 +591,37 @@ fn the_volume_is_that_of_the_direction_with_most_rays() {
 }
 
 #[test]
+fn a_model_with_normals_becomes_an_octree_with_surfaces() {
+    let place = models();
+    let told = place.run("voxelize cube.lfl -o surfaces.lfl --surfaces=1e-2").good();
+    for words in
+        ["from ends and normals", "certified of this surface, and of nothing that the model was sampled from"]
+    {
+        assert!(told.text().contains(words), "{words}: {told:?}");
+    }
+    let report = json(&place, "voxelize cube.lfl -o surfaces.lfl --surfaces=1e-2");
+    assert_eq!(report["certified_of"], "surface reconstructed from a tri-dexel model");
+    assert_eq!(report["metadata"]["certified of"], "surface reconstructed from a tri-dexel model");
+    let (lower, upper) =
+        (report["volume"]["lower"].as_f64().unwrap(), report["volume"]["upper"].as_f64().unwrap());
+    // Ends and normals of a cube are exact but for the rounding of places.
+    let exact = f64::from(3.3f32 - 1.1).powi(3);
+    assert!(
+        upper - lower < 1e-2 * exact && lower < 1.001 * exact && upper > 0.999 * exact,
+        "{lower} {upper}"
+    );
+    assert!(report["surfaces"].as_f64().unwrap() > 0.0, "{report}");
+    let cut = place.run("voxelize cube.lfl -o moved.lfl --surfaces=1e-2 --translate 1,0,0").good();
+    assert!(cut.text().contains("moved.lfl"));
+    // What is missing is told.
+    place.run(&format!("dexelize cube.stl -o plain.lfl --resolution 16 {BOUNDS}")).good();
+    place.run("voxelize plain.lfl -o never.lfl --surfaces=1e-2").bad(1, &["no normals", "--normals 32"]);
+    place.run("voxelize cube.lfl -o never.lfl --surfaces").bad(2, &["--surfaces=1e-4"]);
+    place.run("voxelize surfaces.lfl -o never.lfl --surfaces=1e-2").bad(1, &["octree already"]);
+    assert!(!place.path("never.lfl").exists());
+}
+
+#[test]
 fn octrees_of_samples_are_moved_onto_any_lattice() {
     let place = models();
     place.run("convert cube.lfl --to octree -o cells.lfl").good();
