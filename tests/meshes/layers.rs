@@ -191,6 +191,20 @@ fn functions_of_planes_are_the_solid() {
 }
 
 /// What a mesh knows of its own moments is kept until something changes the solid.
+/// In a cube straight ways between points of a cell run through edges and corners.
+#[test]
+fn cubes_take_a_cell_a_corner() {
+    for (low, high) in [(0.0, 1.0), (-1.0, 1.0), (1.1, 3.3), (1.125, 3.25), (-7.7, 5.9)] {
+        for tolerance in [1e-2, 1e-4] {
+            let cube = shapes::block([low; 3], [high; 3]);
+            let trial = Trial::new(shapes::mesh(&cube), FillRule::NonZero, tolerance, 16);
+            let cuts = trial.tree.view().cuts().unwrap();
+            assert!(cuts.cells == 8 && cuts.given_up == 0, "{low} to {high}, {tolerance}: {cuts:?}");
+            trial.check("cube", &trial.points(&mut Random(1), 500));
+        }
+    }
+}
+
 #[test]
 fn moments_of_meshes_are_kept() {
     let options = SurfaceOptions { tolerance: Some(1e-3) };

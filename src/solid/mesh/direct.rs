@@ -25,6 +25,14 @@ use crate::solid::{BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrac
 use alloc::vec::Vec;
 use glam::DVec3;
 
+/// Directions in which no edges between points of a lattice lie: square roots of 3, 5, 7 and 11.
+const WAYS: [[f64; 3]; 4] = [
+    [1.0, 1.732_050_807_568_877, 2.236_067_977_499_79],
+    [-2.236_067_977_499_79, 1.0, -1.732_050_807_568_877],
+    [1.732_050_807_568_877, -2.645_751_311_064_591, 1.0],
+    [-1.0, -3.316_624_790_355_4, 2.236_067_977_499_79],
+];
+
 /// Lists that are kept from question to question.
 #[derive(Default)]
 pub(super) struct Direct {
@@ -233,8 +241,8 @@ impl Tracer<'_> {
             return Ok(found);
         }
         // Of a moved mesh nothing is known where a way out comes near to an edge. Another one may pass none.
-        for way in DIRECTIONS {
-            let ray = Ray { from: *point, direction: way.to_array().map(|c| [c, 0.0]), last: f64::INFINITY };
+        for way in WAYS {
+            let ray = Ray { from: *point, direction: way.map(|c| [c, 0.0]), last: f64::INFINITY };
             let found = self.is_inside_by(direct, &ray)?;
             if found.is_some() {
                 return Ok(found);
