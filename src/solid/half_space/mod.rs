@@ -5,6 +5,7 @@ mod bytes;
 pub(crate) mod function;
 mod host;
 pub(crate) mod joined;
+mod likeness;
 pub(crate) mod linear;
 pub(crate) mod lines;
 pub(crate) mod literals;

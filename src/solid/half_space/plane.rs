@@ -32,6 +32,11 @@ impl Plane {
         self.exact.len()
     }
 
+    /// The coefficients, rounded.
+    pub(super) fn rounded(&self) -> &[f64; 4] {
+        &self.c
+    }
+
     /// The plane `given` as the map shows it on the universe, whose lattice has 2^depth cells.
     pub(crate) fn new(given: &[Dyadic; 4], map: &ExactMap, depth: u8) -> Plane {
         let exact = map.linear(given);
@@ -160,7 +165,7 @@ impl Plane {
     }
 
     #[cold]
-    fn exact(&self) -> [Dyadic; 4] {
+    pub(super) fn exact(&self) -> [Dyadic; 4] {
         let mut rest = &*self.exact;
         self.c.map(|c| if self.exact.is_empty() { Dyadic::new(c) } else { Dyadic::read(&mut rest) })
     }

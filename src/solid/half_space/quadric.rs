@@ -89,6 +89,10 @@ impl Quadric {
         size_of_val(&*self.exact) + self.exact.iter().map(Dyadic::heap_bytes).sum::<usize>()
     }
 
+    pub(super) fn exact(&self) -> &Coefficients {
+        &self.exact
+    }
+
     /// The quadric `given` as the map shows it on the universe, whose lattice has 2^depth cells.
     pub(crate) fn new(given: &Coefficients, map: &ExactMap, depth: u8) -> Quadric {
         let exact = substitute(given, map);

@@ -8,6 +8,7 @@ mod centres;
 mod chords;
 mod distinct;
 mod hierarchy;
+mod identity;
 mod kleene;
 mod lone;
 mod slabs;
@@ -28,9 +29,9 @@ use crate::solid::half_space::{HalfSpace, Placed};
 use crate::solid::{AnyClassifier, AnySolid, Classifier, Solid};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use distinct::Equals;
 use hashbrown::HashMap;
 use hierarchy::{Groups, Operand};
+use identity::Identities;
 use once_cell::race::OnceBox;
 use surfaces::Start;
 use word::{Op, Word};
@@ -96,11 +97,12 @@ struct Writer<'c> {
     control: &'c Control<'c>,
     /// Operands of the joins that are pending.
     operands: Vec<Operand>,
-    /// Half-spaces that may occur again, and other solids: they are written once.
-    seen_half_spaces: HashMap<(usize, usize), u32>,
+    /// Half-spaces that may occur again, each with whether it is the complement of the one with its number; and other solids: they are
+    /// written once.
+    seen_half_spaces: HashMap<(usize, usize), (u32, bool)>,
     seen_solids: HashMap<usize, u32>,
-    /// Half-spaces that are equal, wherever they come from.
-    equals: Equals,
+    /// Half-spaces that are one, wherever they come from.
+    identities: Identities,
     /// The spaces of placements that may occur again.
     spaces: HashMap<(usize, usize), Space>,
 }
@@ -134,7 +136,7 @@ impl Program {
             operands: Vec::new(),
             seen_half_spaces: HashMap::new(),
             seen_solids: HashMap::new(),
-            equals: Equals::default(),
+            identities: Identities::default(),
             spaces: HashMap::new(),
         };
         writer.write(&csg.root)?;
@@ -305,7 +307,7 @@ impl Writer<'_> {
     /// Joins the operands from `first` on.
     fn join(&mut self, join: Join, complement: bool, first: usize) -> Result<(), Error> {
         if !self.program.paper {
-            self.equals.reduce(join, first, &mut self.operands, &mut self.program.words)?;
+            distinct::reduce(join, first, &mut self.operands, &mut self.program.words)?;
         }
         let Program { groups, words, paper, .. } = &mut self.program;
         let operands = &self.operands[first..];
@@ -332,23 +334,31 @@ impl Writer<'_> {
     ) -> Result<(), Error> {
         let map = &space.map;
         let key = (Arc::as_ptr(&half_space.0) as usize, Arc::as_ptr(map) as usize);
-        let index = match self.seen_half_spaces.get(&key) {
-            Some(&index) => index,
+        let (index, is_turned) = match self.seen_half_spaces.get(&key) {
+            Some(&known) => known,
             None => {
-                let index = self.program.half_spaces.len() as u32;
-                if index.is_multiple_of(1024) && self.control.is_cancelled() {
+                let Program { half_spaces, sources, frame, paper, .. } = &mut self.program;
+                let next = half_spaces.len() as u32;
+                if next.is_multiple_of(1024) && self.control.is_cancelled() {
                     return Err(Error::Cancelled);
                 }
-                memory::push(&mut self.program.half_spaces, half_space.0.on(map, &self.program.frame))?;
-                memory::push(&mut self.program.sources, (half_space.clone(), space.chain))?;
-                self.equals.note(half_space, map)?;
+                let placed = half_space.0.on(map, frame);
+                let found = match *paper {
+                    true => (next, false),
+                    false => self.identities.find(half_space, map, &placed, half_spaces)?,
+                };
+                if found.0 == next {
+                    memory::push(half_spaces, placed)?;
+                    memory::push(sources, (half_space.clone(), space.chain))?;
+                }
                 if shared {
                     self.seen_half_spaces.try_reserve(1)?;
-                    self.seen_half_spaces.insert(key, index);
+                    self.seen_half_spaces.insert(key, found);
                 }
-                index
+                found
             }
         };
+        let complement = complement != is_turned;
         memory::push(&mut self.program.words, Word::new(Op::HalfSpace { index, complement }))
     }
 

@@ -1,0 +1,112 @@
+//! Half-spaces that are one, wherever they come from: planes and quadrics whose coefficients on the universe are proportional, from
+//! one side or from the other, and other surfaces with the same numbers in the same place.
+//!
+//! So the truth tables of cells know what coincides: a solid less itself is empty, and solids that touch in a face have nothing in
+//! common, without a split.
+
+use crate::error::Error;
+use crate::memory;
+use crate::solid::half_space::map::ExactMap;
+use crate::solid::half_space::{HalfSpace, Placed, Surface};
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+use core::hash::{Hash, Hasher};
+use hashbrown::HashMap;
+
+/// Half-spaces that were met, by what is the same of equal ones.
+#[derive(Default)]
+pub(crate) struct Identities {
+    /// The last plane or quadric with about such a likeness; of each the one before it.
+    last: HashMap<i64, u32>,
+    before: Vec<u32>,
+    others: HashMap<Exactly, u32>,
+}
+
+/// There is none before.
+const NONE: u32 = u32::MAX;
+
+/// Likenesses are told apart in steps of about 10⁻⁹, and known to that share of a step.
+const STEPS: f64 = (1u64 << 30) as f64;
+const KNOWN: f64 = 1e-3;
+
+/// So many are looked at that are nearly alike. (What is missed costs time alone.)
+const MOST: usize = 16;
+
+impl Identities {
+    /// The number of the half-space among `known` that is the same, and whether it is its complement; if there is none it is the
+    /// next one. O(1).
+    pub(crate) fn find(
+        &mut self,
+        half_space: &HalfSpace,
+        map: &Arc<ExactMap>,
+        placed: &Placed,
+        known: &[Placed],
+    ) -> Result<(u32, bool), Error> {
+        let next = known.len() as u32;
+        let Some(likeness) = placed.likeness() else {
+            self.others.try_reserve(1)?;
+            let exactly = Exactly { half_space: half_space.clone(), map: map.clone() };
+            let found = *self.others.entry(exactly).or_insert(next);
+            if found == next {
+                memory::push(&mut self.before, NONE)?;
+            }
+            return Ok((found, false));
+        };
+        let step = |room: f64| libm::floor(likeness * STEPS + room) as i64;
+        let (own, low, high) = (step(0.0), step(-KNOWN), step(KNOWN));
+        for step in low..=high {
+            let mut number = self.last.get(&step).copied().unwrap_or(NONE);
+            for _ in 0..MOST {
+                let Some(other) = known.get(number as usize) else { break };
+                if let Some(is_turned) = other.is_turned(placed) {
+                    return Ok((number, is_turned));
+                }
+                number = self.before[number as usize];
+            }
+        }
+        self.last.try_reserve(1)?;
+        memory::push(&mut self.before, NONE)?;
+        self.before[next as usize] = self.last.insert(own, next).unwrap_or(NONE);
+        Ok((next, false))
+    }
+}
+
+/// A half-space and where it stands, by their exact numbers.
+struct Exactly {
+    half_space: HalfSpace,
+    map: Arc<ExactMap>,
+}
+
+impl PartialEq for Exactly {
+    fn eq(&self, other: &Exactly) -> bool {
+        let is_same = match (&*self.half_space.0, &*other.half_space.0) {
+            (Surface::Powers(a), Surface::Powers(b)) => a == b,
+            (Surface::Torus(a), Surface::Torus(b)) => a == b,
+            (Surface::Host(a), Surface::Host(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        };
+        is_same && (Arc::ptr_eq(&self.map, &other.map) || self.map == other.map)
+    }
+}
+
+impl Eq for Exactly {}
+
+impl Hash for Exactly {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        match &*self.half_space.0 {
+            Surface::Plane(coefficients) => coefficients.hash(state),
+            Surface::Quadric(coefficients) => coefficients.hash(state),
+            Surface::Torus(torus) => torus.hash(state),
+            Surface::Powers(powers) => {
+                for (coefficient, centre, exponent) in powers.terms {
+                    // Zero has two signs, and is equal to itself.
+                    ([coefficient, centre].map(|x| (x + 0.0).to_bits()), exponent).hash(state);
+                }
+                (powers.constant + 0.0).to_bits().hash(state);
+            }
+            Surface::Host(host) => Arc::as_ptr(host).hash(state),
+            Surface::Slab(_) => core::ptr::from_ref(&*self.half_space.0).hash(state),
+        }
+        self.map.hash(state);
+    }
+}
