@@ -200,6 +200,58 @@ fn programs_by_cmake() {
     }
 }
 
+/// The examples in C++ are a project of CMake, with that for Open CASCADE where it is installed.
+#[test]
+fn open_cascade() {
+    let kit = kit();
+    if !kit.check.is_plain() || !have("open_cascade", &["cmake"]) {
+        return;
+    }
+    let folder = fresh(kit, "open_cascade");
+    let prefix = moved_prefix(kit, &folder, &[]);
+    let mut configure = Command::new("cmake");
+    configure.arg("-S").arg(root().join("examples/cpp")).args([
+        "-B",
+        "build",
+        "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror",
+    ]);
+    configure.arg(format!("-DCMAKE_PREFIX_PATH={}", prefix.display())).current_dir(&folder);
+    succeed(&mut configure);
+    succeed(Command::new("cmake").args(["--build", "build", "--parallel", "2"]).current_dir(&folder));
+    let program = folder.join("build/open_cascade");
+    if !program.exists() {
+        return kit::skipped("open_cascade", "Open CASCADE is not installed");
+    }
+    let told = kit.run(&program, &[]);
+    let bounds = |of: &str| {
+        let line = told.lines().find_map(|line| line.strip_prefix(of)).expect(of);
+        let (lower, upper) = line.split_once(" to ").unwrap_or((line, line));
+        [lower, upper].map(|bound| bound.trim().parse::<f64>().unwrap())
+    };
+    // The block less its bore, whose side of 603 square millimetres has facets within the deflection.
+    let truth = 40.0 * 24.0 * 16.0 - std::f64::consts::PI * 6.0 * 6.0 * 16.0;
+    let [[by_them, _], triangles, distances] =
+        ["volume by Open CASCADE", "volume by triangles", "volume by distances"].map(bounds);
+    assert!((by_them - truth).abs() < 1e-3, "{told}");
+    assert!(triangles.into_iter().all(|bound| (bound - truth).abs() < 603.2 * 0.01), "{told}");
+    assert!(distances[0] < truth && truth < distances[1] && distances[1] - distances[0] < 4000.0, "{told}");
+
+    let file = |name: &str, text: &str| std::fs::write(folder.join("build").join(name), text).unwrap();
+    let part = text(folder.join("build/open_cascade.step"));
+    let (start, shell) = part.split_once("CLOSED_SHELL('',(").unwrap();
+    file("open.step", &format!("{start}CLOSED_SHELL('',({}", shell.split_once(',').unwrap().1));
+    file("other.step", "solid other");
+    for (arguments, problem) in [
+        (&["none.step"][..], "none.step: the file cannot be opened"),
+        (&["other.step"], "other.step: Open CASCADE cannot read it as STEP"),
+        (&["open.step"], "open.step: no closed solid is in it"),
+        (&["open_cascade.step", "-1"], "the deflection is to be a length"),
+    ] {
+        let told = kit.try_run(&program, arguments).unwrap_err();
+        assert!(told.contains(problem), "{told}");
+    }
+}
+
 /// Which versions a program may ask for, and that parts that are not installed are missed.
 #[test]
 fn what_cmake_finds() {

@@ -56,7 +56,7 @@ fn stranger(bytes: &[u8], extension: &str) -> Option<String> {
     if bytes.starts_with(b"ISO-10303-21;") || is_one_of(&["step", "stp", "igs", "iges"]) {
         return Some(
             "is a CAD model (STEP or IGES), whose curved faces are not read: export a mesh of it as STL, OBJ or 3MF, with as \
-             small a deviation as you need"
+             small a deviation as you need; or take it in by Open CASCADE, as examples/cpp/open_cascade.cpp does"
                 .into(),
         );
     }
