@@ -144,6 +144,16 @@ impl Trial {
             .collect()
     }
 
+    /// Whether a triangle lies within a distance of a point.
+    fn is_within(&self, p: Point, most: f64) -> bool {
+        self.corners().any(|corners| {
+            let [a, b, c] = corners;
+            let is_beside =
+                |k: usize| p[k] < a[k].min(b[k]).min(c[k]) - most || p[k] > a[k].max(b[k]).max(c[k]) + most;
+            !(0..3).any(is_beside) && distance(p, corners).0 <= most
+        })
+    }
+
     /// Whether nothing is known in the finest cell of a point.
     fn is_given_up(&self, p: Point) -> bool {
         let Some(at) = self.frame.cell_of(p) else { return true };
@@ -161,10 +171,8 @@ impl Trial {
                 (Membership::Inside, truth) => assert!(truth != Some(false), "not inside: {}", told()),
                 (Membership::Outside, truth) => assert!(truth != Some(true), "not outside: {}", told()),
                 (Membership::Undecided, _) => {
-                    let away = self.corners().map(|corners| distance(p, corners).0);
-                    let away = away.fold(f64::INFINITY, f64::min);
-                    let is_far = away > 2.0 * self.tolerance && !self.is_given_up(p);
-                    assert!(!is_far, "undecided {away} from the surface: {}", told());
+                    let is_near = self.is_within(p, 2.0 * self.tolerance) || self.is_given_up(p);
+                    assert!(is_near, "undecided off the surface: {}", told());
                     continue;
                 }
             }
