@@ -682,13 +682,18 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     }
 }
 
-/// Runs all operations; tells how many requests came back as an error, and how many ended a process.
+/// Runs all operations; tells how many requests came back as an error, and how many ended a process. Where small requests end it,
+/// which takes many processes, memory comes back after a refusal in every other operation and stays away in the rest.
 fn try_every_operation(spared: u64) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("tree.lfl"), old_file()).unwrap();
     let names: Vec<&str> = operations(directory.path()).into_iter().map(|(name, _)| name).collect();
-    let counts = on_all_processors(&names, |name| {
+    let numbered: Vec<_> = names.iter().enumerate().collect();
+    let counts = on_all_processors(&numbered, |(number, name)| {
         [false, true].map(|for_good| {
+            if spared == 0 && for_good == (number % 2 == 0) {
+                return (0, 0);
+            }
             let (errors, fatal) = try_all(name, spared, for_good);
             println!("{name}: {errors} errors, {fatal} fatal");
             (errors, fatal)
