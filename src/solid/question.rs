@@ -2,9 +2,10 @@
 
 use super::{
     BoxContent, Classifier, Crossing, Enclosure, NearestSurface, OpenSurfaces, PlacedHalfSpace, RayQuestion,
-    RayTrace, Segment, Worker,
+    RayTrace, Segment, Slab, Worker,
 };
 use crate::control::Control;
+use crate::cut;
 use crate::dexel::Beam;
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, CellMoments, Interval, Ray, VolumeMoments};
@@ -64,12 +65,26 @@ pub enum Question<'q> {
 
 /// How thick layers may be, with the places for the answer.
 pub struct LayersQuestion<'q> {
-    /// The greatest width of a layer (model units).
+    /// No point of a layer is to be further than twice this from the surface (model units).
     pub tolerance: f64,
     /// Layers for this cell alone are added: a surface with the number [`OpenSurfaces::OWN`] + i is number i of these.
     pub own: &'q mut Vec<PlacedHalfSpace>,
     /// The function, of surfaces of the list and own ones.
     pub known: &'q mut Option<OpenSurfaces>,
+}
+
+impl LayersQuestion<'_> {
+    /// How wide any layer may be, as a share of the tolerance. Next to a wall of the cell a point in it is up to 1 + √3 of its widths
+    /// away from the surface, which is to be less than twice the tolerance.
+    pub(crate) const SHARE: f64 = 0.7;
+
+    /// Whether a layer that alone bounds the solid in a cell is thin enough for a tolerance, in half edges of the cell. (It may get a
+    /// little thicker when it is stored.)
+    pub(crate) fn admits(slab: &Slab, tolerance: f64) -> bool {
+        let width = (slab.outer - slab.inner) / libm::sqrt(slab.normal.iter().map(|c| c * c).sum::<f64>());
+        // (What is no number is not less.)
+        width <= Self::SHARE * tolerance || width <= tolerance && cut::stray(slab) <= 1.9 * tolerance
+    }
 }
 
 /// The place for intervals of rays.

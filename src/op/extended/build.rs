@@ -17,8 +17,8 @@ use crate::solid::half_space::Placed;
 use crate::solid::half_space::record::Pool;
 use crate::solid::half_space::table::Table;
 use crate::solid::{
-    Ask, AskLayers, AskWhole, Batch, Classifier, Enclosure, Fingerprinter, HalfSpace, OCTANTS, OpenSurfaces,
-    Parts, PlacedHalfSpace, Slab, SlabJoin, Solid, Verdict, Worker,
+    Ask, AskLayers, AskWhole, Batch, Classifier, Enclosure, Fingerprinter, HalfSpace, LayersQuestion,
+    OCTANTS, OpenSurfaces, Parts, PlacedHalfSpace, Slab, SlabJoin, Solid, Verdict, Worker,
 };
 use crate::walk::{LEVELS, Part, each, split_each};
 use alloc::boxed::Box;
@@ -429,11 +429,18 @@ impl<C: Classifier> Extended<'_, C> {
         let half = 0.5 * self.frame.edge() / (1u64 << cell.level) as f64;
         let is_slab = |slab: &&Slab| slab.normal != [0.0; 3];
         let mut planes = [const { None }; MOST_KEPT];
+        let is_lone = enclosure.slabs.iter().filter(is_slab).count() == 1;
+        // Next to layers, slabs keep to what holds for these.
+        let is_admitted = |slab: &Slab, width: f64| {
+            self.layers.is_none()
+                || width <= LayersQuestion::SHARE * tolerance
+                || is_lone && LayersQuestion::admits(slab, tolerance / half)
+        };
         for (plane, slab) in planes.iter_mut().zip(enclosure.slabs.iter().filter(is_slab)) {
             let length = libm::sqrt(slab.normal.iter().map(|c| c * c).sum::<f64>());
             let width = (slab.outer - slab.inner) * half / length;
             // (What is no number is not less.)
-            let is_thin = width <= tolerance && length.is_finite();
+            let is_thin = width <= tolerance && length.is_finite() && is_admitted(slab, width);
             if !is_thin {
                 return Ok(None);
             }

@@ -19,7 +19,7 @@ use crate::lattice::{Cell, Cube, axes};
 use crate::memory;
 use crate::mesh::{FacetPlane, FacetPlanes, FillRule};
 use crate::solid::half_space::table::Table;
-use crate::solid::{HalfSpace, OpenSurfaces, PlacedHalfSpace, Slab};
+use crate::solid::{HalfSpace, LayersQuestion, OpenSurfaces, PlacedHalfSpace, Slab};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
@@ -32,10 +32,6 @@ const MOST_TRIANGLES: usize = 256;
 
 /// The surface may lie that far from the mesh, in half edges.
 const THICK: f64 = 0.25;
-
-/// How wide a layer around facets may be, as a share of the tolerance. Next to a wall of the cell a point in it is up to 1 + √3 of its
-/// widths away from the surface, which is to be less than twice the tolerance.
-const SHARE: f64 = 0.7;
 
 /// More than the length of a way in the cell, with what is rounded.
 const FAR: f64 = 3.5;
@@ -222,7 +218,7 @@ impl<'v> Layering<'v> {
         } else {
             layer
         };
-        (self.width(&slab) <= self.tolerance).then_some(layer)
+        (self.width(&slab) <= LayersQuestion::SHARE * self.tolerance).then_some(layer)
     }
 
     /// How wide a slab is; nothing of a side that is all open counts.
@@ -234,7 +230,7 @@ impl<'v> Layering<'v> {
     fn as_one(&self, groups: &mut [u8]) -> Option<Found> {
         groups.fill(0);
         let mut found = Found::default();
-        found.push(self.around(|_| true)?)?;
+        found.push(self.around(|_| true, true)?)?;
         Some(found)
     }
 
@@ -250,8 +246,8 @@ impl<'v> Layering<'v> {
         Some(found)
     }
 
-    /// The layer around some facets; `None` if it is too wide, or they have no direction.
-    fn around(&self, is_member: impl Fn(usize) -> bool) -> Option<Layer> {
+    /// The layer around some facets, which may be all that there are; `None` if it is too wide, or they have no direction.
+    fn around(&self, is_member: impl Fn(usize) -> bool, is_lone: bool) -> Option<Layer> {
         let members =
             || self.facets.iter().enumerate().filter(|(i, _)| is_member(*i)).map(|(_, facet)| facet);
         let mut normal = [0.0; 3];
@@ -268,7 +264,8 @@ impl<'v> Layering<'v> {
         let margin = 4.0 * range * self.slack + 64.0 * UNIT;
         let slab = Slab { normal, inner: inner - margin, outer: outer + margin };
         // (What is no number is not less.)
-        let is_thin = self.width(&slab) <= SHARE * self.tolerance;
+        let is_thin = self.width(&slab) <= LayersQuestion::SHARE * self.tolerance
+            || is_lone && LayersQuestion::admits(&slab, self.tolerance);
         if !is_thin {
             return None;
         }
@@ -329,7 +326,7 @@ impl<'v> Layering<'v> {
         {
             return Some(layer);
         }
-        self.around(|i| groups[i] == group)
+        self.around(|i| groups[i] == group, false)
     }
 
     /// The winding number on these sides of layers; nothing if they have no point in common. `None` if that is not found out.
@@ -435,29 +432,15 @@ impl<'v> Layering<'v> {
         Some(Table((0..64).fold(0, |all, signs| all | wide(signs) << signs)))
     }
 
-    /// Whether all of the cell's own ones of the layers `of` lies near to facets.
+    /// Whether all of the cell's own ones of the layers `of` lies near to a facet each: what is near to a convex polygon is convex, so
+    /// that it is enough that the corners of the layer are.
     fn are_covered(&self, found: &Found, of: usize) -> bool {
         let is_own = |(i, layer): &(usize, &Layer)| of >> i & 1 != 0 && layer.plane.is_none();
         found.each().iter().enumerate().filter(is_own).all(|(_, layer)| {
-            let Slab { normal, inner, outer } = layer.slab;
-            let level = match (inner.is_finite(), outer.is_finite()) {
-                (true, true) => 0.5 * (inner + outer),
-                (true, false) => inner,
-                _ => outer,
-            };
-            let is_near =
-                |p: &Point| self.facets.iter().any(|facet| away(p, &facet.polygon) <= 2.0 * self.tolerance);
-            // Where the edges of the cell meet it.
-            (0..12).all(|edge: usize| {
-                let axis = edge / 4;
-                let mut p = [0.0; 3];
-                p[(axis + 1) % 3] = if edge & 1 == 0 { -1.0 } else { 1.0 };
-                p[(axis + 2) % 3] = if edge & 2 == 0 { -1.0 } else { 1.0 };
-                p[axis] = (level - dot(&normal, &p)) / normal[axis];
-                // (What is no number is not greater.)
-                let is_met = p[axis].abs() <= 1.0;
-                !is_met || is_near(&p)
-            })
+            let corners = cut::corners(&layer.slab);
+            self.facets
+                .iter()
+                .any(|facet| corners.clone().all(|p| away(&p, &facet.polygon) <= 2.0 * self.tolerance))
         })
     }
 
