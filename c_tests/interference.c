@@ -35,6 +35,8 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
     CHECK(found.witness[0] < 1u << found.witness_level);
     OK(leafless_frame_cell_bounds(&frame, found.witness, found.witness_level, low, high));
     CHECK(high[0] - low[0] == ldexp(frame.edge, -(int)found.witness_level) && low[0] >= frame.origin[0]);
+    CHECK(found.ball_radius_model > 0 && found.ball_centre_model[0] - found.ball_radius_model >= low[0]);
+    CHECK(found.ball_centre_model[2] + found.ball_radius_model <= high[2]);
     CHECK(found.volume_model.lower > 0 && found.volume_model.upper > 374);
     OK(leafless_solid_interfere(a, over, &frame, 200, NULL, &found));
     CHECK(found.volume_model.lower < 375 && found.volume_model.upper > 374);

@@ -11,7 +11,7 @@ use super::status::leafless_status;
 use leafless::Cell;
 use leafless::Error;
 use leafless::memory;
-use leafless::query::{Overlap, interference_at};
+use leafless::query::{Ball, Overlap, interference_at};
 use leafless::solid::Transform;
 use leafless::{AnySolid, Clearance, Interference, clearance, interference};
 
@@ -21,7 +21,7 @@ use leafless::{AnySolid, Clearance, Interference, clearance, interference};
 pub enum leafless_overlap {
     /// Proven: they have none. The solids may touch.
     LEAFLESS_OVERLAP_DISJOINT = 0,
-    /// Proven: a cell lies in both.
+    /// Proven: a ball lies in both.
     LEAFLESS_OVERLAP_OVERLAPPING = 1,
     /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
     /// universe, where they may overlap.
@@ -57,8 +57,12 @@ pub struct leafless_interference {
     pub verdict: u32,
     /// The finest level of which cells were looked at.
     pub level: u32,
-    /// A cell that lies in both, if they are proven to overlap: its position in cells of its level; else
-    /// zeros. leafless_frame_cell_bounds gives its box.
+    /// If they are proven to overlap, the centre of a ball, all of which is proven to lie in both, in model units; else zeros. It is not
+    /// the largest one.
+    pub ball_centre_model: [f64; 3],
+    /// The radius of that ball.
+    pub ball_radius_model: f64,
+    /// The cell in which that ball lies: its position in cells of its level; else zeros. leafless_frame_cell_bounds gives its box.
     pub witness: [u32; 3],
     /// The level of that cell.
     pub witness_level: u32,
@@ -69,6 +73,7 @@ pub struct leafless_interference {
 impl From<&Interference> for leafless_interference {
     fn from(found: &Interference) -> leafless_interference {
         let witness = found.witness.unwrap_or(Cell::ROOT);
+        let ball = found.ball.unwrap_or(Ball { centre: [0.0; 3], radius: 0.0 });
         leafless_interference {
             volume_model: found.volume.into(),
             proof_a: found.proofs[0].into(),
@@ -77,6 +82,8 @@ impl From<&Interference> for leafless_interference {
             splits_b: found.splits[1],
             verdict: leafless_overlap::from(found.verdict) as u32,
             level: found.level.into(),
+            ball_centre_model: ball.centre,
+            ball_radius_model: ball.radius,
             witness: witness.at,
             witness_level: witness.level.into(),
             is_clipped: found.clipped,
@@ -222,6 +229,10 @@ pub unsafe extern "C" fn leafless_solid_resampled(
 /// Whether two solids overlap, as they are in the universe of a frame. Once an overlap is proven its volume
 /// is refined until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work
 /// with the proof.
+///
+/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces), a surface that bounds both is
+/// one, however both were placed, and solids that touch in it from opposite sides are proven to be disjoint. Meshes and functions of
+/// the host that touch stay undecided.
 ///
 /// Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once
 /// `max_splits` cells of both are split, with what is known by then.

@@ -127,7 +127,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_zone { struct_size, kind, min_model, max_model, point_model, direction_model, from, to }
         leafless_lazy_info { struct_size, frame, statistics, splits, replays, bytes }
         leafless_interference {
-            volume_model, proof_a, proof_b, splits_a, splits_b, verdict, level, witness, witness_level, is_clipped
+            volume_model, proof_a, proof_b, splits_a, splits_b, verdict, level,
+            ball_centre_model, ball_radius_model, witness, witness_level, is_clipped
         }
         leafless_clearance { struct_size,
             distance_model, proof_a, proof_b, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,

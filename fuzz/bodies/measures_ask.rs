@@ -3,7 +3,7 @@
 use super::dense::Dense;
 use super::{Bytes, Scene, control, corners, doubles, universe};
 use leafless::query::{
-    Columns, DistanceTo, Obstacle, Overlap, Region, Side, Sight, StopReason, cells_in, classify_box,
+    Ball, Columns, DistanceTo, Obstacle, Overlap, Region, Side, Sight, StopReason, cells_in, classify_box,
     classify_in, columns, distances, heights, line_of_sight, ray_spans, surface_area, volume_in,
 };
 use leafless::{
@@ -208,7 +208,13 @@ impl Asked<'_> {
             Overlap::Undecided => {}
         }
         assert_eq!(found.witness.is_some(), found.verdict == Overlap::Overlapping);
-        assert!(found.witness.is_none_or(|cell| common.in_cell(self.frame, cell).1), "{found:?}");
+        assert!(found.witness.is_none_or(|cell| common.in_cell(self.frame, cell).0), "{found:?}");
+        if let Some(Ball { centre, radius }) = found.ball {
+            // A cube in the ball.
+            let reach = 0.57 * radius;
+            let (min, max) = (centre.map(|c| c - reach), centre.map(|c| c + reach));
+            assert!(reach > 0.0 && common.in_box(min, max).1, "{found:?}");
+        }
         assert!(found.splits.iter().sum::<u64>() <= self.most(), "{found:?}");
         // Nobody comes first.
         let other = interference(&b.solid, &a.solid, self.frame, self.tolerance, &control(self.budget));

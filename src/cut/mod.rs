@@ -11,6 +11,7 @@
 //! - The area of one surface is the flux through the walls of the cube, to third order. Where surfaces meet, each is
 //!   projected to a wall.
 
+mod ball;
 mod clip;
 mod curved;
 #[cfg(test)]
@@ -32,6 +33,7 @@ mod tests;
 mod wedge;
 
 use crate::lattice::{CellMoments, CubeMoments};
+pub(crate) use ball::ball;
 pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
 pub(crate) use face::{area_of_faces, area_within};
 pub(crate) use flux::{area_of_surface, most_area};

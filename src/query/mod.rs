@@ -62,7 +62,7 @@ pub use contains::contains;
 pub use content::{CellsIn, cells_in, volume_in};
 pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, NearPoint, PointDistance, distances};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
-pub use interference::{Interference, Overlap, interference, interference_at};
+pub use interference::{Ball, Interference, Overlap, interference, interference_at};
 pub use measure::{
     AREA_SPLITS, MEASURE_SPLITS, MassProperties, StopReason, SurfaceArea, Tolerance, measure, surface_area,
 };

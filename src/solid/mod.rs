@@ -43,6 +43,7 @@ mod fingerprint;
 pub(crate) mod forward;
 mod motion;
 mod subtree;
+mod surface_cell;
 mod trace;
 
 // Producers: none knows another one. (Half-spaces are no solid by themselves; expressions are made of them.)
@@ -57,6 +58,7 @@ mod volume;
 mod adaptive;
 mod any;
 mod erased;
+pub(crate) mod joint;
 #[cfg(feature = "std")]
 mod prepared;
 mod split_counter;

@@ -29,7 +29,7 @@ const LAYERS: [&[&str]; 17] = [
 ];
 
 /// Modules of `solid` that its producers share. Every other one is a producer, which no other may use.
-const SHARED: [&str; 13] = [
+const SHARED: [&str; 14] = [
     "any",
     "batch",
     "erased",
@@ -41,6 +41,7 @@ const SHARED: [&str; 13] = [
     "prepared",
     "question",
     "subtree",
+    "surface_cell",
     "trace",
     "verdict",
 ];

@@ -49,27 +49,16 @@ fn two_balls_take_eighty_splits_at_most() {
         let d = 33.0 * 3f64.sqrt();
         let lens = PI * (60.0 - d) * (60.0 - d) * (d * d + 120.0 * d) / (12.0 * d);
         assert!(over.volume.contains(lens) && over.volume.lower > 0.0);
-        let witness = Cube { frame: &frame, cell: over.witness.unwrap() };
-        let (min, max) = witness.bounds();
-        for k in 0..8 {
-            let corner = [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min[axis] } else { max[axis] });
-            for centre in [50.0, 83.0] {
-                assert!(corner.iter().map(|c| (c - centre) * (c - centre)).sum::<f64>() <= 900.0);
-            }
-        }
-        // Other implementations of the same shapes are asked about the same cells.
+        check_ball(&over, &frame, "balls");
+        let ball = over.ball.unwrap();
+        assert!([50.0, 83.0].iter().all(|&c| distance(ball.centre, [c; 3]) + ball.radius <= 30.0));
+        // Other implementations of the same shapes, which know no surfaces, take the cells alone.
         for (at, expected) in [(86.0, &apart), (83.0, &over)] {
             let found = interference(&plain(50.0), &plain(at), &frame, PROOF, &alone()).unwrap();
-            assert_eq!(
-                (found.verdict, found.witness, found.splits),
-                (expected.verdict, expected.witness, expected.splits)
-            );
+            assert_eq!(found.verdict, expected.verdict);
+            assert!(splits(expected) <= splits(&found) && splits(&found) <= 80, "{expected:?} {found:?}");
             let any = [plain(50.0), plain(at)].map(AnySolid::new);
-            let found = interference(&any[0], &any[1], &frame, PROOF, &alone()).unwrap();
-            assert_eq!(
-                (found.verdict, found.witness, found.splits),
-                (expected.verdict, expected.witness, expected.splits)
-            );
+            assert_eq!(interference(&any[0], &any[1], &frame, PROOF, &alone()).unwrap(), found);
         }
     }
 }
@@ -134,18 +123,31 @@ fn a_block_in_a_pocket() {
         assert_eq!(found.verdict, Overlap::Overlapping);
         assert!(splits(&found) <= 80);
         let found = interference(&pushed, &stock, &frame, 0.0, &alone()).unwrap();
-        assert!(found.volume.contains(4.0 * 48.0 * 48.0) && found.volume.width() == 0.0, "{found:?}");
+        assert!(found.volume.contains(4.0 * 48.0 * 48.0) && found.volume.width() < 1e-6, "{found:?}");
         // The same by a transform of a solid that knows nothing of placements.
         let step = Affine::translation([6.0, 0.0, 0.0]).unwrap();
         let plain = Plain::cuboid([40.0; 3], [88.0; 3]).unwrap();
         let moved = Transform::new(&plain, &frame, &step);
         let same = interference(&moved, &stock, &frame, 0.0, &alone()).unwrap();
-        assert_eq!((same.verdict, same.volume), (found.verdict, found.volume));
+        assert_eq!(same.verdict, found.verdict);
+        assert!(same.volume.contains(4.0 * 48.0 * 48.0) && same.volume.width() < 1e-6, "{same:?}");
     }
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The ball of an answer lies in its cell.
+fn check_ball(found: &Interference, frame: &Frame, between: &str) {
+    assert_eq!(found.ball.is_some(), found.verdict == Overlap::Overlapping, "{between}: {found:?}");
+    assert_eq!(found.ball.is_some(), found.witness.is_some(), "{between}: {found:?}");
+    let (Some(ball), Some(cell)) = (found.ball, found.witness) else { return };
+    let (min, max) = Cube { frame, cell }.bounds();
+    let is_in = |axis: usize| {
+        min[axis] <= ball.centre[axis] - ball.radius && ball.centre[axis] + ball.radius <= max[axis]
+    };
+    assert!(ball.radius > 0.0 && (0..3).all(is_in), "{between}: {found:?}");
 }
 
 /// What must hold of any answer, if the truth is known but for rounding.
@@ -352,12 +354,13 @@ fn check_points(
             assert_ne!(found.verdict, Overlap::Disjoint, "{between}: {p:?}");
         }
     }
-    if let Some(cell) = found.witness {
-        let (min, max) = Cube { frame, cell }.bounds();
+    check_ball(found, frame, between);
+    if let Some(ball) = found.ball {
+        let (min, max) = (ball.centre.map(|c| c - ball.radius), ball.centre.map(|c| c + ball.radius));
         for _ in 0..200 {
             let p = point(min, max);
             let (a, b) = sides(p);
-            assert!(a >= 0 && b >= 0, "{between}: {p:?} {cell:?}");
+            assert!(distance(p, ball.centre) > ball.radius || a >= 0 && b >= 0, "{between}: {p:?} {ball:?}");
         }
     }
     // Five standard deviations.
@@ -430,7 +433,8 @@ fn random_trees_in_random_places() {
             }
         }
     }
-    assert!(counts.iter().all(|&count| count > 5), "{counts:?}");
+    // Hardly any is left undecided.
+    assert!(counts[0] > 5 && counts[1] > 5 && counts[2] < 5, "{counts:?}");
 }
 
 /// To the end, the answer is that of the set algebra, cell by cell; and moving parts from memory to memory on
@@ -450,10 +454,15 @@ fn to_the_end_it_is_the_intersection_of_octrees() {
             build(&moved, &frame, Rule::Certified, &alone()).unwrap(),
         ];
         let common = intersection(x.view(), y.view(), &alone()).unwrap().statistics().volume();
-        assert_eq!(found.volume, common);
+        // (Surfaces tell more than cells.)
+        assert!(
+            common.lower <= found.volume.lower && found.volume.upper <= common.upper,
+            "{found:?} {common:?}"
+        );
         // Stored octrees are solids as well.
         let stored = interference(&x, &y, &frame, 0.0, &alone()).unwrap();
-        assert_eq!((stored.verdict, stored.volume), (found.verdict, common));
+        assert_eq!(stored.volume, common);
+        assert!(stored.verdict == found.verdict || stored.verdict == Overlap::Undecided);
     }
 }
 
@@ -487,7 +496,8 @@ fn budgets_and_refusals() {
     let (a, b) = (Csg::ball([50.0; 3], 30.0).unwrap(), Csg::ball([84.5; 3], 30.0).unwrap());
     for most in [0, 1, 2, 3, 40, 300] {
         let found = interference(&a, &b, &frame, PROOF, &up_to(most)).unwrap();
-        assert!(splits(&found) <= most && found.verdict == Overlap::Undecided && found.volume.lower == 0.0);
+        assert!(splits(&found) <= most && found.verdict != Overlap::Disjoint);
+        assert_eq!(found.verdict == Overlap::Undecided, most < 40, "{found:?}");
         let found = clearance(&a, &b, &frame, 0.0, &up_to(most)).unwrap();
         assert!(found.splits.iter().sum::<u64>() <= most && found.distance.lower == 0.0);
     }
@@ -521,9 +531,9 @@ fn nothing_everything_and_the_same() {
     assert_eq!(found.volume.lower, 64.0);
     let found = interference(&all, &ball, &frame, 0.0, &alone()).unwrap();
     assert!(found.volume.contains(4.0 / 3.0 * PI) && found.splits[0] == 0 && !found.clipped);
-    // A ball and all but the ball touch everywhere.
+    // A ball and all but the ball touch everywhere, and have nothing in common.
     let found = interference(&ball, &ball.complement(), &frame, PROOF, &alone()).unwrap();
-    assert_eq!(found.verdict, Overlap::Undecided);
+    assert_eq!((found.verdict, found.splits), (Overlap::Disjoint, [0, 0]));
     let found = clearance(&ball, &ball.complement(), &frame, 0.5, &alone()).unwrap();
     assert!(found.distance.lower == 0.0 && found.distance.upper < 0.6 && found.clipped);
     // What has no full cell is not known to be anywhere.
@@ -750,8 +760,10 @@ fn searches_end_before_they_take_too_much_memory() {
     assert!(overlap(&little).volume.contains(truth) && overlap(&more).volume.contains(truth));
     let own = |control| interference(&a, &a, &frame, 1e-3, control).unwrap().volume;
     let [wide, narrow] = [own(&little), own(&more)];
-    assert!(narrow.width() < 0.8 * wide.width() && wide.lower <= narrow.lower && narrow.upper <= wide.upper);
-    assert!(wide.lower <= 1.0 && wide.upper >= 1.0);
+    // (All cubes are about the unit cube.)
+    for volume in [wide, narrow] {
+        assert!(volume.contains(1.001) && volume.width() < 0.1, "{volume:?}");
+    }
     let near = |control| clearance(&a, &beside, &frame, 1e-9, control).unwrap();
     let (coarse, fine) = (near(&limited(1 << 16)), near(&more));
     assert_eq!(coarse.stop_reason, StopReason::Budget);

@@ -12,6 +12,7 @@ mod random;
 
 mod area;
 mod columns;
+mod contact;
 mod content;
 mod distance;
 mod distance_field;

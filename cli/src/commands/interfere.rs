@@ -1,9 +1,10 @@
 //! `leafless interfere`: do two solids overlap, and how far are they apart?
 
+use super::poses;
 use crate::failure::{Failure, Of};
 use crate::options::{bounds, seconds};
 use crate::progress::{watched, within_time};
-use crate::report::bounds::{Proven, stop_word};
+use crate::report::bounds::{Proven, stop_word, verdict_word};
 use crate::sink::print_told;
 use crate::source::file::Taking;
 use crate::source::input::Input;
@@ -14,8 +15,7 @@ use leafless::lattice::Cube;
 use leafless::query::{Overlap, StopReason};
 use leafless::solid::Prepared;
 use leafless::{
-    Affine, Clearance, Control, Csg, Error, Frame, Interference, Interval, Proof, SurfaceOptions, Tag,
-    build_extended, clearance, interference,
+    Affine, Clearance, Control, Error, Frame, Interference, Interval, Proof, clearance, interference,
 };
 use serde::Serialize;
 use std::ffi::OsString;
@@ -55,18 +55,23 @@ pub struct Arguments {
     cells: bool,
     #[command(flatten)]
     taking: Taking,
+    /// Ask for the verdict alone, of B under each of the matrices in a file: a line for each as --place takes it, after the other moves
+    #[arg(long, value_name = "FILE", conflicts_with = "seconds")]
+    poses: Option<std::path::PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
-/// A cell in the units of the model.
+/// A cell in the units of the model, and a ball in it that lies in both solids.
 #[derive(Serialize)]
 struct Witness {
     level: u8,
     at: [u32; 3],
     min: [f64; 3],
     max: [f64; 3],
+    centre: [f64; 3],
+    radius: f64,
 }
 
 /// Bounds of a number that is not negative; null where nothing is known.
@@ -156,6 +161,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let taking = arguments.taking.unmoved();
     let [first, second] =
         [Source::read(a, &taking)?, Source::read(b, &taking)?].map(|source| source.taken(arguments.cells));
+    let placements = match &arguments.poses {
+        Some(path) => poses::read(path, &placement)?,
+        None => vec![placement],
+    };
     let frame = match &arguments.bounds {
         Some(bounds) => bounds.with_depth(arguments.depth.unwrap_or(10)).of(a)?,
         None => {
@@ -165,21 +174,33 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             } else {
                 Frame::around
             };
-            common_frame(first.own_frame(), both, &placement, arguments.depth, around).of(a)?
+            common_frame(first.own_frame(), both, &placements, arguments.depth, around).of(a)?
         }
     };
-    let is_exact =
-        first.has_exact_surfaces(&Affine::IDENTITY, &frame) && second.has_exact_surfaces(&placement, &frame);
+    if arguments.poses.is_some() {
+        let own = match second.own_frame() {
+            Some(own) => *own,
+            None => {
+                let (min, max) = second.bounds(b)?;
+                Frame::around(min, max, frame.depth()).of(b)?
+            }
+        };
+        let solids =
+            [first.placed(a, &Affine::IDENTITY, &frame)?, second.placed(b, &Affine::IDENTITY, &own)?];
+        let control = Control { max_splits: Some(arguments.splits.unwrap_or(SPLITS)), ..Control::default() };
+        let asked = poses::Asked { inputs: &inputs, solids: &solids, frames: [&frame, &own] };
+        return asked.run(&placements, &control, arguments.json);
+    }
     let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
     let second = Prepared::new(second.placed(b, &placement, &frame)?);
     let splits = arguments.splits.or(if arguments.seconds.is_some() { None } else { Some(SPLITS) });
     let asked = watched("interfere", 0, |control| {
         let control = Control { max_splits: splits, ..*control };
         let both = [&first, &second];
-        let ask = |control: &Control<'_>| ask(both, is_exact, &frame, control);
+        let ask = |control: &Control<'_>| ask(both, &frame, control);
         within_time(arguments.seconds, &control, ask, |asked| !asked.is_spent)
     });
-    let Asked { found, near, evaluations, is_spent } = asked.of(a)?;
+    let Answers { found, near, evaluations, is_spent } = asked.of(a)?;
     let reason = reason(&found, is_spent);
     let report = Report::new(&inputs, &frame, &found, &near, evaluations, reason.map(|reason| reason.0));
     print_told(arguments.json, &report, |report| text(&found, report, reason.map(|reason| reason.1)))
@@ -190,11 +211,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn common_frame(
     own: Option<&Frame>,
     ((mut min, mut max), (low, high)): (Corners, Corners),
-    placement: &Affine,
+    placements: &[Affine],
     depth: Option<u8>,
     around: fn([f64; 3], [f64; 3], u8) -> Result<Frame, Error>,
 ) -> Result<Frame, Error> {
-    for k in 0..8 {
+    for (placement, k) in placements.iter().flat_map(|placement| (0..8).map(move |k| (placement, k))) {
         let corner = placement.apply([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low } else { high }[axis]));
         for axis in 0..3 {
             min[axis] = min[axis].min(corner[axis]);
@@ -224,8 +245,11 @@ fn common_frame(
 /// Splits for each answer if nobody says how many, or how long.
 const SPLITS: u64 = 100_000;
 
+/// How well the volume in common is to be known, as a share of it.
+const DIGITS: f64 = 1e-6;
+
 /// What was found.
-struct Asked {
+struct Answers {
     found: Interference,
     near: Clearance,
     /// Of half-spaces, for the verdict.
@@ -234,31 +258,19 @@ struct Asked {
     is_spent: bool,
 }
 
-/// Most memory to find out whether solids touch on common surfaces, which takes little if they do.
-const TOUCHING: u64 = 1 << 24;
-
-/// Whether nothing is common to two solids, by the surfaces that they have in common.
-fn touch([a, b]: [&Prepared; 2], frame: &Frame, control: &Control<'_>) -> Result<bool, Error> {
-    let max_bytes = control.max_bytes.map(|most| most.min(TOUCHING));
-    let both = Csg::intersection_of([a, b].map(|own| Csg::solid(own.solid().clone())))?;
-    let control = Control { max_splits: None, max_bytes, ..*control };
-    match build_extended(&both, frame, &SurfaceOptions::default(), &control) {
-        Ok(common) => Ok([common.view().root_tag(), common.view().exterior()] == [Tag::Empty; 2]),
-        Err(Error::Limit { .. } | Error::TooLarge { .. }) => Ok(false),
-        Err(error) => Err(error),
-    }
-}
-
 /// The verdict; then how much, or how far.
-fn ask([a, b]: [&Prepared; 2], is_exact: bool, frame: &Frame, control: &Control<'_>) -> Result<Asked, Error> {
+fn ask([a, b]: [&Prepared; 2], frame: &Frame, control: &Control<'_>) -> Result<Answers, Error> {
     let spends = |splits: [u64; 2]| control.max_splits.is_some_and(|most| splits.iter().sum::<u64>() >= most);
     let mut found = interference(a, b, frame, f64::INFINITY, control)?;
-    if found.verdict == Overlap::Undecided && is_exact && !found.clipped && touch([a, b], frame, control)? {
-        (found.verdict, found.volume) = (Overlap::Disjoint, Interval::exactly(0.0));
-    }
     let evaluations = evaluations(a.solid()) + evaluations(b.solid());
     if found.verdict == Overlap::Overlapping {
-        let measured = interference(a, b, frame, 0.0, control)?;
+        // About how much it is, and then to so many digits of that.
+        let some = Control { max_splits: control.max_splits.map(|most| most / 8), ..*control };
+        let mut measured = interference(a, b, frame, 0.0, &some)?;
+        let wanted = DIGITS * measured.volume.lower;
+        if measured.volume.width() > wanted {
+            measured = interference(a, b, frame, wanted, control)?;
+        }
         found.volume = measured.volume;
         let near = Clearance {
             distance: Interval::exactly(0.0),
@@ -268,11 +280,11 @@ fn ask([a, b]: [&Prepared; 2], is_exact: bool, frame: &Frame, control: &Control<
             proofs: found.proofs,
             clipped: found.clipped,
         };
-        return Ok(Asked { found, near, evaluations, is_spent: spends(measured.splits) });
+        return Ok(Answers { found, near, evaluations, is_spent: spends(measured.splits) });
     }
     let near = clearance(a, b, frame, 4.0 * frame.cell_size(), control)?;
     let is_open = found.verdict == Overlap::Undecided && spends(found.splits);
-    Ok(Asked { found, is_spent: is_open || near.stop_reason == StopReason::Budget, near, evaluations })
+    Ok(Answers { found, is_spent: is_open || near.stop_reason == StopReason::Budget, near, evaluations })
 }
 
 impl Report {
@@ -287,18 +299,14 @@ impl Report {
         Report {
             a: a.to_string(),
             b: b.to_string(),
-            verdict: match found.verdict {
-                Overlap::Disjoint => "disjoint",
-                Overlap::Overlapping => "overlapping",
-                Overlap::Undecided => "undecided",
-            },
+            verdict: verdict_word(found.verdict),
             reason,
             overlap: Range::new(found.volume, found.clipped),
             clearance: Range::new(near.distance, near.clipped),
             clearance_measured: stop_word(near.stop_reason),
-            witness: found.witness.map(|cell| {
+            witness: found.witness.zip(found.ball).map(|(cell, ball)| {
                 let (min, max) = Cube { frame, cell }.bounds();
-                Witness { level: cell.level, at: cell.at, min, max }
+                Witness { level: cell.level, at: cell.at, min, max, centre: ball.centre, radius: ball.radius }
             }),
             proof_a: found.proofs[0].into(),
             proof_b: found.proofs[1].into(),
@@ -327,8 +335,9 @@ fn text(found: &Interference, report: &Report, reason: Option<&str>) -> String {
         _ => "",
     };
     line("clearance", format!("{}{ended}", report.clearance.text()));
-    if let Some(Witness { min, max, .. }) = &report.witness {
-        line("witness", format!("{} to {}", min.map(number).join(" "), max.map(number).join(" ")));
+    if let Some(Witness { centre, radius, .. }) = &report.witness {
+        let around = centre.map(number).join(" ");
+        line("witness", format!("a ball of radius {} around {around} lies in both", number(*radius)));
     }
     for (input, proven) in [(&report.a, &report.proof_a), (&report.b, &report.proof_b)] {
         if let Some(doubt) = proven.doubt() {

@@ -15,6 +15,7 @@ pub mod interfere;
 pub mod measure;
 pub mod mesh;
 pub mod neighbours;
+mod poses;
 pub mod ray;
 pub mod render;
 pub mod sample;

@@ -1,7 +1,7 @@
 //! What is told of what is known: volumes as intervals, what cells prove, and why a search ended.
 
 use crate::words::number;
-use leafless::query::StopReason;
+use leafless::query::{Overlap, StopReason};
 use leafless::{Interval, Proof};
 use serde::Serialize;
 
@@ -76,5 +76,14 @@ impl Proven {
             0.0 => proven.into(),
             moved => format!("{proven}; of surfaces that were moved by {} or less", number(moved)),
         }
+    }
+}
+
+/// A verdict in a word.
+pub fn verdict_word(verdict: Overlap) -> &'static str {
+    match verdict {
+        Overlap::Disjoint => "disjoint",
+        Overlap::Overlapping => "overlapping",
+        Overlap::Undecided => "undecided",
     }
 }

@@ -252,7 +252,7 @@ fn sine_and_cosine(degrees: f64) -> (f64, f64) {
     }
 }
 
-fn matrix(text: &str) -> Result<Affine, String> {
+pub fn matrix(text: &str) -> Result<Affine, String> {
     let numbers = numbers(text);
     let m = match numbers.as_deref() {
         Some(m @ [.., a, b, c, d]) if m.len() == 16 && [*a, *b, *c, *d] == [0.0, 0.0, 0.0, 1.0] => &m[..12],

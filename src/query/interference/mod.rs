@@ -1,16 +1,17 @@
 //! Do two solids overlap, and by how much?
 
-mod children;
 mod search;
 
+use super::measure::volume_within;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Affine, Cell, Frame, Interval, valid};
+use crate::lattice::{Affine, Cell, Cube, Frame, Interval, axes, valid};
 use crate::memory;
-use crate::octree::Proof;
+use crate::octree::{Proof, Tag};
 use crate::parallel;
 use crate::parallel::each;
-use crate::solid::{Solid, TransformClassifier};
+use crate::solid::joint::Joint;
+use crate::solid::{Classifier, Motion, Solid, TransformClassifier};
 use crate::walk::Proven;
 use alloc::vec::Vec;
 use search::Search;
@@ -21,11 +22,38 @@ use search::Search;
 pub enum Overlap {
     /// Proven: they have none. The solids may touch.
     Disjoint = 0,
-    /// Proven: a cell lies in both.
+    /// Proven: a ball lies in both.
     Overlapping = 1,
     /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
     /// universe, where they may overlap.
     Undecided = 2,
+}
+
+/// All points that are no further than a radius from a centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball {
+    /// The centre (model units).
+    pub centre: [f64; 3],
+    /// The radius (model units), which is positive; 0 if rounding takes all of it, so that the ball is a point that is rounded.
+    pub radius: f64,
+}
+
+impl Ball {
+    /// A ball in a cell, from the cell's centre in half edges.
+    fn in_cell(cube: &Cube<'_>, at: [f64; 3], radius: f64) -> Ball {
+        let (lower, upper) = cube.bounds();
+        let half = cube.half_edge();
+        let centre = axes(|k| 0.5 * lower[k] + 0.5 * upper[k] + half * at[k]);
+        // More than what is rounded of the centre, with that of the cell's ends.
+        let size = (0..3).map(|k| lower[k].abs().max(upper[k].abs())).sum::<f64>();
+        let radius = radius * half * (1.0 - 4.0 * f64::EPSILON) - 16.0 * f64::EPSILON * size;
+        Ball { centre, radius: radius.max(0.0) }
+    }
+
+    /// No more than its volume.
+    fn volume(&self) -> f64 {
+        4.18 * self.radius * self.radius * self.radius
+    }
 }
 
 /// What is known of two solids.
@@ -33,8 +61,10 @@ pub enum Overlap {
 pub struct Interference {
     /// Whether they overlap.
     pub verdict: Overlap,
-    /// A cell that lies in both, if they are proven to overlap.
+    /// A cell with points of both, if they are proven to overlap.
     pub witness: Option<Cell>,
+    /// A ball in that cell, all of which is proven to lie in both. It is not the largest one.
+    pub ball: Option<Ball>,
     /// The volume of what they have in common, in cubic model units; the upper bound is infinite if `clipped`.
     pub volume: Interval,
     /// Cells that were split, of the first solid and of the second.
@@ -50,13 +80,18 @@ pub struct Interference {
 
 /// Whether `a` and `b` overlap; a solid under a placement is moved first (see
 /// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`. Once an overlap is
-/// proven its volume is refined until the interval is no wider than `tolerance` (cubic model units); infinity ends the
+/// proven its volume is measured until the interval is no wider than `tolerance` (cubic model units); infinity ends the
 /// work with the proof.
+///
+/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces), cells are asked for the
+/// function of both: a plane, a quadric or another surface that bounds both, however both were placed, is one, and solids that touch in
+/// it from opposite sides are `Disjoint` by proof. Where a solid is known between two planes (a mesh, a host's function), solids in
+/// contact stay `Undecided` within that width.
 ///
 /// The work ends at the frame's depth, or once `control.max_splits` cells of both are split or what is remembered of
 /// them comes near to `control.max_bytes`, with what is known by then. Memory is linear in the cells that are not
-/// decided. One thread; a host program's shape is asked about several cells at once, by as many threads as `control`
-/// allows.
+/// decided. The search takes one thread, but for a host program's shape, which is asked about several cells at once; the measurement
+/// takes as many as `control` allows. The result is the same for any number of them.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;
@@ -81,17 +116,56 @@ pub fn interference<A: Solid, B: Solid>(
     valid::tolerance("tolerance", tolerance)?;
     let job = Job::new(control);
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
-    let search = Search::new(&a, &b, control)?;
-    let found = control.run(search.likes_many(), |parallel| {
-        search.run(tolerance, if parallel { parallel::threads() } else { 1 }, &job)
-    })?;
+    let found = of_classifiers(a, b, tolerance, control.threads, &job)?;
     job.advance(WHOLE);
     Ok(found)
 }
 
+/// The same of solids on one frame, measured by so many threads.
+fn of_classifiers<A: Classifier, B: Classifier>(
+    a: A,
+    b: B,
+    tolerance: f64,
+    threads: usize,
+    job: &Job<'_>,
+) -> Result<Interference, Error> {
+    let control = job.control();
+    let proofs = [a.proof(), b.proof()];
+    let clipped = a.exterior() != Tag::Empty && b.exterior() != Tag::Empty;
+    let both = Joint::new(a, b, control)?;
+    let search = Search::new(&both, control)?;
+    let mut found = control.run(search.likes_many(), |parallel| {
+        search.run(clipped, if parallel { parallel::threads() } else { 1 }, job)
+    })?;
+    if found.verdict == Overlap::Overlapping && found.volume.width() > tolerance {
+        // A split of what both have in common is one of each of them.
+        let own = Control { threads, progress: None, ..*control };
+        let measured = volume_within(&both, tolerance, found.left / 2, &own)?;
+        // (Both hold the truth.)
+        found.volume = found.volume.common(measured.volume).unwrap_or(measured.volume);
+        found.level = found.level.max(measured.level);
+        for (splits, partial) in found.splits.iter_mut().zip(found.partial) {
+            *splits += u64::from(partial) * measured.splits;
+        }
+    }
+    let least = found.witness.map_or(0.0, |(_, ball)| ball.volume());
+    let volume = Interval::between(found.volume.lower.max(least), found.volume.upper);
+    Ok(Interference {
+        verdict: found.verdict,
+        witness: found.witness.map(|(cell, _)| cell),
+        ball: found.witness.map(|(_, ball)| ball),
+        volume: if clipped { Interval::between(volume.lower, f64::INFINITY) } else { volume },
+        splits: found.splits,
+        level: found.level,
+        proofs,
+        clipped,
+    })
+}
+
 /// As [`interference`] of `a` with `b` under each of the `placements`, in their order; the first of both is
-/// known on `frame`, the second on its `own` frame, and both are prepared once. The same for any number of
-/// threads; `control.max_splits` concerns each placement.
+/// known on `frame`, the second on its `own` frame, and both are prepared once. An expression of half-spaces is moved itself
+/// ([`Motion::Exact`]), so that contacts are decided. The same for any number of threads; `control.max_splits` concerns each
+/// placement.
 ///
 /// # Errors
 /// As [`interference`].
@@ -106,12 +180,19 @@ pub fn interference_at<A: Solid, B: Solid>(
 ) -> Result<Vec<Interference>, Error> {
     valid::tolerance("tolerance", tolerance)?;
     let job = Job::new(control);
-    let bounds = b.bounds();
+    let (bounds, solid) = (b.bounds(), b);
     let (a, b) = (Proven(a.on(frame, control)?), b.on(own, control)?);
     let one = |placement: &Affine| {
+        if solid.motion() == Motion::Exact
+            && let Some(moved) = solid.placed(placement)?
+        {
+            let found = of_classifiers(a.clone(), Proven(moved.on(frame, control)?), tolerance, 1, &job)?;
+            job.advance(WHOLE / placements.len());
+            return Ok(found);
+        }
         let around = bounds.and_then(|bounds| bounds.placed(placement));
         let b = Proven(TransformClassifier::new(b.clone(), placement, frame, around));
-        let found = Search::new(&a, &b, control)?.run(tolerance, 1, &job)?;
+        let found = of_classifiers(a.clone(), b, tolerance, 1, &job)?;
         job.advance(WHOLE / placements.len());
         Ok::<_, Error>(found)
     };

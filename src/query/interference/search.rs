@@ -1,70 +1,78 @@
 //! The search for an overlap.
 //!
-//! Both solids are asked about the cells of one frame. A cell where one of them is EMPTY is done, a cell
-//! where both are FULL proves an overlap, and of any other the sides that are cut are split: so a cell of
-//! either is split once at the most, and only where the other one is.
+//! Both solids are asked about the cells of one frame ([`Joint`]). A cell where one of them is EMPTY, or where what is known of both
+//! excludes each other, is done; a cell where both are FULL proves an overlap, and so does a ball in a cell on the inner sides of all
+//! slabs. Of any other cell the sides that are cut are split: so a cell of either is split once at the most, and only where the other
+//! one is.
 //!
 //! Which cell comes first does not matter to a proof that nothing overlaps, which needs them all. A proof of
 //! overlap needs a single one, so the search begins where it is likely: a cut cell with FULL siblings lies
-//! deeper in the solid than one with EMPTY ones. For the volume of the overlap the largest cells come first.
+//! deeper in the solid than one with EMPTY ones.
 
-use super::children::{Children, split, split_many};
-use super::{Interference, Overlap};
+use super::{Ball, Overlap};
 use crate::control::{Control, Job};
+use crate::cut;
 use crate::error::Error;
-use crate::lattice::{Cell, Interval};
+use crate::lattice::{Cell, Cube, Interval};
 use crate::memory;
 use crate::octree::stats::volume_of;
-use crate::solid::{Batch, Classifier, Verdict, Worker};
+use crate::solid::joint::Joint;
+use crate::solid::{Ask, Batch, Classifier, OCTANTS, Verdict, Worker};
 use crate::walk::Part;
 use crate::walk::Queue;
 use crate::walk::Subject;
 use core::cmp::Reverse;
 
-/// A cell in which neither solid is EMPTY and one can be split.
-struct Pair<P, Q> {
+/// A PARTIAL cell of the intersection.
+struct Open<P> {
     cell: Cell,
-    a: Verdict<P>,
-    b: Verdict<Q>,
+    verdict: Verdict<P>,
 }
 
-/// Pairs of the cells of two classifiers.
-type PairOf<A, B> = Pair<Part<A>, Part<B>>;
-
-impl<P, Q> Pair<P, Q> {
-    /// How many splits it takes to split it.
-    fn splits(&self) -> u64 {
-        matches!(self.a, Verdict::Partial(_)) as u64 + matches!(self.b, Verdict::Partial(_)) as u64
-    }
-}
+/// A cell of what two classifiers have in common.
+type OpenOf<A, B> = Open<Part<Joint<A, B>>>;
 
 /// A place in the queue: the greater number comes first; among equals, what was met earlier.
 type Rank = (u64, Reverse<u64>);
 
-/// Pairs of which a host program's shape is asked at once. (It does not depend on the threads, and so the
+/// Cells of which a host program's shape is asked at once. (It does not depend on the threads, and so the
 /// result does not either.)
 const GATHERED: usize = 16;
 
 /// What is under way.
 pub(super) struct Search<'s, A: Classifier, B: Classifier> {
-    a: Subject<'s, A>,
-    b: Subject<'s, B>,
-    /// Splits that may still be made.
+    both: Subject<'s, Joint<A, B>>,
+    /// Splits of either solid, and those that may still be made.
+    splits: [u64; 2],
     left: u64,
-    open: Queue<Rank, PairOf<A, B>>,
+    open: Queue<Rank, OpenOf<A, B>>,
     /// In finest cells: what is FULL of both, open, and not to be decided.
     full: u64,
     waiting: u64,
     undecided: u64,
-    witness: Option<Cell>,
+    witness: Option<(Cell, Ball)>,
     level: u8,
 }
 
+/// What a search found.
+pub(super) struct Found {
+    pub(super) verdict: Overlap,
+    pub(super) witness: Option<(Cell, Ball)>,
+    /// Cubic model units.
+    pub(super) volume: Interval,
+    pub(super) splits: [u64; 2],
+    /// Splits that may still be made.
+    pub(super) left: u64,
+    /// Which of both are PARTIAL in the universe.
+    pub(super) partial: [bool; 2],
+    pub(super) level: u8,
+}
+
 impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
-    pub(super) fn new(a: &'s A, b: &'s B, control: &'s Control<'s>) -> Result<Self, Error> {
+    pub(super) fn new(both: &'s Joint<A, B>, control: &'s Control<'s>) -> Result<Self, Error> {
         Ok(Search {
-            a: Subject::new(a, control)?,
-            b: Subject::new(b, control)?,
+            both: Subject::new(both, control)?,
+            splits: [0; 2],
             left: control.max_splits.unwrap_or(u64::MAX),
             open: Queue::new(),
             full: 0,
@@ -77,165 +85,143 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
 
     /// Whether a solid is better asked about several cells at once.
     pub(super) fn likes_many(&self) -> bool {
-        self.a.worker.likes_many() || self.b.worker.likes_many()
+        self.both.worker.likes_many()
     }
 
-    /// Searches until the volume is known that well, or the budget is spent. `threads` ask a host program.
-    pub(super) fn run(
-        mut self,
-        tolerance: f64,
-        threads: usize,
-        job: &Job<'_>,
-    ) -> Result<Interference, Error> {
+    /// Searches until an overlap is proven, none is possible, or the budget is spent. `threads` ask a host program.
+    pub(super) fn run(mut self, clipped: bool, threads: usize, job: &Job<'_>) -> Result<Found, Error> {
         job.check()?;
-        let a = self.a.worker.root()?;
-        if !matches!(a, Verdict::Empty) {
-            let b = self.b.worker.root()?;
-            self.meet(Cell::ROOT, a, b, 1.0)?;
-        }
+        let root = self.both.worker.root()?;
+        let partial = if let Verdict::Partial(part) = &root { part.splits() } else { [false; 2] };
+        self.meet(Cell::ROOT, root)?;
         let many = self.likes_many();
-        let mut searching = true;
-        while self.open.peek().is_some() {
+        while self.witness.is_none() && self.open.peek().is_some() {
             job.check()?;
-            if searching && self.witness.is_some() {
-                searching = false;
-                if tolerance < f64::INFINITY {
-                    self.open.change(|pairs| {
-                        pairs.iter_mut().for_each(|pair| pair.key.0 = size(pair.item.cell.level).to_bits());
-                    });
-                }
-            }
-            if !searching && self.volume().width() <= tolerance {
-                break;
-            }
-            let Some(pair) = self.take() else { break };
+            let Some(open) = self.take() else { break };
             if many {
-                self.split_many(pair, searching, threads)?;
+                self.split_many(open, threads)?;
             } else {
-                self.split(&pair, searching)?;
+                self.split(&open)?;
             }
             if !self.tidy()? {
                 break;
             }
         }
-        Ok(self.found())
-    }
-
-    fn found(self) -> Interference {
         // Where both go on outside of the universe, nobody knows what they do there.
-        let clipped = self.a.is_clipped() && self.b.is_clipped();
         let undecided = clipped || self.waiting + self.undecided > 0;
-        let volume = self.volume();
-        Interference {
+        Ok(Found {
             verdict: match self.witness {
                 Some(_) => Overlap::Overlapping,
                 None if undecided => Overlap::Undecided,
                 None => Overlap::Disjoint,
             },
             witness: self.witness,
-            volume: if clipped { Interval::between(volume.lower, f64::INFINITY) } else { volume },
-            splits: [self.a.splits, self.b.splits],
+            volume: volume_of(
+                self.both.classifier.frame(),
+                self.full,
+                self.full + self.waiting + self.undecided,
+            ),
+            splits: self.splits,
+            left: self.left,
+            partial,
             level: self.level,
-            proofs: [self.a.classifier.proof(), self.b.classifier.proof()],
-            clipped,
-        }
-    }
-
-    fn volume(&self) -> Interval {
-        volume_of(self.a.classifier.frame(), self.full, self.full + self.waiting + self.undecided)
+        })
     }
 
     /// Finest cells in a cell.
     fn cells(&self, cell: Cell) -> u64 {
-        1 << (3 * (self.a.classifier.frame().depth() - cell.level))
+        1 << (3 * (self.both.classifier.frame().depth() - cell.level))
     }
 
     /// Takes in a cell.
-    fn meet(&mut self, cell: Cell, a: Verdict<Part<A>>, b: Verdict<Part<B>>, rank: f64) -> Result<(), Error> {
+    fn meet(&mut self, cell: Cell, verdict: Verdict<Part<Joint<A, B>>>) -> Result<(), Error> {
         let cells = self.cells(cell);
-        match (&a, &b) {
-            (Verdict::Empty, _) | (_, Verdict::Empty) => return Ok(()),
-            (Verdict::Full, Verdict::Full) => {
-                self.full += cells;
-                self.witness.get_or_insert(cell);
-            }
-            (Verdict::Partial(_), _) | (_, Verdict::Partial(_))
-                if cell.level < self.a.classifier.frame().depth() =>
-            {
-                // Doubles that are not negative have the order of their bits.
-                let rank = (rank.to_bits(), Reverse(self.open.met()));
-                self.open.push(rank, Pair { cell, a, b })?;
-                self.waiting += cells;
-            }
-            _ => self.undecided += cells,
-        }
         self.level = self.level.max(cell.level);
-        Ok(())
-    }
-
-    /// Takes up the pair that comes next, if the budget allows it to be split.
-    fn take(&mut self) -> Option<PairOf<A, B>> {
-        self.left = self.left.checked_sub(self.open.peek()?.item.splits())?;
-        let pair = self.open.pop()?;
-        self.waiting -= self.cells(pair.cell);
-        Some(pair)
-    }
-
-    fn split(&mut self, pair: &PairOf<A, B>, searching: bool) -> Result<(), Error> {
-        let of_a = split(&mut self.a, pair.cell, &pair.a)?;
-        if self.is_done(pair, &of_a) {
-            return Ok(());
-        }
-        let of_b = split(&mut self.b, pair.cell, &pair.b)?;
-        self.meet_children(pair.cell, of_a, of_b, searching)
-    }
-
-    /// As [`split`](Self::split) of a pair and those that come next, each solid being asked about all of its
-    /// cells at once.
-    fn split_many(&mut self, first: PairOf<A, B>, searching: bool, threads: usize) -> Result<(), Error> {
-        let mut pairs = memory::with_capacity(GATHERED)?;
-        pairs.push(first);
-        while pairs.len() < GATHERED
-            && let Some(pair) = self.take()
-        {
-            pairs.push(pair);
-        }
-        let mut of_a = split_many(&mut self.a, pairs.iter().map(|pair| (pair.cell, &pair.a)), threads)?;
-        for i in (0..pairs.len()).rev() {
-            if self.is_done(&pairs[i], &of_a[i]) {
-                pairs.remove(i);
-                of_a.remove(i);
+        match &verdict {
+            Verdict::Empty => {}
+            Verdict::Full => {
+                self.full += cells;
+                self.find(cell, ([0.0; 3], 1.0));
             }
-        }
-        let of_b = split_many(&mut self.b, pairs.iter().map(|pair| (pair.cell, &pair.b)), threads)?;
-        for ((pair, of_a), of_b) in pairs.iter().zip(of_a).zip(of_b) {
-            self.meet_children(pair.cell, of_a, of_b, searching)?;
+            Verdict::Partial(part) => {
+                if self.witness.is_none()
+                    && let Some(known) = self.both.worker.enclosure(cell, part)?
+                    && let Some(ball) = cut::ball(&known)
+                {
+                    self.find(cell, ball);
+                }
+                if cell.level < self.both.classifier.frame().depth() {
+                    // Doubles that are not negative have the order of their bits.
+                    let rank = ((part.likely * decay(cell.level)).to_bits(), Reverse(self.open.met()));
+                    self.open.push(rank, Open { cell, verdict })?;
+                    self.waiting += cells;
+                } else {
+                    self.undecided += cells;
+                }
+            }
+            Verdict::Undecided => self.undecided += cells,
         }
         Ok(())
     }
 
-    /// Whether the children in the first solid are EMPTY. Then the second need not be split, and is not.
-    fn is_done(&mut self, pair: &PairOf<A, B>, (of_a, _): &Children<Part<A>>) -> bool {
-        let is_done = of_a.iter().all(|verdict| matches!(verdict, Verdict::Empty));
-        if is_done {
-            self.left += matches!(pair.b, Verdict::Partial(_)) as u64;
+    /// Takes in a ball, in half edges from the centre of a cell.
+    fn find(&mut self, cell: Cell, (at, radius): ([f64; 3], f64)) {
+        if self.witness.is_none() {
+            let cube = Cube { frame: self.both.classifier.frame(), cell };
+            self.witness = Some((cell, Ball::in_cell(&cube, at, radius)));
         }
-        is_done
+    }
+
+    /// Takes up the cell that comes next, if the budget allows it to be split.
+    fn take(&mut self) -> Option<OpenOf<A, B>> {
+        let splits = splits(&self.open.peek()?.item);
+        self.left = self.left.checked_sub(splits.iter().sum())?;
+        (0..2).for_each(|k| self.splits[k] += splits[k]);
+        let open = self.open.pop()?;
+        self.waiting -= self.cells(open.cell);
+        Some(open)
+    }
+
+    fn split(&mut self, open: &OpenOf<A, B>) -> Result<(), Error> {
+        let Verdict::Partial(part) = &open.verdict else { return Ok(()) };
+        self.both.worker.spared = 0;
+        let children = self.both.split(open.cell, part)?;
+        // Where nothing of the first solid is, the second was not split.
+        self.splits[1] -= self.both.worker.spared;
+        self.left += self.both.worker.spared;
+        self.meet_children(open.cell, children)
+    }
+
+    /// As [`split`](Self::split) of a cell and those that come next, each solid being asked about all of its
+    /// cells at once.
+    fn split_many(&mut self, first: OpenOf<A, B>, threads: usize) -> Result<(), Error> {
+        let mut all = memory::with_capacity(GATHERED)?;
+        all.push(first);
+        while all.len() < GATHERED
+            && let Some(open) = self.take()
+        {
+            all.push(open);
+        }
+        let mut asked = memory::with_capacity(all.len())?;
+        asked.extend(all.iter().filter_map(|open| match &open.verdict {
+            Verdict::Partial(part) => Some((open.cell, part.clone())),
+            _ => None,
+        }));
+        let families = self.both.split_many(&asked, threads)?;
+        for ((cell, _), children) in asked.into_iter().zip(families) {
+            self.meet_children(cell, children)?;
+        }
+        Ok(())
     }
 
     /// Takes in the children of a cell.
     fn meet_children(
         &mut self,
         parent: Cell,
-        (of_a, likely_a): Children<Part<A>>,
-        (of_b, likely_b): Children<Part<B>>,
-        searching: bool,
+        children: [Verdict<Part<Joint<A, B>>>; 8],
     ) -> Result<(), Error> {
-        let level = parent.level + 1;
-        let by_level = if searching { decay(level) } else { size(level) };
-        for (k, (a, b)) in of_a.into_iter().zip(of_b).enumerate() {
-            let rank = if searching { likely_a[k] * likely_b[k] * by_level } else { by_level };
-            self.meet(parent.child(k as u8), a, b, rank)?;
+        for (k, verdict) in OCTANTS.into_iter().zip(children) {
+            self.meet(parent.child(k), verdict)?;
         }
         Ok(())
     }
@@ -243,22 +229,24 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     /// Gives back memory that only parts hold which are not in use. `false` if those in use take too much of what is
     /// allowed.
     fn tidy(&mut self) -> Result<bool, Error> {
-        let (a, b) = (&mut self.a, &mut self.b);
-        let is_full = a.takes(4) || b.takes(4);
-        let (tidy_a, tidy_b) = (is_full || a.is_wasteful(), is_full || b.is_wasteful());
-        if !(tidy_a || tidy_b) {
+        let both = &mut self.both;
+        let is_full = both.takes(2);
+        if !(is_full || both.is_wasteful()) {
             return Ok(true);
         }
-        self.open.change(|pairs| {
-            if tidy_a {
-                a.keep(pairs.iter_mut().map(|pair| &mut pair.item.a))?;
-            }
-            if tidy_b {
-                b.keep(pairs.iter_mut().map(|pair| &mut pair.item.b))?;
-            }
+        self.open.change(|all| {
+            both.keep(all.iter_mut().map(|open| &mut open.item.verdict))?;
             // Half of it must be free, or the next step would end here again.
-            Ok(!(is_full && (a.takes(8) || b.takes(8))))
+            Ok(!(is_full && both.takes(4)))
         })
+    }
+}
+
+/// How many splits of either solid it takes to split a cell.
+fn splits<A, B>(open: &Open<crate::solid::joint::JointPart<A, B>>) -> [u64; 2] {
+    match &open.verdict {
+        Verdict::Partial(part) => part.splits().map(u64::from),
+        _ => [0; 2],
     }
 }
 
@@ -267,9 +255,4 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
 /// with them.)
 fn decay(level: u8) -> f64 {
     (0..level).fold(1.0, |product, _| product * 0.8)
-}
-
-/// The order of cells by size.
-fn size(level: u8) -> f64 {
-    (u8::MAX - level) as f64
 }

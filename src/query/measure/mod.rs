@@ -84,6 +84,27 @@ impl MassProperties {
     }
 }
 
+/// What is known of a volume.
+pub(super) struct Measured {
+    /// Cubic model units.
+    pub(super) volume: Interval,
+    pub(super) level: u8,
+    pub(super) splits: u64,
+}
+
+/// The volume of a solid in the universe of its frame, to an absolute tolerance, as [`measure`] finds it.
+pub(super) fn volume_within<C: Classifier>(
+    classifier: &C,
+    tolerance: f64,
+    max_splits: u64,
+    control: &Control<'_>,
+) -> Result<Measured, Error> {
+    let tolerance = Tolerance { relative: 0.0, absolute: tolerance };
+    let walked = walk::walk::<Volume, _>(classifier, tolerance, max_splits, control)?;
+    let known = Known { frame: classifier.frame().with_depth(MAX_DEPTH)?, found: walked.found };
+    Ok(Measured { volume: known.volume(), level: walked.level, splits: walked.splits })
+}
+
 /// How well a volume or an area is to be known: as soon as one of both is met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
@@ -121,8 +142,8 @@ pub const MEASURE_SPLITS: u64 = 1 << 26;
 /// The result depends on the solid, the frame, the tolerance and `max_splits` only: it is the same bit for
 /// bit for any number of threads. Work goes in passes, and under a budget the last whole pass counts. Time is
 /// linear in the splits; memory is that of some ten thousand parts at the most, since from a number of undecided
-/// cells on the levels below are walked through again and again, each time deeper, and not kept. Other limits of
-/// `control` are not heeded.
+/// cells on the levels below are walked through again and again, each time deeper, and not kept; with a `max_bytes` of `control` from
+/// fewer cells on. Other limits are not heeded.
 ///
 /// Of what is in doubt any part may belong to the solid, and the intervals contain what comes of each choice. Volume and
 /// the diagonals of the tensors cannot be told better from the cells; products of inertia and the centroid are bounded by

@@ -116,7 +116,9 @@ pub(super) fn walk<Q: Quantity, C: Classifier>(
         // All of a front is asked at once.
         let (chunk, long) = if likes_many { (usize::MAX, LONG_GATHERED) } else { (CHUNK, LONG_FRONT) };
         let quantity = PhantomData::<Q>;
-        Walk { quantity, classifier, frame, tolerance, budget, job: &job, chunk, long, parallel }.run()
+        // (While a front is split there are two of them.)
+        let large = control.max_bytes.map_or(LARGE_FRONT, |limit| LARGE_FRONT.min((limit / 4) as usize));
+        Walk { quantity, classifier, frame, tolerance, budget, job: &job, chunk, long, large, parallel }.run()
     })
 }
 
@@ -130,6 +132,8 @@ struct Walk<'a, Q, C> {
     /// Cells of a chunk, and of a front that is split further.
     chunk: usize,
     long: usize,
+    /// Bytes of a front that is split further.
+    large: usize,
     parallel: bool,
 }
 
@@ -157,7 +161,7 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
             let doubts = || front.iter().flat_map(|chunk| &chunk.cells).map(|open| open.doubt);
             let greatest = doubts().fold(0.0, f64::max);
             let bytes: usize = front.iter().map(|chunk| chunk.worker.scratch_bytes()).sum();
-            let is_short = length <= self.long && bytes <= LARGE_FRONT;
+            let is_short = length <= self.long && bytes <= self.large;
             if is_short && greatest > 0.0 && !self.may_be_met(&settled, doubts().sum()) {
                 threshold = greatest / 8.0;
                 let count = doubts().filter(|&doubt| doubt > threshold).count() as u64;

@@ -2,8 +2,10 @@
 
 pub(crate) mod bounds;
 mod bytes;
+mod contact;
 pub(crate) mod function;
 mod host;
+pub(crate) mod identity;
 pub(crate) mod joined;
 mod likeness;
 pub(crate) mod linear;

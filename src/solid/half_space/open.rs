@@ -90,6 +90,41 @@ impl OpenSurfaces {
         OpenSurfaces { table, ..self }
     }
 
+    /// The same function with surfaces called otherwise; some may become one.
+    #[must_use]
+    pub(crate) fn renamed(&self, name: impl Fn(u32) -> u32) -> OpenSurfaces {
+        let mut own = OpenSurfaces::constant(false);
+        let mut table = self.table;
+        for (i, index) in self.variables() {
+            // (Numbers ascend, so that none is taken that is still to come.)
+            if let Some(to) = own.number(name(index)) {
+                table = table.renamed(i, to, false);
+            }
+        }
+        own.with_table(table)
+    }
+
+    /// The same function of those surfaces alone on which it depends.
+    #[must_use]
+    pub(crate) fn shortened(&self) -> OpenSurfaces {
+        self.renamed(|index| index)
+    }
+
+    /// The surfaces on which the function depends, with their numbers in the table.
+    pub(crate) fn variables(&self) -> impl Iterator<Item = (usize, u32)> + Clone {
+        let table = self.table;
+        self.indices().iter().copied().enumerate().filter(move |&(i, _)| table.depends_on(i))
+    }
+
+    /// Whether the solid is all of the cell, or nothing of it; `None` if that depends on surfaces.
+    pub(crate) fn settled(&self) -> Option<bool> {
+        match self.table {
+            Table::FULL => Some(true),
+            Table::EMPTY => Some(false),
+            _ => None,
+        }
+    }
+
     /// What is known of the complement.
     #[must_use]
     pub fn complement(self) -> OpenSurfaces {

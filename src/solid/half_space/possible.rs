@@ -81,6 +81,14 @@ impl Close {
         }
         let signed = |f: &Quadratic, negative: bool| if negative { f.complement() } else { *f };
         let (a, b) = (signed(&self.f, negative_self), signed(&other.f, negative_other));
+        // Of surfaces that are offsets of each other the terms of second order, or the gradients, cancel at one share.
+        if [a.cancelled(&b, 3..9), a.cancelled(&b, 0..3)]
+            .into_iter()
+            .flatten()
+            .any(|share| greatest(&a, &b, share) <= 0.0)
+        {
+            return true;
+        }
         // The greatest value of the sum is a convex function of the share, so that it has one valley.
         let scale = libm::log2(a.size() / b.size());
         let (mut low, mut high) = (scale - 8.0, scale + 8.0);
@@ -103,6 +111,17 @@ impl Close {
             }
         }
         false
+    }
+}
+
+impl Quadratic {
+    /// The share at which the greatest of some factors of the other function cancels that of this one: of the gradient 0 to 2, of the
+    /// second order 3 to 8. `None` if it has the same sign, or there is none.
+    fn cancelled(&self, other: &Quadratic, factors: core::ops::Range<usize>) -> Option<f64> {
+        let factor = |f: &Quadratic, k: usize| if k < 3 { f.gradient[k] } else { f.squares[k - 3] };
+        let greatest = factors.max_by(|&i, &k| factor(other, i).abs().total_cmp(&factor(other, k).abs()))?;
+        let share = -factor(self, greatest) / factor(other, greatest);
+        (share > 0.0 && share.is_finite()).then_some(share)
     }
 }
 

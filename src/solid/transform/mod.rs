@@ -12,7 +12,7 @@ mod surfaces;
 use super::{
     Ask, AskLayers, AskWhole, Batch, Classifier, Direct, Enclosure, Fingerprint, Fingerprinter,
     LayersQuestion, OCTANTS, OpenSurfaces, Parts, Question, Solid, Verdict, WholeQuestion, Worker,
-    sample_one_by_one, split_one_by_one,
+    sample_one_by_one, split_one_by_one, surface_cell,
 };
 use crate::control::Control;
 use crate::error::Error;
@@ -558,9 +558,9 @@ impl<W: Worker> TransformWorker<W> {
 
 /// What a cell is of which a function of surfaces is known.
 fn verdict_of(known: OpenSurfaces) -> Verdict<TransformPart> {
-    match surfaces::settled(&known) {
-        Some(Tag::Full) => Verdict::Full,
-        Some(_) => Verdict::Empty,
+    match known.settled() {
+        Some(true) => Verdict::Full,
+        Some(false) => Verdict::Empty,
         None => Verdict::Partial(TransformPart(What::Function(known))),
     }
 }
@@ -788,7 +788,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
 
     fn split(&mut self, cell: Cell, part: &TransformPart) -> Result<[Verdict<TransformPart>; 8], Error> {
         if let (What::Function(known), Some(surfaces)) = (part.0, &self.surfaces) {
-            return Ok(surfaces.split(cell, &known)?.map(verdict_of));
+            return Ok(surface_cell::split(&surfaces.after, cell, &known)?.map(verdict_of));
         }
         let (maps, frame) = (self.maps, self.frame);
         let images = Images::new(&maps, &Cube { frame: &frame, cell }, 2);
@@ -798,7 +798,7 @@ impl<W: Worker> Worker for TransformWorker<W> {
 
     fn answer(&mut self, cell: Cell, part: &TransformPart, question: Question<'_>) -> Result<(), Error> {
         if let (What::Function(known), Some(surfaces)) = (part.0, &self.surfaces) {
-            return surfaces.answer(cell, &known, question);
+            return surface_cell::answer(&surfaces.after, cell, &known, question);
         }
         match question {
             Question::Centre(inside) => *inside = self.contains_centre(cell, *part)?,

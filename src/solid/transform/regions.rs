@@ -10,7 +10,6 @@
 use super::polytope::Polytope;
 use crate::error::Error;
 use crate::memory;
-use crate::solid::OpenSurfaces;
 use crate::solid::half_space::table::Table;
 use alloc::vec::Vec;
 
@@ -245,19 +244,4 @@ impl Regions {
         }
         Found::Function(Table(holds), Table(holds | fails))
     }
-}
-
-/// The same function with surfaces called otherwise; some may become one.
-pub(super) fn renamed(known: &OpenSurfaces, name: impl Fn(u32) -> u32) -> OpenSurfaces {
-    let mut own = OpenSurfaces::constant(false);
-    let mut table = known.table();
-    for (i, &index) in known.indices().iter().enumerate() {
-        if table.depends_on(i) {
-            // (Numbers ascend, so that none is taken that is still to come.)
-            if let Some(to) = own.number(name(index)) {
-                table = table.renamed(i, to, false);
-            }
-        }
-    }
-    own.with_table(table)
 }

@@ -15,23 +15,19 @@
 use super::faces::{LatticePlane, LatticePlanes, lattice_planes, lone};
 use super::image::Maps;
 use super::polytope::Polytope;
-use super::regions::{self, Flat, Found, Regions};
+use super::regions::{Flat, Found, Regions};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::{Dyadic, sqrt};
 use crate::lattice::{Affine, Cell, Frame, axes};
 use crate::memory;
 use crate::octree::Tag;
-use crate::solid::half_space::bounds::{Octants, centre, half_edge};
-use crate::solid::half_space::function;
+use crate::solid::half_space::bounds::{centre, half_edge};
 use crate::solid::half_space::joined::Joined;
-use crate::solid::half_space::literals::Literals;
 use crate::solid::half_space::possible::possible;
 use crate::solid::half_space::table::Table;
 use crate::solid::half_space::{Placed, tangent::Tangent};
-use crate::solid::{
-    AskWhole, Batch, Classifier, HalfSpace, LayersQuestion, OpenSurfaces, PlacedHalfSpace, Question,
-};
+use crate::solid::{AskWhole, Batch, Classifier, HalfSpace, OpenSurfaces, PlacedHalfSpace};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -42,7 +38,7 @@ pub(super) struct Surfaces {
     /// On the universe of the solid's own frame.
     before: Vec<Placed>,
     /// On that of the frame.
-    after: Vec<Placed>,
+    pub(super) after: Vec<Placed>,
     /// For each of them the next wider layer of the same plane, if there is one.
     wider: Vec<Option<u32>>,
     /// The last of them: planes of the solid's own lattice, seams after faces.
@@ -154,47 +150,6 @@ impl Surfaces {
             |list: &Vec<Placed>| memory::bytes_of(list) + list.iter().map(Placed::heap_bytes).sum::<usize>();
         memory::bytes_of(&self.moved) + placed(&self.before) + placed(&self.after)
     }
-
-    /// The children of a cell with a function.
-    pub(super) fn split(&self, cell: Cell, known: &OpenSurfaces) -> Result<[OpenSurfaces; 8], Error> {
-        let at = Octants::of(cell);
-        let mut tables = [known.table(); 8];
-        for (i, index) in variables(known) {
-            let sides = self.after[index as usize].sides(&at, 0xFF, &mut 0)?;
-            for (k, table) in (0..).zip(&mut tables) {
-                *table = table.known(i, sides, k);
-            }
-        }
-        Ok(tables.map(|table| shortened(known.with_table(table))))
-    }
-
-    /// What a cell with a function knows.
-    pub(super) fn answer(
-        &self,
-        cell: Cell,
-        known: &OpenSurfaces,
-        question: Question<'_>,
-    ) -> Result<(), Error> {
-        let (table, all) = (known.table(), &self.after);
-        match question {
-            Question::Centre(inside) => {
-                let side = |index| all[index as usize].contains(centre(cell));
-                *inside = function::inside(variables(known), table, side)?;
-            }
-            Question::Enclosure(enclosure) => {
-                let literals = Literals::of_table(variables(known), table);
-                *enclosure = literals.and_then(|own| own.enclosure(all, cell));
-            }
-            Question::Moments(moments) => *moments = function::moments(variables(known), table, all, cell),
-            Question::Area(area) => *area = function::area(variables(known), table, all, cell),
-            Question::Chords(chords) => {
-                *chords.found = function::chords(variables(known), table, all, chords.beam)?;
-            }
-            Question::Surfaces(to) | Question::Layers(LayersQuestion { known: to, .. }) => *to = Some(*known),
-            Question::Crossing(..) | Question::Ray(_) | Question::Nearest(..) | Question::Box(..) => {}
-        }
-        Ok(())
-    }
 }
 
 /// For each surface the next wider layer of the same plane, and those that are added for that.
@@ -248,30 +203,10 @@ fn plane_of(frame: &Frame, (axis, at): LatticePlane) -> PlacedHalfSpace {
     PlacedHalfSpace { half_space: HalfSpace::linear([x, y, z, -&place]), placements: Arc::new([]) }
 }
 
-/// The tag of a function that depends on no surface.
-pub(super) fn settled(known: &OpenSurfaces) -> Option<Tag> {
-    match known.table() {
-        Table::FULL => Some(Tag::Full),
-        Table::EMPTY => Some(Tag::Empty),
-        _ => None,
-    }
-}
-
-/// The surfaces on which a function depends, with their numbers in the table.
-fn variables(known: &OpenSurfaces) -> impl Iterator<Item = (usize, u32)> + Clone {
-    let table = known.table();
-    known.indices().iter().copied().enumerate().filter(move |&(i, _)| table.depends_on(i))
-}
-
-/// The same function of those surfaces alone on which it depends.
-fn shortened(known: OpenSurfaces) -> OpenSurfaces {
-    regions::renamed(&known, |index| index)
-}
-
 /// Calls a surface by the name of another everywhere.
 fn rename(values: &mut [OpenSurfaces], from: u32, to: u32) {
     for value in values.iter_mut().filter(|value| value.indices().contains(&from)) {
-        *value = regions::renamed(value, |index| if index == from { to } else { index });
+        *value = value.renamed(|index| if index == from { to } else { index });
     }
 }
 
@@ -368,12 +303,12 @@ impl<'s> Target<'s> {
         let mut values = memory::with_capacity(pieces.len())?;
         for piece in &pieces {
             let mut value = piece.source.known;
-            for (i, index) in variables(&piece.source.known) {
+            for (i, index) in piece.source.known.variables() {
                 if let Some(inside) = self.side(piece, index)? {
                     value = value.with_table(value.table().with(i, inside));
                 }
             }
-            let value = shortened(value);
+            let value = value.shortened();
             for &index in value.indices() {
                 if all.number(index).is_none() {
                     return Ok(None);
@@ -389,7 +324,7 @@ impl<'s> Target<'s> {
                 if let Some((table, known)) = self.joined(&all, &pieces, &values, closely)? {
                     // (Where nothing at all is possible, rounding is at work.)
                     let found = (known != Table::EMPTY).then(|| table.simplified(known));
-                    return Ok(found.map(|table| shortened(all.with_table(table))));
+                    return Ok(found.map(|table| all.with_table(table).shortened()));
                 }
             }
         }
@@ -405,13 +340,13 @@ impl<'s> Target<'s> {
         for piece in pieces {
             let Some(body) = self.body(piece.source) else { continue };
             let mut value = piece.source.known;
-            for (i, index) in variables(&piece.source.known) {
+            for (i, index) in piece.source.known.variables() {
                 if let Some(inside) = self.place(piece, &body, index)? {
                     value = value.with_table(value.table().with(i, inside));
                 }
             }
             memory::push(&mut bodies, (piece, body))?;
-            memory::push(&mut values, shortened(value))?;
+            memory::push(&mut values, value.shortened())?;
         }
         self.unite(&mut values);
         let (mut with_planes, mut with_seams) = (false, false);
@@ -428,7 +363,7 @@ impl<'s> Target<'s> {
             }
             let conflict = match self.regions(&all, &bodies, &values)? {
                 Found::Function(table, known) => {
-                    return Ok(Some(shortened(all.with_table(table.simplified(known)))));
+                    return Ok(Some(all.with_table(table.simplified(known)).shortened()));
                 }
                 Found::Nothing => return Ok(None),
                 Found::Conflict(piece, ..) => piece,
@@ -479,7 +414,7 @@ impl<'s> Target<'s> {
                 let are_left = [wide, thin].iter().all(|index| left.indices().contains(index));
                 if wide != thin && are_left && self.met(wide)?.flat.holds(&self.met(thin)?.flat) {
                     rename(values, thin, wide);
-                    left = regions::renamed(&left, |index| if index == thin { wide } else { index });
+                    left = left.renamed(|index| if index == thin { wide } else { index });
                     is_any = true;
                 }
             }

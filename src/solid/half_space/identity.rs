@@ -4,10 +4,10 @@
 //! So the truth tables of cells know what coincides: a solid less itself is empty, and solids that touch in a face have nothing in
 //! common, without a split.
 
+use super::map::ExactMap;
+use super::{HalfSpace, Placed, Surface};
 use crate::error::Error;
 use crate::memory;
-use crate::solid::half_space::map::ExactMap;
-use crate::solid::half_space::{HalfSpace, Placed, Surface};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::hash::{Hash, Hasher};
