@@ -152,7 +152,9 @@ fn overlaps_of_convex_polyhedra() {
         let (a, b) = (planes(0.0), planes(0.8));
         let solid = |planes: &[([f64; 3], f64)]| {
             let half = |&(n, end): &([f64; 3], f64)| Csg::half_space(n.map(|c| -c), end).unwrap();
-            Csg::intersection_of(planes.iter().map(half)).unwrap()
+            // (Of planes alone nobody knows that they end somewhere.)
+            let around = Csg::cuboid([-3.9; 3], [3.9; 3]).unwrap();
+            Csg::intersection_of(planes.iter().map(half).chain([around])).unwrap()
         };
         let all: Vec<_> = a.iter().chain(&b).copied().collect();
         let truth = clipped_volume(&all);

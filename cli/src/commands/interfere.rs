@@ -246,7 +246,7 @@ fn common_frame(
 const SPLITS: u64 = 100_000;
 
 /// How well the volume in common is to be known, as a share of it.
-const DIGITS: f64 = 1e-6;
+const DIGITS: f64 = 1e-5;
 
 /// What was found.
 struct Answers {

@@ -1,4 +1,7 @@
-//! Spheres and planes that touch: closed forms in exact numbers, where bounds over cells never tell.
+//! Ellipsoids and planes that touch: closed forms in exact numbers, where bounds over cells never tell.
+//!
+//! What an affine map does to both alike does not count: balls under one map are ellipsoids whose terms of second order are
+//! proportional, and two such ellipsoids lie to each other as the balls do.
 
 use super::PlacedHalfSpace;
 use super::Surface;
@@ -7,80 +10,136 @@ use super::quadric::{Coefficients, substitute};
 use crate::error::Error;
 use crate::lattice::exact::{Dyadic, dot};
 
-/// A sphere or a plane, by its exact function.
+/// An ellipsoid or a plane, by its exact function.
 enum Figure {
-    /// a |x|² + g · x + j, which has a centre and a radius.
-    Sphere { a: Dyadic, g: [Dyadic; 3], square: Dyadic },
+    Ellipsoid(Ellipsoid),
     /// n · x + c.
-    Plane { n: [Dyadic; 3], c: Dyadic },
+    Plane {
+        n: [Dyadic; 3],
+        c: Dyadic,
+    },
+}
+
+/// ½ xᵀ H x + g · x + j with a positive definite matrix H, which is negative inside.
+struct Ellipsoid {
+    /// Rows.
+    h: [[Dyadic; 3]; 3],
+    g: [Dyadic; 3],
+    j: Dyadic,
+    /// Whether the half-space's function is the negative of this, so that the inside is its inside.
+    negated: bool,
 }
 
 impl PlacedHalfSpace {
-    /// The signs that two functions have together at no point, if one is that of a sphere and the other that of a sphere or a plane: whether
-    /// the first and the second are negative. `None` of other surfaces, and if there is none. What is done to both alike does not count, so that a ball on a
-    /// table may be turned with the table.
+    /// The signs that two functions have together at no point: whether the first and the second are negative. `None` if there are none,
+    /// and of surfaces other than planes and ellipsoids of one kind: such as an affine map makes of balls.
     pub(crate) fn excluded(&self, other: &PlacedHalfSpace) -> Result<Option<(bool, bool)>, Error> {
-        let is_due = |half_space: &PlacedHalfSpace| {
-            matches!(&*half_space.half_space.0, Surface::Plane(_) | Surface::Quadric(_))
-        };
-        if !(is_due(self) && is_due(other)) {
-            return Ok(None);
-        }
-        let pairs = self.placements.iter().zip(&*other.placements);
-        let shared = pairs.take_while(|(a, b)| a == b).count();
-        let (Some(a), Some(b)) = (self.figure(shared)?, other.figure(shared)?) else { return Ok(None) };
+        let (Some(a), Some(b)) = (self.figure()?, other.figure()?) else { return Ok(None) };
         Ok(match (&a, &b) {
-            (Figure::Sphere { .. }, Figure::Sphere { .. }) => of_spheres(&a, &b),
-            (Figure::Sphere { .. }, Figure::Plane { .. }) => of_sphere_and_plane(&a, &b),
-            (Figure::Plane { .. }, Figure::Sphere { .. }) => {
-                of_sphere_and_plane(&b, &a).map(|(sphere, plane)| (plane, sphere))
+            (Figure::Ellipsoid(a), Figure::Ellipsoid(b)) => of_ellipsoids(a, b),
+            (Figure::Ellipsoid(a), Figure::Plane { n, c }) => a.beside(n, c),
+            (Figure::Plane { n, c }, Figure::Ellipsoid(b)) => {
+                b.beside(n, c).map(|(inside, plane)| (plane, inside))
             }
-            _ => None,
+            (Figure::Plane { .. }, Figure::Plane { .. }) => None,
         })
     }
 
-    /// The figure without its first placements.
-    fn figure(&self, without: usize) -> Result<Option<Figure>, Error> {
-        let map = self.placements[without..]
-            .iter()
-            .try_fold(ExactMap::identity(), |map, placement| map.of_placed(placement))?;
+    fn figure(&self) -> Result<Option<Figure>, Error> {
         Ok(match &*self.half_space.0 {
             Surface::Plane(plane) => {
+                let map = self.map(ExactMap::identity())?;
                 let [x, y, z, c] = map.linear(plane);
                 let [x, y, z, c] = if map.w.sign() < 0 { [-&x, -&y, -&z, -&c] } else { [x, y, z, c] };
                 Some(Figure::Plane { n: [x, y, z], c })
             }
-            Surface::Quadric(quadric) => Figure::of(substitute(quadric, &map)),
+            Surface::Quadric(quadric) => {
+                Ellipsoid::of(substitute(quadric, &self.map(ExactMap::identity())?)).map(Figure::Ellipsoid)
+            }
             _ => None,
         })
     }
 }
 
-impl Figure {
-    fn of([a, b, c, d, e, f, x, y, z, j]: Coefficients) -> Option<Figure> {
-        let is_sphere = a == b && b == c && !a.is_zero() && [d, e, f].iter().all(Dyadic::is_zero);
-        // Of 4 a² times the square of the radius.
-        let square = &dot([&x, &y, &z], [&x, &y, &z]) - &(&a * &j).shifted(2);
-        (is_sphere && square.sign() > 0).then_some(Figure::Sphere { a, g: [x, y, z], square })
+impl Ellipsoid {
+    fn of(coefficients: Coefficients) -> Option<Ellipsoid> {
+        let negated = coefficients[0].sign() < 0;
+        let [a, b, c, d, e, f, x, y, z, j] = coefficients.map(|c| if negated { -&c } else { c });
+        let [a, b, c] = [a, b, c].map(|square| square.shifted(1));
+        let h = [[a, d.clone(), f.clone()], [d, b, e.clone()], [f, e, c]];
+        let minor = &(&h[0][0] * &h[1][1]) - &(&h[0][1] * &h[1][0]);
+        let own = Ellipsoid { h, g: [x, y, z], j, negated };
+        // (Without a point inside it is no surface.)
+        let is_definite = own.h[0][0].sign() > 0 && minor.sign() > 0 && own.determinant().sign() > 0;
+        (is_definite && own.square().sign() > 0).then_some(own)
+    }
+
+    /// The same function times a positive number.
+    fn times(&self, factor: &Dyadic) -> Ellipsoid {
+        let times = |x: &Dyadic| x * factor;
+        Ellipsoid {
+            h: self.h.each_ref().map(|row| row.each_ref().map(times)),
+            g: self.g.each_ref().map(times),
+            j: times(&self.j),
+            negated: self.negated,
+        }
+    }
+
+    fn determinant(&self) -> Dyadic {
+        dot(self.h[0].each_ref(), self.adjugate()[0].each_ref())
+    }
+
+    /// det H times the inverse of H.
+    fn adjugate(&self) -> [[Dyadic; 3]; 3] {
+        [0, 1, 2].map(|i| {
+            [0, 1, 2].map(|k| {
+                let at = |a: usize, b: usize| &self.h[(i + a) % 3][(k + b) % 3];
+                &(at(1, 1) * at(2, 2)) - &(at(1, 2) * at(2, 1))
+            })
+        })
+    }
+
+    /// vᵀ adj(H) w.
+    fn product(&self, v: &[Dyadic; 3], w: &[Dyadic; 3]) -> Dyadic {
+        let rows = self.adjugate();
+        let image = rows.each_ref().map(|row| dot(row.each_ref(), w.each_ref()));
+        dot(v.each_ref(), image.each_ref())
+    }
+
+    /// The square of the radius in the metric of the ellipsoid: minus the least value of the function, times 2 det H.
+    fn square(&self) -> Dyadic {
+        &self.product(&self.g, &self.g) - &(&self.j * &self.determinant()).shifted(1)
+    }
+
+    /// The signs that are nowhere together if a plane does not cut the ellipsoid.
+    fn beside(&self, n: &[Dyadic; 3], c: &Dyadic) -> Option<(bool, bool)> {
+        // The plane's function at the centre, times det H.
+        let value = &(c * &self.determinant()) - &self.product(n, &self.g);
+        let is_apart = (&(&value * &value) - &(&self.square() * &self.product(n, n))).sign() >= 0;
+        // All of the inside has the sign that the centre has.
+        (is_apart && !value.is_zero()).then_some((self.inside_is_negative(), value.sign() > 0))
+    }
+
+    fn inside_is_negative(&self) -> bool {
+        !self.negated
     }
 }
 
-/// Squares of distances and radii, times the same: 4 a² b².
-fn of_spheres(first: &Figure, second: &Figure) -> Option<(bool, bool)> {
-    let (Figure::Sphere { a, g, square: p }, Figure::Sphere { a: b, g: h, square: q }) = (first, second)
-    else {
+fn of_ellipsoids(first: &Ellipsoid, second: &Ellipsoid) -> Option<(bool, bool)> {
+    // With the same matrix.
+    let (a, b) = (first.times(&second.h[0][0]), second.times(&first.h[0][0]));
+    if a.h != b.h {
         return None;
-    };
-    let (p, q) = (&(b * b) * p, &(a * a) * q);
-    let off = [0, 1, 2].map(|k| &(&g[k] * b) - &(&h[k] * a));
-    let apart = dot(off.each_ref(), off.each_ref());
+    }
+    // Squares of radii and of the distance of the centres in the metric of both, times the same.
+    let off = [0, 1, 2].map(|k| &a.g[k] - &b.g[k]);
+    let (p, q, apart) = (a.square(), b.square(), a.product(&off, &off));
     // Of x ≥ 0 and y ≥ 0 whether √whole ≥ √x + √y.
     let is_sum = |whole: &Dyadic, x: &Dyadic, y: &Dyadic| {
         let rest = &(whole - x) - y;
         rest.sign() >= 0 && (&(&rest * &rest) - &(x * y).shifted(2)).sign() >= 0
     };
-    // Inside, the function has the other sign than its factor of second order.
-    let (in_a, in_b) = (a.sign() > 0, b.sign() > 0);
+    let (in_a, in_b) = (first.inside_is_negative(), second.inside_is_negative());
     if is_sum(&apart, &p, &q) {
         Some((in_a, in_b))
     } else if is_sum(&q, &p, &apart) {
@@ -91,14 +150,4 @@ fn of_spheres(first: &Figure, second: &Figure) -> Option<(bool, bool)> {
     } else {
         None
     }
-}
-
-fn of_sphere_and_plane(sphere: &Figure, plane: &Figure) -> Option<(bool, bool)> {
-    let (Figure::Sphere { a, g, square }, Figure::Plane { n, c }) = (sphere, plane) else { return None };
-    // The plane's function at the centre, times 2 a.
-    let value = &(a * c).shifted(1) - &dot(n.each_ref(), g.each_ref());
-    let is_apart = (&(&value * &value) - &(square * &dot(n.each_ref(), n.each_ref()))).sign() >= 0;
-    let is_positive = value.sign() == a.sign();
-    // All of the ball has that sign.
-    (is_apart && !value.is_zero()).then_some((a.sign() > 0, is_positive))
 }
