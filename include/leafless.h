@@ -3490,7 +3490,7 @@ leafless_status leafless_octree_distance_field(const leafless_octree *octree, co
 /// Whether the interiors of two solids have points in common.
 LEAFLESS_ENUM(leafless_overlap, uint32_t) {
     LEAFLESS_OVERLAP_DISJOINT = 0,  ///< Proven: they have none. The solids may touch.
-    LEAFLESS_OVERLAP_OVERLAPPING = 1,  ///< Proven: a cell lies in both.
+    LEAFLESS_OVERLAP_OVERLAPPING = 1,  ///< Proven: a cell or a ball lies in both.
     /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
     /// universe, where they may overlap.
     LEAFLESS_OVERLAP_UNDECIDED = 2,
@@ -3507,8 +3507,9 @@ typedef struct leafless_interference {
     uint64_t splits_b;  ///< Cells of the second solid that were split.
     uint32_t verdict;  ///< A leafless_overlap.
     uint32_t level;  ///< The finest level of which cells were looked at.
-    /// A cell that lies in both, if they are proven to overlap: its position in cells of its level; else
-    /// zeros. leafless_frame_cell_bounds gives its box.
+    /// A cell that lies in both, if the proof of an overlap found one: its position in cells of its level;
+    /// else zeros. leafless_frame_cell_bounds gives its box. (Octrees under a map may overlap by less than a
+    /// cell.)
     uint32_t witness[3];
     uint32_t witness_level;  ///< The level of that cell.
     /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint.

@@ -62,7 +62,8 @@ pub struct leafless_interference {
     pub ball_centre_model: [f64; 3],
     /// The radius of that ball.
     pub ball_radius_model: f64,
-    /// The cell in which that ball lies: its position in cells of its level; else zeros. leafless_frame_cell_bounds gives its box.
+    /// The cell in which that ball lies: its position in cells of its level; else zeros. leafless_frame_cell_bounds gives its box. (Of octrees
+    /// under a map there may be none: they may overlap by less than a cell.)
     pub witness: [u32; 3],
     /// The level of that cell.
     pub witness_level: u32,

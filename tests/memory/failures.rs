@@ -296,6 +296,10 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
         interference_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &CONTROL)
     });
+    operation!("interference of octrees", [a], {
+        let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
+        interference_at(&a, &a, &frame(), &[turn; 2], &frame(), f64::INFINITY, &CONTROL)
+    });
     operation!("clearance", [a], {
         let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
         clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(300), ..CONTROL })

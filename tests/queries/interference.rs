@@ -470,8 +470,9 @@ fn to_the_end_it_is_the_intersection_of_octrees() {
 fn many_placements_are_one_after_the_other() {
     let mut random = Random(7);
     let frame = Frame::new([-4.0; 3], 8.0, 7).unwrap();
+    // (Two stored octrees under placements are searched in another way: see `oriented`.)
     let a = build(&Tree::random(&mut random, 2).csg(), &frame, Rule::Certified, &alone()).unwrap();
-    let b = build(&Tree::random(&mut random, 2).csg(), &frame, Rule::Certified, &alone()).unwrap();
+    let b = Tree::random(&mut random, 2).csg();
     let placements: Vec<Affine> = (0..40).map(|_| rigid(&mut random, 3.0)).collect();
     for tolerance in [PROOF, 0.5] {
         let control = |threads| Control { threads, max_splits: Some(3000), ..Control::default() };

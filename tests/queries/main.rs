@@ -22,6 +22,7 @@ mod interference;
 mod measure;
 mod measure_mixed;
 mod measure_primitives;
+mod oriented;
 mod points;
 mod progress;
 mod ray_models;

@@ -1,5 +1,7 @@
 //! Do two solids overlap, and by how much?
 
+mod oriented;
+mod pose;
 mod search;
 
 use super::measure::volume_within;
@@ -9,11 +11,12 @@ use crate::lattice::{Affine, Cell, Cube, Frame, Interval, axes, valid};
 use crate::memory;
 use crate::octree::{Proof, Tag};
 use crate::parallel;
-use crate::parallel::each;
+use crate::parallel::each_with;
 use crate::solid::joint::Joint;
 use crate::solid::{Classifier, Motion, Solid, TransformClassifier};
 use crate::walk::Proven;
 use alloc::vec::Vec;
+use oriented::{Oriented, Waiting};
 use search::Search;
 
 /// Whether the interiors of two solids have points in common.
@@ -61,9 +64,11 @@ impl Ball {
 pub struct Interference {
     /// Whether they overlap.
     pub verdict: Overlap,
-    /// A cell with points of both, if they are proven to overlap.
+    /// A cell of the frame with points of both, if the proof of an overlap found one, as it does unless stored octrees were asked for
+    /// under placements.
     pub witness: Option<Cell>,
-    /// A ball in that cell, all of which is proven to lie in both. It is not the largest one.
+    /// If they are proven to overlap, a ball, all of which is proven to lie in both: in that cell, if there is one. It is not the largest
+    /// one.
     pub ball: Option<Ball>,
     /// The volume of what they have in common, in cubic model units; the upper bound is infinite if `clipped`.
     pub volume: Interval,
@@ -116,20 +121,19 @@ pub fn interference<A: Solid, B: Solid>(
     valid::tolerance("tolerance", tolerance)?;
     let job = Job::new(control);
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
-    let found = of_classifiers(a, b, tolerance, control.threads, &job)?;
+    let found = of_classifiers(a, b, tolerance, control, &job)?;
     job.advance(WHOLE);
     Ok(found)
 }
 
-/// The same of solids on one frame, measured by so many threads.
+/// The same of solids on one frame.
 fn of_classifiers<A: Classifier, B: Classifier>(
     a: A,
     b: B,
     tolerance: f64,
-    threads: usize,
+    control: &Control<'_>,
     job: &Job<'_>,
 ) -> Result<Interference, Error> {
-    let control = job.control();
     let proofs = [a.proof(), b.proof()];
     let clipped = a.exterior() != Tag::Empty && b.exterior() != Tag::Empty;
     let both = Joint::new(a, b, control)?;
@@ -139,7 +143,7 @@ fn of_classifiers<A: Classifier, B: Classifier>(
     })?;
     if found.verdict == Overlap::Overlapping && found.volume.width() > tolerance {
         // A split of what both have in common is one of each of them.
-        let own = Control { threads, progress: None, ..*control };
+        let own = Control { progress: None, ..*control };
         let measured = volume_within(&both, tolerance, found.left / 2, &own)?;
         // (Both hold the truth.)
         found.volume = found.volume.common(measured.volume).unwrap_or(measured.volume);
@@ -167,6 +171,29 @@ fn of_classifiers<A: Classifier, B: Classifier>(
 /// ([`Motion::Exact`]), so that contacts are decided. The same for any number of threads; `control.max_splits` concerns each
 /// placement.
 ///
+/// # Stored octrees
+/// Two [`Octree`](crate::Octree)s, or views of them, also behind [`AnySolid`](crate::AnySolid), are not searched by cells of
+/// `frame`: both trees descend in pairs of cells, as boxes that the placement turns. Nothing blurs, and a pair of solids that
+/// overlap by less than a cell is found out, too; [`Interference::ball`] is the proof. `splits` counts cells of both trees. The
+/// trees must be certified and without surfaces, end inside of their universes, and be known on just the frames that are given.
+/// Any affine placement will do. Where a finite `tolerance` asks for the volume of an overlap, the search by cells follows.
+///
+/// A placement takes a few microseconds, and more where the solids nearly touch: the work grows with the area where the gap is as
+/// narrow as a cell, measured in such cells.
+///
+/// ```
+/// use leafless::query::{Overlap, interference_at};
+/// use leafless::{Affine, Control, Csg, Frame, Rule, build};
+/// let (frame, control) = (Frame::new([-2.0; 3], 4.0, 7)?, Control::default());
+/// let block = build(&Csg::cuboid([-1.0, -1.0, -0.25], [1.0, 1.0, 0.25])?, &frame, Rule::Certified, &control)?;
+/// let turned = |z| Affine::new([[0.8, -0.6, 0.0, 0.0], [0.6, 0.8, 0.0, 0.0], [0.0, 0.0, 1.0, z]]);
+/// let placements = [turned(0.501)?, turned(0.499)?];
+/// let found = interference_at(&block, &block, &frame, &placements, &frame, f64::INFINITY, &control)?;
+/// assert_eq!([found[0].verdict, found[1].verdict], [Overlap::Disjoint, Overlap::Overlapping]);
+/// assert!(found[1].ball.is_some());
+/// # Ok::<(), leafless::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`interference`].
 pub fn interference_at<A: Solid, B: Solid>(
@@ -181,18 +208,41 @@ pub fn interference_at<A: Solid, B: Solid>(
     valid::tolerance("tolerance", tolerance)?;
     let job = Job::new(control);
     let (bounds, solid) = (b.bounds(), b);
-    let (a, b) = (Proven(a.on(frame, control)?), b.on(own, control)?);
-    let one = |placement: &Affine| {
+    let (a, b) = (a.on(frame, control)?, b.on(own, control)?);
+    let mut workers = (a.worker()?, b.worker()?);
+    let stored = (oriented::stored(&a, &mut workers.0)?, oriented::stored(&b, &mut workers.1)?);
+    let oriented = match stored {
+        (Some(a), Some(b)) => Some(Oriented::new(a, b)),
+        _ => None,
+    };
+    let a = Proven(a);
+    // The threads are those of the placements.
+    let alone = Control { threads: 1, ..*control };
+    let one = |waiting: &mut Waiting, placement: &Affine| {
         if solid.motion() == Motion::Exact
             && let Some(moved) = solid.placed(placement)?
         {
-            let found = of_classifiers(a.clone(), Proven(moved.on(frame, control)?), tolerance, 1, &job)?;
+            let found =
+                of_classifiers(a.clone(), Proven(moved.on(frame, control)?), tolerance, &alone, &job)?;
             job.advance(WHOLE / placements.len());
             return Ok(found);
         }
-        let around = bounds.and_then(|bounds| bounds.placed(placement));
-        let b = Proven(TransformClassifier::new(b.clone(), placement, frame, around));
-        let found = of_classifiers(a.clone(), b, tolerance, 1, &job)?;
+        let known = match &oriented {
+            Some(oriented) => Some(oriented.interference(placement, waiting, control, &job)?),
+            None => None,
+        };
+        let found = match known.filter(|known| is_enough(known, placement, tolerance)) {
+            Some(known) => known,
+            None => {
+                let spent = known.map_or(0, |known| known.splits.iter().sum::<u64>());
+                let left = control.max_splits.map(|most| most.saturating_sub(spent));
+                let around = bounds.and_then(|bounds| bounds.placed(placement));
+                let b = Proven(TransformClassifier::new(b.clone(), placement, frame, around));
+                let own = Control { max_splits: left, ..alone };
+                let found = of_classifiers(a.clone(), b, tolerance, &own, &job)?;
+                known.map_or(found, |known| found.with(&known))
+            }
+        };
         job.advance(WHOLE / placements.len());
         Ok::<_, Error>(found)
     };
@@ -200,10 +250,33 @@ pub fn interference_at<A: Solid, B: Solid>(
     control.run(placements.len() > 1, |parallel| {
         // By pieces, so that what is collected behind the scenes stays small.
         for piece in placements.chunks(PIECE) {
-            found.extend(each(parallel, piece.iter(), one)?);
+            found.extend(each_with(parallel, piece.iter(), Waiting::default, one)?);
         }
         Ok(found)
     })
+}
+
+/// Whether oriented boxes told all that is asked for. Cells on planes of the lattice tell more of contacts along these.
+fn is_enough(known: &Interference, placement: &Affine, tolerance: f64) -> bool {
+    let is_certain = known.verdict != Overlap::Undecided || !placement.is_monomial();
+    is_certain && known.volume.width() <= tolerance
+}
+
+impl Interference {
+    /// What two searches about the same solids found.
+    fn with(self, known: &Interference) -> Interference {
+        let lower = self.volume.lower.max(known.volume.lower);
+        let stronger = if self.verdict == Overlap::Undecided { known } else { &self };
+        Interference {
+            verdict: stronger.verdict,
+            witness: self.witness.or(known.witness),
+            ball: self.ball.or(known.ball),
+            volume: Interval::between(lower, self.volume.upper.min(known.volume.upper).max(lower)),
+            splits: [self.splits[0] + known.splits[0], self.splits[1] + known.splits[1]],
+            level: self.level.max(known.level),
+            ..self
+        }
+    }
 }
 
 /// Placements that are handed to the threads at once.
