@@ -85,6 +85,30 @@ static void many(const leafless_solid *a, const leafless_solid *b) {
     OK(leafless_solid_interfere_many(a, b, &frame, NULL, 0, &frame, INFINITY, &options, NULL));
 }
 
+/* Two balls around one centre, and a ball beside itself. */
+static void boundaries(const leafless_solid *a, const leafless_solid *other) {
+    const double centre[3] = {50, 50, 50};
+    leafless_solid *larger = NULL;
+    leafless_deviation apart = LEAFLESS_INIT(leafless_deviation);
+    const double root = sqrt(3.0);
+    OK(leafless_solid_new_ball(centre, 34, &larger));
+    OK(leafless_solid_deviation(a, larger, &frame, 0.5, 5, NULL, &apart));
+    CHECK(apart.distance_model.lower <= 4 && apart.distance_model.upper >= 4 && apart.verdict == LEAFLESS_WITHIN_YES);
+    CHECK(apart.a_to_b.distance_model.upper - apart.a_to_b.distance_model.lower <= 0.5);
+    CHECK(apart.b_to_a.has_witness && apart.b_to_a.apart_model < 0.5 && !apart.is_clipped_a && !apart.is_clipped_b);
+    CHECK(apart.measured == LEAFLESS_STOP_REASON_TOLERANCE && apart.splits_a > 0 && apart.proof_a.full);
+    /* 36 along the diagonal. */
+    OK(leafless_solid_deviation(a, other, &frame, 0.5, 60, NULL, &apart));
+    CHECK(apart.distance_model.lower <= 36 * root && apart.distance_model.upper >= 36 * root);
+    CHECK(apart.verdict == LEAFLESS_WITHIN_NO);
+    OK(leafless_solid_deviation(a, other, &frame, 0.5, NAN, NULL, &apart));
+    CHECK(apart.verdict == LEAFLESS_WITHIN_UNDECIDED);
+    OK(leafless_solid_deviation(a, a, &frame, 0, 0, NULL, &apart));
+    CHECK(apart.distance_model.upper == 0 && apart.verdict == LEAFLESS_WITHIN_YES);
+    CHECK(leafless_solid_deviation(a, a, &frame, NAN, 0, NULL, &apart) == LEAFLESS_E_ARGUMENT);
+    leafless_solid_free(larger);
+}
+
 static void refusals(const leafless_solid *a) {
     const double singular[12] = {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0};
     leafless_solid *never = NULL;
@@ -120,6 +144,7 @@ int main(void) {
     /* The maps are offsets of whole finest cells: nothing blurs there, but larger cells of the two do not coincide. */
     two_balls(a, moved_apart, moved_over, 400);
     many(a, a);
+    boundaries(a, apart);
     refusals(a);
     leafless_solid_free(moved_over);
     leafless_solid_free(moved_apart);

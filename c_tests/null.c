@@ -353,6 +353,14 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_clearance, frame,
                  leafless_solid_clearance(solid, solid, NULL, 0, NULL, (leafless_clearance *)out));
     NULL_POINTER(leafless_solid_clearance, clearance, leafless_solid_clearance(solid, solid, &frame, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_deviation, a,
+                 leafless_solid_deviation(NULL, solid, &frame, 0, 0, NULL, (leafless_deviation *)out));
+    NULL_POINTER(leafless_solid_deviation, b,
+                 leafless_solid_deviation(solid, NULL, &frame, 0, 0, NULL, (leafless_deviation *)out));
+    NULL_POINTER(leafless_solid_deviation, frame,
+                 leafless_solid_deviation(solid, solid, NULL, 0, 0, NULL, (leafless_deviation *)out));
+    NULL_POINTER(leafless_solid_deviation, deviation,
+                 leafless_solid_deviation(solid, solid, &frame, 0, 0, NULL, NULL));
     NULL_POINTER(leafless_solid_with_touch, operand, leafless_solid_with_touch(NULL, 0, solid_result));
     NULL_POINTER(leafless_solid_with_touch, solid, leafless_solid_with_touch(solid, 0, NULL));
     BAD_NUMBER(leafless_solid_with_touch, touch, leafless_solid_with_touch(solid, 7, solid_result));
@@ -571,6 +579,7 @@ static void null_pointers(void) {
     {
         leafless_interference found;
         leafless_clearance near = LEAFLESS_INIT(leafless_clearance);
+        leafless_deviation apart = LEAFLESS_INIT(leafless_deviation);
         MAY_BE_NULL(leafless_solid_interfere, options,
                     leafless_solid_interfere(solid, solid, &frame, 0, NULL, &found));
         MAY_BE_NULL(leafless_solid_interfere_many, options,
@@ -581,6 +590,8 @@ static void null_pointers(void) {
                     leafless_solid_interfere_many(solid, solid, &frame, NULL, 0, &frame, 0, NULL, NULL));
         MAY_BE_NULL(leafless_solid_clearance, options,
                     leafless_solid_clearance(solid, solid, &frame, 1, NULL, &near));
+        MAY_BE_NULL(leafless_solid_deviation, options,
+                    leafless_solid_deviation(solid, solid, &frame, 1, 1, NULL, &apart));
     }
     {
         leafless_membership membership;
@@ -764,6 +775,8 @@ static void misaligned(void) {
                leafless_solid_interfere(solid, solid, &frame, 0, NULL, (leafless_interference *)WRONG(out)));
     MISALIGNED(leafless_solid_clearance, clearance,
                leafless_solid_clearance(solid, solid, &frame, 0, NULL, (leafless_clearance *)WRONG(out)));
+    MISALIGNED(leafless_solid_deviation, deviation,
+               leafless_solid_deviation(solid, solid, &frame, 0, 0, NULL, (leafless_deviation *)WRONG(out)));
     MISALIGNED(leafless_solid_measure, solid,
                leafless_solid_measure((leafless_solid *)WRONG(solid), &frame, 0, 0.0, NULL, (leafless_measures *)out));
     MISALIGNED(leafless_solid_measure, measures,
@@ -989,6 +1002,8 @@ static void numbers(void) {
                leafless_solid_interfere(solid, solid, &frame, -1, NULL, (leafless_interference *)out));
     BAD_NUMBER(leafless_solid_clearance, tolerance,
                leafless_solid_clearance(solid, solid, &frame, -1, NULL, (leafless_clearance *)out));
+    BAD_NUMBER(leafless_solid_deviation, tolerance,
+               leafless_solid_deviation(solid, solid, &frame, -1, 0, NULL, (leafless_deviation *)out));
     BAD_NUMBER(leafless_frame_plane, axis, leafless_frame_plane(&frame, 3, 0, (leafless_interval *)out));
     BAD_NUMBER(leafless_frame_plane, axis, leafless_frame_plane(&frame, UINT32_MAX, 0, (leafless_interval *)out));
     BAD_NUMBER(leafless_frame_plane, index, leafless_frame_plane(&frame, 0, 17, (leafless_interval *)out));

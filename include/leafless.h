@@ -430,8 +430,8 @@ typedef struct leafless_options {
     /// Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is
     /// known beforehand nothing is done. When a result is put together, it takes as much again for a moment.
     /// Set a limit where a solid or its depth is not your own choice: a file of some hundred bytes may hold a
-    /// cell whose surface has 2^43 triangles. Interference, clearance and bounding boxes end with what they
-    /// know, as with max_splits spent, before what they remember of a solid's parts takes so much.
+    /// cell whose surface has 2^43 triangles. Interference, clearance, deviations and bounding boxes end with
+    /// what they know, as with max_splits spent, before what they remember of a solid's parts takes so much.
     uint64_t max_bytes;
     /// Split at most this many cells; 0 means no limit, or the one that the function names. Only functions
     /// that split on demand heed it, and say so: with it spent they stop, and keep or return what they have;
@@ -3629,6 +3629,65 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a, const lea
 leafless_status leafless_solid_clearance(const leafless_solid *a, const leafless_solid *b,
     const leafless_frame *frame, double tolerance_model, const leafless_options *options,
     leafless_clearance *clearance);
+
+/// How far points of one boundary are from another one.
+typedef struct leafless_one_way {
+    /// The greatest distance of a point of the one boundary from the nearest point of the other, in model
+    /// units. 0 if the first solid has no boundary; infinite if the second has none and the first has.
+    leafless_interval distance_model;
+    double point_model[3];  ///< If `has_witness`, a point next to the first boundary; else zeros.
+    /// If `has_witness`, the first boundary is that near to the point, or nearer; else 0.
+    double apart_model;
+    /// If `has_witness`, the point next to the second boundary that is nearest to it, but for what is not
+    /// known; else zeros.
+    double nearest_model[3];
+    bool has_witness;  ///< Whether the lower bound was found at a point.
+} leafless_one_way;
+
+/// What is known of how far the boundaries of two solids are from each other.
+typedef struct leafless_deviation {
+    uint32_t struct_size;  ///< sizeof(leafless_deviation).
+    /// The greater of both directions, in model units: the Hausdorff distance of the boundaries.
+    leafless_interval distance_model;
+    leafless_one_way a_to_b;  ///< How far points of the first boundary are from the second one.
+    leafless_one_way b_to_a;  ///< How far points of the second boundary are from the first one.
+    leafless_proof proof_a;  ///< What of the first solid is proven: what is not counts as undecided.
+    leafless_proof proof_b;  ///< What of the second solid is proven.
+    /// Cells of the first solid that were split; 0 if its boundary is known to consist of triangles.
+    uint64_t splits_a;
+    uint64_t splits_b;  ///< Cells of the second solid that were split.
+    uint64_t cuts_a;  ///< How often pieces of the first boundary were cut.
+    uint64_t cuts_b;  ///< How often pieces of the second boundary were cut.
+    uint32_t verdict;  ///< A leafless_within: whether the boundaries are within `within_model` of each other.
+    leafless_stop_reason measured;  ///< Why the search ended.
+    /// Whether the first solid may go on outside of the universe, of which nothing is said.
+    bool is_clipped_a;
+    bool is_clipped_b;  ///< Whether the second solid may.
+} leafless_deviation;
+
+/// How far the boundaries of two solids are from each other, in both directions, as they are in the universe
+/// of a frame.
+///
+/// The boundary of a closed mesh whose triangles do not intersect is known exactly, and the answer for two of
+/// them is found to rounding. Of any other solid, cells are split until the slabs of each tell where the
+/// boundary lies to a twelfth of `tolerance_model` (model units); what is not decided widens the intervals.
+///
+/// `measured` of the result says why the search ended. With LEAFLESS_STOP_REASON_TOLERANCE both intervals are
+/// no wider than `tolerance_model`. With LEAFLESS_STOP_REASON_EXHAUSTED neither cells nor pieces of the
+/// boundaries have more to tell. With LEAFLESS_STOP_REASON_BUDGET `max_splits` cells of a solid were split,
+/// or 262 144 if that is 0, or 64 times as many pieces of a boundary cut, or `max_bytes` are near.
+///
+/// `verdict` of the result is a leafless_within: whether the boundaries are proven to be within
+/// `within_model` of each other. If that is not a number, nothing is decided.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `deviation`, one struct.
+/// - Result: `*deviation`.
+/// - Errors: as leafless_solid_interfere.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solids; the default of `max_splits` bounds the work.
+leafless_status leafless_solid_deviation(const leafless_solid *a, const leafless_solid *b,
+    const leafless_frame *frame, double tolerance_model, double within_model, const leafless_options *options,
+    leafless_deviation *deviation);
 
 /* ---- 20. Octrees that are split on demand ------------------------------------------------------------- */
 

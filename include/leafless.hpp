@@ -474,6 +474,8 @@ public:
         const leafless_options *options, span<leafless_interference> interferences) const;
     [[nodiscard]] returns<leafless_clearance> clearance(const leafless::solid &b, const leafless_frame &frame,
         double tolerance_model, const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<leafless_deviation> deviation(const leafless::solid &b, const leafless_frame &frame,
+        double tolerance_model, double within_model, const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<std::vector<leafless_material>> materials(const leafless::channel &channel,
         const leafless_frame &frame, double relative, double absolute_model,
         const leafless_options *options = nullptr) const;
@@ -1451,6 +1453,14 @@ inline returns<leafless_clearance> solid::clearance(const leafless::solid &b, co
     const leafless_status status = leafless_solid_clearance(get(), b.get(), &frame, tolerance_model, options,
         &clearance);
     return detail::finish(status, clearance);
+}
+
+inline returns<leafless_deviation> solid::deviation(const leafless::solid &b, const leafless_frame &frame,
+    double tolerance_model, double within_model, const leafless_options *options) const {
+    leafless_deviation deviation = LEAFLESS_INIT(leafless_deviation);
+    const leafless_status status = leafless_solid_deviation(get(), b.get(), &frame, tolerance_model,
+        within_model, options, &deviation);
+    return detail::finish(status, deviation);
 }
 
 inline returns<std::vector<leafless_material>> solid::materials(const leafless::channel &channel,

@@ -22,7 +22,7 @@ pub struct Control<'a> {
     /// Refuse results whose working form is larger than this many bytes. Where the size is known beforehand, the refusal
     /// is [`Error::TooLarge`] and nothing is done; where it is found out on the way, it is [`Error::Limit`]. (What is
     /// refined on demand stops there.) When a result is put together, it takes as much again for a moment. Interference,
-    /// clearance, bounding boxes and areas of sections end with what they know, as with `max_splits` spent, before what they
+    /// clearance, deviations, bounding boxes and areas of sections end with what they know, as with `max_splits` spent, before what they
     /// remember of a solid's parts takes so much.
     ///
     /// A small solid may have a large result: a file of some hundred bytes holds a cell of depth 20, whose surface has

@@ -83,6 +83,7 @@
 //! | … the normal of a surface of which only cells are known? | `render/normals.rs` |
 //! | … the list of voxels, their depth order? | `voxel/walk.rs`, `records.rs`, `order.rs` |
 //! | … the volume of a solid, the distance of two, or of a point? | `query/measure/`, `query/clearance/`, `query/distance/` |
+//! | … how far two boundaries are from each other? | `query/deviation/` |
 //! | … the area of a plane section? | `query/section.rs`, `cut/section.rs` |
 
 #![no_std]
@@ -131,8 +132,8 @@ pub use op::{
     intersection, union, xor,
 };
 pub use query::{
-    Clearance, Interference, MassProperties, Membership, Ray, Tolerance, bounding_box, cast_rays, clearance,
-    contains, interference, measure,
+    Clearance, Deviation, Interference, MassProperties, Membership, Ray, Tolerance, bounding_box, cast_rays,
+    clearance, contains, deviation, interference, measure,
 };
 pub use solid::{AnySolid, Callback, Classifier, Csg, MeshSolid, Solid, Verdict, Volume, Worker};
 pub use surface::marching_cubes;

@@ -41,7 +41,7 @@ pub struct leafless_options {
     /// Refuse results whose working form is larger than this many bytes; 0 means no limit. Where the size is known
     /// beforehand nothing is done. When a result is put together, it takes as much again for a moment. Set a limit
     /// where a solid or its depth is not your own choice: a file of some hundred bytes may hold a cell whose surface
-    /// has 2^43 triangles. Interference, clearance and bounding boxes end with what they know, as with max_splits spent,
+    /// has 2^43 triangles. Interference, clearance, deviations and bounding boxes end with what they know, as with max_splits spent,
     /// before what they remember of a solid's parts takes so much.
     pub max_bytes: u64,
     /// Split at most this many cells; 0 means no limit, or the one that the function names. Only functions

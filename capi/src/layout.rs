@@ -134,6 +134,11 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             distance_model, proof_a, proof_b, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
             measured, has_nearest, is_clipped
         }
+        leafless_one_way { distance_model, point_model, apart_model, nearest_model, has_witness }
+        leafless_deviation { struct_size,
+            distance_model, a_to_b, b_to_a, proof_a, proof_b, splits_a, splits_b, cuts_a, cuts_b, verdict, measured,
+            is_clipped_a, is_clipped_b
+        }
         leafless_measures { struct_size,
             volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
             measured, has_centroid, is_clipped, is_exact

@@ -68,6 +68,7 @@
 //! | `lazy` | octrees that are split on demand |
 //! | `interference` | solids under affine maps; overlap and distance of two solids |
 //! | `distance` | distances of points from solids |
+//! | `deviation` | distances of the boundaries of two solids |
 //! | `measure` | volume, centroid, inertia, areas of surfaces and sections, bounding boxes of solids |
 //! | `tridexel` | tri-dexel models: made of solids, described, metadata |
 //! | `tridexel_read` | cells, rays and intervals of tri-dexel models, statistics |
@@ -98,6 +99,7 @@ mod content;
 mod control;
 mod csg;
 mod cursor;
+mod deviation;
 mod distance;
 mod extended;
 mod file;

@@ -106,6 +106,8 @@ enum Command {
     Voxels(voxels::Arguments),
     #[command(about = "Say whether two solids or meshes overlap, by how much, and how far they are apart")]
     Interfere(interfere::Arguments),
+    #[command(about = "Say how far the boundaries of two solids or meshes are from each other")]
+    Deviation(deviation::Arguments),
     #[command(
         about = "Volume, centroid, inertia and bounds of a solid or a mesh, as intervals that hold the true ones"
     )]
@@ -175,6 +177,7 @@ fn main() -> ExitCode {
         Command::Bitmap(arguments) => bitmap::run(arguments),
         Command::Voxels(arguments) => voxels::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),
+        Command::Deviation(arguments) => deviation::run(arguments),
         Command::Measure(arguments) => measure::run(arguments),
         Command::Within(arguments) => within::run(arguments),
         Command::Demo(arguments) => demo::run(arguments),

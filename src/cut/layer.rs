@@ -26,9 +26,16 @@ pub(crate) fn corners(slab: &Slab) -> impl Iterator<Item = [f64; 3]> + Clone {
 /// The straight way from a point to the nearest point of one side, or to that of the other, meets the boundary. The distance from a side
 /// is a convex function, so that it is greatest in a corner.
 pub(crate) fn stray(slab: &Slab) -> f64 {
+    let [behind, before] = sides(slab);
+    behind.max(before)
+}
+
+/// How far the points of the slab in the cube are from the cube's points behind it at the most, and from those in front of it, to
+/// rounding; infinite if there are none.
+pub(crate) fn sides(slab: &Slab) -> [f64; 2] {
     let behind = |p| distance(p, slab.normal, slab.inner);
     let before = |p| distance(p, slab.normal.map(|c| -c), -slab.outer);
-    corners(slab).map(|p| f64::max(behind(p), before(p))).fold(0.0, f64::max)
+    corners(slab).fold([0.0, 0.0], |[a, b], p| [f64::max(a, behind(p)), f64::max(b, before(p))])
 }
 
 /// How far a point of the cube is from the cube's points with n · x ≤ offset; infinite if there are none.

@@ -37,7 +37,7 @@ pub(crate) use ball::ball;
 pub use enclosure::{Crossing, Enclosure, Segment, Slab, SlabJoin};
 pub(crate) use face::{area_of_faces, area_within};
 pub(crate) use flux::{area_of_surface, most_area};
-pub(crate) use layer::{corners, stray};
+pub(crate) use layer::{corners, sides, stray};
 pub(crate) use quadratic::Quadratic;
 pub(crate) use section::{SETTLED, Section};
 pub(crate) use taylor::Taylor;

@@ -140,12 +140,22 @@ impl TriangleTree<'_> {
         point: &Point,
         wanted: impl Fn(u32) -> bool,
     ) -> Option<(NearestPoint, Interval)> {
+        self.nearest_beside(point, None, wanted)
+    }
+
+    /// The same with a triangle that may be near, which saves time.
+    pub(crate) fn nearest_beside(
+        &self,
+        point: &Point,
+        hint: Option<u32>,
+        wanted: impl Fn(u32) -> bool,
+    ) -> Option<(NearestPoint, Interval)> {
         let grid = &self.tree.grid;
         let scaled = grid.scaled(point);
         if !scaled.iter().all(|x| x.abs() < FAR / 2.0) {
             return None;
         }
-        let found = self.search(point, None, wanted, true)?;
+        let found = self.search(point, hint, wanted, true)?;
         let corners = Corners::of(self.mesh, found.triangle, grid.scale());
         let distance = sqrt(found.square);
         // The computed point of the triangle is that near.
@@ -153,6 +163,15 @@ impl TriangleTree<'_> {
         let exactly = Interval::exactly;
         let bounds = Interval::new(found.lower.max(0.0).min(distance), upper.max(distance))?;
         Some((found, bounds.over(exactly(grid.scale()))))
+    }
+
+    /// More than the distance of a point from a triangle, in model units; hardly more.
+    pub(crate) fn most_from(&self, triangle: u32, point: &Point) -> f64 {
+        let scale = self.tree.grid.scale();
+        let shape = Corners::of(self.mesh, triangle, scale);
+        let distance = sqrt(shape.nearest_to(&shape.from(point)).0);
+        // (The scale is a power of two.)
+        (distance + shape.excess(distance)) / scale
     }
 
     /// The point of a triangle that is nearest to another one, but for rounding.

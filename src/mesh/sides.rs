@@ -41,6 +41,23 @@ impl Sides {
         self.senses[triangle as usize] == Sides::FLAT
     }
 
+    /// Whether each triangle belongs to the boundary of the solid; an empty list if all do. `None` if that is not known of all.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn boundary(&self) -> Result<Option<Vec<bool>>, Error> {
+        // A triangle without area lies on the edges of others.
+        let is_known = |&sense: &i8| sense < Sides::UNKNOWN || sense == Sides::FLAT;
+        if !self.senses.iter().all(is_known) {
+            return Ok(None);
+        }
+        let bounds = |&sense: &i8| matches!(sense, 1 | -1);
+        if self.senses.iter().all(bounds) {
+            return Ok(Some(Vec::new()));
+        }
+        Ok(Some(memory::collected(self.senses.iter().map(bounds))?))
+    }
+
     /// Whether two triangles intersect beyond common vertices and edges.
     pub(crate) fn is_pair(&self, a: u32, b: u32) -> bool {
         self.pairs.binary_search(&[a, b]).is_ok()

@@ -12,6 +12,7 @@
 //! | how large is its section with a plane? | | `section` |
 //! | how far is a point? | `distance` | `distance` |
 //! | how far is another solid, do both overlap? | | `clearance`, `interference` |
+//! | how far are two boundaries from each other? | | `deviation` |
 //! | which cells of a box are solid, as bits? | `bitmap` | |
 //!
 //! # A new question about any solids
@@ -46,6 +47,7 @@ mod clearance;
 mod columns;
 mod contains;
 mod content;
+mod deviation;
 mod distance;
 mod extent;
 mod interference;
@@ -60,6 +62,7 @@ pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
 pub use columns::{ColumnCells, ColumnRuns, Columns, Heights, Run, Side, columns, heights};
 pub use contains::contains;
 pub use content::{CellsIn, cells_in, volume_in};
+pub use deviation::{DEVIATION_SPLITS, Deviation, OneWay, Within, Witness, deviation};
 pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, NearPoint, PointDistance, distances};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
 pub use interference::{Ball, Interference, Overlap, interference, interference_at};

@@ -1,8 +1,8 @@
 //! What may be asked of a solid beside its cells.
 
 use super::{
-    BoxContent, Classifier, Crossing, Enclosure, NearestSurface, OpenSurfaces, PlacedHalfSpace, RayQuestion,
-    RayTrace, Segment, Slab, Worker,
+    BoundaryFacets, BoxContent, Classifier, Crossing, Enclosure, NearestSurface, OpenSurfaces,
+    PlacedHalfSpace, RayQuestion, RayTrace, Segment, Slab, Worker,
 };
 use crate::control::Control;
 use crate::cut;
@@ -331,6 +331,10 @@ pub enum WholeQuestion<'q> {
     /// Whether questions of this kind about the universe are answered without a descent as a rule. What that takes is made now,
     /// once, and kept for all that share the shape; the flag is set if there is such a thing.
     Direct(Direct, &'q mut bool),
+
+    /// The triangles that the whole boundary consists of, none of which lies inside of the solid or outside of it, if there are such
+    /// and all of the boundary lies in the universe. Whether the solid or its complement is meant does not matter.
+    Facets(&'q mut Option<BoundaryFacets>),
 }
 
 /// A kind of questions about the universe that some solids answer without a descent.
@@ -398,6 +402,16 @@ pub trait AskWhole: Classifier {
         let mut is_direct = false;
         self.answer_whole(WholeQuestion::Direct(kind, &mut is_direct), control)?;
         Ok(is_direct)
+    }
+
+    /// The triangles that the whole boundary consists of: [`WholeQuestion::Facets`].
+    ///
+    /// # Errors
+    /// As [`moments`](Self::moments).
+    fn facets(&self, control: &Control<'_>) -> Result<Option<BoundaryFacets>, Error> {
+        let mut known = None;
+        self.answer_whole(WholeQuestion::Facets(&mut known), control)?;
+        Ok(known)
     }
 
     /// Whether no piece of the boundary is known to lie in a plane of the lattice: [`WholeQuestion::OffLattice`].

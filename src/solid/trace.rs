@@ -3,6 +3,8 @@
 use crate::error::Error;
 use crate::lattice::{Interval, Ray};
 use crate::memory;
+use crate::mesh::TriangleMesh;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 /// Where a ray goes in and out of a solid.
@@ -144,6 +146,15 @@ impl NearestSurface {
     pub(crate) fn complement(self) -> NearestSurface {
         NearestSurface { is_inside: self.is_inside.map(|is_inside| !is_inside), ..self }
     }
+}
+
+/// Triangles that the boundary of a solid consists of.
+#[derive(Clone)]
+pub struct BoundaryFacets {
+    /// The triangles; its [`displacement`](TriangleMesh::displacement) is how far, along each axis, the boundary may lie from them.
+    pub mesh: Arc<TriangleMesh>,
+    /// Whether each triangle belongs to the boundary. Empty: all of them do.
+    pub chosen: Vec<bool>,
 }
 
 /// How a box lies to a solid.

@@ -32,8 +32,8 @@ use leafless::voxel::{VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
     Affine, AnySolid, Bounds, Callback, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership,
     MeshSolid, Metadata, Octree, Ray, Rule, SurfaceOptions, Tag, TriDexel, TriangleMesh, Verdict, Volume,
-    bounding_box, build, build_extended, cast_rays, clearance, compact, complement, contains, dexelize,
-    difference, exchange, file, intersection, marching_cubes, measure, scene, union, xor,
+    bounding_box, build, build_extended, cast_rays, clearance, compact, complement, contains, deviation,
+    dexelize, difference, exchange, file, intersection, marching_cubes, measure, scene, union, xor,
 };
 use std::io::{self, Write};
 use std::path::Path;
@@ -303,6 +303,15 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("clearance", [a], {
         let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
         clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(300), ..CONTROL })
+    });
+    operation!("deviation", [a], {
+        deviation(
+            &a,
+            &Csg::ball([15.0; 3], 9.0)?,
+            &frame(),
+            0.5,
+            &Control { max_splits: Some(30), ..CONTROL },
+        )
     });
     let marked = DexelOptions {
         format: DexelFormat {

@@ -14,6 +14,7 @@ mod area;
 mod columns;
 mod contact;
 mod content;
+mod deviation;
 mod distance;
 mod distance_field;
 mod extended;

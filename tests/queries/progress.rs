@@ -24,7 +24,7 @@ use leafless::voxel::{Symmetry, Viewpoint, VoxelOptions, VoxelRecords, dexel_vox
 use leafless::{
     Affine, Bounds, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership, MeshSolid, Octree, Ray,
     Rule, SurfaceOptions, Tag, TriDexel, Volume, bounding_box, build, build_extended, cast_rays, clearance,
-    complement, contains, dexelize, difference, intersection, marching_cubes, measure, union, xor,
+    complement, contains, deviation, dexelize, difference, intersection, marching_cubes, measure, union, xor,
 };
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -72,7 +72,7 @@ impl Heard {
 }
 
 /// Operations that are one search until what they look for is known well enough: nobody knows how long it will be.
-const SEARCHES: &[&str] = &["bounding box", "clearance", "interference", "section area"];
+const SEARCHES: &[&str] = &["bounding box", "clearance", "deviation", "interference", "section area"];
 
 /// Operations that are one step of which only the end is told, or nothing.
 const ONE_STEP: &[&str] = &[
@@ -232,6 +232,9 @@ fn all_operations(depth: u8) -> Vec<Told> {
         let moved = region.placed(&Affine::translation([0.0, 0.0, 0.0]).unwrap())?;
         let apart = Csg::ball([-0.6, 0.0, 0.0], 0.3)?;
         clearance(&moved, &apart, &frame, 1e-6, &Control { max_splits: Some(20_000), ..*control })
+    });
+    heard.of("deviation", |control| {
+        deviation(&part, &ball, &frame, 1e-2, &Control { max_splits: Some(2_000), ..*control })
     });
     let mut lazy = LazyOctree::new(&part, &frame).unwrap();
     heard.of("refine", |control| lazy.refine(&Zone::Whole, depth, control));

@@ -208,7 +208,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole;
 /// else the one that `around` makes of their bounds.
-fn common_frame(
+pub fn common_frame(
     own: Option<&Frame>,
     ((mut min, mut max), (low, high)): (Corners, Corners),
     placements: &[Affine],

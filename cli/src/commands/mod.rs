@@ -7,6 +7,7 @@ pub mod contains;
 pub mod convert;
 pub mod csg;
 pub mod demo;
+pub mod deviation;
 pub mod dexelize;
 pub mod distance;
 pub mod heights;

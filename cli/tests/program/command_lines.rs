@@ -215,8 +215,12 @@ const NEEDED: [(&str, &str); 6] = [
 fn line(random: &mut Random, name: &str, choices: &[Choice], files: &[String]) -> Vec<String> {
     let file = |random: &mut Random| files[random.below(files.len())].clone();
     let mut words = vec![name.to_owned()];
-    let operands =
-        if ["union", "intersection", "difference", "xor", "interfere"].contains(&name) { 2 } else { 1 };
+    let operands = if ["union", "intersection", "difference", "xor", "interfere", "deviation"].contains(&name)
+    {
+        2
+    } else {
+        1
+    };
     for _ in 0..operands + random.below(12) / 11 {
         words.push(file(random));
     }

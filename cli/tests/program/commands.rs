@@ -54,6 +54,7 @@ pub const COMMANDS: [&str; 49] = [
     "voxels F -o out.npz --boundary-depth 1",
     "voxels F -o out.npz --coarse 1e-6 --cells",
     "interfere F F",
+    "deviation F F",
     "measure F",
     "measure F --cells --tolerance 1e-9",
     "within F --ball 0.3,0.3,0.3,0.2",

@@ -176,6 +176,7 @@ const OTHERS: [&str; 13] = [
     "render",
     "heights",
     "interfere",
+    "deviation",
     "measure",
     "within",
     "sample",
@@ -186,7 +187,8 @@ const OTHERS: [&str; 13] = [
 const BY_THEMSELVES: [&str; 2] = ["demo", "help"];
 
 /// Subcommands that can take cells for the solid. Of these, `voxels` alone writes what a solid is made of.
-const WITH_CELLS: [&str; 7] = ["distance", "heights", "interfere", "measure", "ray", "voxels", "within"];
+const WITH_CELLS: [&str; 8] =
+    ["deviation", "distance", "heights", "interfere", "measure", "ray", "voxels", "within"];
 
 /// The ball, and the other one, by a rule.
 fn given(rule: &str) -> Place {

@@ -23,8 +23,9 @@ use crate::memory;
 use crate::mesh::{FacetPlanes, FillRule, Loops, MeshMoments, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
 use crate::solid::{
-    Batch, Classifier, Crossing, Direct, Enclosure, Fingerprint, Fingerprinter, LayersQuestion, Motion,
-    Parts, Question, Segment, Solid, Verdict, WholeQuestion, Worker, sample_one_by_one, split_one_by_one,
+    Batch, BoundaryFacets, Classifier, Crossing, Direct, Enclosure, Fingerprint, Fingerprinter,
+    LayersQuestion, Motion, Parts, Question, Segment, Solid, Verdict, WholeQuestion, Worker,
+    sample_one_by_one, split_one_by_one,
 };
 use alloc::boxed::Box;
 use alloc::sync::Arc;
@@ -403,6 +404,15 @@ impl Classifier for MeshClassifier {
                     solid.mesh.triangle_tree(control)?;
                     rim.get_or_try_init(|| direct::rim(&solid.mesh, loops).map(Box::new))?;
                     *is_direct = true;
+                }
+            }
+            WholeQuestion::Facets(known) => {
+                if solid.is_closed()
+                    && self.exterior() == Tag::Empty
+                    && let Some(sides) = solid.sides(control)?
+                {
+                    *known =
+                        sides.boundary()?.map(|chosen| BoundaryFacets { mesh: solid.mesh.clone(), chosen });
                 }
             }
             WholeQuestion::OffLattice(known) => {

@@ -1,0 +1,193 @@
+//! How far are the boundaries of two solids from each other?
+
+mod cells;
+mod piece;
+mod polygon;
+mod search;
+mod slabs;
+mod surface;
+
+use super::StopReason;
+use crate::control::{Control, Job, WHOLE};
+use crate::error::Error;
+use crate::lattice::{Frame, Interval, valid};
+use crate::octree::{Proof, Tag};
+use crate::solid::{AskWhole, Classifier, Solid};
+use crate::walk::Proven;
+use search::Search;
+use surface::{Seen, Surface};
+
+/// What is known of how far the boundaries of two solids are from each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deviation {
+    /// How far points of the first boundary are from the second one.
+    pub a_to_b: OneWay,
+    /// How far points of the second boundary are from the first one.
+    pub b_to_a: OneWay,
+    /// Why the search ended: that of both directions which says least.
+    pub stop_reason: StopReason,
+    /// Cells that were split, of the first solid and of the second; 0 of a solid whose boundary is known to consist of triangles.
+    pub splits: [u64; 2],
+    /// How often pieces of the first boundary were cut, and pieces of the second.
+    pub cuts: [u64; 2],
+    /// What of the first and of the second solid is proven: what is not counts as undecided.
+    pub proofs: [Proof; 2],
+    /// Whether the first solid and the second may go on outside of the universe. What is there is not looked at: the points of a
+    /// boundary are those in the universe, and the distances are those from all of the other one.
+    pub clipped: [bool; 2],
+}
+
+/// How far points of one boundary are from another one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OneWay {
+    /// The greatest distance of a point of the one boundary from the nearest point of the other, in model units. 0 if the first solid
+    /// has no boundary; infinite if the second has none and the first has.
+    pub distance: Interval,
+    /// Where the lower bound is found, if it is greater than 0.
+    pub at: Option<Witness>,
+}
+
+/// A place where two boundaries are far from each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Witness {
+    /// A point next to the first boundary (model units).
+    pub point: [f64; 3],
+    /// The first boundary is that near to the point, or nearer: 0 if the point is a vertex of a mesh.
+    pub apart: f64,
+    /// The point next to the second boundary that is nearest to it, but for what is not known of that boundary.
+    pub nearest: [f64; 3],
+}
+
+/// Whether two boundaries are within a distance of each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Within {
+    /// Proven: each point of one boundary is that near to the other.
+    Yes = 0,
+    /// Proven: a point of one boundary is further away from the other.
+    No = 1,
+    /// Not decided by what is known.
+    Undecided = 2,
+}
+
+impl Deviation {
+    /// The greater of both directions: the Hausdorff distance of the boundaries.
+    pub fn distance(&self) -> Interval {
+        let (one, other) = (self.a_to_b.distance, self.b_to_a.distance);
+        Interval::between(one.lower.max(other.lower), one.upper.max(other.upper))
+    }
+
+    /// Whether the boundaries are within a distance (model units) of each other. Of two solids that end in the universe, a distance of
+    /// 0 asks whether they have the same boundary.
+    pub fn within(&self, distance: f64) -> Within {
+        let known = self.distance();
+        if known.upper <= distance {
+            Within::Yes
+        } else if known.lower > distance {
+            Within::No
+        } else {
+            Within::Undecided
+        }
+    }
+}
+
+/// Cells of a solid that [`deviation`] splits if `control.max_splits` sets no other limit; and a 64th of the cuts of pieces.
+pub const DEVIATION_SPLITS: u64 = 1 << 18;
+
+/// Pieces are cut that much more often than cells are split.
+const CUTS: u64 = 64;
+
+/// How far the boundaries of `a` and `b` are from each other, in both directions (the Hausdorff distance is the greater one); a solid
+/// under a placement is moved first (see [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`.
+///
+/// The boundary of a closed mesh whose triangles do not intersect is known exactly; triangles within the solid, as those of a body
+/// inside of another one, are none of it. (Of a mesh whose triangles intersect cells are asked, and the walls inside of bodies that
+/// overlap may widen the intervals.) Of any other solid, cells of `frame` are split until the slabs of each tell where the
+/// boundary lies to a twelfth of `tolerance` (model units), and faces between FULL and EMPTY cells are known exactly; what is not
+/// decided widens the intervals. Both boundaries are then pieces of planes, and the answer is found to rounding (some 10^-12 of the
+/// coordinates) by cutting these.
+///
+/// The result's `stop_reason` says:
+/// - `Tolerance`: both intervals are no wider than `tolerance`. Two solids that are proven and have
+///   the same [fingerprint](Solid::fingerprint) have the distance 0.
+/// - `Exhausted`: neither cells nor pieces have more to tell. The cells of a solid without slabs tell about four times the diagonal
+///   of a finest cell.
+/// - `Budget`: `control.max_splits` cells of a solid were split, or [`DEVIATION_SPLITS`] if that is `None`, or 64 times as many
+///   pieces cut; or what is remembered comes near to `control.max_bytes`. The largest doubt is dealt with first.
+///
+/// O(n log n) for meshes of n triangles whose surfaces lie close to each other, some microseconds a triangle. Memory is linear in the
+/// triangles, and in the cells: of a curved surface with the area s and the greatest curvature c there are about c · s / `tolerance`.
+/// The same for any number of threads, which share the pieces; one thread splits cells.
+///
+/// # Errors
+/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse; [`Error::OutOfMemory`], and
+/// [`Error::Cancelled`].
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, deviation, query::Within};
+/// let frame = Frame::new([-2.0; 3], 4.0, 20)?;
+/// let (a, b) = (Csg::cuboid([-1.0; 3], [1.0; 3])?, Csg::cuboid([-1.0; 3], [1.0, 1.0, 1.25])?);
+/// let found = deviation(&a, &b, &frame, 1e-6, &Control::default())?;
+/// assert!(found.distance().contains(0.25) && found.distance().width() <= 1e-6);
+/// assert_eq!((found.within(0.3), found.within(0.2)), (Within::Yes, Within::No));
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn deviation<A: Solid, B: Solid>(
+    a: &A,
+    b: &B,
+    frame: &Frame,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<Deviation, Error> {
+    valid::tolerance("tolerance", tolerance)?;
+    let job = Job::new(control);
+    job.check()?;
+    let is_alike = a.fingerprint().is_some_and(|own| b.fingerprint() == Some(own));
+    let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
+    let is_same = is_alike && a.proof().is_certified() && b.proof().is_certified();
+    let mut found = Deviation {
+        a_to_b: OneWay { distance: Interval::exactly(0.0), at: None },
+        b_to_a: OneWay { distance: Interval::exactly(0.0), at: None },
+        stop_reason: StopReason::Tolerance,
+        splits: [0; 2],
+        cuts: [0; 2],
+        proofs: [a.proof(), b.proof()],
+        clipped: [a.exterior() != Tag::Empty, b.exterior() != Tag::Empty],
+    };
+    if !is_same {
+        let surfaces = [surface(&a, tolerance, &job)?, surface(&b, tolerance, &job)?];
+        let seen = [surfaces[0].seen(control)?, surfaces[1].seen(control)?];
+        let budget = control.max_splits.unwrap_or(DEVIATION_SPLITS).saturating_mul(CUTS);
+        let mut reasons = [StopReason::Tolerance; 2];
+        for (k, reason) in reasons.iter_mut().enumerate() {
+            let search = Search { from: &seen[k], to: &seen[1 - k], tolerance, budget };
+            let worth = seen.iter().any(Seen::is_large);
+            let (way, cuts, own) = control.run(worth, |parallel| search.run(parallel, &job))?;
+            *reason = match own {
+                StopReason::Exhausted if surfaces.iter().any(|surface| surface.is_cut_short) => {
+                    StopReason::Budget
+                }
+                own => own,
+            };
+            found.cuts[k] = cuts;
+            *(if k == 0 { &mut found.a_to_b } else { &mut found.b_to_a }) = way;
+        }
+        found.splits = [surfaces[0].splits, surfaces[1].splits];
+        let is_any = |reason| reasons.contains(&reason);
+        found.stop_reason = [StopReason::Budget, StopReason::Exhausted]
+            .into_iter()
+            .find(|&reason| is_any(reason))
+            .unwrap_or(StopReason::Tolerance);
+    }
+    job.advance(WHOLE);
+    Ok(found)
+}
+
+/// The boundary of a solid, to a part of the tolerance.
+fn surface<C: Classifier>(solid: &C, tolerance: f64, job: &Job<'_>) -> Result<Surface, Error> {
+    if let Some(facets) = solid.facets(job.control())? {
+        return Surface::of_facets(facets);
+    }
+    let budget = job.control().max_splits.unwrap_or(DEVIATION_SPLITS);
+    cells::surface(solid, tolerance / 12.0, budget, job)
+}

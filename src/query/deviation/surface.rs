@@ -1,0 +1,208 @@
+//! A surface as triangles, and how far the boundary of a solid may be from them.
+
+use super::piece::ROUNDING;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Bounds, Frame};
+use crate::memory;
+use crate::mesh::{TriangleMesh, TriangleTree};
+use crate::solid::BoundaryFacets;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+/// Triangles, and a distance within which they tell where the boundary is.
+pub(super) struct Layer {
+    pub(super) mesh: Arc<TriangleMesh>,
+    /// Which triangles count; all if it is empty.
+    pub(super) chosen: Vec<bool>,
+    pub(super) radius: f64,
+}
+
+/// What is known of the boundary of a solid in the universe.
+pub(super) struct Surface {
+    /// Each point of the boundary is within the radius of a layer of one of its triangles.
+    pub(super) covers: Vec<Layer>,
+    /// Each point of these triangles is within the radius of the layer of a point of the boundary. `None`: the covers are so, too.
+    pub(super) cores: Option<Vec<Layer>>,
+    /// The universe, if the boundary may go on outside of it.
+    pub(super) clipped: Option<Frame>,
+    /// Cells that were split.
+    pub(super) splits: u64,
+    /// Whether more of them would have told more.
+    pub(super) is_cut_short: bool,
+}
+
+impl Surface {
+    /// A surface that is known exactly.
+    pub(super) fn of_facets(facets: BoundaryFacets) -> Result<Surface, Error> {
+        let BoundaryFacets { mesh, chosen } = facets;
+        let displacement = mesh.displacement();
+        // Along each axis the boundary may lie that far from the mesh.
+        let radius = if displacement > 0.0 { (displacement * sqrt(3.0)).next_up().next_up() } else { 0.0 };
+        let mut covers = memory::with_capacity(1)?;
+        if chosen.is_empty() || chosen.contains(&true) {
+            covers.push(Layer { mesh, chosen, radius });
+        }
+        Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
+    }
+
+    /// The same with the trees of the triangles.
+    pub(super) fn seen<'s>(&'s self, control: &Control<'_>) -> Result<Seen<'s>, Error> {
+        let trees = |layers: &'s [Layer]| {
+            let mut trees = memory::with_capacity(layers.len())?;
+            for Layer { mesh, chosen, radius } in layers {
+                trees.push(SeenLayer { tree: mesh.triangle_tree(control)?, mesh, chosen, radius: *radius });
+            }
+            Ok::<_, Error>(trees)
+        };
+        let cores = self.cores.as_deref().map(trees).transpose()?;
+        let covers = trees(&self.covers)?;
+        let coordinates = || {
+            covers.iter().flat_map(|layer| layer.mesh.vertices()).flatten().map(|coordinate| coordinate.abs())
+        };
+        let rounding = ROUNDING * coordinates().fold(0.0, f64::max);
+        let universe = self.clipped.as_ref().map(Bounds::of);
+        Ok(Seen { covers, cores, rounding, universe })
+    }
+}
+
+/// A triangle of a layer that lies within its radius of the boundary.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Facet {
+    layer: u32,
+    triangle: u32,
+}
+
+impl Facet {
+    pub(super) const NONE: Facet = Facet { layer: u32::MAX, triangle: u32::MAX };
+
+    fn of_layer(self, layer: u32) -> Option<u32> {
+        (self.layer == layer).then_some(self.triangle)
+    }
+}
+
+/// What is known of the distance of a point from the boundary.
+#[derive(Clone, Copy)]
+pub(super) struct Near {
+    pub(super) lower: f64,
+    pub(super) upper: f64,
+    /// The triangle by which `upper` is known.
+    pub(super) facet: Facet,
+}
+
+impl Near {
+    /// Nobody has asked yet.
+    pub(super) const OPEN: Near = Near { lower: 0.0, upper: f64::INFINITY, facet: Facet::NONE };
+    /// There is nothing.
+    const NOTHING: Near = Near { lower: f64::INFINITY, upper: f64::INFINITY, facet: Facet::NONE };
+}
+
+pub(super) struct SeenLayer<'s> {
+    pub(super) tree: TriangleTree<'s>,
+    pub(super) mesh: &'s TriangleMesh,
+    chosen: &'s [bool],
+    pub(super) radius: f64,
+}
+
+impl SeenLayer<'_> {
+    pub(super) fn is_chosen(&self, triangle: u32) -> bool {
+        self.chosen.is_empty() || self.chosen[triangle as usize]
+    }
+
+    pub(super) fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
+        self.mesh.triangles()[triangle as usize].map(|vertex| self.mesh.vertices()[vertex as usize])
+    }
+}
+
+/// A surface with the trees of its triangles.
+pub(super) struct Seen<'s> {
+    pub(super) covers: Vec<SeenLayer<'s>>,
+    cores: Option<Vec<SeenLayer<'s>>>,
+    /// How far pieces of it may lie beside it by rounding.
+    pub(super) rounding: f64,
+    universe: Option<Bounds>,
+}
+
+impl<'s> Seen<'s> {
+    fn cores(&self) -> &[SeenLayer<'s>] {
+        self.cores.as_deref().unwrap_or(&self.covers)
+    }
+
+    /// Whether the triangles are the boundary itself.
+    pub(super) fn is_exact(&self) -> bool {
+        self.cores.is_none()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.covers.is_empty()
+    }
+
+    /// Whether there are so many triangles that threads are worth their while.
+    pub(super) fn is_large(&self) -> bool {
+        const MANY: usize = 1 << 12;
+        self.covers.iter().map(|layer| layer.mesh.triangles().len()).sum::<usize>() > MANY
+    }
+
+    /// How far a point is from the boundary; a facet that may be near saves time.
+    pub(super) fn near(&self, point: [f64; 3], hint: Facet) -> Near {
+        let mut near = match &self.cores {
+            None => Near::NOTHING,
+            Some(_) => self.near_core(point, hint),
+        };
+        for (number, layer) in (0..).zip(&self.covers) {
+            let hint = if self.is_exact() { hint.of_layer(number) } else { None };
+            let found = layer.tree.nearest_beside(&point, hint, |triangle| layer.is_chosen(triangle));
+            let Some((found, distance)) = found else {
+                // A layer has triangles: the point is too far away.
+                near.lower = 0.0;
+                continue;
+            };
+            near.lower = near.lower.min(distance.lower - layer.radius);
+            let upper = distance.upper + layer.radius;
+            if self.is_exact() && upper < near.upper {
+                near = Near { upper, facet: Facet { layer: number, triangle: found.triangle }, ..near };
+            }
+        }
+        if let Some(Bounds { min, max }) = &self.universe {
+            // The boundary may begin right outside.
+            let inside = (0..3).map(|axis| (point[axis] - min[axis]).min(max[axis] - point[axis]));
+            near.lower = near.lower.min(inside.fold(f64::INFINITY, f64::min));
+        }
+        near.lower = near.lower.max(0.0).min(near.upper);
+        near
+    }
+
+    /// At most how far a point is from the boundary.
+    pub(super) fn near_core(&self, point: [f64; 3], hint: Facet) -> Near {
+        let mut near = Near::NOTHING;
+        for (number, layer) in (0..).zip(self.cores()) {
+            let is_chosen = |triangle| layer.is_chosen(triangle);
+            if let Some((found, distance)) =
+                layer.tree.nearest_beside(&point, hint.of_layer(number), is_chosen)
+            {
+                let upper = distance.upper + layer.radius;
+                if upper < near.upper {
+                    near = Near { upper, facet: Facet { layer: number, triangle: found.triangle }, ..near };
+                }
+            }
+        }
+        near
+    }
+
+    /// More than how far a point is from the boundary next to a facet.
+    pub(super) fn most_from(&self, facet: Facet, point: [f64; 3]) -> f64 {
+        let Some(layer) = self.cores().get(facet.layer as usize) else { return f64::INFINITY };
+        layer.tree.most_from(facet.triangle, &point) + layer.radius
+    }
+
+    /// The corners of a facet.
+    pub(super) fn corners(&self, facet: Facet) -> Option<[[f64; 3]; 3]> {
+        Some(self.cores().get(facet.layer as usize)?.corners(facet.triangle))
+    }
+
+    /// The point of a facet that is nearest to another one.
+    pub(super) fn nearest_on(&self, facet: Facet, point: [f64; 3]) -> Option<[f64; 3]> {
+        Some(self.cores().get(facet.layer as usize)?.tree.nearest_to(facet.triangle, &point))
+    }
+}
