@@ -33,7 +33,10 @@ const SECTIONS: &[Section] = &[
     Section { title: "Cells of octrees", files: &["cursor", "cells", "bitmap"] },
     Section { title: "Rays, columns, heights", files: &["rays", "columns"] },
     Section { title: "Volumes, areas, bounding boxes", files: &["content", "measure"] },
-    Section { title: "Distance and interference", files: &["distance", "interference", "deviation"] },
+    Section {
+        title: "Distance and interference",
+        files: &["distance", "interference", "clearance", "deviation"],
+    },
     Section { title: "Octrees that are split on demand", files: &["lazy"] },
     Section { title: "Attributes", files: &["attribute", "attribute_host", "mesh_attribute"] },
     Section { title: "Channels", files: &["channel", "channel_fill", "channel_summary", "octree_channels"] },

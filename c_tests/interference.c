@@ -24,6 +24,7 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
                       uint64_t most) {
     leafless_interference found;
     leafless_clearance near = LEAFLESS_INIT(leafless_clearance);
+    leafless_gap gap = LEAFLESS_INIT(leafless_gap);
     double low[3], high[3];
     OK(leafless_solid_interfere(a, apart, &frame, INFINITY, NULL, &found));
     CHECK(found.verdict == LEAFLESS_OVERLAP_DISJOINT && !found.is_clipped && found.witness_level == 0);
@@ -48,9 +49,17 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
     CHECK(near.nearest_a_level > 0 && near.nearest_b_level > 0 && near.nearest_a[0] < near.nearest_b[0]);
     OK(leafless_solid_clearance(a, over, &frame, 0.5, NULL, &near));
     CHECK(near.distance_model.lower == 0);
-    /* Finer than the finest cells: they say when they have told all. */
+    CHECK(near.depth_model >= 0 && (near.depth_model == 0 || near.point_a_model[0] == near.point_b_model[0]));
+    /* Finer than the finest cells, with the points that are nearest. */
     OK(leafless_solid_clearance(a, apart, &frame, 1e-6, NULL, &near));
-    CHECK(near.measured == LEAFLESS_STOP_REASON_EXHAUSTED && near.distance_model.upper < 2.8);
+    CHECK(near.distance_model.upper < 2.8 && near.depth_model == 0);
+    CHECK(near.point_a_model[0] < near.point_b_model[0] && near.point_b_model[0] - near.point_a_model[0] < 2.8);
+    CHECK(near.distance_model.lower < 2.3539);
+    /* Whether that is enough. */
+    OK(leafless_solid_gap_at_least(a, apart, &frame, 1, NULL, &gap));
+    CHECK(gap.verdict == LEAFLESS_GAP_VERDICT_YES && gap.distance_model.lower >= 1);
+    OK(leafless_solid_gap_at_least(a, apart, &frame, 4, NULL, &gap));
+    CHECK(gap.verdict == LEAFLESS_GAP_VERDICT_NO && gap.distance_model.upper < 4 && gap.has_points);
 }
 
 /* Many placements are as one after the other, for any number of threads. */
@@ -83,6 +92,20 @@ static void many(const leafless_solid *a, const leafless_solid *b) {
         }
     }
     OK(leafless_solid_interfere_many(a, b, &frame, NULL, 0, &frame, INFINITY, &options, NULL));
+    for (threads = 1; threads <= 2; threads++) {
+        leafless_placed_clearance near[4];
+        options.threads = threads;
+        OK(leafless_solid_clearance_many(a, b, &frame, matrices[30], 4, &frame, 1, &options, near));
+        for (i = 0; i < 4; i++) {
+            leafless_clearance single = LEAFLESS_INIT(leafless_clearance);
+            leafless_solid *placed = NULL;
+            OK(leafless_solid_transformed(b, &frame, matrices[30 + i], &placed));
+            OK(leafless_solid_clearance(a, placed, &frame, 1, &options, &single));
+            CHECK(near[i].distance_model.upper == single.distance_model.upper && near[i].splits_b == single.splits_b);
+            leafless_solid_free(placed);
+        }
+    }
+    OK(leafless_solid_clearance_many(a, b, &frame, NULL, 0, &frame, 1, &options, NULL));
 }
 
 /* Two balls around one centre, and a ball beside itself. */

@@ -352,6 +352,25 @@ static void null_pointers(void) {
                  leafless_solid_clearance(solid, NULL, &frame, 0, NULL, (leafless_clearance *)out));
     NULL_POINTER(leafless_solid_clearance, frame,
                  leafless_solid_clearance(solid, solid, NULL, 0, NULL, (leafless_clearance *)out));
+    NULL_POINTER(leafless_solid_gap_at_least, a,
+                 leafless_solid_gap_at_least(NULL, solid, &frame, 1, NULL, (leafless_gap *)out));
+    NULL_POINTER(leafless_solid_gap_at_least, b,
+                 leafless_solid_gap_at_least(solid, NULL, &frame, 1, NULL, (leafless_gap *)out));
+    NULL_POINTER(leafless_solid_gap_at_least, frame,
+                 leafless_solid_gap_at_least(solid, solid, NULL, 1, NULL, (leafless_gap *)out));
+    NULL_POINTER(leafless_solid_gap_at_least, gap, leafless_solid_gap_at_least(solid, solid, &frame, 1, NULL, NULL));
+    NULL_POINTER(leafless_solid_clearance_many, a,
+                 leafless_solid_clearance_many(NULL, solid, &frame, matrix, 1, &frame, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_clearance_many, b,
+                 leafless_solid_clearance_many(solid, NULL, &frame, matrix, 1, &frame, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_clearance_many, own,
+                 leafless_solid_clearance_many(solid, solid, NULL, matrix, 1, &frame, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_clearance_many, matrices,
+                 leafless_solid_clearance_many(solid, solid, &frame, NULL, 1, &frame, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_clearance_many, frame,
+                 leafless_solid_clearance_many(solid, solid, &frame, matrix, 1, NULL, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_clearance_many, clearances,
+                 leafless_solid_clearance_many(solid, solid, &frame, matrix, 1, &frame, 0, NULL, NULL));
     NULL_POINTER(leafless_solid_clearance, clearance, leafless_solid_clearance(solid, solid, &frame, 0, NULL, NULL));
     NULL_POINTER(leafless_solid_deviation, a,
                  leafless_solid_deviation(NULL, solid, &frame, 0, 0, NULL, (leafless_deviation *)out));
@@ -580,6 +599,8 @@ static void null_pointers(void) {
         leafless_interference found;
         leafless_clearance near = LEAFLESS_INIT(leafless_clearance);
         leafless_deviation apart = LEAFLESS_INIT(leafless_deviation);
+        leafless_gap gap = LEAFLESS_INIT(leafless_gap);
+        leafless_placed_clearance placed;
         MAY_BE_NULL(leafless_solid_interfere, options,
                     leafless_solid_interfere(solid, solid, &frame, 0, NULL, &found));
         MAY_BE_NULL(leafless_solid_interfere_many, options,
@@ -592,6 +613,14 @@ static void null_pointers(void) {
                     leafless_solid_clearance(solid, solid, &frame, 1, NULL, &near));
         MAY_BE_NULL(leafless_solid_deviation, options,
                     leafless_solid_deviation(solid, solid, &frame, 1, 1, NULL, &apart));
+        MAY_BE_NULL(leafless_solid_gap_at_least, options,
+                    leafless_solid_gap_at_least(solid, solid, &frame, 1, NULL, &gap));
+        MAY_BE_NULL(leafless_solid_clearance_many, options,
+                    leafless_solid_clearance_many(solid, solid, &frame, matrix, 1, &frame, 1, NULL, &placed));
+        MAY_BE_NULL(leafless_solid_clearance_many, matrices,
+                    leafless_solid_clearance_many(solid, solid, &frame, NULL, 0, &frame, 0, NULL, &placed));
+        MAY_BE_NULL(leafless_solid_clearance_many, clearances,
+                    leafless_solid_clearance_many(solid, solid, &frame, NULL, 0, &frame, 0, NULL, NULL));
     }
     {
         leafless_membership membership;
@@ -773,6 +802,17 @@ static void misaligned(void) {
                                              (leafless_interference *)out));
     MISALIGNED(leafless_solid_interfere, interference,
                leafless_solid_interfere(solid, solid, &frame, 0, NULL, (leafless_interference *)WRONG(out)));
+    MISALIGNED(leafless_solid_gap_at_least, gap,
+               leafless_solid_gap_at_least(solid, solid, &frame, 1, NULL, (leafless_gap *)WRONG(out)));
+    MISALIGNED(leafless_solid_clearance_many, matrices,
+               leafless_solid_clearance_many(solid, solid, &frame, (const double *)WRONG(point), 1, &frame, 0, NULL,
+                                             (leafless_placed_clearance *)out));
+    MISALIGNED(leafless_solid_clearance_many, clearances,
+               leafless_solid_clearance_many(solid, solid, &frame, room, 0, &frame, 0, NULL,
+                                             (leafless_placed_clearance *)WRONG(out)));
+    MISALIGNED(leafless_solid_clearance_many, own,
+               leafless_solid_clearance_many(solid, solid, (leafless_frame *)WRONG(&frame), room, 0, &frame, 0, NULL,
+                                             (leafless_placed_clearance *)out));
     MISALIGNED(leafless_solid_clearance, clearance,
                leafless_solid_clearance(solid, solid, &frame, 0, NULL, (leafless_clearance *)WRONG(out)));
     MISALIGNED(leafless_solid_deviation, deviation,
@@ -1000,6 +1040,8 @@ static void numbers(void) {
     BAD_NUMBER(leafless_octree_with_proof, displacement, leafless_octree_with_proof(octree, 3, -0.5, result));
     BAD_NUMBER(leafless_solid_interfere, tolerance,
                leafless_solid_interfere(solid, solid, &frame, -1, NULL, (leafless_interference *)out));
+    BAD_NUMBER(leafless_solid_gap_at_least, least,
+               leafless_solid_gap_at_least(solid, solid, &frame, 0, NULL, (leafless_gap *)out));
     BAD_NUMBER(leafless_solid_clearance, tolerance,
                leafless_solid_clearance(solid, solid, &frame, -1, NULL, (leafless_clearance *)out));
     BAD_NUMBER(leafless_solid_deviation, tolerance,

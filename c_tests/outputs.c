@@ -38,6 +38,7 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_extent, leafless_solid_bounding_box(solid, &frame, 0.1, NULL, out))                                 \
     FILLS(leafless_clearance, leafless_solid_clearance(solid, other, &frame, 0.1, NULL, out))                          \
     FILLS(leafless_deviation, leafless_solid_deviation(solid, other, &frame, 0.1, 1, NULL, out))                       \
+    FILLS(leafless_gap, leafless_solid_gap_at_least(solid, other, &frame, 0.1, NULL, out))                             \
     FILLS(leafless_lazy_info, leafless_lazy_describe(lazy, out))                                                       \
     FILLS(leafless_solid_info, leafless_solid_describe(solid, out))                                                    \
     FILLS(leafless_attribute_info, leafless_attribute_describe(attribute, out))                                        \

@@ -99,9 +99,20 @@ pub struct leafless_clearance {
     /// sizeof(leafless_clearance).
     pub struct_size: u32,
     /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
-    /// bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
+    /// bound is infinite as long as no point of one of them is proven, and the lower one too
     /// if one of them is proven to be empty.
     pub distance_model: leafless_interval,
+    /// If `has_nearest`, a point of the first solid, in model units. Both points are no further apart than the upper bound, but
+    /// for the rounding of their coordinates; of solids with a `depth_model` both are the same. Else zeros.
+    pub point_a_model: [f64; 3],
+    /// A point of the second solid.
+    pub point_b_model: [f64; 3],
+    /// A unit vector that leads out of the first solid at its point, if one is known; else zeros.
+    pub normal_a: [f64; 3],
+    /// The same of the second solid.
+    pub normal_b: [f64; 3],
+    /// Of solids that overlap: the radius of a ball, in model units, that is proven to lie in both. 0 if none was found.
+    pub depth_model: f64,
     /// What of the first solid is proven: what is not counts as undecided.
     pub proof_a: leafless_proof,
     /// What of the second solid is proven.
@@ -110,8 +121,7 @@ pub struct leafless_clearance {
     pub splits_a: u64,
     /// Cells of the second solid that were split.
     pub splits_b: u64,
-    /// If `has_nearest`, cells of the first and of the second solid with points that are no further apart
-    /// than the upper bound: the position of the first in cells of its level; else zeros.
+    /// If `has_nearest`, cells of the first and of the second solid with such points: the position of the first in cells of its level; else zeros.
     pub nearest_a: [u32; 3],
     /// The level of that cell.
     pub nearest_a_level: u32,
@@ -132,9 +142,16 @@ output!(leafless_clearance);
 impl From<&Clearance> for leafless_clearance {
     fn from(found: &Clearance) -> leafless_clearance {
         let [a, b] = found.nearest.unwrap_or([Cell::ROOT; 2]);
+        let points = found.points.unwrap_or([[0.0; 3]; 2]);
+        let normals = found.normals.map(Option::unwrap_or_default);
         leafless_clearance {
             struct_size: size_of::<leafless_clearance>() as u32,
             distance_model: found.distance.into(),
+            point_a_model: points[0],
+            point_b_model: points[1],
+            normal_a: normals[0],
+            normal_b: normals[1],
+            depth_model: found.depth,
             proof_a: found.proofs[0].into(),
             proof_b: found.proofs[1].into(),
             splits_a: found.splits[0],
@@ -316,7 +333,9 @@ pub unsafe extern "C" fn leafless_solid_interfere_many(
 /// taken, or 1 048 576 if that is 0. A step looks at the children of one cell. A cell whose children are
 /// looked at again, next to another cell, counts once more.
 ///
-/// The upper bound is finite once the search has met a FULL cell of each solid. The work grows with the area
+/// Where both solids know slabs, as expressions, meshes and extended octrees do, each level makes the interval about four times as
+/// narrow, and plane faces, balls and cylinders are known at once. Other solids are known to the size of cells: the upper bound is
+/// finite once the search has met a FULL cell of each, and the work grows with the area
 /// where the distance is about the least one, measured in cells as large as the tolerance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.

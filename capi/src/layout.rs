@@ -130,8 +130,14 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             volume_model, proof_a, proof_b, splits_a, splits_b, verdict, level,
             ball_centre_model, ball_radius_model, witness, witness_level, is_clipped
         }
+        leafless_gap { struct_size,
+            verdict, distance_model, point_a_model, point_b_model, splits_a, splits_b, measured, has_points, is_clipped
+        }
+        leafless_placed_clearance {
+            distance_model, point_a_model, point_b_model, depth_model, splits_a, splits_b, measured, has_points, is_clipped
+        }
         leafless_clearance { struct_size,
-            distance_model, proof_a, proof_b, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
+            distance_model, point_a_model, point_b_model, normal_a, normal_b, depth_model, proof_a, proof_b, splits_a, splits_b, nearest_a, nearest_a_level, nearest_b, nearest_b_level,
             measured, has_nearest, is_clipped
         }
         leafless_one_way { distance_model, point_model, apart_model, nearest_model, has_witness }

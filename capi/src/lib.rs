@@ -66,7 +66,7 @@
 //! | `layer_section` | plane sections and voxels in pictures |
 //! | `picture` | pictures, PNG files, legends |
 //! | `lazy` | octrees that are split on demand |
-//! | `interference` | solids under affine maps; overlap and distance of two solids |
+//! | `interference`, `clearance` | solids under affine maps; overlap and distance of two solids |
 //! | `distance` | distances of points from solids |
 //! | `deviation` | distances of the boundaries of two solids |
 //! | `measure` | volume, centroid, inertia, areas of surfaces and sections, bounding boxes of solids |
@@ -93,6 +93,7 @@ mod cells;
 mod channel;
 mod channel_fill;
 mod channel_summary;
+mod clearance;
 mod columns;
 mod contains;
 mod content;
@@ -157,12 +158,14 @@ pub use cells::*;
 pub use channel::*;
 pub use channel_fill::*;
 pub use channel_summary::*;
+pub use clearance::*;
 pub use columns::*;
 pub use contains::*;
 pub use content::*;
 pub use control::*;
 pub use csg::*;
 pub use cursor::*;
+pub use deviation::*;
 pub use distance::*;
 pub use extended::*;
 pub use file::*;

@@ -11,7 +11,7 @@
 //! | where does it begin and end? | | `extent` |
 //! | how large is its section with a plane? | | `section` |
 //! | how far is a point? | `distance` | `distance` |
-//! | how far is another solid, do both overlap? | | `clearance`, `interference` |
+//! | how far is another solid, is that enough, do both overlap? | | `clearance`, `gap_at_least`, `interference` |
 //! | how far are two boundaries from each other? | | `deviation` |
 //! | which cells of a box are solid, as bits? | `bitmap` | |
 //!
@@ -58,7 +58,9 @@ mod section;
 
 pub use classify_box::{Region, classify_box};
 pub use classify_in::classify_in;
-pub use clearance::{CLEARANCE_SPLITS, Clearance, clearance};
+pub use clearance::{
+    CLEARANCE_SPLITS, Clearance, Gap, GapVerdict, clearance, clearance_at, gap_at_least, gap_at_least_at,
+};
 pub use columns::{ColumnCells, ColumnRuns, Columns, Heights, Run, Side, columns, heights};
 pub use contains::contains;
 pub use content::{CellsIn, cells_in, volume_in};

@@ -74,6 +74,7 @@ pub use csg::{Csg, Touch};
 pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};
 pub use erased::{AnyClassifier, AnySolid, AnyWorker, Erasable};
 pub use fingerprint::{Fingerprint, Fingerprinter};
+pub(crate) use half_space::{Form, Round};
 pub use half_space::{HalfSpace, OpenSurfaces, PlacedHalfSpace};
 pub use mesh::MeshSolid;
 pub use motion::Motion;

@@ -17,7 +17,8 @@ use leafless::mesh::{Polyhedron, PolyhedronArrays};
 use leafless::op::{DexelOptions, Zone, octree_from_dexel_ends, octree_from_dexels, resolve, union_of};
 use leafless::query::{
     Columns, DistanceTo, Obstacle, PointTable, SectionPlane, Side, cells_in, classify_box, classify_in,
-    columns, distances, heights, interference_at, line_of_sight, ray_spans, section_area, surface_area,
+    clearance_at, columns, distances, gap_at_least, gap_at_least_at, heights, interference_at, line_of_sight,
+    ray_spans, section_area, surface_area,
 };
 use leafless::render::{
     Camera, Clip, ColourMap, Finish, MeshEdges, MeshLayer, OctreeLayer, Shot, SliceLayer, SlicePlane,
@@ -312,6 +313,17 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
             0.5,
             &Control { max_splits: Some(30), ..CONTROL },
         )
+    });
+    operation!("clearances of expressions", [a], {
+        let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
+        let control = Control { max_splits: Some(100), ..CONTROL };
+        clearance_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &control)
+    });
+    operation!("gap", [a], {
+        let control = Control { max_splits: Some(100), ..CONTROL };
+        let turn = Affine::translation([7.0, 9.0, 0.1])?;
+        gap_at_least(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), 0.5, &control)?;
+        gap_at_least_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn], &frame(), 0.5, &control)
     });
     let marked = DexelOptions {
         format: DexelFormat {

@@ -11,6 +11,7 @@ mod model;
 mod random;
 
 mod area;
+mod clearance;
 mod columns;
 mod contact;
 mod content;

@@ -10,8 +10,8 @@ use leafless::op::{
     union_of, xor_of,
 };
 use leafless::query::{
-    Columns, DistanceTo, Obstacle, SectionPlane, Side, cells_in, columns, distances, heights,
-    interference_at, section_area, surface_area, volume_in,
+    Columns, DistanceTo, Obstacle, SectionPlane, Side, cells_in, clearance_at, columns, distances,
+    gap_at_least, gap_at_least_at, heights, interference_at, section_area, surface_area, volume_in,
 };
 use leafless::render::{Camera, Finish, Shot, SolidLayer, render};
 use leafless::solid::{Band, VoxelGrid};
@@ -72,7 +72,8 @@ impl Heard {
 }
 
 /// Operations that are one search until what they look for is known well enough: nobody knows how long it will be.
-const SEARCHES: &[&str] = &["bounding box", "clearance", "deviation", "interference", "section area"];
+const SEARCHES: &[&str] =
+    &["bounding box", "clearance", "clearances", "deviation", "gap", "gaps", "interference", "section area"];
 
 /// Operations that are one step of which only the end is told, or nothing.
 const ONE_STEP: &[&str] = &[
@@ -235,6 +236,18 @@ fn all_operations(depth: u8) -> Vec<Told> {
     });
     heard.of("deviation", |control| {
         deviation(&part, &ball, &frame, 1e-2, &Control { max_splits: Some(2_000), ..*control })
+    });
+    heard.of("clearances", |control| {
+        let turn = Affine::translation([0.1, 0.2, 0.3]).unwrap();
+        clearance_at(&ball, &part, &frame, &[turn; 4], &frame, 1e-3, control)
+    });
+    heard.of("gap", |control| {
+        let apart = Csg::ball([-0.6, 0.0, 0.0], 0.3)?;
+        gap_at_least(&region, &apart, &frame, 1e-3, &Control { max_splits: Some(2000), ..*control })
+    });
+    heard.of("gaps", |control| {
+        let turn = Affine::translation([0.1, 0.2, 0.3]).unwrap();
+        gap_at_least_at(&ball, &part, &frame, &[turn; 4], &frame, 1e-3, control)
     });
     let mut lazy = LazyOctree::new(&part, &frame).unwrap();
     heard.of("refine", |control| lazy.refine(&Zone::Whole, depth, control));

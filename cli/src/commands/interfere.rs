@@ -12,7 +12,7 @@ use crate::source::solid::{Corners, Source, evaluations};
 use crate::words::{count, measured, number, put_line};
 use clap::Args;
 use leafless::lattice::Cube;
-use leafless::query::{Overlap, StopReason};
+use leafless::query::{Gap, GapVerdict, Overlap, StopReason, gap_at_least};
 use leafless::solid::Prepared;
 use leafless::{
     Affine, Clearance, Control, Error, Frame, Interference, Interval, Proof, clearance, interference,
@@ -58,6 +58,10 @@ pub struct Arguments {
     /// Ask for the verdict alone, of B under each of the matrices in a file: a line for each as --place takes it, after the other moves
     #[arg(long, value_name = "FILE", conflicts_with = "seconds")]
     poses: Option<std::path::PathBuf>,
+    /// Say no more than whether no two points of them are nearer than that, in units of the model, and print two points if some are.
+    /// The exit code is 0 if that is proven, and 1 if not
+    #[arg(long, value_name = "D", conflicts_with = "seconds", allow_hyphen_values = true)]
+    gap_at_least: Option<f64>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -130,6 +134,8 @@ struct Report {
     reason: Option<&'static str>,
     overlap: Range,
     clearance: Range,
+    /// A point of each solid, as near as the clearance's upper bound says; null if the solids overlap.
+    points: Option<[[f64; 3]; 2]>,
     /// Why the search for the clearance ended.
     clearance_measured: &'static str,
     witness: Option<Witness>,
@@ -177,6 +183,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             common_frame(first.own_frame(), both, &placements, arguments.depth, around).of(a)?
         }
     };
+    let is_exact =
+        first.has_exact_surfaces(&Affine::IDENTITY, &frame) && second.has_exact_surfaces(&placement, &frame);
     if arguments.poses.is_some() {
         let own = match second.own_frame() {
             Some(own) => *own,
@@ -193,17 +201,86 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
     let second = Prepared::new(second.placed(b, &placement, &frame)?);
+    if let Some(least) = arguments.gap_at_least {
+        return gap(arguments, least, [&first, &second], &frame, a);
+    }
     let splits = arguments.splits.or(if arguments.seconds.is_some() { None } else { Some(SPLITS) });
     let asked = watched("interfere", 0, |control| {
         let control = Control { max_splits: splits, ..*control };
         let both = [&first, &second];
-        let ask = |control: &Control<'_>| ask(both, &frame, control);
+        let ask = |control: &Control<'_>| ask(both, is_exact, &frame, control);
         within_time(arguments.seconds, &control, ask, |asked| !asked.is_spent)
     });
     let Answers { found, near, evaluations, is_spent } = asked.of(a)?;
     let reason = reason(&found, is_spent);
     let report = Report::new(&inputs, &frame, &found, &near, evaluations, reason.map(|reason| reason.0));
     print_told(arguments.json, &report, |report| text(&found, report, reason.map(|reason| reason.1)))
+}
+
+/// Whether two solids are far enough apart.
+#[derive(Serialize)]
+struct GapReport {
+    /// "yes", "no" or "undecided".
+    gap_at_least: &'static str,
+    least: f64,
+    clearance: Range,
+    points: Option<[[f64; 3]; 2]>,
+    splits: u64,
+    clipped: bool,
+}
+
+/// Says whether no two points are nearer than `least`; that they may be is a failure.
+fn gap(
+    arguments: &Arguments,
+    least: f64,
+    [first, second]: [&Prepared; 2],
+    frame: &Frame,
+    a: &Input,
+) -> Result<(), Failure> {
+    let found = watched("interfere", 0, |control| {
+        let max_splits = Some(arguments.splits.unwrap_or(SPLITS));
+        gap_at_least(first, second, frame, least, &Control { max_splits, ..*control })
+    });
+    let Gap { verdict, evidence } = found.of(a)?;
+    let word = match verdict {
+        GapVerdict::Yes => "yes",
+        GapVerdict::No => "no",
+        GapVerdict::Undecided => "undecided",
+    };
+    let report = GapReport {
+        gap_at_least: word,
+        least,
+        clearance: Range::new(evidence.distance, evidence.clipped),
+        points: evidence.points,
+        splits: evidence.splits.iter().sum(),
+        clipped: evidence.clipped,
+    };
+    print_told(arguments.json, &report, |report| {
+        let mut text = String::new();
+        put_line(&mut text, "gap", &format!("at least {}: {word}", number(least)));
+        put_line(&mut text, "clearance", &report.clearance.text());
+        if let Some(points) = &report.points {
+            put_line(&mut text, "points", &ends(points));
+        }
+        put_line(&mut text, "splits", &count(report.splits));
+        text
+    })?;
+    match verdict {
+        GapVerdict::Yes => Ok(()),
+        GapVerdict::No => Err(Failure::Failed(format!("the solids are nearer than {}", number(least)))),
+        GapVerdict::Undecided => {
+            let hint = "give a greater --depth, more --splits or larger --bounds";
+            Err(Failure::Failed(format!(
+                "whether the solids are nearer than {} is undecided: {hint}",
+                number(least)
+            )))
+        }
+    }
+}
+
+/// Two points for people.
+fn ends([p, q]: &[[f64; 3]; 2]) -> String {
+    format!("{} and {}", p.map(number).join(" "), q.map(number).join(" "))
 }
 
 /// The cube that holds both: of a solid its own, as often doubled as it takes, so that its cells stay whole;
@@ -259,7 +336,12 @@ struct Answers {
 }
 
 /// The verdict; then how much, or how far.
-fn ask([a, b]: [&Prepared; 2], frame: &Frame, control: &Control<'_>) -> Result<Answers, Error> {
+fn ask(
+    [a, b]: [&Prepared; 2],
+    is_exact: bool,
+    frame: &Frame,
+    control: &Control<'_>,
+) -> Result<Answers, Error> {
     let spends = |splits: [u64; 2]| control.max_splits.is_some_and(|most| splits.iter().sum::<u64>() >= most);
     let mut found = interference(a, b, frame, f64::INFINITY, control)?;
     let evaluations = evaluations(a.solid()) + evaluations(b.solid());
@@ -274,7 +356,10 @@ fn ask([a, b]: [&Prepared; 2], frame: &Frame, control: &Control<'_>) -> Result<A
         found.volume = measured.volume;
         let near = Clearance {
             distance: Interval::exactly(0.0),
+            points: None,
+            normals: [None; 2],
             nearest: None,
+            depth: 0.0,
             stop_reason: StopReason::Tolerance,
             splits: [0, 0],
             proofs: found.proofs,
@@ -282,7 +367,9 @@ fn ask([a, b]: [&Prepared; 2], frame: &Frame, control: &Control<'_>) -> Result<A
         };
         return Ok(Answers { found, near, evaluations, is_spent: spends(measured.splits) });
     }
-    let near = clearance(a, b, frame, 4.0 * frame.cell_size(), control)?;
+    // (Where surfaces are known, so is the distance, as well as one likes; else cells tell it.)
+    let tolerance = if is_exact { 1e-9 * frame.edge() } else { 4.0 * frame.cell_size() };
+    let near = clearance(a, b, frame, tolerance, control)?;
     let is_open = found.verdict == Overlap::Undecided && spends(found.splits);
     Ok(Answers { found, is_spent: is_open || near.stop_reason == StopReason::Budget, near, evaluations })
 }
@@ -303,6 +390,7 @@ impl Report {
             reason,
             overlap: Range::new(found.volume, found.clipped),
             clearance: Range::new(near.distance, near.clipped),
+            points: near.points,
             clearance_measured: stop_word(near.stop_reason),
             witness: found.witness.zip(found.ball).map(|(cell, ball)| {
                 let (min, max) = Cube { frame, cell }.bounds();
@@ -338,6 +426,9 @@ fn text(found: &Interference, report: &Report, reason: Option<&str>) -> String {
     if let Some(Witness { centre, radius, .. }) = &report.witness {
         let around = centre.map(number).join(" ");
         line("witness", format!("a ball of radius {} around {around} lies in both", number(*radius)));
+    }
+    if let Some(points) = &report.points {
+        line("nearest", ends(points));
     }
     for (input, proven) in [(&report.a, &report.proof_a), (&report.b, &report.proof_b)] {
         if let Some(doubt) = proven.doubt() {

@@ -159,6 +159,20 @@ impl Source {
         matches!(self, Source::Octree(octree) if octree.view().cuts().is_none())
     }
 
+    /// Whether the surfaces may be known exactly under a placement, on a frame: those of a scene, and those that the cells of an octree
+    /// keep where it lies.
+    pub fn has_exact_surfaces(&self, placement: &Affine, frame: &Frame) -> bool {
+        match self {
+            Source::Octree(octree) => {
+                octree.view().cuts().is_some()
+                    && placement.is_identity()
+                    && octree.frame().same_universe(frame)
+            }
+            Source::Scene(_) => true,
+            Source::Mesh(..) | Source::Volume(_) => false,
+        }
+    }
+
     /// The unit of its coordinates, if it is known.
     pub fn unit(&self) -> Option<LengthUnit> {
         match self {

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(100);
 
 /// The commands that take a solid, `F`, with what they read behind `<`; those that write, to `out`.
-pub const COMMANDS: [&str; 49] = [
+pub const COMMANDS: [&str; 50] = [
     "info F",
     "verify F",
     "dexelize F -o out.lfl --rule outer",

@@ -166,7 +166,7 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
 ];
 
 /// Subcommands that write no solid that was made of another.
-const OTHERS: [&str; 13] = [
+const OTHERS: [&str; 14] = [
     "info",
     "verify",
     "contains",

@@ -1,26 +1,44 @@
 //! How far apart are two solids?
 
+mod depth;
 mod nodes;
+mod piece;
+mod polish;
 mod search;
+mod simplex;
 
 use super::StopReason;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, Frame, Interval, valid};
+use crate::lattice::{Affine, Cell, Frame, Interval, axes, valid};
+use crate::memory;
 use crate::octree::Proof;
-use crate::solid::Solid;
+use crate::parallel::each;
+use crate::solid::{Classifier, Solid, TransformClassifier};
 use crate::walk::Proven;
-use search::Search;
+use alloc::vec::Vec;
+use piece::Place;
+use search::{Found, Goal, Search};
 
 /// What is known of the distance between two solids.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clearance {
     /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
-    /// bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
+    /// bound is infinite as long as no point of one of them is proven, and the lower one too
     /// if one of them is proven to be empty. The lower bound is 0 if `clipped`.
     pub distance: Interval,
-    /// Cells of the first and of the second solid with points that are no further apart than the upper bound.
+    /// A point of the first solid and one of the second (model units) that are no further apart than the upper bound, but for the
+    /// rounding of their coordinates to doubles. Of solids that are proven to overlap with a `depth`, the same point twice. They are
+    /// known whenever the upper bound is finite.
+    pub points: Option<[[f64; 3]; 2]>,
+    /// For each of the points, a unit vector that leads out of the solid there, if the point lies next to a surface whose direction
+    /// is known: normal to it, but for rounding and for the surface's curvature within the cell.
+    pub normals: [Option<[f64; 3]>; 2],
+    /// Cells of the first and of the second solid that hold these points.
     pub nearest: Option<[Cell; 2]>,
+    /// Of solids that overlap: the radius (model units) of a ball that is proven to lie in both. The largest such ball is at least as
+    /// large. 0 if none was found; solids that touch have none.
+    pub depth: f64,
     /// Why the search ended.
     pub stop_reason: StopReason,
     /// Cells that were split, of the first solid and of the second.
@@ -31,11 +49,33 @@ pub struct Clearance {
     pub clipped: bool,
 }
 
+/// Whether two solids are at least as far apart as they should be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum GapVerdict {
+    /// Proven: no two points of them are nearer.
+    Yes = 0,
+    /// Proven: two points are nearer. They are among the evidence.
+    No = 1,
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid goes on outside of the universe, where it may
+    /// come nearer.
+    Undecided = 2,
+}
+
+/// Whether two solids are at least as far apart as they should be, and what proves it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gap {
+    /// The answer.
+    pub verdict: GapVerdict,
+    /// What was known of the distance when the search ended. Its `depth` is not looked for, and is 0.
+    pub evidence: Clearance,
+}
+
 /// Steps that [`clearance`] takes if `control.max_splits` sets no other limit: some seconds, and some hundred
 /// megabytes at the most.
 pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 
-/// The least distance between `a` and `b`; a solid under a placement is moved first (see
+/// The least distance between `a` and `b`, with a point of each that are as near; a solid under a placement is moved first (see
 /// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`.
 ///
 /// The search ends, and the result's `stop_reason` says why:
@@ -47,11 +87,16 @@ pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 ///   at the children of one cell. A cell whose children are looked at again, next to another cell, counts once
 ///   more. Or what is remembered of a solid comes near to `control.max_bytes`.
 ///
-/// The upper bound is finite once the search has met a FULL cell of each solid. It looks for them first, with
-/// up to half of the budget. With nothing else left to do, it spends all of the budget on that.
+/// Where both solids know the slabs of cells ([`Enclosure`](crate::solid::Enclosure)), each level makes the interval about four times as
+/// narrow, and plane faces are known at once. Where they know the surfaces too ([`OpenSurfaces`](crate::solid::OpenSurfaces)), as
+/// expressions and extended octrees do, balls and cylinders are known at once: a pin in a bore with the same play all around takes some
+/// hundred splits. Without slabs a level makes the interval half as wide. Then the upper bound is finite once the search has met a FULL
+/// cell of each solid, and the work grows with the area where the distance is about the least one, measured in cells as large as the
+/// tolerance.
 ///
-/// The work grows with the area where the distance is about the least one, measured in cells as large as the
-/// tolerance. Memory is linear in the steps and in what is compared. One thread.
+/// The search looks for points of both solids first, with
+/// up to half of the budget. With nothing else left to do, it spends all of the budget on that.
+/// Memory is linear in the steps and in what is compared. One thread.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;
@@ -61,8 +106,10 @@ pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 /// use leafless::{Control, Csg, Frame, clearance};
 /// let frame = Frame::new([0.0; 3], 128.0, 10)?;
 /// let (a, b) = (Csg::ball([50.0; 3], 30.0)?, Csg::ball([86.0; 3], 30.0)?);
-/// let found = clearance(&a, &b, &frame, 0.5, &Control::default())?;
-/// assert!(found.distance.contains(36.0 * 3f64.sqrt() - 60.0) && found.distance.width() <= 0.5);
+/// let found = clearance(&a, &b, &frame, 1e-9, &Control::default())?;
+/// assert!(found.distance.contains(36.0 * 3f64.sqrt() - 60.0) && found.distance.width() <= 1e-9);
+/// let [p, q] = found.points.unwrap();
+/// assert!((p[0] - (50.0 + 30.0 / 3f64.sqrt())).abs() < 1e-3 && (q[2] - (86.0 - 30.0 / 3f64.sqrt())).abs() < 1e-3);
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn clearance<A: Solid, B: Solid>(
@@ -76,8 +123,195 @@ pub fn clearance<A: Solid, B: Solid>(
     let job = Job::new(control);
     job.check()?;
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
-    let budget = control.max_splits.unwrap_or(CLEARANCE_SPLITS);
-    let found = Search::new(&a, &b, tolerance, budget, control)?.run(&job)?;
+    let found = apart(&a, &b, Goal::Width(tolerance), &job)?;
     job.advance(WHOLE);
     Ok(found)
+}
+
+/// As [`clearance`] of `a` and `b` under each of the `placements`, in their order; the first of both is
+/// known on `frame`, the second on its `own` frame, and both are prepared once. The same for any number of
+/// threads; `control.max_splits` concerns each placement. The second solid is moved by its cells, as
+/// [`Transform`](crate::solid::Transform) moves it.
+///
+/// # Errors
+/// As [`clearance`].
+///
+/// ```
+/// use leafless::{Affine, Control, Csg, Frame, query::clearance_at};
+/// let frame = Frame::new([-8.0; 3], 16.0, 8)?;
+/// let (a, b) = (Csg::ball([0.0; 3], 1.0)?, Csg::ball([0.0; 3], 2.0)?);
+/// let places = [4.0, 5.0].map(|x| Affine::translation([x, 0.0, 0.0]).unwrap());
+/// let found = clearance_at(&a, &b, &frame, &places, &frame, 1e-3, &Control::default())?;
+/// assert!(found[0].distance.contains(1.0) && found[1].distance.contains(2.0));
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn clearance_at<A: Solid, B: Solid>(
+    a: &A,
+    b: &B,
+    own: &Frame,
+    placements: &[Affine],
+    frame: &Frame,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<Vec<Clearance>, Error> {
+    valid::tolerance("tolerance", tolerance)?;
+    at_each((a, b), own, placements, frame, Goal::Width(tolerance), control)
+}
+
+/// Whether no point of `a` is nearer than `least` (model units) to one of `b`. The search ends as soon as that is proven or disproven,
+/// which takes less than to find out the distance: where the solids are much further apart, or much nearer, a few cells tell. What is
+/// looked at is the universe of `frame`.
+///
+/// The budget is that of [`clearance`], and so are memory and threads. If the distance is `least` to the last digit, nothing may be
+/// proven within the budget.
+///
+/// # Errors
+/// [`Error::Argument`] if `least` is not between 2^-256 and 2^256 (whether solids overlap, [`interference`](crate::interference)
+/// tells); what the solids refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, query::{GapVerdict, gap_at_least}};
+/// let frame = Frame::new([0.0; 3], 128.0, 10)?;
+/// let (a, b) = (Csg::ball([50.0; 3], 30.0)?, Csg::ball([86.0; 3], 30.0)?);
+/// let gap = |least| gap_at_least(&a, &b, &frame, least, &Control::default());
+/// assert_eq!(gap(2.3)?.verdict, GapVerdict::Yes);
+/// let found = gap(2.4)?;
+/// assert!(found.verdict == GapVerdict::No && found.evidence.points.is_some());
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn gap_at_least<A: Solid, B: Solid>(
+    a: &A,
+    b: &B,
+    frame: &Frame,
+    least: f64,
+    control: &Control<'_>,
+) -> Result<Gap, Error> {
+    valid::length("least", least)?;
+    let job = Job::new(control);
+    job.check()?;
+    let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
+    let evidence = apart(&a, &b, Goal::AtLeast(least), &job)?;
+    job.advance(WHOLE);
+    Ok(Gap::new(evidence, least))
+}
+
+/// As [`gap_at_least`] of `a` and `b` under each of the `placements`, which are taken as [`clearance_at`] takes them.
+///
+/// # Errors
+/// As [`gap_at_least`].
+pub fn gap_at_least_at<A: Solid, B: Solid>(
+    a: &A,
+    b: &B,
+    own: &Frame,
+    placements: &[Affine],
+    frame: &Frame,
+    least: f64,
+    control: &Control<'_>,
+) -> Result<Vec<Gap>, Error> {
+    valid::length("least", least)?;
+    let found = at_each((a, b), own, placements, frame, Goal::AtLeast(least), control)?;
+    memory::collected(found.into_iter().map(|evidence| Gap::new(evidence, least)))
+}
+
+impl Gap {
+    fn new(evidence: Clearance, least: f64) -> Gap {
+        let verdict = match evidence.distance {
+            distance if distance.lower >= least => GapVerdict::Yes,
+            distance if distance.upper < least => GapVerdict::No,
+            _ => GapVerdict::Undecided,
+        };
+        Gap { verdict, evidence }
+    }
+}
+
+/// Placements that are handed to the threads at once.
+const PIECE: usize = 4096;
+
+fn at_each<A: Solid, B: Solid>(
+    (a, b): (&A, &B),
+    own: &Frame,
+    placements: &[Affine],
+    frame: &Frame,
+    wanted: Goal,
+    control: &Control<'_>,
+) -> Result<Vec<Clearance>, Error> {
+    let job = Job::new(control);
+    job.check()?;
+    let bounds = b.bounds();
+    let (a, b) = (Proven(a.on(frame, control)?), b.on(own, control)?);
+    let one = |placement: &Affine| {
+        let around = bounds.and_then(|bounds| bounds.placed(placement));
+        let b = Proven(TransformClassifier::new(b.clone(), placement, frame, around));
+        let found = apart(&a, &b, wanted, &job)?;
+        job.advance(WHOLE / placements.len());
+        Ok::<_, Error>(found)
+    };
+    let mut found = memory::with_capacity(placements.len())?;
+    control.run(placements.len() > 1, |parallel| {
+        // By pieces, so that what is collected behind the scenes stays small.
+        for piece in placements.chunks(PIECE) {
+            found.extend(each(parallel, piece.iter(), one)?);
+        }
+        Ok(found)
+    })
+}
+
+/// What is known of two solids on one frame.
+fn apart<A: Classifier, B: Classifier>(
+    a: &A,
+    b: &B,
+    wanted: Goal,
+    job: &Job<'_>,
+) -> Result<Clearance, Error> {
+    let control = job.control();
+    let budget = control.max_splits.unwrap_or(CLEARANCE_SPLITS);
+    let mut search = Search::new(a, b, wanted, budget, control)?;
+    let Found { distance, reached, stop_reason } = search.run(job)?;
+    let frame = a.frame();
+    let mut points = reached.map(|reached| reached.points.map(|point| modelled(frame, &point)));
+    let mut normals = [None; 2];
+    if let Some(reached) = &reached {
+        let [p, q] = &reached.points;
+        normals = [search.a.normal(reached.nodes[0], p), search.b.normal(reached.nodes[1], q)];
+    }
+    let mut depth = 0.0;
+    if matches!(wanted, Goal::Width(_))
+        && distance.upper == 0.0
+        && let Some((centre, radius)) = depth::common_ball(&mut search, job)?
+    {
+        depth = radius;
+        points = Some([modelled(frame, &centre.map(Interval::exactly)); 2]);
+        normals = [None; 2];
+    }
+    // What goes on outside of the universe may come as near as it likes.
+    let clipped = search.a.subject.is_clipped() || search.b.subject.is_clipped();
+    let distance = if clipped { Interval::between(0.0, distance.upper) } else { distance };
+    let is_wide = match wanted {
+        Goal::Width(tolerance) => distance.width() > tolerance,
+        Goal::AtLeast(least) => distance.lower < least && distance.upper >= least,
+    };
+    let stop_reason = match stop_reason {
+        // No cell of the universe can raise the lower bound.
+        StopReason::Tolerance if clipped && is_wide => StopReason::Exhausted,
+        other => other,
+    };
+    Ok(Clearance {
+        distance,
+        points,
+        normals,
+        nearest: reached.map(|reached| [search.a.cell(reached.nodes[0]), search.b.cell(reached.nodes[1])]),
+        depth,
+        stop_reason,
+        splits: [search.a.subject.splits, search.b.subject.splits],
+        proofs: [a.proof(), b.proof()],
+        clipped,
+    })
+}
+
+/// A point in model units, but for rounding.
+fn modelled(frame: &Frame, place: &Place) -> [f64; 3] {
+    axes(|axis| {
+        let cells = 0.5 * (place[axis].lower + place[axis].upper);
+        frame.origin()[axis] + cells * frame.cell_size()
+    })
 }

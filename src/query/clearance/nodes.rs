@@ -1,10 +1,15 @@
 //! The cells of a solid that a search has met.
 
+use super::piece::{Content, Piece, Place, Ring};
+use super::simplex::dot;
 use crate::control::{Control, Job};
 use crate::error::Error;
-use crate::lattice::{Cell, Cube, MAX_DEPTH};
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH, axes};
 use crate::memory;
-use crate::solid::{Classifier, Verdict, Worker};
+use crate::solid::{
+    Ask, AskWhole, Classifier, Enclosure, Form, OpenSurfaces, PlacedHalfSpace, Verdict, Worker,
+};
 use crate::walk::Part;
 use crate::walk::Subject;
 use alloc::vec::Vec;
@@ -18,59 +23,241 @@ pub(super) enum Known<P> {
     Split(Range<usize>),
 }
 
+/// What a solid says of a PARTIAL cell beyond its verdict.
+#[derive(Default)]
+pub(super) struct Lore {
+    enclosure: Option<Enclosure>,
+    /// Balls and cylinders on one side of which the solid lies in the cell.
+    rings: [Option<Ring>; 2],
+    /// The surfaces that cross the cell, if all of them have forms.
+    pub(super) open: Option<OpenSurfaces>,
+}
+
+/// A cell that is not EMPTY.
+pub(super) struct Node<P> {
+    cell: Cell,
+    known: Known<P>,
+    /// The number of its lore, or one of those below.
+    lore: u32,
+}
+
+/// Nobody has asked for a cell's lore yet, or there is none.
+const UNASKED: u32 = u32::MAX;
+const NONE: u32 = u32::MAX - 1;
+
 /// A solid's cells that are not EMPTY, each split once at the most.
 pub(super) struct Nodes<'s, C: Classifier> {
     pub(super) subject: Subject<'s, C>,
-    pub(super) nodes: Vec<(Cell, Known<Part<C>>)>,
+    nodes: Vec<Node<Part<C>>>,
+    lore: Vec<Lore>,
+    surfaces: Vec<PlacedHalfSpace>,
+    /// The forms of the surfaces, once somebody has asked.
+    forms: Vec<Option<Option<Form>>>,
 }
 
 impl<'s, C: Classifier> Nodes<'s, C> {
     /// The universe, unless it is EMPTY.
     pub(super) fn new(classifier: &'s C, control: &'s Control<'s>) -> Result<Self, Error> {
-        let mut nodes = Nodes { subject: Subject::new(classifier, control)?, nodes: Vec::new() };
+        let surfaces = classifier.surfaces(control)?.unwrap_or_default();
+        let forms = memory::filled(surfaces.len(), None)?;
+        let subject = Subject::new(classifier, control)?;
+        let mut nodes = Nodes { subject, nodes: Vec::new(), lore: Vec::new(), surfaces, forms };
         let root = nodes.subject.worker.root()?;
-        nodes.add(Cell::ROOT, root)?;
+        nodes.add(Cell::ROOT, root, NONE)?;
         Ok(nodes)
     }
 
-    fn add(&mut self, cell: Cell, verdict: Verdict<Part<C>>) -> Result<(), Error> {
-        let is_finest = cell.level == self.subject.classifier.frame().depth();
-        let known = match verdict {
+    /// Takes in a cell unless it is EMPTY, with the number of the lore that it has if it is FULL.
+    fn add(&mut self, cell: Cell, verdict: Verdict<Part<C>>, of_full: u32) -> Result<(), Error> {
+        let lore = match verdict {
             Verdict::Empty => return Ok(()),
-            Verdict::Partial(_) if is_finest => Verdict::Undecided,
-            verdict => verdict,
+            Verdict::Partial(_) => UNASKED,
+            Verdict::Full => of_full,
+            Verdict::Undecided => NONE,
         };
-        memory::push(&mut self.nodes, (cell, Known::Whole(known)))
+        memory::push(&mut self.nodes, Node { cell, known: Known::Whole(verdict), lore })
     }
 
     pub(super) fn is_full(&self, node: usize) -> bool {
-        matches!(self.nodes[node].1, Known::Whole(Verdict::Full))
+        matches!(self.nodes[node].known, Known::Whole(Verdict::Full))
+    }
+
+    fn is_finest(&self, node: usize) -> bool {
+        self.nodes[node].cell.level == self.subject.classifier.frame().depth()
     }
 
     /// Whether there are finer cells.
     pub(super) fn can_be_split(&self, node: usize) -> bool {
-        matches!(self.nodes[node].1, Known::Whole(Verdict::Partial(_)) | Known::Split(_))
+        match self.nodes[node].known {
+            Known::Whole(Verdict::Partial(_)) => !self.is_finest(node),
+            Known::Whole(_) => false,
+            Known::Split(_) => true,
+        }
+    }
+
+    /// Whether there are finer cells that nobody has asked for yet.
+    fn is_whole(&self, node: usize) -> bool {
+        matches!(self.nodes[node].known, Known::Whole(_)) && self.can_be_split(node)
     }
 
     /// The children of a node that can be split; those of no other.
     pub(super) fn children(&mut self, node: usize) -> Result<Range<usize>, Error> {
-        if let (cell, Known::Whole(Verdict::Partial(part))) = &self.nodes[node] {
+        if let Node { cell, known: Known::Whole(Verdict::Partial(part)), .. } = &self.nodes[node]
+            && !self.is_finest(node)
+        {
             let cell = *cell;
             let children = self.subject.split(cell, part)?;
+            // A FULL child lies on the same side of balls and cylinders as all that the solid has in the cell.
+            let rings = self.lore(node).map_or([None; 2], |lore| lore.rings);
+            let mut inherited = NONE;
+            let has_full = children.iter().any(|child| matches!(child, Verdict::Full));
+            if has_full && rings.iter().any(Option::is_some) && self.lore.len() < NONE as usize {
+                inherited = self.lore.len() as u32;
+                memory::push(&mut self.lore, Lore { rings, ..Lore::default() })?;
+            }
             let first = self.nodes.len();
             for (octant, child) in (0..8).zip(children) {
-                self.add(cell.child(octant), child)?;
+                self.add(cell.child(octant), child, inherited)?;
             }
-            self.nodes[node].1 = Known::Split(first..self.nodes.len());
+            self.nodes[node].known = Known::Split(first..self.nodes.len());
         }
-        Ok(match &self.nodes[node].1 {
+        Ok(match &self.nodes[node].known {
             Known::Split(children) => children.clone(),
             Known::Whole(_) => 0..0,
         })
     }
 
     pub(super) fn cell(&self, node: usize) -> Cell {
-        self.nodes[node].0
+        self.nodes[node].cell
+    }
+
+    /// The children of a node that can be split, by octants; nothing stands for one that is EMPTY.
+    pub(super) fn octants(&mut self, node: usize) -> Result<[Option<usize>; 8], Error> {
+        let mut octants = [None; 8];
+        for child in self.children(node)? {
+            octants[usize::from(self.cell(child).octant())] = Some(child);
+        }
+        Ok(octants)
+    }
+
+    /// The node of a cell, as fine as that of `near`, that holds a point: of several, the one next to the middle of `near`. Its way
+    /// is split where it is not yet, as long as there are splits `left`. Nothing if the cell is EMPTY.
+    pub(super) fn at(
+        &mut self,
+        point: [f64; 3],
+        near: usize,
+        left: &mut u64,
+    ) -> Result<Option<usize>, Error> {
+        let Piece { centre: middle, .. } = self.piece(near);
+        let level = self.cell(near).level;
+        let cells = f64::from(self.subject.classifier.frame().cells());
+        if self.is_empty() || !point.iter().all(|c| (0.0..=cells).contains(c)) {
+            return Ok(None);
+        }
+        let point = axes(|axis| point[axis] + 1e-9 * (middle[axis] - point[axis]));
+        let mut node = 0;
+        while self.cell(node).level < level && self.can_be_split(node) {
+            if self.is_whole(node) {
+                let Some(rest) = left.checked_sub(1) else { return Ok(None) };
+                *left = rest;
+            }
+            let Piece { centre, .. } = self.piece(node);
+            let octant =
+                (0..3).fold(0, |octant, axis| octant | usize::from(point[axis] >= centre[axis]) << axis);
+            let Some(child) = self.octants(node)?[octant] else { return Ok(None) };
+            node = child;
+        }
+        self.learn(node)?;
+        Ok(Some(node))
+    }
+
+    /// The complement of what lies in a cell, as far as was learnt.
+    pub(super) fn hollow(&self, node: usize) -> Option<Enclosure> {
+        Some(self.lore(node)?.enclosure.as_ref()?.complement())
+    }
+
+    /// Asks for a cell's lore, once.
+    pub(super) fn learn(&mut self, node: usize) -> Result<(), Error> {
+        let Node { cell, known: Known::Whole(Verdict::Partial(part)), lore: UNASKED } = &self.nodes[node]
+        else {
+            return Ok(());
+        };
+        let enclosure = self.subject.worker.enclosure(*cell, part)?.filter(is_sound);
+        let open = match self.surfaces.is_empty() {
+            true => None,
+            false => self.subject.worker.surfaces(*cell, part)?,
+        };
+        let mut lore = Lore { enclosure, rings: [None; 2], open };
+        let mut count = 0;
+        for (place, &index) in open.iter().flat_map(|open| open.indices()).enumerate() {
+            let frame = self.subject.classifier.frame();
+            match form(&mut self.forms, &self.surfaces, index, frame)? {
+                None => lore.open = None,
+                Some(form) => {
+                    if let (Some(round), Some(sign)) =
+                        (form.round, open.and_then(|open| needed(&open, place)))
+                        && count < lore.rings.len()
+                    {
+                        lore.rings[count] = Some(Ring { round, is_near: round.is_near_positive == sign });
+                        count += 1;
+                    }
+                }
+            }
+        }
+        let says = lore.enclosure.is_some() || lore.open.is_some() || count > 0;
+        let number = if says && self.lore.len() < NONE as usize { self.lore.len() as u32 } else { NONE };
+        if number != NONE {
+            memory::push(&mut self.lore, lore)?;
+        }
+        self.nodes[node].lore = number;
+        Ok(())
+    }
+
+    /// Whether the solid has told more of any cell than its verdict.
+    pub(super) fn has_lore(&self) -> bool {
+        !self.lore.is_empty()
+    }
+
+    pub(super) fn lore(&self, node: usize) -> Option<&Lore> {
+        self.lore.get(self.nodes[node].lore as usize)
+    }
+
+    /// A unit vector that leads out of the solid next to a point of a cell, if slabs tell.
+    pub(super) fn normal(&self, node: usize, place: &Place) -> Option<[f64; 3]> {
+        let known = self.lore(node)?.enclosure.as_ref()?;
+        let Piece { centre, half, .. } = self.piece(node);
+        let own: [f64; 3] =
+            axes(|axis| (0.5 * (place[axis].lower + place[axis].upper) - centre[axis]) / half);
+        let seen =
+            known.slabs.iter().filter(|slab| slab.inner.is_finite() && slab.normal != [0.0; 3]).map(|slab| {
+                let size = sqrt(dot(slab.normal, slab.normal));
+                ((dot(slab.normal, own) - slab.inner) / size, slab.normal.map(|c| c / size))
+            });
+        // Of a union, the point lies behind those slabs that hold it: what is nearest counts in either case.
+        let nearest = seen.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        nearest.map(|(_, normal)| normal)
+    }
+
+    /// The form of a surface, if it is known and there is one.
+    pub(super) fn form(&self, index: u32) -> Option<&Form> {
+        self.forms.get(index as usize)?.as_ref()?.as_ref()
+    }
+
+    /// What of the solid lies in a cell, as far as was learnt.
+    pub(super) fn piece(&self, node: usize) -> Piece<'_> {
+        let (low, high) = self.extent(node);
+        let lore = self.lore(node);
+        let content = match lore.and_then(|lore| lore.enclosure.as_ref()) {
+            Some(known) => Content::Slabs(known),
+            None if self.is_full(node) => Content::Full,
+            None => Content::Unknown,
+        };
+        Piece {
+            centre: axes(|axis| 0.5 * (f64::from(low[axis]) + f64::from(high[axis]))),
+            half: 0.5 * f64::from(high[0] - low[0]),
+            content,
+            rings: lore.map_or([None; 2], |lore| lore.rings.each_ref().map(Option::as_ref)),
+        }
     }
 
     /// Whether no cell of the solid is left: it is proven to be empty, if all of them were looked at.
@@ -96,7 +283,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
             if self.is_full(node) {
                 return Ok(Some(node));
             }
-            if matches!(self.nodes[node].1, Known::Whole(Verdict::Partial(_))) {
+            if self.is_whole(node) {
                 let Some(left) = budget.checked_sub(1).filter(|_| !self.subject.takes(4)) else { break };
                 *budget = left;
             }
@@ -116,4 +303,45 @@ impl<'s, C: Classifier> Nodes<'s, C> {
     pub(super) fn extent(&self, node: usize) -> ([u32; 3], [u32; 3]) {
         Cube { frame: self.subject.classifier.frame(), cell: self.cell(node) }.planes()
     }
+}
+
+/// The form of a surface; `None` of one that is no plane and no quadric.
+fn form<'f>(
+    forms: &'f mut [Option<Option<Form>>],
+    surfaces: &[PlacedHalfSpace],
+    index: u32,
+    frame: &Frame,
+) -> Result<Option<&'f Form>, Error> {
+    let (Some(place), Some(surface)) = (forms.get_mut(index as usize), surfaces.get(index as usize)) else {
+        return Ok(None);
+    };
+    if place.is_none() {
+        *place = Some(match surface.form(frame) {
+            Err(Error::Limit { .. }) => None,
+            known => known?,
+        });
+    }
+    Ok(place.as_ref().and_then(Option::as_ref))
+}
+
+/// Which sign a surface's function has wherever the solid is; `None` if the solid has points on both sides.
+fn needed(open: &OpenSurfaces, place: usize) -> Option<bool> {
+    let lies_where = |sign: bool| {
+        (0..1u8 << open.indices().len()).any(|signs| (signs >> place & 1 != 0) == sign && open.inside(signs))
+    };
+    match [false, true].map(lies_where) {
+        [false, true] => Some(true),
+        [true, false] => Some(false),
+        _ => None,
+    }
+}
+
+/// Whether the slabs of a host hold no contradiction.
+fn is_sound(known: &Enclosure) -> bool {
+    let slabs = known.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
+    slabs.clone().all(|slab| {
+        let range = slab.normal.iter().map(|c| c.abs()).sum::<f64>();
+        // (What is no number is not less.)
+        range > 1e-200 && range < 1e200 && slab.inner <= slab.outer
+    })
 }

@@ -4,9 +4,11 @@
 //! The group whose nearest companion is least far away comes first, which raises the lower bound. The larger
 //! of its cells are split, each cell of either solid once only however many others it is compared with.
 //!
-//! Two FULL cells bound the distance from above. They are looked for where the lower bound is: now and then
-//! the search *plunges* from the first group to small cells that are near. Where that finds nothing, any FULL
-//! cell of either solid will do.
+//! Cells that are cut are as far apart as what the solids have in them, which `piece` bounds by slabs, to second order.
+//!
+//! Two FULL cells bound the distance from above, and so do points that slabs prove. They are looked for where the lower bound is: now
+//! and then the search *plunges* from the first group to small cells that are near. Where that finds nothing, any FULL
+//! cell of either solid will do. Where the surfaces are known, `polish` moves the points to them.
 //!
 //! A pair that is further apart than the upper bound less the tolerance does not matter to the lower bound,
 //! since the search ends once all others are looked into. Such companions are put off, so that groups stay
@@ -15,21 +17,22 @@
 //! (The companions make the difference to a heap of pairs: of two faces that are parallel all the pairs that
 //! lie a little askew would have to be looked at, and a cell needs its nearest companion only.)
 
-use super::Clearance;
 use super::nodes::Nodes;
+use super::piece::{self, Bodies, Place};
+use super::polish::{Polished, Side, polished};
 use crate::control::{Control, Job};
 use crate::error::Error;
-use crate::lattice::Interval;
 use crate::lattice::exact::{product_down, product_up, sqrt, two_product};
+use crate::lattice::{Interval, axes};
 use crate::memory;
 use crate::query::StopReason;
-use crate::solid::Classifier;
+use crate::solid::{Classifier, OpenSurfaces};
 use crate::walk::Queue;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
-/// How far a cell of the second solid is from one of the first: the squares of the least distance, in finest
-/// cells, and of the greatest; and the node.
+/// How far a cell of the second solid is from one of the first: the least distance and the greatest, in finest cells, as the bits
+/// of doubles that are not negative, which have the order of their bits; and the node.
 type Companion = (u64, u64, usize);
 
 /// A cell of the first solid with those of the second that may be nearest to it.
@@ -40,86 +43,161 @@ struct Group {
     nearest: Companion,
     /// The companion whose greatest distance is the least.
     closest: Companion,
+    /// Of the companions whose least distance is about the least: the one whose greatest distance is the least.
+    likeliest: Companion,
+}
+
+/// A distance without its last digits. (Bounds that are inherited, and such that are proven once more, differ in those.)
+fn about(least: u64) -> u64 {
+    least >> 20
 }
 
 impl Group {
     /// Adds a companion to the group of a cell, which begins with it.
     fn add(group: &mut Option<Group>, node: usize, this: Companion) -> Result<(), Error> {
-        let empty = || Group { node, companions: Vec::new(), nearest: this, closest: this };
+        let empty = || Group { node, companions: Vec::new(), nearest: this, closest: this, likeliest: this };
         let group = group.get_or_insert_with(empty);
         group.nearest = group.nearest.min(this);
         if this.1 < group.closest.1 {
             group.closest = this;
         }
+        if (about(this.0), this.1) < (about(group.likeliest.0), group.likeliest.1) {
+            group.likeliest = this;
+        }
         memory::push(&mut group.companions, this.2)
+    }
+
+    /// Nothing in it is nearer.
+    fn least(&self) -> f64 {
+        f64::from_bits(self.nearest.0)
     }
 }
 
 /// A place in the queue: the lesser numbers come first; among equals, what was met later, which is finer.
-type Rank = (Reverse<[u64; 2]>, u64);
+type Rank = (Reverse<[u64; 3]>, u64);
 
 /// Steps of the search for a first upper bound.
 const DIVE: u64 = 4096;
 
-/// Steps of a plunge, and how many others come between two of them.
+/// Steps of a plunge, and how many others come between two of them; of solids with slabs, how many splits.
 const PLUNGE: u64 = 64;
 const BETWEEN: u64 = 256;
+const SPLITS_BETWEEN: u64 = 64;
 
-/// Squares of distances in finest cells.
+/// Steps of a plunge that do not lower the upper bound any more.
+const STALLED: u64 = 16;
+
+/// Pairs of cells in which points are moved to the surfaces, one after the other.
+const CELLS_ON: usize = 4;
+
+/// Plunges in vain, one after the other, that end a search in which slabs cannot raise the lower bound any more.
+const IN_VAIN: u32 = 6;
+
+/// Points or cells of both solids.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reached {
+    /// They are no further apart, in finest cells.
+    pub(super) upper: f64,
+    pub(super) nodes: [usize; 2],
+    pub(super) points: [Place; 2],
+}
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Goal {
+    /// An interval that is no wider (model units).
+    Width(f64),
+    /// Whether the distance is at least that (model units).
+    AtLeast(f64),
+}
+
+/// Distances in finest cells.
 struct Bounds {
     /// The least of a pair that no more will be known of.
-    settled: Option<u64>,
-    /// The least that is not exceeded, and the nodes.
-    reached: Option<(u64, [usize; 2])>,
+    settled: f64,
+    /// The least that is not exceeded.
+    reached: Option<Reached>,
     /// A lower bound of this is enough.
-    goal: u64,
+    goal: f64,
 }
 
 /// What is under way.
 pub(super) struct Search<'s, A: Classifier, B: Classifier> {
-    a: Nodes<'s, A>,
-    b: Nodes<'s, B>,
+    pub(super) a: Nodes<'s, A>,
+    pub(super) b: Nodes<'s, B>,
     open: Queue<Rank, Group>,
     /// Whether small cells that are near come first.
     plunging: bool,
     bounds: Bounds,
-    tolerance: f64,
+    /// The nearest points that were met since the last plunge began, and the distance of those that were last moved to the surfaces.
+    candidate: Option<Reached>,
+    polished: f64,
+    wanted: Goal,
     /// What is left of the budget.
-    left: u64,
+    pub(super) left: u64,
+}
+
+/// What the search has found.
+pub(super) struct Found {
+    pub(super) distance: Interval,
+    pub(super) reached: Option<Reached>,
+    pub(super) stop_reason: StopReason,
 }
 
 impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     pub(super) fn new(
         a: &'s A,
         b: &'s B,
-        tolerance: f64,
+        wanted: Goal,
         budget: u64,
         control: &'s Control<'s>,
     ) -> Result<Self, Error> {
-        let bounds = Bounds { settled: None, reached: None, goal: u64::MAX };
+        let size = a.frame().cell_size();
+        let goal = match wanted {
+            Goal::Width(_) => f64::INFINITY,
+            Goal::AtLeast(distance) => {
+                let mut goal = distance / size;
+                while product_down(goal, size) < distance {
+                    goal = goal.next_up();
+                }
+                goal
+            }
+        };
+        let bounds = Bounds { settled: f64::INFINITY, reached: None, goal };
         let (a, b) = (Nodes::new(a, control)?, Nodes::new(b, control)?);
-        Ok(Search { a, b, open: Queue::new(), plunging: false, bounds, tolerance, left: budget })
+        Ok(Search {
+            a,
+            b,
+            open: Queue::new(),
+            plunging: false,
+            bounds,
+            candidate: None,
+            polished: f64::INFINITY,
+            wanted,
+            left: budget,
+        })
     }
 
-    /// Searches until the distance is known as well as the tolerance says, the budget is spent, or the cells
-    /// have no more to tell.
-    pub(super) fn run(mut self, job: &Job<'_>) -> Result<Clearance, Error> {
+    /// Searches until as much is known as is asked for, the budget is spent, or the cells have no more to tell.
+    pub(super) fn run(&mut self, job: &Job<'_>) -> Result<Found, Error> {
         if !self.a.is_empty() && !self.b.is_empty() {
-            self.meet(0, [0])?;
+            self.meet(0, [0], 0.0)?;
         }
-        let budget = self.left;
-        self.plunge(DIVE.min(budget / 4), job)?;
-        if self.bounds.reached.is_none() {
-            self.find_full(budget / 4, job)?;
+        // (Whether the solids are as far apart as they should be may be proven without points.)
+        if matches!(self.wanted, Goal::Width(_)) {
+            let budget = self.left;
+            self.plunge(DIVE.min(budget / 4), job)?;
+            if self.bounds.reached.is_none() {
+                self.find_full(budget / 4, job)?;
+            }
         }
-        let mut steps = 0;
+        let (mut steps, mut in_vain, mut since) = (0, 0, self.left);
         let stop_reason = loop {
             let distance = self.distance();
             let least =
-                self.open.peek().map(|group| group.item.nearest.0).filter(|&least| !self.is_beyond(least));
+                self.open.peek().map(|group| group.item.least()).filter(|&least| !self.is_beyond(least));
             // Whether the lower bound is what it will be.
-            let is_final =
-                least.is_none_or(|least| self.bounds.settled.is_some_and(|settled| settled <= least));
+            let is_final = least.is_none_or(|least| self.bounds.settled <= least);
             // The distance from an empty solid is known, too.
             if self.is_known(distance) {
                 break StopReason::Tolerance;
@@ -131,39 +209,72 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                 }
                 break if self.is_spent() { StopReason::Budget } else { StopReason::Exhausted };
             }
-            if least.is_none() || is_final && distance.width() <= self.resolution() {
-                break StopReason::Exhausted;
+            let is_in_vain = !self.has_lore() || in_vain >= IN_VAIN;
+            let is_exhausted =
+                least.is_none() || is_final && distance.width() <= self.resolution() && is_in_vain;
+            if is_exhausted || self.is_spent() {
+                let before = self.reached();
+                self.polish(self.bounds.reached)?;
+                if self.reached() < before {
+                    continue;
+                }
+                break if is_exhausted { StopReason::Exhausted } else { StopReason::Budget };
             }
-            if self.is_spent() {
-                break StopReason::Budget;
-            }
-            if is_final || steps % BETWEEN == 0 && distance.width() > self.resolution() {
+            let is_due = if self.has_lore() {
+                since - self.left >= SPLITS_BETWEEN
+            } else {
+                steps % BETWEEN == 0 && distance.width() > self.resolution()
+            };
+            if is_final || is_due {
+                let before = self.reached();
                 self.plunge(PLUNGE, job)?;
+                in_vain = if is_final && self.reached() == before { in_vain + 1 } else { 0 };
+                since = self.left;
             } else {
                 self.step(job)?;
             }
             steps += 1;
         };
-        Ok(self.found(stop_reason))
+        Ok(Found { distance: self.distance(), reached: self.bounds.reached, stop_reason })
     }
 
     /// Whether the steps or the memory that the caller allows are spent.
-    fn is_spent(&self) -> bool {
+    pub(super) fn is_spent(&self) -> bool {
         self.left == 0 || self.a.subject.takes(4) || self.b.subject.takes(4)
     }
 
-    /// From the first group to small cells that are near, until the upper bound falls.
+    /// Whether both solids have told more of cells than their verdicts.
+    fn has_lore(&self) -> bool {
+        self.a.has_lore() && self.b.has_lore()
+    }
+
+    /// What is reached, in finest cells.
+    fn reached(&self) -> f64 {
+        self.bounds.reached.map_or(f64::INFINITY, |reached| reached.upper)
+    }
+
+    /// From the first group to small cells that are near, until the upper bound falls; as far as slabs lower it further, they do.
     fn plunge(&mut self, steps: u64, job: &Job<'_>) -> Result<(), Error> {
         let Some(group) = self.open.pop() else { return Ok(()) };
-        let before = self.bounds.reached;
+        let (before, least) = (self.reached(), group.least().min(self.bounds.settled));
         let others = core::mem::replace(&mut self.open, Queue::new());
-        self.plunging = true;
+        (self.plunging, self.candidate) = (true, None);
         self.push(group)?;
         let spared = self.left.saturating_sub(steps);
-        let is_open = |search: &Self| search.left > spared && search.bounds.reached == before;
-        while is_open(self) && !self.is_spent() && self.step(job)? {}
+        let (mut reached, mut since) = (before, self.left);
+        while self.left > spared && !self.is_spent() && !self.is_known(self.between(least)) {
+            if self.reached() < reached {
+                (reached, since) = (self.reached(), self.left);
+            }
+            // Slabs lower it further on the way down; cells do not.
+            let is_lowest = !self.has_lore() || since - self.left >= STALLED;
+            if reached < before && is_lowest || !self.step(job)? {
+                break;
+            }
+        }
         let met = core::mem::replace(&mut self.open, others);
         self.plunging = false;
+        self.polish(self.candidate)?;
         met.into_items().try_for_each(|group| self.push(group))
     }
 
@@ -173,20 +284,24 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         if let Some(a) = self.a.find_full(&mut left, job)?
             && let Some(b) = self.b.find_full(&mut left, job)?
         {
-            let (least, ..) = self.apart(a, b);
-            self.reach(least, [a, b]);
+            self.reach_cells(a, b);
         }
         self.left -= budget - left;
         Ok(())
     }
 
     fn push(&mut self, group: Group) -> Result<(), Error> {
-        let order = if self.plunging {
-            let (least, greatest, _) = group.closest;
-            [greatest, least]
-        } else {
+        let order = if !self.plunging {
             let (least, greatest, _) = group.nearest;
-            [least, greatest]
+            [least, greatest, 0]
+        } else if self.has_lore() {
+            // The finest cells first: what slabs say of the least distance is a better guide than the greatest.
+            let (least, greatest, b) = group.likeliest;
+            let levels = self.a.cell(group.node).level + self.b.cell(b).level;
+            [u64::from(u8::MAX - levels), about(least), greatest]
+        } else {
+            let (least, greatest, _) = group.closest;
+            [greatest, least, 0]
         };
         self.open.push((Reverse(order), self.open.met()), group)
     }
@@ -194,20 +309,25 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     /// Splits the larger cells of the first group; false if there is none.
     fn step(&mut self, job: &Job<'_>) -> Result<bool, Error> {
         job.check()?;
-        while let Some(Group { node: a, companions, nearest, closest }) = self.open.pop() {
-            if self.is_beyond(nearest.0) {
+        while let Some(Group { node: a, companions, nearest, closest, likeliest }) = self.open.pop() {
+            if self.is_beyond(f64::from_bits(nearest.0)) {
                 continue;
             }
-            let (.., b) = if self.plunging { closest } else { nearest };
+            let (.., b) = match (self.plunging, self.has_lore()) {
+                (false, _) => nearest,
+                (true, false) => closest,
+                (true, true) => likeliest,
+            };
+            let least = f64::from_bits(nearest.0);
             // The larger one, so that neither is split without need.
             let (level_a, level_b) = (self.a.cell(a).level, self.b.cell(b).level);
             if self.a.can_be_split(a) && (!self.b.can_be_split(b) || level_a <= level_b) {
                 self.left = self.left.saturating_sub(1);
                 for child in self.a.children(a)? {
-                    self.meet(child, companions.iter().copied())?;
+                    self.meet(child, companions.iter().copied(), least)?;
                 }
             } else {
-                self.split_companions(a, b, companions)?;
+                self.split_companions(a, b, companions, least)?;
             }
             return Ok(true);
         }
@@ -215,11 +335,22 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     }
 
     /// Splits the companion `b` of `a`, and if a proof needs them all the others of its size, too.
-    fn split_companions(&mut self, a: usize, b: usize, mut companions: Vec<usize>) -> Result<(), Error> {
+    fn split_companions(
+        &mut self,
+        a: usize,
+        b: usize,
+        mut companions: Vec<usize>,
+        least: f64,
+    ) -> Result<(), Error> {
         let level = self.b.cell(b).level;
         let count = companions.len();
+        // (Others wait for the next step: a better upper bound may make them needless.)
+        let enough = if self.has_lore() { self.left.saturating_sub(SPLITS_BETWEEN) } else { 0 };
         for i in 0..count {
             let node = companions[i];
+            if self.left <= enough && node != b {
+                continue;
+            }
             let is_due = node == b || !self.plunging && self.left > 1 && self.b.cell(node).level <= level;
             if is_due && self.b.can_be_split(node) {
                 self.left = self.left.saturating_sub(1);
@@ -229,16 +360,16 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                 companions[i] = usize::MAX;
             }
         }
-        self.meet(a, companions.into_iter().filter(|&node| node != usize::MAX))
+        self.meet(a, companions.into_iter().filter(|&node| node != usize::MAX), least)
     }
 
     /// Whether nothing at this distance can lower the upper bound.
-    fn is_beyond(&self, least: u64) -> bool {
-        self.bounds.reached.is_some_and(|(reached, _)| least >= reached)
+    fn is_beyond(&self, least: f64) -> bool {
+        least >= self.reached()
     }
 
-    /// The squares of the least and of the greatest distance of two cells.
-    fn apart(&self, a: usize, b: usize) -> (u64, u64) {
+    /// The least and the greatest distance of two cells.
+    fn apart(&self, a: usize, b: usize) -> (Interval, f64) {
         let ((low_a, high_a), (low_b, high_b)) = (self.a.extent(a), self.b.extent(b));
         let (mut least, mut greatest) = (0, 0);
         for axis in 0..3 {
@@ -247,47 +378,149 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             least += gap as u64 * gap as u64;
             greatest += span as u64 * span as u64;
         }
-        (least, greatest)
+        (root(least), root(greatest).upper)
     }
 
-    /// Takes in a cell of the first solid with companions. Those that do not matter to the lower bound are put
-    /// off in a group of their own.
-    fn meet(&mut self, a: usize, nodes: impl IntoIterator<Item = usize>) -> Result<(), Error> {
+    /// Takes in a cell of the first solid with companions, all of which are parts of cells that are proven to be as far apart as
+    /// `known`. Those that do not matter to the lower bound are put off in a group of their own.
+    fn meet(&mut self, a: usize, nodes: impl IntoIterator<Item = usize>, known: f64) -> Result<(), Error> {
         let (full, can_be_split) = (self.a.is_full(a), self.a.can_be_split(a));
         let mut groups: [Option<Group>; 2] = [None, None];
+        let mut bodies = None;
         for b in nodes {
-            let (least, greatest) = self.apart(a, b);
+            let (cells, mut greatest) = self.apart(a, b);
+            let mut least = cells.lower.max(known);
             if self.is_beyond(least) {
                 continue;
             }
+            let splits = can_be_split || self.b.can_be_split(b);
             if full && self.b.is_full(b) {
-                self.reach(least, [a, b]);
+                self.reach_cells(a, b);
+            } else if least < self.bounds.goal {
+                least = least.max(self.look(a, b, &mut bodies, least)?);
+                if (self.plunging || !splits) && !self.is_beyond(least) {
+                    greatest = greatest.min(self.reach_points(a, b).unwrap_or(greatest)).max(least);
+                }
+                if self.is_beyond(least) {
+                    continue;
+                }
             }
-            if can_be_split || self.b.can_be_split(b) {
+            if splits {
                 let group = &mut groups[usize::from(least >= self.bounds.goal)];
-                Group::add(group, a, (least, greatest, b))?;
+                Group::add(group, a, (least.to_bits(), greatest.to_bits(), b))?;
             } else {
-                self.bounds.settled = Some(self.bounds.settled.map_or(least, |settled| settled.min(least)));
+                self.bounds.settled = self.bounds.settled.min(least);
             }
+        }
+        if let Some(Group { likeliest: (.., b), .. }) = groups[0]
+            && !self.plunging
+            && self.has_lore()
+        {
+            self.reach_points(a, b);
         }
         groups.into_iter().flatten().try_for_each(|group| self.push(group))
     }
 
-    /// Takes in an upper bound.
-    fn reach(&mut self, least: u64, nodes: [usize; 2]) {
-        self.bounds.reached = Some((least, nodes));
-        // The first square that is known well enough; what floating point says is off by a few at the most.
-        let cells = root(least).upper - self.tolerance / self.a.subject.classifier.frame().cell_size();
-        let about = if cells > 0.0 { cells * cells } else { 0.0 };
-        let mut goal = (about as u64).saturating_sub(2).min(least);
-        while goal < least && !self.is_known(self.between(Some(goal))) {
-            goal += 1;
+    /// A lower bound of the distance of what lies in two cells that are that far apart.
+    fn look(&mut self, a: usize, b: usize, bodies: &mut Option<Bodies>, least: f64) -> Result<f64, Error> {
+        self.a.learn(a)?;
+        self.b.learn(b)?;
+        let (own, other) = (self.a.piece(a), self.b.piece(b));
+        if !own.says_more() && !other.says_more() {
+            return Ok(0.0);
         }
-        self.bounds.goal = goal;
+        let around = piece::lower_around(&own, &other);
+        if around >= self.bounds.goal {
+            return Ok(around);
+        }
+        let of_a = bodies.get_or_insert_with(|| Bodies::outer(&own));
+        let known = least.max(around);
+        Ok(around.max(piece::lower((&own, of_a), (&other, &Bodies::outer(&other)), known)))
+    }
+
+    /// Takes in points of what lies in two cells, if such are proven, and tells how far they are apart.
+    fn reach_points(&mut self, a: usize, b: usize) -> Option<f64> {
+        let (distance, points) = piece::upper(&self.a.piece(a), &self.b.piece(b))?;
+        let found = Reached { upper: distance.upper, nodes: [a, b], points };
+        if self.candidate.is_none_or(|best| found.upper < best.upper) {
+            self.candidate = Some(found);
+        }
+        self.reach(found);
+        Some(distance.upper)
+    }
+
+    /// Takes in two FULL cells.
+    fn reach_cells(&mut self, a: usize, b: usize) {
+        let (least, _) = self.apart(a, b);
+        let ((low_a, high_a), (low_b, high_b)) = (self.a.extent(a), self.b.extent(b));
+        let ends: [[f64; 2]; 3] = axes(|axis| {
+            let (low, high) = (low_a[axis].max(low_b[axis]), high_a[axis].min(high_b[axis]));
+            let common = 0.5 * (f64::from(low) + f64::from(high));
+            match (high_a[axis] <= low_b[axis], high_b[axis] <= low_a[axis]) {
+                (true, _) => [high_a[axis], low_b[axis]].map(f64::from),
+                (_, true) => [low_a[axis], high_b[axis]].map(f64::from),
+                _ => [common; 2],
+            }
+        });
+        let points = [0, 1].map(|k| axes(|axis| Interval::exactly(ends[axis][k])));
+        self.reach(Reached { upper: least.upper, nodes: [a, b], points });
+    }
+
+    /// Moves points to the surfaces, where these are known.
+    fn polish(&mut self, from: Option<Reached>) -> Result<(), Error> {
+        let Some(Reached { upper, nodes: [mut a, mut b], points }) = from else { return Ok(()) };
+        if upper == self.polished {
+            return Ok(());
+        }
+        (self.polished, self.candidate) = (upper, None);
+        let before = self.reached();
+        let mut about = points.map(|point| point.map(|c| 0.5 * (c.lower + c.upper)));
+        // The nearest points may lie in cells next to these.
+        for _ in 0..CELLS_ON {
+            let (Some(own), Some(other)) = (side(&self.a, a), side(&self.b, b)) else { break };
+            let Polished { proven, beyond } = polished([&own, &other], about, self.reached());
+            if let Some((distance, points)) = proven {
+                self.reach(Reached { upper: distance.upper, nodes: [a, b], points });
+            }
+            let Some(next) = beyond else { break };
+            let (at, to) = (self.a.at(next[0], a, &mut self.left)?, self.b.at(next[1], b, &mut self.left)?);
+            let (Some(at), Some(to)) = (at, to) else { break };
+            if (at, to) == (a, b) {
+                break;
+            }
+            (a, b, about) = (at, to, next);
+        }
+        if self.reached() < before {
+            self.polished = self.reached();
+        }
+        Ok(())
+    }
+
+    /// Takes in an upper bound, unless a better one is known.
+    fn reach(&mut self, found: Reached) {
+        if found.upper >= self.reached() {
+            return;
+        }
+        self.bounds.reached = Some(found);
+        let Goal::Width(tolerance) = self.wanted else { return };
+        // The first distance that is known well enough; what floating point says is off by little at the most.
+        let about = found.upper - tolerance / self.a.subject.classifier.frame().cell_size();
+        let mut goal = if about > 0.0 { about } else { 0.0 };
+        let grain = found.upper.next_up() - found.upper;
+        while goal < found.upper && !self.is_known(self.between(goal)) {
+            goal = (goal + grain).max(goal.next_up());
+        }
+        self.bounds.goal = goal.min(found.upper);
     }
 
     fn is_known(&self, distance: Interval) -> bool {
-        distance.lower == f64::INFINITY || self.bounds.reached.is_some() && distance.width() <= self.tolerance
+        match self.wanted {
+            Goal::Width(tolerance) => {
+                distance.lower == f64::INFINITY
+                    || self.bounds.reached.is_some() && distance.width() <= tolerance
+            }
+            Goal::AtLeast(least) => distance.lower >= least || distance.upper < least,
+        }
     }
 
     /// What cells can tell of most solids: twice the diagonal of a finest one.
@@ -296,45 +529,35 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     }
 
     /// What is known if this is the least distance of all that is not reached.
-    fn between(&self, least: Option<u64>) -> Interval {
-        let reached = self.bounds.reached.map(|(reached, _)| reached);
-        let least = [least, reached].into_iter().flatten().min();
-        let size = self.a.subject.classifier.frame().cell_size();
-        Interval::between(
-            least.map_or(f64::INFINITY, |square| product_down(root(square).lower, size)),
-            reached.map_or(f64::INFINITY, |square| product_up(root(square).upper, size)),
-        )
+    fn between(&self, least: f64) -> Interval {
+        let (reached, size) = (self.reached(), self.a.subject.classifier.frame().cell_size());
+        let of = |cells: f64, rounded: fn(f64, f64) -> f64| {
+            if cells < f64::INFINITY { rounded(cells, size) } else { cells }
+        };
+        Interval::between(of(least.min(reached), product_down), of(reached, product_up))
     }
 
     /// What is known.
     fn distance(&self) -> Interval {
-        let open = self.open.peek().map(|group| group.item.nearest.0);
-        self.between([open, self.bounds.settled].into_iter().flatten().min())
+        let open = self.open.peek().map_or(f64::INFINITY, |group| group.item.least());
+        self.between(open.min(self.bounds.settled))
     }
+}
 
-    /// The answer.
-    fn found(self, stop_reason: StopReason) -> Clearance {
-        // What goes on outside of the universe may come as near as it likes.
-        let clipped = self.a.subject.is_clipped() || self.b.subject.is_clipped();
-        let distance = match (self.distance(), clipped) {
-            (distance, true) => Interval::between(0.0, distance.upper),
-            (distance, false) => distance,
-        };
-        let is_wide = distance.width() > self.tolerance;
-        let stop_reason = match stop_reason {
-            // No cell of the universe can raise the lower bound.
-            StopReason::Tolerance if clipped && is_wide => StopReason::Exhausted,
-            other => other,
-        };
-        Clearance {
-            distance,
-            nearest: self.bounds.reached.map(|(_, [a, b])| [self.a.cell(a), self.b.cell(b)]),
-            stop_reason,
-            splits: [self.a.subject.splits, self.b.subject.splits],
-            proofs: [self.a.subject.classifier.proof(), self.b.subject.classifier.proof()],
-            clipped,
-        }
+/// The solid in a cell of which all is known.
+fn side<'n, C: Classifier>(nodes: &'n Nodes<'_, C>, node: usize) -> Option<Side<'n>> {
+    let (low, high) = nodes.extent(node);
+    let ends = [low.map(f64::from), high.map(f64::from)];
+    let cells = f64::from(nodes.subject.classifier.frame().cells());
+    if nodes.is_full(node) {
+        return Some(Side { ends, cells, open: None });
     }
+    let open = nodes.lore(node)?.open?;
+    let mut forms = [None; OpenSurfaces::MOST];
+    for (place, &index) in forms.iter_mut().zip(open.indices()) {
+        *place = Some(nodes.form(index)?);
+    }
+    Some(Side { ends, cells, open: Some((open, forms)) })
 }
 
 /// The root of an integer below 2^53.

@@ -1,0 +1,464 @@
+//! What of a solid lies in a cell, and how far two such pieces are apart.
+//!
+//! Lengths are in finest cells. A piece lies in the convex bodies that the outer ends of its slabs cut off the cell, and holds those of
+//! the inner ends. Plain doubles find the nearest points of two bodies. The direction between these then proves a lower bound: for any
+//! direction n, the distance is at least the least n · x of the one piece less the greatest of the other, divided by the length of n
+//! (weak duality). A direction that is off by an angle costs the square of the angle. The nearest points of the inner bodies, if they
+//! are proven to lie there, are an upper bound.
+//!
+//! A piece may also lie on one side of a ball or a cylinder. Of two such pieces the bound is exact where the surfaces run alongside
+//! each other, as a shaft and its bore do: cells of any size tell it.
+
+use super::simplex::{Near, dot, minus, nearest, plus};
+use crate::cut::reach;
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Interval, axes};
+use crate::solid::{Enclosure, Round, Slab, SlabJoin};
+
+/// A point whose coordinates are known within intervals: in finest cells, from the universe's lower corner.
+pub(super) type Place = [Interval; 3];
+
+/// One side of a ball or a cylinder, in which a piece lies.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ring {
+    pub(super) round: Round,
+    /// Whether it is the side of the core.
+    pub(super) is_near: bool,
+}
+
+/// What is known of the solid in a cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Content<'n> {
+    Full,
+    Slabs(&'n Enclosure),
+    Unknown,
+}
+
+/// The part of a solid in a cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece<'n> {
+    pub(super) centre: [f64; 3],
+    pub(super) half: f64,
+    pub(super) content: Content<'n>,
+    pub(super) rings: [Option<&'n Ring>; 2],
+}
+
+/// Most corners of a body. (Nine planes make fourteen; more only if rounding tells some apart that are one.)
+const MOST: usize = 32;
+
+/// What a body's corners may stick out by, as a share of the cell.
+const SLACK: f64 = 1e-12;
+
+/// How far inner ends are moved inward, as a share of the normal's range.
+const MARGIN: f64 = 1.0 / (1u64 << 44) as f64;
+
+/// A convex body in a cell: in the cell's coordinates, from its centre in half edges.
+pub(super) struct Body {
+    /// One to three slabs, of which all count; `None` for the whole cell.
+    slabs: Option<Enclosure>,
+    corners: [[f64; 3]; MOST],
+    count: usize,
+}
+
+/// The bodies whose union holds a piece, or that a piece holds.
+pub(super) struct Bodies {
+    all: [Option<Body>; 3],
+}
+
+impl Bodies {
+    pub(super) fn outer(piece: &Piece<'_>) -> Bodies {
+        match piece.content {
+            Content::Slabs(known) => Bodies::of(known, true),
+            Content::Full | Content::Unknown => Bodies::whole(),
+        }
+    }
+
+    fn inner(piece: &Piece<'_>) -> Bodies {
+        match piece.content {
+            Content::Full => Bodies::whole(),
+            Content::Slabs(known) => Bodies::of(known, false),
+            Content::Unknown => Bodies { all: [None, None, None] },
+        }
+    }
+
+    fn whole() -> Bodies {
+        Bodies { all: [Some(Body::new(None, true)), None, None] }
+    }
+
+    fn of(known: &Enclosure, outer: bool) -> Bodies {
+        let is_slab = |slab: &&Slab| slab.normal != [0.0; 3];
+        let count = known.slabs.iter().filter(is_slab).count();
+        if count == 0 {
+            // No slab says nothing.
+            return if outer { Bodies::whole() } else { Bodies { all: [None, None, None] } };
+        }
+        if known.join == SlabJoin::All || count == 1 {
+            return Bodies {
+                all: [Some(Body::new(Some(Enclosure { join: SlabJoin::All, ..*known }), outer)), None, None],
+            };
+        }
+        let mut all = [None, None, None];
+        for (place, slab) in all.iter_mut().zip(known.slabs.iter().filter(is_slab)) {
+            let slabs = [*slab, Slab::NONE, Slab::NONE];
+            *place = Some(Body::new(Some(Enclosure { slabs, join: SlabJoin::All, cone: known.cone }), outer));
+        }
+        Bodies { all }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &Body> {
+        self.all.iter().flatten()
+    }
+}
+
+impl Body {
+    fn new(slabs: Option<Enclosure>, outer: bool) -> Body {
+        let mut body = Body { slabs, corners: [[0.0; 3]; MOST], count: 0 };
+        let mut planes = [([0.0; 3], 0.0); 3];
+        let mut count = 0;
+        for slab in body.slabs.iter().flat_map(|known| known.slabs).filter(|slab| slab.normal != [0.0; 3]) {
+            let range = slab.normal.iter().map(|c| c.abs()).sum::<f64>();
+            let offset = if outer { slab.outer / range } else { slab.inner / range - MARGIN };
+            // (What is no number is not less.)
+            if offset < 1.0 {
+                planes[count] = (slab.normal.map(|c| c / range), offset);
+                count += 1;
+            } else if !(offset >= 1.0) {
+                return body;
+            }
+        }
+        body.add_corners(&planes[..count]);
+        body
+    }
+
+    fn add_corners(&mut self, planes: &[([f64; 3], f64)]) {
+        let sign = |bits: usize, k: usize| if bits >> k & 1 == 0 { -1.0 } else { 1.0 };
+        for k in 0..8 {
+            self.add(planes, axes(|axis| sign(k, axis)));
+        }
+        for (i, (n, offset)) in planes.iter().enumerate() {
+            for free in 0..3 {
+                let (u, v) = ((free + 1) % 3, (free + 2) % 3);
+                for k in 0..4 {
+                    let mut point = [0.0; 3];
+                    (point[u], point[v]) = (sign(k, 0), sign(k, 1));
+                    point[free] = (offset - n[u] * point[u] - n[v] * point[v]) / n[free];
+                    self.add(planes, point);
+                }
+            }
+            for (m, other) in &planes[i + 1..] {
+                for fixed in 0..3 {
+                    let (u, v) = ((fixed + 1) % 3, (fixed + 2) % 3);
+                    let determinant = n[u] * m[v] - n[v] * m[u];
+                    for k in 0..2 {
+                        let at = sign(k, 0);
+                        let (p, q) = (offset - n[fixed] * at, other - m[fixed] * at);
+                        let mut point = [at; 3];
+                        point[u] = (p * m[v] - q * n[v]) / determinant;
+                        point[v] = (q * n[u] - p * m[u]) / determinant;
+                        self.add(planes, point);
+                    }
+                }
+            }
+        }
+        if let [(a, p), (b, q), (c, r)] = planes {
+            let cross = super::simplex::cross;
+            let (bc, ca, ab) = (cross(*b, *c), cross(*c, *a), cross(*a, *b));
+            let determinant = dot(*a, bc);
+            self.add(planes, axes(|k| (p * bc[k] + q * ca[k] + r * ab[k]) / determinant));
+        }
+    }
+
+    /// Adds a point if it lies in the cell and behind all planes.
+    fn add(&mut self, planes: &[([f64; 3], f64)], point: [f64; 3]) {
+        // What is no number lies nowhere.
+        let lies_within = point.iter().all(|c| c.abs() <= 1.0 + SLACK)
+            && planes.iter().all(|(normal, offset)| dot(*normal, point) <= offset + SLACK);
+        let point = point.map(|c| c.clamp(-1.0, 1.0));
+        if lies_within && self.count < MOST && !self.corners[..self.count].contains(&point) {
+            self.corners[self.count] = point;
+            self.count += 1;
+        }
+    }
+
+    /// The corners in finest cells, from `origin`.
+    fn seen(&self, piece: &Piece<'_>, origin: [f64; 3]) -> [[f64; 3]; MOST] {
+        let from = minus(piece.centre, origin);
+        self.corners.map(|corner| plus(from, piece.half, corner))
+    }
+
+    /// Proven: no point of the body lies further along a direction, from the centre of the cell in half edges.
+    fn reach(&self, direction: [f64; 3]) -> Interval {
+        match &self.slabs {
+            Some(known) => {
+                let reach = reach::upper(known, direction);
+                if reach.is_nan() { Interval::ALL } else { Interval::exactly(reach) }
+            }
+            None => {
+                let of = |c: f64| Interval::exactly(c.abs());
+                of(direction[0]).plus(of(direction[1])).plus(of(direction[2]))
+            }
+        }
+    }
+
+    /// Whether a point of the closed cell is proven to be a limit of points inside of all slabs.
+    fn holds(&self, point: [f64; 3]) -> bool {
+        let slabs = self.slabs.iter().flat_map(|known| &known.slabs).filter(|slab| slab.normal != [0.0; 3]);
+        point.iter().all(|c| c.abs() <= 1.0)
+            && slabs.clone().all(|slab| {
+                let terms =
+                    axes(|axis| Interval::exactly(slab.normal[axis]).times(Interval::exactly(point[axis])));
+                terms[0].plus(terms[1]).plus(terms[2]).upper < slab.inner
+            })
+    }
+}
+
+fn exact(vector: [f64; 3]) -> Place {
+    vector.map(Interval::exactly)
+}
+
+fn dot_of(a: &Place, b: &Place) -> Interval {
+    let [x, y, z] = axes(|axis| a[axis].times(b[axis]));
+    x.plus(y).plus(z)
+}
+
+fn less(a: &Place, b: &Place) -> Place {
+    axes(|axis| a[axis].minus(b[axis]))
+}
+
+fn length(vector: &Place) -> Interval {
+    let [x, y, z] = vector.map(Interval::square);
+    x.plus(y).plus(z).root()
+}
+
+/// The distance of two points.
+pub(super) fn between(a: &Place, b: &Place) -> Interval {
+    length(&less(a, b))
+}
+
+impl Round {
+    /// How far a point is from the core.
+    fn away(&self, point: &Place) -> Interval {
+        let from = less(point, &exact(self.core));
+        match self.axis {
+            None => length(&from),
+            Some(axis) => {
+                let along = exact(axis);
+                let product: Place = axes(|i| {
+                    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                    from[j].times(along[k]).minus(from[k].times(along[j]))
+                });
+                length(&product).over(length(&along))
+            }
+        }
+    }
+
+    /// The same, but for rounding.
+    fn about(&self, point: [f64; 3]) -> f64 {
+        let from = minus(point, self.nearest(point));
+        sqrt(dot(from, from))
+    }
+
+    /// The ends of the core's part to which a cell projects: twice the centre for a ball.
+    fn ends(&self, piece: &Piece<'_>) -> [Place; 2] {
+        let core = exact(self.core);
+        let Some(axis) = self.axis else { return [core; 2] };
+        let along = exact(axis);
+        let square = dot_of(&along, &along);
+        let middle = dot_of(&less(&exact(piece.centre), &core), &along);
+        let range = axis.iter().fold(Interval::exactly(0.0), |sum, c| sum.plus(Interval::exactly(c.abs())));
+        let range = range.times(Interval::exactly(piece.half));
+        [middle.minus(range).over(square).lower, middle.plus(range).over(square).upper]
+            .map(|t| axes(|i| core[i].plus(along[i].times(Interval::exactly(t)))))
+    }
+
+    /// The point of the core that is nearest to a point, but for rounding.
+    fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
+        match self.axis {
+            None => self.core,
+            Some(axis) => plus(self.core, dot(minus(point, self.core), axis) / dot(axis, axis), axis),
+        }
+    }
+
+    /// At least as far from the core are points of the far side.
+    fn least(&self) -> Interval {
+        Interval::exactly(self.square.lower).root()
+    }
+
+    /// At most as far are those of the near side.
+    fn most(&self) -> Interval {
+        Interval::exactly(self.square.upper).root()
+    }
+}
+
+impl Piece<'_> {
+    fn near_rounds(&self) -> impl Iterator<Item = &Round> {
+        self.rings.iter().flatten().filter(|ring| ring.is_near).map(|ring| &ring.round)
+    }
+
+    fn far_rounds(&self) -> impl Iterator<Item = &Round> {
+        self.rings.iter().flatten().filter(|ring| !ring.is_near).map(|ring| &ring.round)
+    }
+
+    /// Whether anything is known of it beyond its cell.
+    pub(super) fn says_more(&self) -> bool {
+        matches!(self.content, Content::Slabs(_)) || self.rings.iter().any(Option::is_some)
+    }
+
+    /// Proven: no point of the piece lies further along a direction, from the centre of the cell in finest cells. −∞ if there is
+    /// no point.
+    fn reach(&self, body: &Body, direction: [f64; 3]) -> f64 {
+        let own = body.reach(direction).times(Interval::exactly(self.half)).upper;
+        let towards = exact(direction);
+        self.near_rounds().fold(own, |least, round| {
+            let ends = round.ends(self).map(|end| dot_of(&less(&end, &exact(self.centre)), &towards));
+            let core = ends[0].upper.max(ends[1].upper);
+            least.min(Interval::exactly(core).plus(round.most().times(length(&towards))).upper)
+        })
+    }
+
+    /// Proven: no point of the piece is further from the core of a ball or a cylinder.
+    fn furthest_from(&self, round: &Round) -> f64 {
+        if let Some(own) = self.near_rounds().next() {
+            let [from, to] = own.ends(self).map(|end| round.away(&end).upper);
+            return Interval::exactly(from.max(to)).plus(own.most()).upper;
+        }
+        let corners: [[f64; 3]; 8] = core::array::from_fn(|k| {
+            axes(|axis| self.centre[axis] + if k >> axis & 1 == 0 { -self.half } else { self.half })
+        });
+        let about = corners.map(|corner| round.about(corner));
+        let most = about.iter().fold(0.0, |most: f64, &away| most.max(away));
+        // Rounding cannot make up for more.
+        let size = corners.iter().chain([&round.core]).flatten().fold(most, |most: f64, c| most.max(c.abs()));
+        let near = most - 1e-9 * size;
+        let furthest = corners.iter().zip(about).filter(|(_, away)| !(*away < near));
+        furthest.fold(0.0, |most: f64, (corner, _)| most.max(round.away(&exact(*corner)).upper))
+    }
+}
+
+/// Proven: no two points of the pieces are nearer, as the round surface tells on the far side of which one of them lies around the
+/// other.
+pub(super) fn lower_around(a: &Piece<'_>, b: &Piece<'_>) -> f64 {
+    let around = |inner: &Piece<'_>, outer: &Piece<'_>| {
+        outer.far_rounds().fold(0.0, |most: f64, round| {
+            most.max(round.least().minus(Interval::exactly(inner.furthest_from(round))).lower)
+        })
+    };
+    around(a, b).max(around(b, a))
+}
+
+/// Proven: no two points of the pieces are nearer; ∞ if one of the pieces is empty. What is no more than `least` is not proven.
+pub(super) fn lower(a: (&Piece<'_>, &Bodies), b: (&Piece<'_>, &Bodies), known: f64) -> f64 {
+    let mut least = f64::INFINITY;
+    for own in a.1.iter() {
+        for other in b.1.iter() {
+            if least > known {
+                least = least.min(lower_of([a.0, b.0], [own, other], known));
+            }
+        }
+    }
+    least
+}
+
+fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f64 {
+    let apart = minus(b.centre, a.centre);
+    if own.count == 0 || other.count == 0 {
+        // Doubles find no point: they may be wrong.
+        let is_empty =
+            |body: &Body| body.count == 0 && body.reach([1.0, 0.0, 0.0]).upper == f64::NEG_INFINITY;
+        return if is_empty(own) || is_empty(other) { f64::INFINITY } else { 0.0 };
+    }
+    let prove = |direction: [f64; 3]| -> f64 {
+        let is_usable = direction != [0.0; 3] && direction.iter().all(|c| c.is_finite());
+        if !is_usable {
+            return 0.0;
+        }
+        // (Of any length; one of about 1 keeps squares in range.)
+        let size = direction.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let direction = direction.map(|c| c / size);
+        let (far, near) = (a.reach(own, direction), b.reach(other, direction.map(|c| -c)));
+        if far == f64::NEG_INFINITY || near == f64::NEG_INFINITY {
+            return f64::INFINITY;
+        }
+        let towards = exact(direction);
+        let gap =
+            dot_of(&towards, &exact(apart)).minus(Interval::exactly(far)).minus(Interval::exactly(near));
+        gap.over(length(&towards)).lower
+    };
+    let (from, to) = (own.seen(a, a.centre), other.seen(b, a.centre));
+    let Near { points, way } = nearest(&from[..own.count], &to[..other.count], apart);
+    let about = sqrt(dot(way, way));
+    let is_round = a.near_rounds().next().is_some() || b.near_rounds().next().is_some();
+    if about <= known && !is_round {
+        return 0.0;
+    }
+    let mut best = if about <= known { 0.0 } else { prove(way).max(0.0) };
+    if is_round {
+        // From core to core.
+        let [mut p, mut q] = points.map(|point| plus(point, 1.0, a.centre));
+        for _ in 0..4 {
+            if let Some(round) = a.near_rounds().next() {
+                p = round.nearest(q);
+            }
+            if let Some(round) = b.near_rounds().next() {
+                q = round.nearest(p);
+            }
+        }
+        let way = minus(q, p);
+        let radii = a.near_rounds().chain(b.near_rounds()).take(2).map(|round| sqrt(round.square.upper));
+        if sqrt(dot(way, way)) - radii.sum::<f64>() > best.max(known) {
+            best = best.max(prove(way));
+        }
+    }
+    // Where bodies nearly touch, the way between their nearest points is rounded off.
+    if about > known && best < about * (1.0 - 1e-9) {
+        let normals = |body: &Body, sign: f64| {
+            let slabs = body.slabs.map(|known| known.slabs);
+            slabs
+                .into_iter()
+                .flatten()
+                .filter(|slab| slab.outer.is_finite())
+                .map(move |slab| slab.normal.map(|c| sign * c))
+        };
+        for direction in normals(own, 1.0).chain(normals(other, -1.0)) {
+            best = best.max(prove(direction));
+        }
+    }
+    best
+}
+
+/// Points that are proven to be limits of points of the pieces, as near to each other as a search by doubles finds some, and how far
+/// they are apart.
+pub(super) fn upper(a: &Piece<'_>, b: &Piece<'_>) -> Option<(Interval, [Place; 2])> {
+    let (of_a, of_b) = (Bodies::inner(a), Bodies::inner(b));
+    let mut best: Option<(Interval, [Place; 2])> = None;
+    for own in of_a.iter().filter(|body| body.count > 0) {
+        for other in of_b.iter().filter(|body| body.count > 0) {
+            let (from, to) = (own.seen(a, a.centre), other.seen(b, a.centre));
+            let apart = minus(b.centre, a.centre);
+            let Near { points: [p, q], .. } = nearest(&from[..own.count], &to[..other.count], apart);
+            let towards = minus(q, p);
+            let (Some(p), Some(q)) =
+                (proven(own, a, p, towards), proven(other, b, minus(q, apart), towards.map(|c| -c)))
+            else {
+                continue;
+            };
+            let distance = between(&p, &q);
+            if best.is_none_or(|(least, _)| distance.upper < least.upper) {
+                best = Some((distance, [p, q]));
+            }
+        }
+    }
+    best
+}
+
+/// A point near `point`, from the cell's centre in finest cells, that is proven to be a limit of points of a body.
+fn proven(body: &Body, piece: &Piece<'_>, point: [f64; 3], towards: [f64; 3]) -> Option<Place> {
+    let own = point.map(|c| (c / piece.half).clamp(-1.0, 1.0));
+    let own = match &body.slabs {
+        _ if body.holds(own) => own,
+        Some(known) => reach::witness(known, towards)?,
+        None => return None,
+    };
+    // (Half edges are powers of two.)
+    Some(axes(|axis| Interval::exactly(piece.centre[axis]).plus(Interval::exactly(piece.half * own[axis]))))
+}
