@@ -1,11 +1,11 @@
 //! How far two boundaries are from each other: formulas, an independent sampler, and all kinds of solids.
 
 use leafless::op::DexelOptions;
-use leafless::query::{Deviation, StopReason, Within};
+use leafless::query::{Deviation, DistanceTo, StopReason, Within, distances, ray_spans};
 use leafless::surface::DexelSolid;
 use leafless::{
-    Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Rule, Solid, SurfaceOptions,
-    TriangleMesh, build, build_extended, deviation, dexelize,
+    Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Ray, Rule, Solid,
+    SurfaceOptions, TriangleMesh, build, build_extended, deviation, dexelize,
 };
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::AtomicBool;
@@ -342,6 +342,108 @@ fn every_way_in() {
     // What is not proven is not known to be anywhere.
     let found = ask(&surface, &ball, &frame, 0.05);
     assert!(found.distance().lower == 0.0 && found.distance().upper == f64::INFINITY, "{found:?}");
+}
+
+/// Random numbers from 0 to 1.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn point(&mut self, size: f64) -> Point {
+        [0; 3].map(|_| size * (2.0 * self.next() - 1.0))
+    }
+
+    /// A body in a ball of radius 1.2.
+    fn body(&mut self) -> Csg {
+        let size = 0.2 + 0.3 * self.next();
+        let body = match (self.next() * 5.0) as usize {
+            0 => Csg::ball([0.0; 3], size),
+            1 => Csg::cuboid([-size, -0.3, -0.4], [size, 0.3, 0.25]),
+            2 => Csg::cylinder(size, -0.4, 0.5),
+            3 => Csg::frustum(size, 0.5 * size, -0.3, 0.4),
+            _ => Csg::torus(0.5, 0.15 + 0.2 * size),
+        };
+        let (mut turn, at) = (self.point(PI), self.point(0.5));
+        if self.next() < 0.3 {
+            turn = [0.0; 3];
+        }
+        let (s, c) = turn[0].sin_cos();
+        let about_z = Affine::new([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
+        let (s, c) = turn[1].sin_cos();
+        let about_x = Affine::new([[1.0, 0.0, 0.0, at[0]], [0.0, c, -s, at[1]], [0.0, s, c, at[2]]]).unwrap();
+        body.unwrap().placed(&about_z).unwrap().placed(&about_x).unwrap()
+    }
+
+    fn part(&mut self) -> Csg {
+        let (one, other) = (self.body(), self.body());
+        match (self.next() * 3.0) as usize {
+            0 => one,
+            1 => Csg::union_of([one, other]).unwrap(),
+            _ => one.difference(&other).unwrap(),
+        }
+    }
+}
+
+/// What is told of random solids, beside rays that find points of boundaries, whose distances others tell.
+#[test]
+fn random_solids_beside_rays() {
+    let mut random = Random(7);
+    let frame = around(2.0, 14);
+    let coarse = around(2.0, 6);
+    let (to, mut seen) = (DistanceTo::Boundary, 0);
+    for round in 0..12 {
+        let (a, b) = (random.part(), random.part());
+        let stored = |solid: &Csg| match round % 3 {
+            0 => AnySolid::new(solid.clone()),
+            1 => AnySolid::new(build(solid, &coarse, Rule::Certified, &alone()).unwrap()),
+            _ => AnySolid::new(build_extended(solid, &coarse, &SurfaceOptions::default(), &alone()).unwrap()),
+        };
+        let frame = if round % 3 == 0 { frame } else { coarse };
+        let (told_a, told_b) = (stored(&a), stored(&b));
+        let found = ask(&told_a, &told_b, &frame, 0.03);
+        let ways: Vec<(Point, Point)> = (0..400).map(|_| (random.point(1.9), random.point(1.0))).collect();
+        let fine = around(2.0, 20);
+        for (way, from, other) in [(found.a_to_b, &a, &b), (found.b_to_a, &b, &a)] {
+            // The boundary lies between the ends of what is proven inside and of what is not proven outside.
+            let mut points = vec![];
+            for &(origin, way) in &ways {
+                let spans = ray_spans(from, &fine, &Ray::new(origin, way).unwrap(), &alone()).unwrap();
+                for outer in &spans.outer {
+                    let mut within = spans
+                        .inner
+                        .iter()
+                        .filter(|inner| outer.lower <= inner.lower && inner.upper <= outer.upper);
+                    let (Some(inner), None) = (within.next(), within.next()) else { continue };
+                    for (t, until) in [(outer.lower, inner.lower), (inner.upper, outer.upper)] {
+                        if t > 0.0 && until - t < 1e-6 {
+                            points.push([0, 1, 2].map(|axis| origin[axis] + t * way[axis]));
+                        }
+                    }
+                }
+            }
+            seen += points.len();
+            for near in distances(other, &fine, &points, to, 1e-4, &alone()).unwrap() {
+                let least = near.distance.lower.max(-near.distance.upper);
+                assert!(least - 1e-5 <= way.distance.upper, "{round}: {least} {way:?}");
+            }
+            if let Some(at) = way.at {
+                let of = |solid: &Csg| {
+                    distances(solid, &fine, &[at.point], to, 1e-5, &alone()).unwrap()[0].distance
+                };
+                let (own, there) = (of(from), of(other));
+                assert!(own.lower.max(-own.upper) <= at.apart, "{round}: {own:?} {at:?}");
+                assert!(
+                    there.upper.max(-there.lower) + at.apart >= way.distance.lower,
+                    "{round}: {there:?} {at:?}"
+                );
+            }
+        }
+    }
+    assert!(seen > 300, "{seen}");
 }
 
 #[test]

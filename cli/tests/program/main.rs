@@ -9,6 +9,7 @@ mod changed_files;
 mod channels;
 mod command_lines;
 mod commands;
+mod deviation;
 mod dexels;
 mod heights;
 mod interfere;

@@ -5,10 +5,9 @@
 //! of which nothing is known. That has the middle of the cell for a place, which is known to be near to the boundary if something of
 //! the closed cell lies in the solid and something outside.
 
-use super::piece::ROUNDING;
 use super::polygon::Polygon;
 use super::slabs::{Region, Slabs};
-use super::surface::{Layer, Surface};
+use super::surface::{Layer, ROUNDING, Surface};
 use crate::control::Job;
 use crate::error::Error;
 use crate::lattice::exact::sqrt;

@@ -10,9 +10,6 @@ pub(super) const MOST: usize = 8;
 /// is cut three times at once at the most.
 pub(super) const GENERATIONS: u8 = 60;
 
-/// How far the pieces of a surface lie beside it, as a part of the largest coordinate.
-pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 41) as f64;
-
 /// A corner with what is known of its distance, if somebody has asked.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {

@@ -1,6 +1,5 @@
 //! A surface as triangles, and how far the boundary of a solid may be from them.
 
-use super::piece::ROUNDING;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
@@ -10,6 +9,9 @@ use crate::mesh::{TriangleMesh, TriangleTree};
 use crate::solid::BoundaryFacets;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+
+/// How far the pieces of a surface lie beside it, as a part of the largest coordinate.
+pub(super) const ROUNDING: f64 = 1.0 / (1u64 << 41) as f64;
 
 /// Triangles, and a distance within which they tell where the boundary is.
 pub(super) struct Layer {
