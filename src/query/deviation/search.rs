@@ -49,6 +49,13 @@ enum Item {
     Piece(usize),
 }
 
+/// A piece that was taken up.
+enum Taken {
+    /// A whole triangle of a layer, of which nothing is computed yet.
+    Triangle(usize, u32),
+    Piece(Piece),
+}
+
 /// The greatest upper bound first (the bits of a double that is not negative), then what was met earlier.
 type Rank = (u64, Reverse<u64>);
 
@@ -89,8 +96,8 @@ impl Search<'_> {
             let mut batch = memory::with_capacity(BATCH)?;
             while batch.len() < BATCH && open.greatest() > best.lower + self.tolerance {
                 match open.pop()? {
-                    Some(Ok(piece)) => batch.push(piece),
-                    Some(Err((layer, triangle))) => {
+                    Some(Taken::Piece(piece)) => batch.push(piece),
+                    Some(Taken::Triangle(layer, triangle)) => {
                         let mut piece = self.triangle(&nears, layer, triangle);
                         self.bound(&mut piece, best.lower, &mut Best { ..best });
                         batch.push(piece);
@@ -411,14 +418,14 @@ impl Open {
         self.queue.push((piece.upper.to_bits(), Reverse(self.queue.met())), Item::Piece(place))
     }
 
-    /// The first piece, or the layer and the triangle that it is.
-    fn pop(&mut self) -> Result<Option<Result<Piece, (usize, u32)>>, Error> {
+    /// The first piece.
+    fn pop(&mut self) -> Result<Option<Taken>, Error> {
         Ok(match self.queue.pop() {
             None => None,
-            Some(Item::Triangle(layer, triangle)) => Some(Err((layer, triangle))),
+            Some(Item::Triangle(layer, triangle)) => Some(Taken::Triangle(layer, triangle)),
             Some(Item::Piece(place)) => {
                 memory::push(&mut self.free, place)?;
-                Some(Ok(self.pieces[place]))
+                Some(Taken::Piece(self.pieces[place]))
             }
         })
     }
