@@ -139,8 +139,9 @@ const CONSUMERS: [Consumer; 17] = [
         },
     },
     Consumer {
+        // It ends as soon as the tolerance is met: how far below the width then is, is chance.
         name: "clearance",
-        factor: 1.1,
+        factor: 2.0,
         ask: |solid, frame| {
             let tool = ball(frame, [0.9, 0.95, 0.93], 0.03);
             vec![clearance(solid, &tool, frame, 1e-4 * frame.edge(), &alone()).unwrap().distance]

@@ -82,6 +82,32 @@ fn solids_and_meshes() {
     assert_eq!((&found["verdict"], &found["clearance"]["upper"]), (&"undecided".into(), &Value::Null));
 }
 
+/// Whether two solids are far enough apart, by the exit code; and the points that are nearest.
+#[test]
+fn gaps_and_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::write(path.join("a.csg"), "cube([4, 2, 2]);").unwrap();
+    std::fs::write(path.join("b.csg"), "translate([6.5, 0, 0]) cube([4, 2, 2]);").unwrap();
+    let found = json(path, &["a.csg", "b.csg"]);
+    assert!(contains(&found["clearance"], 2.5), "{found}");
+    let points = &found["points"];
+    assert!((points[0][0].as_f64().unwrap() - 4.0).abs() < 1e-6, "{found}");
+    assert!((points[1][0].as_f64().unwrap() - 6.5).abs() < 1e-6, "{found}");
+    for (least, code, word) in [("2.4", 0, "yes"), ("2.6", 1, "no")] {
+        let output = run(path, &["interfere", "a.csg", "b.csg", "--gap-at-least", least, "--json"]);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{errors}");
+        assert_eq!(errors.is_empty(), code == 0, "{errors}");
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(told["gap_at_least"], word, "{told}");
+    }
+    let output = run(path, &["interfere", "a.csg", "b.csg", "--gap-at-least", "-1"]);
+    assert_ne!(output.status.code(), Some(0));
+    let text = String::from_utf8(run(path, &["interfere", "a.csg", "b.csg"]).stdout).unwrap();
+    assert!(text.lines().any(|line| line.starts_with("nearest")), "{text}");
+}
+
 /// The area that a polygon has in [0, w] × [0, h], counter-clockwise.
 fn clipped_area(polygon: [[f64; 2]; 4], size: [f64; 2]) -> f64 {
     let mut points = polygon.to_vec();
