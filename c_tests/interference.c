@@ -43,7 +43,7 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
     CHECK(found.volume_model.lower < 375 && found.volume_model.upper > 374);
     CHECK(found.volume_model.upper - found.volume_model.lower <= 200);
     OK(leafless_solid_clearance(a, apart, &frame, 0.5, NULL, &near));
-    CHECK(near.distance_model.lower < 2.3538 && near.distance_model.upper > 2.3537 && near.has_nearest);
+    CHECK(near.distance_model.lower < 2.35383 && near.distance_model.upper > 2.35382 && near.has_nearest);
     CHECK(near.distance_model.upper - near.distance_model.lower <= 0.5 && !near.is_clipped);
     CHECK(near.measured == LEAFLESS_STOP_REASON_TOLERANCE);
     CHECK(near.nearest_a_level > 0 && near.nearest_b_level > 0 && near.nearest_a[0] < near.nearest_b[0]);

@@ -3490,7 +3490,7 @@ leafless_status leafless_octree_distance_field(const leafless_octree *octree, co
 /// Whether the interiors of two solids have points in common.
 LEAFLESS_ENUM(leafless_overlap, uint32_t) {
     LEAFLESS_OVERLAP_DISJOINT = 0,  ///< Proven: they have none. The solids may touch.
-    LEAFLESS_OVERLAP_OVERLAPPING = 1,  ///< Proven: a cell or a ball lies in both.
+    LEAFLESS_OVERLAP_OVERLAPPING = 1,  ///< Proven: a ball lies in both.
     /// Not decided at the frame's depth, or before the splits were spent; or both solids go on outside of the
     /// universe, where they may overlap.
     LEAFLESS_OVERLAP_UNDECIDED = 2,
@@ -3507,9 +3507,13 @@ typedef struct leafless_interference {
     uint64_t splits_b;  ///< Cells of the second solid that were split.
     uint32_t verdict;  ///< A leafless_overlap.
     uint32_t level;  ///< The finest level of which cells were looked at.
-    /// A cell that lies in both, if the proof of an overlap found one: its position in cells of its level;
-    /// else zeros. leafless_frame_cell_bounds gives its box. (Octrees under a map may overlap by less than a
-    /// cell.)
+    /// If they are proven to overlap, the centre of a ball, all of which is proven to lie in both, in model
+    /// units; else zeros. It is not the largest one.
+    double ball_centre_model[3];
+    double ball_radius_model;  ///< The radius of that ball.
+    /// The cell in which that ball lies: its position in cells of its level; else zeros.
+    /// leafless_frame_cell_bounds gives its box. (Of octrees under a map there may be none: they may overlap
+    /// by less than a cell.)
     uint32_t witness[3];
     uint32_t witness_level;  ///< The level of that cell.
     /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint.
@@ -3520,15 +3524,26 @@ typedef struct leafless_interference {
 typedef struct leafless_clearance {
     uint32_t struct_size;  ///< sizeof(leafless_clearance).
     /// The least distance between points of the two, in model units: 0 if they touch or overlap. The upper
-    /// bound is infinite as long as one of them has no cell that is proven to be full, and the lower one too
-    /// if one of them is proven to be empty.
+    /// bound is infinite as long as no point of one of them is proven, and the lower one too if one of them
+    /// is proven to be empty.
     leafless_interval distance_model;
+    /// If `has_nearest`, a point of the first solid, in model units. Both points are no further apart than
+    /// the upper bound, but for the rounding of their coordinates; of solids with a `depth_model` both are
+    /// the same. Else zeros.
+    double point_a_model[3];
+    double point_b_model[3];  ///< A point of the second solid.
+    /// A unit vector that leads out of the first solid at its point, if one is known; else zeros.
+    double normal_a[3];
+    double normal_b[3];  ///< The same of the second solid.
+    /// Of solids that overlap: the radius of a ball, in model units, that is proven to lie in both. 0 if none
+    /// was found.
+    double depth_model;
     leafless_proof proof_a;  ///< What of the first solid is proven: what is not counts as undecided.
     leafless_proof proof_b;  ///< What of the second solid is proven.
     uint64_t splits_a;  ///< Cells of the first solid that were split.
     uint64_t splits_b;  ///< Cells of the second solid that were split.
-    /// If `has_nearest`, cells of the first and of the second solid with points that are no further apart
-    /// than the upper bound: the position of the first in cells of its level; else zeros.
+    /// If `has_nearest`, cells of the first and of the second solid with such points: the position of the
+    /// first in cells of its level; else zeros.
     uint32_t nearest_a[3];
     uint32_t nearest_a_level;  ///< The level of that cell.
     uint32_t nearest_b[3];  ///< The position of the second.
@@ -3582,6 +3597,10 @@ leafless_status leafless_solid_resampled(const leafless_solid *operand, const le
 /// is refined until the interval is no wider than `tolerance_model` cubic model units; infinity ends the work
 /// with the proof.
 ///
+/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces),
+/// a surface that bounds both is one, however both were placed, and solids that touch in it from opposite
+/// sides are proven to be disjoint. Meshes and functions of the host that touch stay undecided.
+///
 /// Only cells of one solid are split where the other one is. The work ends at the frame's depth, or once
 /// `max_splits` cells of both are split, with what is known by then.
 ///
@@ -3619,8 +3638,11 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a, const lea
 /// 576 if that is 0. A step looks at the children of one cell. A cell whose children are looked at again,
 /// next to another cell, counts once more.
 ///
-/// The upper bound is finite once the search has met a FULL cell of each solid. The work grows with the area
-/// where the distance is about the least one, measured in cells as large as the tolerance.
+/// Where both solids know slabs, as expressions, meshes and extended octrees do, each level makes the
+/// interval about four times as narrow, and plane faces, balls and cylinders are known at once. Other solids
+/// are known to the size of cells: the upper bound is finite once the search has met a FULL cell of each, and
+/// the work grows with the area where the distance is about the least one, measured in cells as large as the
+/// tolerance.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `clearance`, one struct.
 /// - Result: `*clearance`.
@@ -3629,6 +3651,75 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a, const lea
 leafless_status leafless_solid_clearance(const leafless_solid *a, const leafless_solid *b,
     const leafless_frame *frame, double tolerance_model, const leafless_options *options,
     leafless_clearance *clearance);
+
+/// Whether two solids are at least as far apart as they should be.
+LEAFLESS_ENUM(leafless_gap_verdict, uint32_t) {
+    LEAFLESS_GAP_VERDICT_YES = 0,  ///< Proven: no two points of them are nearer.
+    LEAFLESS_GAP_VERDICT_NO = 1,  ///< Proven: two points are nearer.
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid may go on outside of the
+    /// universe.
+    LEAFLESS_GAP_VERDICT_UNDECIDED = 2,
+};
+
+/// Whether two solids are at least as far apart as they should be, and what proves it.
+typedef struct leafless_gap {
+    uint32_t struct_size;  ///< sizeof(leafless_gap).
+    uint32_t verdict;  ///< A leafless_gap_verdict.
+    /// What was known of the distance when the search ended, in model units.
+    leafless_interval distance_model;
+    /// If `has_points`, a point of the first solid, in model units: both points are no further apart than the
+    /// upper bound, but for the rounding of their coordinates. Else zeros.
+    double point_a_model[3];
+    double point_b_model[3];  ///< A point of the second solid.
+    uint64_t splits_a;  ///< Cells of the first solid that were split.
+    uint64_t splits_b;  ///< Cells of the second solid that were split.
+    /// Why the search ended; LEAFLESS_STOP_REASON_TOLERANCE if the verdict is proven.
+    leafless_stop_reason measured;
+    bool has_points;  ///< Whether the upper bound is finite.
+    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    bool is_clipped;
+} leafless_gap;
+
+/// What is known of the distance between two solids, one of which is moved.
+typedef struct leafless_placed_clearance {
+    leafless_interval distance_model;  ///< As leafless_clearance has it.
+    double point_a_model[3];  ///< If `has_points`, a point of the first solid, in model units; else zeros.
+    double point_b_model[3];  ///< A point of the second solid.
+    double depth_model;  ///< As leafless_clearance has it.
+    uint64_t splits_a;  ///< Cells of the first solid that were split.
+    uint64_t splits_b;  ///< Cells of the second solid that were split.
+    leafless_stop_reason measured;  ///< Why the search ended.
+    bool has_points;  ///< Whether the upper bound is finite.
+    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    bool is_clipped;
+} leafless_placed_clearance;
+
+/// Whether no point of a solid is nearer than `least_model` to one of another solid, as they are in the
+/// universe of a frame. The search ends as soon as that is proven or disproven. If the distance is
+/// `least_model` to the last digit, nothing may be proven within `max_splits`, which are counted and limited
+/// as for leafless_solid_clearance.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `gap`, one struct.
+/// - Result: `*gap`.
+/// - Errors: as leafless_solid_interfere; LEAFLESS_E_ARGUMENT also if `least_model` is not between 2^-256 and
+///   2^256.
+/// - Untrusted input: any solids; the default of `max_splits` bounds the work.
+leafless_status leafless_solid_gap_at_least(const leafless_solid *a, const leafless_solid *b,
+    const leafless_frame *frame, double least_model, const leafless_options *options, leafless_gap *gap);
+
+/// As leafless_solid_clearance of `a` with `b` under each of many affine maps, as leafless_solid_transformed
+/// makes them. `max_splits` concerns each of them. The results are the same for any number of threads.
+///
+/// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
+///   that of `a`; `options`, one struct or NULL; `clearances`, room for `count`. `matrices` and `clearances`
+///   may be NULL if `count` is 0.
+/// - Result: `clearances[i]` for map i.
+/// - Errors: as leafless_solid_interfere and leafless_solid_transformed; nothing is then written.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_solid_clearance, and any numbers.
+leafless_status leafless_solid_clearance_many(const leafless_solid *a, const leafless_solid *b,
+    const leafless_frame *own, const double *matrices, uint64_t count, const leafless_frame *frame,
+    double tolerance_model, const leafless_options *options, leafless_placed_clearance *clearances);
 
 /// How far points of one boundary are from another one.
 typedef struct leafless_one_way {

@@ -474,6 +474,11 @@ public:
         const leafless_options *options, span<leafless_interference> interferences) const;
     [[nodiscard]] returns<leafless_clearance> clearance(const leafless::solid &b, const leafless_frame &frame,
         double tolerance_model, const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<leafless_gap> gap_at_least(const leafless::solid &b, const leafless_frame &frame,
+        double least_model, const leafless_options *options = nullptr) const;
+    returns<void> clearance_many(const leafless::solid &b, const leafless_frame &own,
+        span<const affine> matrices, const leafless_frame &frame, double tolerance_model,
+        const leafless_options *options, span<leafless_placed_clearance> clearances) const;
     [[nodiscard]] returns<leafless_deviation> deviation(const leafless::solid &b, const leafless_frame &frame,
         double tolerance_model, double within_model, const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<std::vector<leafless_material>> materials(const leafless::channel &channel,
@@ -1453,6 +1458,23 @@ inline returns<leafless_clearance> solid::clearance(const leafless::solid &b, co
     const leafless_status status = leafless_solid_clearance(get(), b.get(), &frame, tolerance_model, options,
         &clearance);
     return detail::finish(status, clearance);
+}
+
+inline returns<leafless_gap> solid::gap_at_least(const leafless::solid &b, const leafless_frame &frame,
+    double least_model, const leafless_options *options) const {
+    leafless_gap gap = LEAFLESS_INIT(leafless_gap);
+    const leafless_status status = leafless_solid_gap_at_least(get(), b.get(), &frame, least_model, options,
+        &gap);
+    return detail::finish(status, gap);
+}
+
+inline returns<void> solid::clearance_many(const leafless::solid &b, const leafless_frame &own,
+    span<const affine> matrices, const leafless_frame &frame, double tolerance_model,
+    const leafless_options *options, span<leafless_placed_clearance> clearances) const {
+    detail::same_size(matrices.size(), clearances.size());
+    const leafless_status status = leafless_solid_clearance_many(get(), b.get(), &own,
+        detail::numbers(matrices), matrices.size(), &frame, tolerance_model, options, clearances.data());
+    return detail::finish(status);
 }
 
 inline returns<leafless_deviation> solid::deviation(const leafless::solid &b, const leafless_frame &frame,
