@@ -48,8 +48,9 @@ fn the_exit_code_is_the_verdict() {
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(run.errors.contains("cube.stl") && run.errors.contains("not within 0.2"), "{run:?}");
     assert_eq!(run.json()["verdict"], "beyond");
-    place.write("ball.csg", "sphere(r = 1);");
-    let run = place.run("deviation ball.csg cube.stl --within 0.7 --splits 1 --json");
+    place.write("a.csg", plate(5.0));
+    place.write("b.csg", plate(4.5));
+    let run = place.run("deviation a.csg b.csg --within 0.5 --splits 1 --json");
     assert_eq!((run.code, run.json()["verdict"].as_str()), (Some(1), Some("undecided")), "{run:?}");
     place.run("deviation cube.stl").bad(2, &["B"]);
     place.run("deviation - -").bad(2, &["standard input"]);

@@ -49,13 +49,6 @@ enum Item {
     Piece(usize),
 }
 
-/// A piece that was taken up.
-enum Taken {
-    /// A whole triangle of a layer, of which nothing is computed yet.
-    Triangle(usize, u32),
-    Piece(Piece),
-}
-
 /// The greatest upper bound first (the bits of a double that is not negative), then what was met earlier.
 type Rank = (u64, Reverse<u64>);
 
@@ -95,9 +88,9 @@ impl Search<'_> {
             }
             let mut batch = memory::with_capacity(BATCH)?;
             while batch.len() < BATCH && open.greatest() > best.lower + self.tolerance {
-                match open.pop()? {
-                    Some(Taken::Piece(piece)) => batch.push(piece),
-                    Some(Taken::Triangle(layer, triangle)) => {
+                match open.queue.pop() {
+                    Some(Item::Piece(place)) => batch.push(open.take(place)?),
+                    Some(Item::Triangle(layer, triangle)) => {
                         let mut piece = self.triangle(&nears, layer, triangle);
                         self.bound(&mut piece, best.lower, &mut Best { ..best });
                         batch.push(piece);
@@ -418,16 +411,10 @@ impl Open {
         self.queue.push((piece.upper.to_bits(), Reverse(self.queue.met())), Item::Piece(place))
     }
 
-    /// The first piece.
-    fn pop(&mut self) -> Result<Option<Taken>, Error> {
-        Ok(match self.queue.pop() {
-            None => None,
-            Some(Item::Triangle(layer, triangle)) => Some(Taken::Triangle(layer, triangle)),
-            Some(Item::Piece(place)) => {
-                memory::push(&mut self.free, place)?;
-                Some(Taken::Piece(self.pieces[place]))
-            }
-        })
+    /// Takes a piece out of the list.
+    fn take(&mut self, place: usize) -> Result<Piece, Error> {
+        memory::push(&mut self.free, place)?;
+        Ok(self.pieces[place])
     }
 
     /// Whether the pieces in memory take much of what the caller allows.
