@@ -208,13 +208,15 @@ pub fn interference_at<A: Solid, B: Solid>(
     valid::tolerance("tolerance", tolerance)?;
     let job = Job::new(control);
     let (bounds, solid) = (b.bounds(), b);
+    // (Other solids need not be asked whether they are stored, which may cost a split.)
+    let is_home = a.home() == Some(*frame) && b.home() == Some(*own);
     let (a, b) = (a.on(frame, control)?, b.on(own, control)?);
     let mut workers = (a.worker()?, b.worker()?);
-    let stored = (oriented::stored(&a, &mut workers.0)?, oriented::stored(&b, &mut workers.1)?);
-    let oriented = match stored {
-        (Some(a), Some(b)) => Some(Oriented::new(a, b)),
-        _ => None,
+    let oriented = match is_home {
+        true => oriented::stored(&a, &mut workers.0)?.zip(oriented::stored(&b, &mut workers.1)?),
+        false => None,
     };
+    let oriented = oriented.map(|(a, b)| Oriented::new(a, b));
     let a = Proven(a);
     // The threads are those of the placements.
     let alone = Control { threads: 1, ..*control };

@@ -312,7 +312,7 @@ impl Two<'_> {
         let enough = 0.1 * self.half.min(self.other);
         let near = if centres[0].0 > centres[1].0 { centres[0] } else { centres[1] };
         let (radius, point) = match self.middle() {
-            Some(middle) if !(near.0 > enough) => (self.radius(&middle), middle),
+            Some(middle) if near.0.is_nan() || near.0 <= enough => (self.radius(&middle), middle),
             _ => near,
         };
         let (frame, centre) = (&self.pose.frame, self.a.centre());
