@@ -137,7 +137,7 @@ fn free<C: Classifier>(
     } else if !centre.iter().all(|&c| (0.0..=cells).contains(&c)) {
         return Ok(0.0);
     }
-    if nodes.is_empty() || !(radius > 0.0) {
+    if nodes.is_empty() || radius.is_nan() || radius <= 0.0 {
         return Ok(0.0);
     }
     if nodes.is_full(0) {

@@ -122,7 +122,7 @@ impl Body {
             if offset < 1.0 {
                 planes[count] = (slab.normal.map(|c| c / range), offset);
                 count += 1;
-            } else if !(offset >= 1.0) {
+            } else if offset.is_nan() {
                 return body;
             }
         }
@@ -330,7 +330,7 @@ impl Piece<'_> {
         // Rounding cannot make up for more.
         let size = corners.iter().chain([&round.core]).flatten().fold(most, |most: f64, c| most.max(c.abs()));
         let near = most - 1e-9 * size;
-        let furthest = corners.iter().zip(about).filter(|(_, away)| !(*away < near));
+        let furthest = corners.iter().zip(about).filter(|(_, away)| away.is_nan() || *away >= near);
         furthest.fold(0.0, |most: f64, (corner, _)| most.max(round.away(&exact(*corner)).upper))
     }
 }

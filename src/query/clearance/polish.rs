@@ -159,7 +159,7 @@ fn moved(
         let before = best;
         let way = minus(q, p);
         let length = sqrt(best);
-        if !(length > 0.0) {
+        if length.is_nan() || length <= 0.0 {
             return None;
         }
         let towards = way.map(|c| c / length);
@@ -175,7 +175,7 @@ fn moved(
             let Some(direction) = direction else { continue };
             let ([own, other], [from, to]) = if is_from_b { ([b, a], [q, p]) } else { ([a, b], [p, q]) };
             let reach = dot(minus(to, from), direction);
-            if !(reach > 0.0) {
+            if reach.is_nan() || reach <= 0.0 {
                 continue;
             }
             let leaves = own.last_on(from, direction.map(|c| reach * c));
@@ -189,7 +189,7 @@ fn moved(
                 best = found;
             }
         }
-        if !(best < before * (1.0 - 1e-12)) {
+        if best.is_nan() || best >= before * (1.0 - 1e-12) {
             break;
         }
     }
@@ -268,8 +268,7 @@ fn solved(mut rows: [[f64; 9]; 8]) -> Option<[f64; 8]> {
         let pivot = (k..8).max_by(|&i, &j| rows[i][k].abs().total_cmp(&rows[j][k].abs()))?;
         rows.swap(k, pivot);
         let size = rows[k][k];
-        // (What is no number is not greater.)
-        if !(size.abs() > 1e-14) {
+        if size.is_nan() || size.abs() <= 1e-14 {
             return None;
         }
         let own = rows[k];

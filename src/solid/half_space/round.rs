@@ -182,7 +182,8 @@ fn of_quadric(c: &[Interval; 10], frame: &Frame) -> Option<Round> {
         rest = rest.plus(over(c[3 + i]).minus(across[i][next].times(exactly(2.0))).times(places));
     }
     let square = rest.negated();
-    if !(square.lower > 0.0 && square.width() <= KNOWN * square.lower) {
+    let is_known = square.lower > 0.0 && square.width() <= KNOWN * square.lower;
+    if !is_known {
         return None;
     }
     let cells = f64::from(frame.cells());
