@@ -3735,6 +3735,13 @@ typedef struct leafless_one_way {
     bool has_witness;  ///< Whether the lower bound was found at a point.
 } leafless_one_way;
 
+/// Whether two boundaries are within a distance of each other.
+LEAFLESS_ENUM(leafless_within, uint32_t) {
+    LEAFLESS_WITHIN_YES = 0,  ///< Proven: each point of one boundary is that near to the other.
+    LEAFLESS_WITHIN_NO = 1,  ///< Proven: a point of one boundary is further away from the other.
+    LEAFLESS_WITHIN_UNDECIDED = 2,  ///< Not decided by what is known.
+};
+
 /// What is known of how far the boundaries of two solids are from each other.
 typedef struct leafless_deviation {
     uint32_t struct_size;  ///< sizeof(leafless_deviation).
