@@ -175,7 +175,8 @@ fn of_classifiers<A: Classifier, B: Classifier>(
 /// Two [`Octree`](crate::Octree)s, or views of them, also behind [`AnySolid`](crate::AnySolid), are not searched by cells of
 /// `frame`: both trees descend in pairs of cells, as boxes that the placement turns. Nothing blurs, and a pair of solids that
 /// overlap by less than a cell is found out, too; [`Interference::ball`] is the proof. `splits` counts cells of both trees. The
-/// trees must be certified and without surfaces, end inside of their universes, and be known on just the frames that are given.
+/// trees must be certified and without surfaces, cut an eighth of their universes, end inside of these, and be known on just the
+/// frames that are given.
 /// Any affine placement will do. Where a finite `tolerance` asks for the volume of an overlap, the search by cells follows.
 ///
 /// A placement takes a few microseconds, and more where the solids nearly touch: the work grows with the area where the gap is as
