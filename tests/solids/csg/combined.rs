@@ -401,10 +401,13 @@ fn limits_and_cancels_are_errors() {
         assert!(ended > 3, "{ended}");
         assert_eq!(difference_of(&views, &Control::threads(threads)).unwrap(), whole);
     }
-    // Surfaces that nearly coincide, and cross more than three at a time all along a circle, are no way around the limit.
+    // Surfaces that nearly coincide, of which bounds tell no more, and that cross more than three at a time all along a curve, are no
+    // way around the limit.
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
     let lens = |off: f64| {
-        let [one, other] = [-0.3, 0.3].map(|x| Csg::ball([x + off, 0.0, 0.0], 0.6).unwrap());
+        let [one, other] = [-0.3, 0.3].map(|x| {
+            Csg::torus(0.5, 0.3).unwrap().placed(&Affine::translation([x + off, 0.0, 0.0]).unwrap()).unwrap()
+        });
         extended(&Csg::intersection_of([one, other]).unwrap(), &frame)
     };
     let [a, b] = [lens(0.0), lens(1e-7)];
