@@ -295,7 +295,8 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     });
     operation!("interference", [a], {
         let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
-        interference_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &CONTROL)
+        let control = Control { max_splits: Some(100), ..CONTROL };
+        interference_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &control)
     });
     operation!("interference of octrees", [a], {
         let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
@@ -306,21 +307,15 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(300), ..CONTROL })
     });
     operation!("deviation", [a], {
-        deviation(
-            &a,
-            &Csg::ball([15.0; 3], 9.0)?,
-            &frame(),
-            0.5,
-            &Control { max_splits: Some(30), ..CONTROL },
-        )
+        deviation(&a, &Csg::ball([15.0; 3], 9.0)?, &frame(), 0.5, &Control { max_splits: Some(8), ..CONTROL })
     });
     operation!("clearances of expressions", [a], {
         let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
-        let control = Control { max_splits: Some(100), ..CONTROL };
+        let control = Control { max_splits: Some(10), ..CONTROL };
         clearance_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &control)
     });
     operation!("gap", [a], {
-        let control = Control { max_splits: Some(100), ..CONTROL };
+        let control = Control { max_splits: Some(10), ..CONTROL };
         let turn = Affine::translation([7.0, 9.0, 0.1])?;
         gap_at_least(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), 0.5, &control)?;
         gap_at_least_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn], &frame(), 0.5, &control)

@@ -312,7 +312,7 @@ fn every_way_in() {
     let kept = build_extended(&ball, &frame, &SurfaceOptions::default(), &alone()).unwrap();
     let options = DexelOptions { rule: Rule::Sampled, ..DexelOptions::default() };
     let dexels = dexelize(&ball, &frame, &options, &alone()).unwrap();
-    let surface = DexelSolid::new(&dexels.view(), &alone()).unwrap();
+    let surface = DexelSolid::new(dexels.view(), &alone()).unwrap();
     let mesh = solid(globe(40, 60, |_| 1.0, 0.0));
     // (Chords of the mesh lie within the ball.)
     let sagitta = 1.0 - (PI / 40.0).cos() * (PI / 60.0).cos();

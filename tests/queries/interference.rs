@@ -474,7 +474,8 @@ fn many_placements_are_one_after_the_other() {
     let frame = Frame::new([-4.0; 3], 8.0, 7).unwrap();
     // (Two stored octrees under placements are searched in another way: see `oriented`.)
     let a = build(&Tree::random(&mut random, 2).csg(), &frame, Rule::Certified, &alone()).unwrap();
-    let b = Tree::random(&mut random, 2).csg();
+    // Of solids that cannot be moved exactly the cells are moved.
+    let b = Plain::cuboid([-1.0, -1.5, -0.5], [1.25, 0.75, 1.0]).unwrap();
     let placements: Vec<Affine> = (0..40).map(|_| rigid(&mut random, 3.0)).collect();
     for tolerance in [PROOF, 0.5] {
         let control = |threads| Control { threads, max_splits: Some(3000), ..Control::default() };
@@ -491,6 +492,12 @@ fn many_placements_are_one_after_the_other() {
         assert_eq!(many, single);
     }
     assert!(interference_at(&a, &b, &frame, &[], &frame, PROOF, &alone()).unwrap().is_empty());
+    // Expressions are moved themselves.
+    let b = Tree::random(&mut random, 2).csg();
+    let one = interference_at(&a, &b, &frame, &placements, &frame, PROOF, &alone()).unwrap();
+    for (placement, found) in placements.iter().zip(one) {
+        assert_eq!(interference(&a, &b.placed(placement).unwrap(), &frame, PROOF, &alone()).unwrap(), found);
+    }
 }
 
 #[test]

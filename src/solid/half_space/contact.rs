@@ -9,10 +9,11 @@ use super::map::ExactMap;
 use super::quadric::{Coefficients, substitute};
 use crate::error::Error;
 use crate::lattice::exact::{Dyadic, dot};
+use alloc::boxed::Box;
 
 /// An ellipsoid or a plane, by its exact function.
 enum Figure {
-    Ellipsoid(Ellipsoid),
+    Ellipsoid(Box<Ellipsoid>),
     /// n · x + c.
     Plane {
         n: [Dyadic; 3],
@@ -53,9 +54,8 @@ impl PlacedHalfSpace {
                 let [x, y, z, c] = if map.w.sign() < 0 { [-&x, -&y, -&z, -&c] } else { [x, y, z, c] };
                 Some(Figure::Plane { n: [x, y, z], c })
             }
-            Surface::Quadric(quadric) => {
-                Ellipsoid::of(substitute(quadric, &self.map(ExactMap::identity())?)).map(Figure::Ellipsoid)
-            }
+            Surface::Quadric(quadric) => Ellipsoid::of(substitute(quadric, &self.map(ExactMap::identity())?))
+                .map(|own| Figure::Ellipsoid(Box::new(own))),
             _ => None,
         })
     }

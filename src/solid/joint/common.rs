@@ -89,7 +89,7 @@ impl Common {
             return Ok(*own);
         }
         let mut possible = possible(own.indices().iter().map(|&index| &self.all[index as usize]), cell);
-        if cell.level > 0 && cell.level % CONTACT == 0 {
+        if cell.level > 0 && cell.level.is_multiple_of(CONTACT) {
             possible.0 &= self.not_excluded(own)?.0;
         }
         Ok(own.with_table(own.table().simplified(possible)).shortened())
