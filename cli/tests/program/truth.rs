@@ -137,11 +137,12 @@ fn what_lies_outside_of_the_bounds_is_not_disjoint() {
 #[test]
 fn undecided_has_a_reason() {
     let place = meshes();
-    place.write("plane.csg", "sphere(1);");
-    place.write("near.csg", "multmatrix([[1,0,0,1.9999],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) sphere(1);");
+    // Meshes that touch in a face: of scenes that is decided.
+    place.write("left.stl", stl(&block([0.0; 3], [2.1, 2.0, 2.0])));
+    place.write("right.stl", stl(&block([2.1, 0.5, 0.25], [4.3, 2.5, 2.25])));
     let reason = |line: &str| place.run(line).good().json()["reason"].clone();
-    assert_eq!(reason("interfere plane.csg near.csg --depth 5 --json"), "depth");
-    assert_eq!(reason("interfere plane.csg near.csg --depth 20 --splits 10 --json"), "budget");
+    assert_eq!(reason("interfere left.stl right.stl --depth 5 --json"), "depth");
+    assert_eq!(reason("interfere left.stl right.stl --depth 20 --splits 10 --json"), "budget");
     place.run("voxelize cube.stl -o a.lfl --depth 4 --rule sampled --bounds 0,0,0,8").good();
     assert_eq!(reason("interfere a.lfl a.lfl --json"), "unproven");
     assert_eq!(reason("interfere a.lfl a.lfl --cells --json"), Value::Null);
