@@ -46,7 +46,8 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
     CHECK(near.distance_model.lower < 2.35383 && near.distance_model.upper > 2.35382 && near.has_nearest);
     CHECK(near.distance_model.upper - near.distance_model.lower <= 0.5 && !near.is_clipped);
     CHECK(near.measured == LEAFLESS_STOP_REASON_TOLERANCE);
-    CHECK(near.nearest_a_level > 0 && near.nearest_b_level > 0 && near.nearest_a[0] < near.nearest_b[0]);
+    CHECK(near.nearest_a[0] < 1u << near.nearest_a_level && near.nearest_b[0] < 1u << near.nearest_b_level);
+    CHECK(near.point_a_model[0] < near.point_b_model[0] && near.point_b_model[0] - near.point_a_model[0] < 2.8);
     OK(leafless_solid_clearance(a, over, &frame, 0.5, NULL, &near));
     CHECK(near.distance_model.lower == 0);
     CHECK(near.depth_model >= 0 && (near.depth_model == 0 || near.point_a_model[0] == near.point_b_model[0]));
@@ -62,7 +63,7 @@ static void two_balls(const leafless_solid *a, const leafless_solid *apart, cons
     CHECK(gap.verdict == LEAFLESS_GAP_VERDICT_NO && gap.distance_model.upper < 4 && gap.has_points);
 }
 
-/* Many placements are as one after the other, for any number of threads. */
+/* Many placements are as one after the other (expressions are moved exactly), for any number of threads. */
 static void many(const leafless_solid *a, const leafless_solid *b) {
     double matrices[40][12];
     leafless_interference found[40], one;
@@ -81,7 +82,7 @@ static void many(const leafless_solid *a, const leafless_solid *b) {
         OK(leafless_solid_interfere_many(a, b, &frame, matrices[0], 40, &frame, INFINITY, &options, found));
         for (i = 0; i < 40; i++) {
             leafless_solid *placed = NULL;
-            OK(leafless_solid_transformed(b, &frame, matrices[i], &placed));
+            OK(leafless_solid_placed(b, matrices[i], NULL, &placed));
             OK(leafless_solid_interfere(a, placed, &frame, INFINITY, &options, &one));
             CHECK(found[i].verdict == one.verdict && found[i].splits_b == one.splits_b);
             CHECK(found[i].volume_model.upper == one.volume_model.upper);
@@ -99,7 +100,7 @@ static void many(const leafless_solid *a, const leafless_solid *b) {
         for (i = 0; i < 4; i++) {
             leafless_clearance single = LEAFLESS_INIT(leafless_clearance);
             leafless_solid *placed = NULL;
-            OK(leafless_solid_transformed(b, &frame, matrices[30 + i], &placed));
+            OK(leafless_solid_placed(b, matrices[30 + i], NULL, &placed));
             OK(leafless_solid_clearance(a, placed, &frame, 1, &options, &single));
             CHECK(near[i].distance_model.upper == single.distance_model.upper && near[i].splits_b == single.splits_b);
             leafless_solid_free(placed);

@@ -220,6 +220,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_zone_kind {
             LEAFLESS_ZONE_KIND_EVERYTHING, LEAFLESS_ZONE_KIND_BOX, LEAFLESS_ZONE_KIND_POINT, LEAFLESS_ZONE_KIND_RAY
         }
+        leafless_within { LEAFLESS_WITHIN_YES, LEAFLESS_WITHIN_NO, LEAFLESS_WITHIN_UNDECIDED }
         leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
         leafless_gap_verdict { LEAFLESS_GAP_VERDICT_YES, LEAFLESS_GAP_VERDICT_NO, LEAFLESS_GAP_VERDICT_UNDECIDED }
         leafless_stop_reason {

@@ -14,7 +14,7 @@ use crate::lattice::{Affine, Cell, Frame, Interval, axes, valid};
 use crate::memory;
 use crate::octree::Proof;
 use crate::parallel::each;
-use crate::solid::{Classifier, Solid, TransformClassifier};
+use crate::solid::{Classifier, Motion, Solid, TransformClassifier};
 use crate::walk::Proven;
 use alloc::vec::Vec;
 use piece::Place;
@@ -130,8 +130,8 @@ pub fn clearance<A: Solid, B: Solid>(
 
 /// As [`clearance`] of `a` and `b` under each of the `placements`, in their order; the first of both is
 /// known on `frame`, the second on its `own` frame, and both are prepared once. The same for any number of
-/// threads; `control.max_splits` concerns each placement. The second solid is moved by its cells, as
-/// [`Transform`](crate::solid::Transform) moves it.
+/// threads; `control.max_splits` concerns each placement. Expressions are moved exactly
+/// ([`Motion::Exact`]); other solids by their cells, as [`Transform`](crate::solid::Transform) moves them.
 ///
 /// # Errors
 /// As [`clearance`].
@@ -237,9 +237,16 @@ fn at_each<A: Solid, B: Solid>(
 ) -> Result<Vec<Clearance>, Error> {
     let job = Job::new(control);
     job.check()?;
-    let bounds = b.bounds();
+    let (bounds, solid) = (b.bounds(), b);
     let (a, b) = (Proven(a.on(frame, control)?), b.on(own, control)?);
     let one = |placement: &Affine| {
+        if solid.motion() == Motion::Exact
+            && let Some(moved) = solid.placed(placement)?
+        {
+            let found = apart(&a, &Proven(moved.on(frame, control)?), wanted, &job)?;
+            job.advance(WHOLE / placements.len());
+            return Ok(found);
+        }
         let around = bounds.and_then(|bounds| bounds.placed(placement));
         let b = Proven(TransformClassifier::new(b.clone(), placement, frame, around));
         let found = apart(&a, &b, wanted, &job)?;
