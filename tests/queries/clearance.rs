@@ -354,8 +354,9 @@ fn clearances_in_many_places() {
     let gaps = gap_at_least_at(&a, &b, &own, &places, &frame, 0.7, &control(3)).unwrap();
     let (mut yes, mut no) = (0, 0);
     for ((placement, found), gap) in places.iter().zip(&alone).zip(&gaps) {
-        let single = clearance(&a, &Transform::new(&b, &own, placement), &frame, 1e-3, &control(1)).unwrap();
-        assert_eq!(*found, single);
+        // Expressions are moved exactly.
+        let moved = b.placed(placement).unwrap();
+        assert_eq!(*found, clearance(&a, &moved, &frame, 1e-3, &control(1)).unwrap());
         let body = |half, radius, is_cylinder, placement| Body { half, radius, is_cylinder, placement };
         let ball = body([0.0; 3], 1.0, false, Affine::IDENTITY);
         let (least, most) = convex_distance(&ball, &body([0.0, 0.0, 1.0], 0.5, true, *placement));

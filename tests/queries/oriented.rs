@@ -96,10 +96,8 @@ fn check(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text:
 
 /// Holds the proof of an answer against the cells that it lies in.
 fn check_proof(a: &Octree, b: &Octree, placement: &Affine, found: &Interference, text: &str) {
-    assert_eq!(
-        found.verdict == Overlap::Overlapping,
-        found.witness.or(found.ball.map(|_| leafless::Cell::ROOT)).is_some()
-    );
+    assert_eq!(found.verdict == Overlap::Overlapping, found.ball.is_some(), "{text}: {found:?}");
+    assert!(found.ball.is_some() || found.witness.is_none(), "{text}: {found:?}");
     assert_eq!(found.verdict == Overlap::Overlapping, found.volume.lower > 0.0, "{text}: {found:?}");
     let back = placement.inverse().unwrap();
     let is_in_both =
@@ -116,11 +114,12 @@ fn check_proof(a: &Octree, b: &Octree, placement: &Affine, found: &Interference,
             assert!(is_in_both([0, 1, 2].map(|i| ball.centre[i] + share * v[i])), "{text}: {ball:?}");
         }
     }
-    if let Some(cell) = found.witness {
+    if let (Some(cell), Some(ball)) = (found.witness, found.ball) {
         let (min, max) = Cube { frame: a.frame(), cell }.bounds();
-        for _ in 0..50 {
-            let p = [0, 1, 2].map(|i| random.between(min[i], max[i]));
-            assert!(is_in_both(p), "{text}: {cell:?}");
+        let slack = 1e-12 * a.frame().edge();
+        for i in 0..3 {
+            let (low, high) = (ball.centre[i] - ball.radius, ball.centre[i] + ball.radius);
+            assert!(min[i] - slack <= low && high <= max[i] + slack, "{text}: {cell:?} {ball:?}");
         }
     }
 }

@@ -270,10 +270,13 @@ impl Interference {
     fn with(self, known: &Interference) -> Interference {
         let lower = self.volume.lower.max(known.volume.lower);
         let stronger = if self.verdict == Overlap::Undecided { known } else { &self };
+        // A ball lies in the cell of its own search.
+        let Interference { witness, ball, .. } =
+            if self.ball.is_some() || known.ball.is_none() { self } else { *known };
         Interference {
             verdict: stronger.verdict,
-            witness: self.witness.or(known.witness),
-            ball: self.ball.or(known.ball),
+            witness,
+            ball,
             volume: Interval::between(lower, self.volume.upper.min(known.volume.upper).max(lower)),
             splits: [self.splits[0] + known.splits[0], self.splits[1] + known.splits[1]],
             level: self.level.max(known.level),

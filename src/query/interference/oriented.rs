@@ -12,7 +12,7 @@ use super::pose::{Extent, Place, Pose, least_volume};
 use super::{Ball, Interference, Overlap};
 use crate::control::{Control, Job};
 use crate::error::Error;
-use crate::lattice::{Affine, Cell, Interval};
+use crate::lattice::{Affine, Cell, Cube, Interval};
 use crate::memory;
 use crate::octree::links::Step;
 use crate::octree::view::starts_half_way;
@@ -391,7 +391,12 @@ impl Search<'_, '_> {
         let (a, b) = (&self.solids.a, &self.solids.b);
         let frame = a.tree.frame();
         let (verdict, witness, ball) = match self.proof {
-            Some((ball, cell)) => (Overlap::Overlapping, cell, Some(ball)),
+            // A cell that lies in both has a ball in it.
+            Some((_, Some(cell))) => {
+                let ball = Ball::in_cell(&Cube { frame, cell }, [0.0; 3], 1.0);
+                (Overlap::Overlapping, Some(cell), Some(ball))
+            }
+            Some((ball, None)) => (Overlap::Overlapping, None, Some(ball)),
             None if self.doubt => (Overlap::Undecided, None, None),
             None => (Overlap::Disjoint, None, None),
         };
