@@ -157,6 +157,11 @@ impl<'a> Job<'a> {
         })
     }
 
+    /// Reports all that is left as done.
+    pub(crate) fn finish(&self) {
+        self.advance(WHOLE.saturating_sub(self.done.load(Relaxed)));
+    }
+
     /// Reports `parts` of [`WHOLE`] as done.
     pub(crate) fn advance(&self, parts: usize) {
         if let Some(progress) = self.control.progress {

@@ -25,7 +25,7 @@ mod pierce;
 mod placement;
 mod planes;
 #[cfg(feature = "std")]
-mod polygon;
+pub(crate) mod polygon;
 #[cfg(feature = "std")]
 mod polyhedron;
 mod positions;

@@ -18,11 +18,15 @@
 //! `hermite` (crossings with normals, and how rays tell them), `vanished` (bodies without triangles), `dual` (dual contouring),
 //! `dexel` (tri-dexel models), `dexel_solid` (these as solids).
 //!
+//! `boundary` goes another way: where a solid knows its surfaces, these are cut to the pieces that bound it, and nothing is sampled.
+//!
 //! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
 //! corners as centres.
 
 mod blocks;
 mod bon;
+#[cfg(feature = "std")]
+mod boundary;
 mod chunks;
 mod cubes;
 mod dexel;
@@ -53,6 +57,8 @@ mod vanished;
 mod volume;
 mod weld;
 
+#[cfg(feature = "std")]
+pub use boundary::{Boundary, BoundaryReport, boundary};
 pub use cubes::{marching_cubes, marching_cubes_reusing};
 pub use dexel::{DexelSurfaceReport, dual_contouring_dexels, dual_contouring_solid, marching_cubes_dexels};
 pub use dexel_solid::DexelSolid;

@@ -26,8 +26,8 @@ use leafless::render::{
 };
 use leafless::solid::{Band, HalfSpace, Transform, VoxelGrid};
 use leafless::surface::{
-    Resolve, Snap, VertexPlacement, dual_contouring_dexels, marching_cubes_dexels, marching_cubes_solid,
-    marching_cubes_volume, simple_marching_cubes, simple_marching_cubes_solid,
+    Resolve, Snap, VertexPlacement, boundary, dual_contouring_dexels, marching_cubes_dexels,
+    marching_cubes_solid, marching_cubes_volume, simple_marching_cubes, simple_marching_cubes_solid,
 };
 use leafless::voxel::{VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
@@ -265,6 +265,8 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("surfaces of a ball", [], {
         let (ball, frame) = (Csg::ball([15.0; 3], 9.0)?, frame().with_depth(4)?);
         marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &CONTROL)?;
+        let half = Csg::cuboid([14.0; 3], [28.0; 3])?;
+        boundary(&ball.difference(&half)?, &frame, 1.0, &CONTROL)?;
         simple_marching_cubes_solid(&ball, &frame, Snap::Thin, &CONTROL)
     });
     #[cfg(feature = "volumes")]

@@ -16,9 +16,9 @@ use leafless::query::{
 use leafless::render::{Camera, Finish, Shot, SolidLayer, render};
 use leafless::solid::{Band, VoxelGrid};
 use leafless::surface::{
-    DexelSolid, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, dual_contouring_dexels,
-    marching_cubes_dexels, marching_cubes_solid, marching_cubes_volume, published_shrink,
-    simple_marching_cubes,
+    DexelSolid, Snap, VertexPlacement, boundary, coplanar_shrink, coplanar_shrink_solid,
+    dual_contouring_dexels, marching_cubes_dexels, marching_cubes_solid, marching_cubes_volume,
+    published_shrink, simple_marching_cubes,
 };
 use leafless::voxel::{Symmetry, Viewpoint, VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
@@ -141,6 +141,7 @@ fn all_operations(depth: u8) -> Vec<Told> {
     heard.of("marching cubes of a solid", |control| {
         marching_cubes_solid(&part, &frame, VertexPlacement::Crossing, control)
     });
+    heard.of("boundary", |control| boundary(&part, &frame, 1e-3, control));
     heard
         .of("coplanar shrink of a solid", |control| coplanar_shrink_solid(&part, &frame, Snap::Fat, control));
     let mesh = Arc::new(mesh);

@@ -5,6 +5,7 @@ mod aligned;
 #[path = "../common/mod.rs"]
 mod common;
 
+mod boundary;
 mod marching_cubes;
 mod methods;
 mod shrink;

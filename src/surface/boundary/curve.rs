@@ -1,0 +1,46 @@
+//! Curves as chains of chords.
+
+use super::figures::{Figures, Shape, length, middle, minus};
+use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
+
+/// How often a chord is halved at most.
+const HALVINGS: u32 = 12;
+
+/// Adds points of a curve between two points of it, so that no chord is further from the curve than the tolerance (edges of the
+/// universe): the curve of points on one or two surfaces, which keep a coordinate if that is said.
+pub(super) fn refine(
+    figures: &Figures,
+    surfaces: &[u32],
+    kept: Option<usize>,
+    ends: [[f64; 3]; 2],
+    tolerance: f64,
+    points: &mut Vec<[f64; 3]>,
+) -> Result<(), Error> {
+    if surfaces.iter().all(|&surface| figures.shape(surface) == Shape::Plane) {
+        return Ok(());
+    }
+    halve(figures, surfaces, kept, ends, tolerance, HALVINGS, points)
+}
+
+fn halve(
+    figures: &Figures,
+    surfaces: &[u32],
+    kept: Option<usize>,
+    [from, to]: [[f64; 3]; 2],
+    tolerance: f64,
+    left: u32,
+    points: &mut Vec<[f64; 3]>,
+) -> Result<(), Error> {
+    let chord = middle(from, to);
+    let Some(point) = figures.onto(surfaces, kept, chord) else { return Ok(()) };
+    let (rise, long) = (length(minus(point, chord)), length(minus(to, from)));
+    // (What leads elsewhere is no point of the curve between the ends.)
+    if left == 0 || rise <= tolerance || rise > long {
+        return Ok(());
+    }
+    halve(figures, surfaces, kept, [from, point], tolerance, left - 1, points)?;
+    memory::push(points, point)?;
+    halve(figures, surfaces, kept, [point, to], tolerance, left - 1, points)
+}

@@ -1,0 +1,314 @@
+//! The cells of a boundary evaluation: where the surfaces in them have a simple arrangement.
+
+use super::figures::{Figures, Shape, dot};
+use crate::control::Job;
+use crate::cut::Quadratic;
+use crate::error::Error;
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Cell, axes};
+use crate::memory;
+use crate::octree::Tag;
+use crate::solid::{Ask, Classifier, OpenSurfaces, Verdict, Worker};
+use alloc::vec::Vec;
+
+/// A cell that is not split.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Leaf {
+    Empty,
+    Full,
+    /// Its number among those that are not decided.
+    Open(u32),
+    Branch(u32),
+    /// What lies around the universe.
+    Outside,
+}
+
+/// A cell that the boundary passes through.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OpenLeaf {
+    pub(super) cell: Cell,
+    /// The function that the solid is in it, if that is known.
+    pub(super) open: Option<OpenSurfaces>,
+    /// Whether the surfaces cross each other at most once in each of its faces.
+    pub(super) is_simple: bool,
+}
+
+/// The cells of the universe.
+pub(super) struct Leaves {
+    pub(super) nodes: Vec<[Leaf; 8]>,
+    pub(super) open: Vec<OpenLeaf>,
+    pub(super) root: Leaf,
+    pub(super) depth: u8,
+    pub(super) splits: u64,
+}
+
+/// Most surfaces of a simple cell.
+pub(super) const MOST: usize = 3;
+
+/// No normal of a surface in a simple cell is further than this from that at its centre (its sine).
+const CONE: f64 = 0.6;
+
+/// When cells end.
+pub(super) struct Wanted<'w> {
+    pub(super) figures: &'w Figures,
+    /// How far chords may be from surfaces, in edges of the universe.
+    pub(super) tolerance: f64,
+    /// Cells that are split although they look simple.
+    pub(super) refused: &'w Refused,
+    /// Parts of the work that all of the universe is.
+    pub(super) parts: usize,
+}
+
+/// Cells that are not as simple as they look.
+#[derive(Default)]
+pub(super) struct Refused {
+    /// In ascending order, but for those behind the first `known`.
+    cells: Vec<(u8, [u32; 3])>,
+    known: usize,
+}
+
+impl Refused {
+    pub(super) fn add(&mut self, cell: Cell) -> Result<(), Error> {
+        memory::push(&mut self.cells, (cell.level, cell.at))
+    }
+
+    /// Whether a cell was refused before the last [`settle`](Self::settle).
+    fn contains(&self, cell: Cell) -> bool {
+        self.cells[..self.known].binary_search(&(cell.level, cell.at)).is_ok()
+    }
+
+    /// Takes in what was added. `false` if that is nothing new.
+    pub(super) fn settle(&mut self) -> bool {
+        let before = self.known;
+        self.cells.sort_unstable();
+        self.cells.dedup();
+        self.known = self.cells.len();
+        self.known > before
+    }
+}
+
+impl Leaves {
+    pub(super) fn grow<C: Classifier>(
+        classifier: &C,
+        wanted: &Wanted<'_>,
+        job: &Job<'_>,
+    ) -> Result<Leaves, Error> {
+        let depth = classifier.frame().depth();
+        let mut leaves = Leaves { nodes: Vec::new(), open: Vec::new(), root: Leaf::Empty, depth, splits: 0 };
+        let mut worker = classifier.worker()?;
+        let root = worker.root()?;
+        leaves.root = leaves.add(Cell::ROOT, root, &mut worker, wanted, job)?;
+        Ok(leaves)
+    }
+
+    /// Takes in a cell, and reports it.
+    fn add<W: Worker>(
+        &mut self,
+        cell: Cell,
+        verdict: Verdict<W::Part>,
+        worker: &mut W,
+        wanted: &Wanted<'_>,
+        job: &Job<'_>,
+    ) -> Result<Leaf, Error> {
+        let part = match verdict {
+            Verdict::Partial(part) => part,
+            decided => {
+                wanted.report(cell, job);
+                return match decided.tag() {
+                    Tag::Empty => Ok(Leaf::Empty),
+                    Tag::Full => Ok(Leaf::Full),
+                    Tag::Partial | Tag::Branch => self.end(OpenLeaf { cell, open: None, is_simple: false }),
+                };
+            }
+        };
+        let open = worker.surfaces(cell, &part)?.map(|open| open.shortened());
+        if let Some(inside) = open.and_then(|open| open.settled()) {
+            wanted.report(cell, job);
+            return Ok(if inside { Leaf::Full } else { Leaf::Empty });
+        }
+        let is_refused = wanted.refused.contains(cell);
+        let is_simple = !is_refused && open.is_some_and(|open| wanted.is_simple(cell, &open));
+        let may_end = cell.level > 0 && !is_refused;
+        if is_simple
+            || cell.level == self.depth
+            || may_end && open.is_some_and(|open| wanted.is_merged(cell, &open))
+            || may_end && is_thin(worker, cell, &part, wanted)?
+        {
+            wanted.report(cell, job);
+            return self.end(OpenLeaf { cell, open, is_simple });
+        }
+        job.spend(1, size_of::<[Leaf; 8]>())?;
+        self.splits += 1;
+        let mark = worker.mark();
+        let node = self.nodes.len();
+        memory::push(&mut self.nodes, [Leaf::Empty; 8])?;
+        let children = worker.split(cell, &part)?;
+        for (octant, child) in (0..8u8).zip(children) {
+            self.nodes[node][usize::from(octant)] =
+                self.add(cell.child(octant), child, worker, wanted, job)?;
+        }
+        worker.release(mark);
+        Ok(Leaf::Branch(node as u32))
+    }
+
+    fn end(&mut self, leaf: OpenLeaf) -> Result<Leaf, Error> {
+        memory::push(&mut self.open, leaf)?;
+        Ok(Leaf::Open(self.open.len() as u32 - 1))
+    }
+}
+
+/// Whether the boundary in a cell lies between two planes that are nearer to each other than the tolerance.
+fn is_thin<W: Worker>(
+    worker: &mut W,
+    cell: Cell,
+    part: &W::Part,
+    wanted: &Wanted<'_>,
+) -> Result<bool, Error> {
+    let Some(enclosure) = worker.enclosure(cell, part)? else { return Ok(false) };
+    let half = 0.5 / f64::from(1u32 << cell.level);
+    let mut known = enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
+    let (Some(slab), None) = (known.next(), known.next()) else { return Ok(false) };
+    let width = (slab.outer - slab.inner) / sqrt(dot(slab.normal, slab.normal));
+    Ok(width * half <= 0.5 * wanted.tolerance)
+}
+
+impl Wanted<'_> {
+    /// Reports a cell that is done.
+    fn report(&self, cell: Cell, job: &Job<'_>) {
+        let parts = self.parts >> (3 * u32::from(cell.level)).min(usize::BITS - 1);
+        if parts > 0 {
+            job.advance(parts);
+        }
+    }
+
+    /// Whether all surfaces in a cell lie within the tolerance of each other, as where two touch.
+    fn is_merged(&self, cell: Cell, open: &OpenSurfaces) -> bool {
+        let half = 0.5 / f64::from(1u32 << cell.level);
+        let mut first: Option<([f64; 3], f64)> = None;
+        let mut most: f64 = 0.0;
+        for &surface in open.indices() {
+            let Some(taylor) = self.figures.taylor(surface, cell) else { return false };
+            let steep = sqrt(dot(taylor.f.gradient, taylor.f.gradient));
+            let [xx, yy, zz, xy, xz, yz] = taylor.f.squares.map(f64::abs);
+            let rise = (xx + yy + zz + 2.0 * (xy + xz + yz) + taylor.f.error) / steep;
+            let (normal, value) = (taylor.f.gradient.map(|c| c / steep), taylor.f.value / steep);
+            let (n, v) = *first.get_or_insert((normal, value));
+            let sign = if dot(n, normal) < 0.0 { -1.0 } else { 1.0 };
+            let apart =
+                (v - sign * value).abs() + (0..3).map(|k| (n[k] - sign * normal[k]).abs()).sum::<f64>();
+            let away = apart + rise;
+            if away.is_nan() || away >= 1.0 {
+                return false;
+            }
+            most = most.max(away);
+        }
+        most * half <= 0.4 * self.tolerance
+    }
+
+    /// Whether the surfaces in a cell are nearly flat, and cross each other at angles.
+    fn is_simple(&self, cell: Cell, open: &OpenSurfaces) -> bool {
+        if open.indices().len() > MOST {
+            return false;
+        }
+        let half = 0.5 / f64::from(1u32 << cell.level);
+        let mut known = [([0.0; 3], 0.0); MOST];
+        for (place, &surface) in known.iter_mut().zip(open.indices()) {
+            let shape = self.figures.shape(surface);
+            let Some(taylor) = self.figures.taylor(surface, cell) else { return false };
+            let steep = sqrt(dot(taylor.f.gradient, taylor.f.gradient));
+            let sine = taylor.bend / steep;
+            if sine.is_nan() || sine >= CONE {
+                return false;
+            }
+            let normal = taylor.f.gradient.map(|c| c / steep);
+            *place = (normal, sine);
+            if shape == Shape::Plane {
+                continue;
+            }
+            // How far the surface is from its tangent plane.
+            let [xx, yy, zz, xy, xz, yz] = taylor.f.squares.map(f64::abs);
+            let rise = (xx + yy + zz + 2.0 * (xy + xz + yz) + taylor.f.error) / steep * half;
+            if shape == Shape::Bent && rise > 1.5 * self.tolerance {
+                return false;
+            }
+            if rise > 0.25 * self.tolerance && bulges(&taylor.f, steep, 0.25 * self.tolerance / half) {
+                return false;
+            }
+        }
+        let count = open.indices().len();
+        for i in 0..count {
+            for j in i + 1..count {
+                let ((n, a), (m, b)) = (known[i], known[j]);
+                let is_plane = |k: usize| self.figures.shape(open.indices()[k]) == Shape::Plane;
+                if is_plane(i) && is_plane(j) {
+                    continue;
+                }
+                let cross = [n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]];
+                if sqrt(dot(cross, cross)) <= 1.2 * (a + b) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+/// Whether a surface leaves a cell through an edge or a face and comes back by the same, by more than `most` (in half edges).
+fn bulges(f: &Quadratic, steep: f64, most: f64) -> bool {
+    let ([a, b, c], [xx, yy, zz, xy, xz, yz]) = (f.gradient, f.squares);
+    let square = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    let gradient = [a, b, c];
+    let value = |p: [f64; 3]| {
+        let rows: [f64; 3] = axes(|i| dot(square[i], p));
+        f.value + dot(gradient, p) + dot(rows, p)
+    };
+    let slope = |p: [f64; 3], axis: usize| gradient[axis] + 2.0 * dot(square[axis], p);
+    let counts = |dip: f64, side: f64| dip * side < 0.0 && dip.abs() / steep > most;
+    for axis in 0..3 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for corner in 0..4 {
+            let mut p = [0.0; 3];
+            (p[u], p[v]) = (f64::from(corner & 1) * 2.0 - 1.0, f64::from(corner >> 1) * 2.0 - 1.0);
+            let second = 2.0 * square[axis][axis];
+            if second == 0.0 {
+                continue;
+            }
+            let x = -slope(p, axis) / second;
+            if x.abs() < 1.0 {
+                let end = |x: f64| {
+                    let mut q = p;
+                    q[axis] = x;
+                    value(q)
+                };
+                let (low, high, dip) = (end(-1.0), end(1.0), end(x));
+                if low * high > 0.0 && counts(dip, low) {
+                    return true;
+                }
+            }
+        }
+        for side in [-1.0, 1.0] {
+            let mut p = [0.0; 3];
+            p[axis] = side;
+            let (uu, vv, uv) = (2.0 * square[u][u], 2.0 * square[v][v], 2.0 * square[u][v]);
+            let determinant = uu * vv - uv * uv;
+            if determinant == 0.0 {
+                continue;
+            }
+            let (gu, gv) = (slope(p, u), slope(p, v));
+            let (x, y) = ((uv * gv - vv * gu) / determinant, (uv * gu - uu * gv) / determinant);
+            if x.abs() < 1.0 && y.abs() < 1.0 {
+                (p[u], p[v]) = (x, y);
+                let dip = value(p);
+                let corners: [f64; 4] = core::array::from_fn(|k| {
+                    let mut q = p;
+                    (q[u], q[v]) = (if k & 1 == 0 { -1.0 } else { 1.0 }, if k & 2 == 0 { -1.0 } else { 1.0 });
+                    value(q)
+                });
+                if corners.iter().all(|&corner| counts(dip, corner)) {
+                    return true;
+                }
+            }
+        }
+    }
+    false
+}

@@ -1,0 +1,258 @@
+//! Boundary evaluation: the surfaces that a solid is made of, cut to the pieces that bound it.
+//!
+//! (Requicha and Voelcker, *Boolean operations in solid modeling: boundary evaluation and merging algorithms*, 1985; Brunet and
+//! Navazo, *Solid representation and operation using extended octrees*, 1990.)
+//!
+//! Cells are split until the surfaces in each have a simple arrangement. Then edges of cells are crossed by surfaces where these have
+//! different signs at the ends, faces have arcs between such crossings, and cells have polygons between such arcs. All of that is
+//! decided by signs at corners of the lattice, which neighbours share, so that the result is closed. Places are found last.
+//!
+//! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `leaves` (the cells), `walk` (their
+//! minimal faces and edges), `edges`, `curve` (curves as chords), `faces`, `cells`, `patches` (triangles).
+
+mod cells;
+mod curve;
+mod edges;
+mod faces;
+mod figures;
+mod leaves;
+mod patches;
+mod strips;
+mod walk;
+
+use crate::control::{Control, Job, WHOLE};
+use crate::error::Error;
+use crate::lattice::{Affine, Cell, Frame, axes, valid};
+use crate::memory;
+use crate::mesh::TriangleMesh;
+use crate::octree::Tag;
+use crate::solid::{AskWhole, Classifier, PlacedHalfSpace, Solid, Transform, Worker};
+use crate::walk::Trail;
+use alloc::vec::Vec;
+use cells::Pieces;
+use edges::{Corners, Edges, NONE};
+use faces::Faces;
+use figures::{Figures, UNKNOWN};
+use leaves::{Leaves, Refused, Wanted};
+use patches::Patches;
+
+/// The boundary of a solid: a mesh whose triangles know their surfaces.
+pub struct Boundary {
+    mesh: TriangleMesh,
+    surfaces: Vec<PlacedHalfSpace>,
+    of_triangles: Vec<u32>,
+    report: BoundaryReport,
+}
+
+/// How a boundary was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BoundaryReport {
+    /// Pairs of triangles that intersect each other, as [`TriangleMesh::intersecting_pairs`] counts them.
+    pub intersecting_pairs: u64,
+    /// Cells that the boundary passes through.
+    pub cells: u64,
+    /// Cells that were split.
+    pub splits: u64,
+}
+
+impl Boundary {
+    /// The triangles.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    /// The triangles.
+    pub fn into_mesh(self) -> TriangleMesh {
+        self.mesh
+    }
+
+    /// How it was found.
+    pub fn report(&self) -> &BoundaryReport {
+        &self.report
+    }
+
+    /// The surfaces that the solid is made of.
+    pub fn surfaces(&self) -> &[PlacedHalfSpace] {
+        &self.surfaces
+    }
+
+    /// The number of the surface that a triangle lies on, but for chords; `None` where the boundary is known to a cell only.
+    pub fn surface_of(&self, triangle: usize) -> Option<u32> {
+        self.of_triangles.get(triangle).copied().filter(|&surface| surface != NONE)
+    }
+}
+
+/// How often the cells are made anew where some were not as simple as they looked.
+const ROUNDS: usize = 24;
+
+/// Intersecting pairs that are looked at in one round.
+const PAIRS: usize = 4096;
+
+/// How far chords of edges may be from these, as a part of the tolerance.
+const CHORDS: f64 = 0.8;
+
+/// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies in it.
+const SHIFTS: [f64; 3] = [0.013_371, 0.017_317, 0.011_831];
+const LARGER: f64 = 1.031_77;
+
+/// The boundary of a solid that knows its surfaces, as expressions of half-spaces do, and octrees that keep theirs
+/// ([`build_extended`](crate::build_extended)): its plane faces as they are, and curved ones in chords. The solid must end inside of the
+/// universe of `frame`.
+///
+/// A plane face becomes triangles between its corners alone, whatever its shape, and a corner is the point in which its surfaces meet, to
+/// rounding (some 10^-15 of the coordinates). Where two plane faces meet, they have a straight edge without further vertices. Vertices on
+/// curved edges lie on both surfaces, all others on theirs. No side of a triangle is further from its surface than about `tolerance`
+/// (model units) in its middle, and no triangle in its own. So the number of triangles does not depend on cells: a box has 12, a bore
+/// some π √(2 r / `tolerance`) in a strip around.
+///
+/// The mesh is closed, and exactly two triangles meet in each edge. Where the solid touches itself in a line or a point, vertices
+/// lie at one place. [`BoundaryReport::intersecting_pairs`] tells whether triangles intersect each other; cells are split until none do,
+/// or there are no finer ones. How far the mesh is from the solid, [`deviation`](crate::deviation) proves.
+///
+/// Cells are split until there are at most three surfaces in each that are nearly flat and cross at angles. Where more meet in a point, and
+/// where surfaces touch, cells are split as far as the depth of the frame, and the boundary is known to a finest cell there: a depth of
+/// 12 to 16 is good for parts, and costs little, because only such places are cut that far. What is thinner than such a cell may vanish
+/// there. The lattice is not that of the frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
+///
+/// Some 10 µs a cell; one thread does it all. The result depends on the solid, the frame and the tolerance alone. The memory is that of the
+/// cells and of the triangles, some 500 bytes a cell; `control.max_nodes` bounds the splits.
+///
+/// ```
+/// use leafless::{Control, Csg, Frame, surface::boundary};
+/// let bore = Csg::cylinder_between([4.0, 3.0, -1.0], [4.0, 3.0, 2.0], 1.0)?;
+/// let plate = Csg::cuboid([0.0; 3], [8.0, 6.0, 1.0])?.difference(&bore)?;
+/// let frame = Frame::around([0.0; 3], [8.0, 6.0, 1.0], 14)?;
+/// let found = boundary(&plate, &frame, 0.01, &Control::default())?;
+/// assert!(found.mesh().triangles().len() < 400 && found.report().intersecting_pairs == 0);
+/// assert!((found.mesh().volume() - (48.0 - std::f64::consts::PI)).abs() < 0.05);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Argument`] if the solid is not known to end inside of the universe, consists of something else than surfaces, as a mesh
+/// or a host program's function does, or `tolerance` is not between 2^-256 and 2^256; the solid's own; [`Error::Limit`],
+/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+pub fn boundary<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<Boundary, Error> {
+    valid::length("tolerance", tolerance)?;
+    let edge = frame.edge() * LARGER;
+    let origin = axes(|k| frame.origin()[k] - frame.edge() * SHIFTS[k]);
+    let lattice = Frame::new(origin, edge, frame.depth())?;
+    let job = Job::new(control);
+    job.check()?;
+    let found = match solid.home() {
+        None => evaluate(&solid.on(&lattice, control)?, tolerance, &job)?,
+        Some(home) => {
+            // A stored octree is known on its own lattice alone.
+            let moved = Transform::new(solid, &home, &Affine::IDENTITY);
+            evaluate(&moved.on(&lattice, control)?, tolerance, &job)?
+        }
+    };
+    job.finish();
+    Ok(found)
+}
+
+fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Result<Boundary, Error> {
+    let control = job.control();
+    if classifier.exterior() != Tag::Empty {
+        return Err(Error::Argument { name: "frame", problem: "must hold all of the solid" });
+    }
+    let frame = *classifier.frame();
+    let surfaces = classifier.surfaces(control)?.ok_or(UNKNOWN)?;
+    let figures = Figures::new(&surfaces, &frame)?;
+    let whole = tolerance / frame.edge();
+    let tolerance = CHORDS * whole;
+    let mut refused = Refused::default();
+    let mut round = 0;
+    loop {
+        // (How many rounds there will be is not known: the first one is taken for all.)
+        let parts = if round == 0 { WHOLE / 8 } else { 0 };
+        let wanted = Wanted { figures: &figures, tolerance, refused: &refused, parts: 2 * parts };
+        let leaves = Leaves::grow(classifier, &wanted, job)?;
+        let corners = Points { trail: Trail::new(classifier.worker()?)?, frame, control };
+        let mut edges = Edges::find(&leaves, &figures, corners)?;
+        job.advance(parts);
+        let faces = Faces::find(&leaves, &mut edges, tolerance, &mut refused)?;
+        job.advance(parts);
+        let pieces = Pieces::find(&leaves, &faces, &mut edges, tolerance, &mut refused)?;
+        job.advance(parts);
+        let limits = (whole, frame.depth());
+        let mut patches = Patches::of_curves(&pieces, &figures, &edges.vertices, limits, &mut refused)?;
+        round += 1;
+        job.check()?;
+        if refused.settle() && round < ROUNDS {
+            continue;
+        }
+        patches.add_planes(&pieces, &figures, &edges.vertices)?;
+        let mesh = assemble(&patches, &edges.vertices, &frame)?;
+        let found = mesh.intersecting_pairs(PAIRS, &quiet(control))?;
+        if found.count > 0 {
+            let mut meets = memory::filled(edges.vertices.len(), false)?;
+            for triangle in found.pairs.iter().flat_map(|pair| pair.triangles) {
+                patches.triangles[triangle as usize].iter().for_each(|&corner| meets[corner as usize] = true);
+            }
+            pieces.refuse(|corner| meets[corner as usize], frame.depth(), &mut refused)?;
+        }
+        if !refused.settle() || round >= ROUNDS {
+            let (cells, splits) = (leaves.open.len() as u64, leaves.splits);
+            let report = BoundaryReport { intersecting_pairs: found.count, cells, splits };
+            return Ok(Boundary { mesh, surfaces, of_triangles: patches.surfaces, report });
+        }
+    }
+}
+
+/// The same without reports of progress.
+fn quiet<'c>(control: &Control<'c>) -> Control<'c> {
+    Control { progress: None, ..*control }
+}
+
+/// The mesh, without vertices that no triangle has.
+fn assemble(patches: &Patches, vertices: &[[f64; 3]], frame: &Frame) -> Result<TriangleMesh, Error> {
+    let mut places = memory::filled(vertices.len(), NONE)?;
+    let mut kept = Vec::new();
+    let mut triangles = memory::with_capacity(patches.triangles.len())?;
+    for triangle in &patches.triangles {
+        let mut corners = [0; 3];
+        for (corner, &vertex) in corners.iter_mut().zip(triangle) {
+            let place = &mut places[vertex as usize];
+            if *place == NONE {
+                *place = kept.len() as u32;
+                let unit = vertices[vertex as usize];
+                memory::push(&mut kept, axes(|k| frame.origin()[k] + unit[k] * frame.edge()))?;
+            }
+            *corner = *place;
+        }
+        triangles.push(corners);
+    }
+    Ok(TriangleMesh::from_welded(kept, triangles, 0, 0))
+}
+
+/// Corners of which no surface tells.
+struct Points<'c, W: Worker> {
+    trail: Trail<W>,
+    frame: Frame,
+    control: &'c Control<'c>,
+}
+
+impl<W: Worker> Corners for Points<'_, W> {
+    fn is_inside(&mut self, at: [u32; 3], unit: [f64; 3]) -> Result<bool, Error> {
+        let point = axes(|k| self.frame.origin()[k] + unit[k] * self.frame.edge());
+        let mut answer = [None];
+        self.trail.worker().0.inside(&[point], &mut answer)?;
+        if let [Some(inside)] = answer {
+            return Ok(inside);
+        }
+        let most = self.frame.cells() - 1;
+        let cell = Cell { level: self.frame.depth(), at: at.map(|c| c.min(most)) };
+        self.trail.follow(cell.parent(), self.control)?;
+        Ok(match self.trail.verdict(cell).tag() {
+            Tag::Empty => false,
+            Tag::Full => true,
+            Tag::Partial | Tag::Branch => self.trail.sample(cell)?.unwrap_or(false),
+        })
+    }
+}

@@ -1,0 +1,285 @@
+//! Boundaries of solids that know their surfaces.
+
+use crate::common::surfaces::euler_of_manifold;
+use crate::common::{Random, alone};
+use leafless::surface::{Boundary, boundary};
+use leafless::{
+    Affine, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree, Rule, Solid, SurfaceOptions,
+    TriangleMesh, build, build_extended, contains, deviation, measure,
+};
+use std::collections::BTreeMap;
+
+fn of<S: Solid>(solid: &S, depth: u8, tolerance: f64) -> Boundary {
+    let bounds = solid.bounds().unwrap();
+    let frame = Frame::around(bounds.min, bounds.max, depth).unwrap();
+    boundary(solid, &frame, tolerance, &alone()).unwrap()
+}
+
+/// Each edge has two triangles, which run along it in opposite directions.
+fn assert_manifold(mesh: &TriangleMesh, text: &str) {
+    let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    for triangle in mesh.triangles() {
+        for k in 0..3 {
+            *edges.entry((triangle[k], triangle[(k + 1) % 3])).or_default() += 1;
+        }
+    }
+    for (&(from, to), &count) in &edges {
+        assert!(count == 1 && edges.get(&(to, from)) == Some(&1), "{text}: {from} {to}");
+    }
+}
+
+fn turn() -> Affine {
+    Affine::new([[0.36, 0.48, -0.8, 1.0], [-0.8, 0.6, 0.0, 2.0], [0.48, 0.64, 0.6, 3.0]]).unwrap()
+}
+
+fn plate() -> Csg {
+    let bore = Csg::cylinder_between([40.0, 30.0, -1.0], [40.0, 30.0, 11.0], 5.0).unwrap();
+    Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap().difference(&bore).unwrap()
+}
+
+/// How far a point is from the surface of the plate with its bore.
+fn away_from_plate([x, y, z]: [f64; 3]) -> f64 {
+    let wall = ((x - 40.0).hypot(y - 30.0) - 5.0).abs();
+    [x.abs(), (x - 80.0).abs(), y.abs(), (y - 60.0).abs(), z.abs(), (z - 10.0).abs()]
+        .into_iter()
+        .fold(wall, f64::min)
+}
+
+/// A box has eight vertices, which are its corners to the last digits, however it lies.
+#[test]
+fn boxes_have_twelve_triangles() {
+    let (low, high) = ([0.0, -1.0, 2.5], [10.0, 20.0, 32.0]);
+    let block = Csg::cuboid(low, high).unwrap();
+    for (placement, depth) in [(Affine::IDENTITY, 1), (Affine::IDENTITY, 14), (turn(), 14), (turn(), 19)] {
+        let found = of(&block.placed(&placement).unwrap(), depth.max(5), 1.0);
+        let mesh = found.mesh();
+        assert_eq!((mesh.triangles().len(), euler_of_manifold(mesh)), (12, 2));
+        for corner in 0..8 {
+            let corner =
+                placement.apply([0, 1, 2].map(|k| if corner >> k & 1 == 0 { low[k] } else { high[k] }));
+            let least =
+                mesh.vertices().iter().map(|v| (0..3).map(|k| (v[k] - corner[k]).abs()).fold(0.0, f64::max));
+            let least = least.fold(f64::INFINITY, f64::min);
+            assert!(least < 1e-13, "{least:e}");
+        }
+        // Each surface has two triangles.
+        let mut counts = BTreeMap::new();
+        (0..12).for_each(|k| *counts.entry(found.surface_of(k).unwrap()).or_insert(0) += 1);
+        assert!(counts.len() == 6 && counts.values().all(|&count| count == 2), "{counts:?}");
+        assert_eq!(found.surfaces().len(), 6);
+    }
+}
+
+/// The plate with one bore: few triangles, sharp edges, and what is proven of the deviation.
+#[test]
+fn a_plate_with_a_bore() {
+    for (share, most) in [(1e-3, 500), (1e-4, 1500), (1e-5, 5000)] {
+        let tolerance = 80.0 * share;
+        let found = of(&plate(), 14, tolerance);
+        let mesh = found.mesh();
+        assert!(mesh.triangles().len() <= most, "{share}: {}", mesh.triangles().len());
+        assert_eq!(euler_of_manifold(mesh), 0);
+        assert_eq!(found.report().intersecting_pairs, 0);
+        assert_eq!(mesh.intersecting_pairs(1, &alone()).unwrap().count, 0);
+        for &vertex in mesh.vertices() {
+            assert!(away_from_plate(vertex) < 1e-12, "{vertex:?}");
+        }
+        let mut random = Random(3);
+        for triangle in mesh.triangles() {
+            let [a, b, c] = triangle.map(|v| mesh.vertices()[v as usize]);
+            for _ in 0..20 {
+                let (u, v) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
+                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                let point = [0, 1, 2].map(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]));
+                assert!(away_from_plate(point) <= tolerance, "{share}: {point:?}");
+            }
+        }
+    }
+    // As a proof, both ways.
+    let (mesh, tolerance) = (of(&plate(), 14, 0.08).into_mesh(), 0.08);
+    let frame = Frame::around([0.0; 3], [80.0, 60.0, 10.0], 14).unwrap();
+    let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
+    let found = deviation(&plate(), &solid, &frame, 0.1 * tolerance, &alone()).unwrap();
+    assert!(found.distance().upper <= 1.1 * tolerance, "{found:?}");
+}
+
+/// Solids of which the number of triangles, the genus and the volume are known.
+#[test]
+fn known_solids() {
+    let cube = |x: f64, y: f64, z: f64| Csg::cuboid([x, y, z], [x + 1.0, y + 1.0, z + 1.0]).unwrap();
+    let union = |parts: [Csg; 2]| Csg::union_of(parts).unwrap();
+    let pocket = Csg::cuboid([0.25, 0.25, 0.5], [0.75, 0.75, 1.0]).unwrap();
+    let hollow = Csg::cuboid([0.25; 3], [0.75; 3]).unwrap();
+    let cases = [
+        ("side by side", union([cube(0.0, 0.0, 0.0), cube(1.0, 0.0, 0.0)]), 12, 2, 2.0),
+        ("overlapping", union([cube(0.0, 0.0, 0.0), cube(0.5, 0.0, 0.0)]), 12, 2, 1.5),
+        ("a step", union([cube(0.0, 0.0, 0.0), cube(0.5, 0.5, 0.0)]), 28, 2, 1.75),
+        ("a pocket", cube(0.0, 0.0, 0.0).difference(&pocket).unwrap(), 28, 2, 0.875),
+        ("a hollow", cube(0.0, 0.0, 0.0).difference(&hollow).unwrap(), 24, 4, 0.875),
+        ("apart", union([cube(0.0, 0.0, 0.0), cube(2.0, 0.0, 0.0)]), 24, 4, 2.0),
+        ("an edge in common", union([cube(0.0, 0.0, 0.0), cube(1.0, 1.0, 0.0)]), 24, 4, 2.0),
+        ("a corner in common", union([cube(0.0, 0.0, 0.0), cube(1.0, 1.0, 1.0)]), 24, 4, 2.0),
+        ("nothing", cube(0.0, 0.0, 0.0).difference(&cube(0.0, 0.0, 0.0)).unwrap(), 0, 0, 0.0),
+    ];
+    for (name, solid, triangles, euler, volume) in cases {
+        let frame = Frame::new([-1.0; 3], 6.0, 12).unwrap();
+        let found = boundary(&solid, &frame, 0.01, &alone()).unwrap();
+        let mesh = found.mesh();
+        assert_eq!(mesh.triangles().len(), triangles, "{name}");
+        assert_manifold(mesh, name);
+        assert_eq!(euler_of_manifold(mesh), euler, "{name}");
+        assert!((mesh.volume() - volume).abs() < 1e-12, "{name}: {}", mesh.volume());
+    }
+}
+
+/// Curved solids: closed, without intersections, and as exact as they should be.
+#[test]
+fn curved_solids() {
+    let crossed = Csg::cylinder(4.0, -9.0, 9.0).unwrap().placed(&turn()).unwrap();
+    let cases = [
+        ("ball", Csg::ball([0.1, 0.2, 0.3], 9.0).unwrap(), 2),
+        ("cylinder", Csg::cylinder(5.0, -10.0, 10.0).unwrap(), 2),
+        ("frustum", Csg::frustum(5.0, 2.0, -10.0, 10.0).unwrap(), 2),
+        ("cone", Csg::frustum(5.0, 0.0, -10.0, 10.0).unwrap(), 2),
+        ("torus", Csg::torus(8.0, 2.0).unwrap(), 0),
+        ("crossed", Csg::union_of([Csg::cylinder(5.0, -10.0, 10.0).unwrap(), crossed.clone()]).unwrap(), 2),
+        (
+            "lens",
+            Csg::intersection_of([
+                Csg::ball([0.0; 3], 9.0).unwrap(),
+                Csg::ball([9.0, 1.0, 0.0], 8.0).unwrap(),
+            ])
+            .unwrap(),
+            2,
+        ),
+        ("turned plate", plate().placed(&turn()).unwrap(), 0),
+    ];
+    for (name, solid, euler) in cases {
+        let known = solid.bounds().unwrap();
+        let frame = Frame::around(known.min, known.max, 13).unwrap();
+        let volume = measure(&solid, &frame, 1e-3, &alone()).unwrap().volume;
+        let mut before = f64::INFINITY;
+        for tolerance in [0.4, 0.1, 0.025] {
+            let found = boundary(&solid, &frame, tolerance, &alone()).unwrap();
+            let mesh = found.mesh();
+            assert_manifold(mesh, name);
+            assert_eq!(euler_of_manifold(mesh), euler, "{name} {tolerance}");
+            assert_eq!(found.report().intersecting_pairs, 0, "{name} {tolerance}");
+            let away = (mesh.volume() - volume.lower).abs().max((mesh.volume() - volume.upper).abs());
+            assert!(away <= tolerance * mesh.area(), "{name} {tolerance}: {away}");
+            assert!(away < before, "{name} {tolerance}: {away} after {before}");
+            before = away;
+        }
+    }
+}
+
+/// A ball, a cylinder, a cone, a box or a torus somewhere within 14 of the origin.
+fn primitive(random: &mut Random) -> Csg {
+    let shape = match random.below(5) {
+        0 => Csg::cuboid([-4.0, -5.0, -3.0], [random.between(1.0, 6.0), 4.0, 5.0]),
+        1 => Csg::cylinder(random.between(1.0, 5.0), -6.0, random.between(0.0, 7.0)),
+        2 => Csg::ball([0.0; 3], random.between(2.0, 7.0)),
+        3 => Csg::frustum(random.between(2.0, 6.0), random.between(0.5, 2.0), -4.0, 4.0),
+        _ => Csg::torus(random.between(3.0, 6.0), random.between(0.5, 2.0)),
+    };
+    let whole = [0; 3].map(|_| random.below(9) as f64 - 4.0);
+    let free = [0; 3].map(|_| random.between(-8.0, 8.0));
+    let (sin, cos) = random.between(0.0, 6.3).sin_cos();
+    let rows = if random.below(3) == 0 {
+        [[1.0, 0.0, 0.0, whole[0]], [0.0, 1.0, 0.0, whole[1]], [0.0, 0.0, 1.0, whole[2]]]
+    } else {
+        [
+            [0.6 * cos, -sin, 0.8 * cos, free[0]],
+            [0.6 * sin, cos, 0.8 * sin, free[1]],
+            [-0.8, 0.0, 0.6, free[2]],
+        ]
+    };
+    shape.unwrap().placed(&Affine::new(rows).unwrap()).unwrap()
+}
+
+/// Sixty scenes of two to five primitives: closed, manifold, no intersecting pair, and the volume.
+#[test]
+fn random_scenes() {
+    let mut random = Random(39);
+    for scene in 0..60 {
+        let mut solid = primitive(&mut random);
+        for _ in 0..1 + random.below(4) {
+            let other = primitive(&mut random);
+            solid = match random.below(3) {
+                0 => Csg::intersection_of([solid, other]).unwrap(),
+                1 => solid.difference(&other).unwrap(),
+                _ => Csg::union_of([solid, other]).unwrap(),
+            };
+        }
+        let frame = Frame::new([-20.0; 3], 40.0, 13).unwrap();
+        let tolerance = [0.3, 0.1, 0.03][scene % 3];
+        let found = boundary(&solid, &frame, tolerance, &alone()).unwrap();
+        let mesh = found.mesh();
+        assert_manifold(mesh, &format!("scene {scene}"));
+        assert_eq!(found.report().intersecting_pairs, 0, "scene {scene}");
+        let control = Control { max_splits: Some(2000), ..alone() };
+        let volume = measure(&solid, &frame, 0.0, &control).unwrap().volume;
+        let slack = tolerance * mesh.area() + 1e-9;
+        let within = volume.lower - slack <= mesh.volume() && mesh.volume() <= volume.upper + slack;
+        assert!(within, "scene {scene}: {} {volume:?}", mesh.volume());
+        // On both sides of each triangle is what should be there.
+        for triangle in mesh.triangles().iter().step_by(7) {
+            let [a, b, c] = triangle.map(|v| mesh.vertices()[v as usize]);
+            let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
+            let normal = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+            let size = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+            if size < 0.5 {
+                continue;
+            }
+            let at = |side: f64| {
+                [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0 + side * 1.5 * tolerance * normal[k] / size)
+            };
+            // (Walls may be thinner than that: one of the sides is enough.)
+            let points = [at(1.0), at(-1.0)];
+            let mut sides = [Membership::Undecided; 2];
+            contains(&solid, &frame, &points, &mut sides, &alone()).unwrap();
+            use Membership::{Inside, Outside};
+            assert!(sides[0] != Inside || sides[1] != Outside, "scene {scene}: {points:?}");
+        }
+    }
+}
+
+/// An octree that keeps its surfaces has the boundary of its source, also where faces lie in planes of its lattice.
+#[test]
+fn stored_octrees() {
+    let frame = Frame::new([-10.0, -10.0, -20.0], 120.0, 9).unwrap();
+    let stored = build_extended(&plate(), &frame, &SurfaceOptions::default(), &alone()).unwrap();
+    let found = boundary(&stored, &frame, 0.08, &alone()).unwrap();
+    let own = boundary(&plate(), &frame, 0.08, &alone()).unwrap();
+    assert_eq!(found.mesh().triangles().len(), own.mesh().triangles().len());
+    assert_eq!(euler_of_manifold(found.mesh()), 0);
+    assert!((found.mesh().volume() - own.mesh().volume()).abs() < 1e-9 * own.mesh().volume());
+    let on_lattice = Csg::cuboid([20.0, 5.0, 10.0], [35.0, 20.0, 40.0]).unwrap();
+    let frame = Frame::new([-40.0; 3], 160.0, 5).unwrap();
+    let stored = build_extended(&on_lattice, &frame, &SurfaceOptions::default(), &alone()).unwrap();
+    let found = boundary(&stored, &frame, 0.1, &alone()).unwrap();
+    assert_eq!(found.mesh().triangles().len(), 12);
+    assert!((found.mesh().volume() - 15.0 * 15.0 * 30.0).abs() < 1e-9);
+}
+
+#[test]
+fn refusals() {
+    let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
+    let ball = Csg::ball([0.0; 3], 0.5).unwrap();
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let refused = boundary(&ball, &frame, tolerance, &alone());
+        assert!(matches!(refused, Err(Error::Argument { name: "tolerance", .. })));
+    }
+    let large = Csg::ball([0.0; 3], 1.5).unwrap();
+    assert!(matches!(boundary(&large, &frame, 0.1, &alone()), Err(Error::Argument { name: "frame", .. })));
+    let control = Control { max_nodes: Some(3), ..alone() };
+    assert!(matches!(boundary(&ball, &frame, 1e-3, &control), Err(Error::Limit { what: "nodes", .. })));
+    let cancelled = std::sync::atomic::AtomicBool::new(true);
+    let control = Control { cancel: Some(&cancelled), ..alone() };
+    assert!(matches!(boundary(&ball, &frame, 1e-3, &control), Err(Error::Cancelled)));
+    // Solids of which no surfaces are known.
+    let tree: Octree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
+    assert!(matches!(boundary(&tree, &frame, 0.1, &alone()), Err(Error::Argument { name: "solid", .. })));
+    let mesh = MeshSolid::new(of(&ball, 8, 0.1).into_mesh(), FillRule::NonZero).unwrap();
+    assert!(matches!(boundary(&mesh, &frame, 0.1, &alone()), Err(Error::Argument { name: "solid", .. })));
+}
