@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::making::job::Job;
 use crate::making::surface::{At, Method, ResolveName, SnapName, Wanted, make};
-use crate::options::{bounds, formats, threads};
+use crate::options::{bounds, formats, threads, tolerance};
 use crate::sink::Output;
 use crate::source::file::Taking;
 use crate::source::input::Input;
@@ -17,7 +17,7 @@ use std::time::Instant;
 /// The surface separates samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
 /// cells, and vertices lie where the edges between corners cross the surface. Samples of a volume are its voxels, and of
 /// a solid from a file (.lfl) its cells at their finest level; what is undecided there counts as inside, unless --resolve says otherwise.
-/// A solid from a file whose cells keep surfaces is split to --depth; with --method mc and dual, vertices lie where rays through
+/// A solid from a file whose cells keep surfaces is split to --depth; --method faces takes its surfaces, and those of a scene, as they are; with --method mc and dual, vertices lie where rays through
 /// cell centres cross these surfaces.
 ///
 /// Samples of a tri-dexel model are the centres of its cells, and vertices lie where its rays leave the solid.
@@ -51,6 +51,10 @@ pub struct Arguments {
     /// Where --method mc puts vertices of a mesh, scene or volume
     #[arg(long, value_enum, default_value_t = At::Crossing)]
     vertices: At,
+    /// How far chords of curved faces may be from these with --method faces, in model units. Without it: a thousandth of the longest
+    /// extent
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
     /// What undecided cells count as. Given for a mesh or scene, its cells are the samples, made as `leafless voxelize`
     /// makes them, and not the corners
     #[arg(long, value_enum)]
@@ -81,9 +85,30 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (input, output) = (Input::from(&*arguments.file), Output::from(&*arguments.output));
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     let Arguments {
-        method, snap, vertices, resolve, text, normals, lossy, intersections, write: format, ..
+        method,
+        snap,
+        vertices,
+        tolerance,
+        resolve,
+        text,
+        normals,
+        lossy,
+        intersections,
+        write: format,
+        ..
     } = *arguments;
-    let wanted =
-        Wanted { method, snap, vertices, resolve, format, text, normals, lossy, intersections, copy: false };
+    let wanted = Wanted {
+        method,
+        snap,
+        vertices,
+        tolerance,
+        resolve,
+        format,
+        text,
+        normals,
+        lossy,
+        intersections,
+        copy: false,
+    };
     make(&job, &arguments.taking, &wanted)
 }

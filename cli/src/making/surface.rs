@@ -19,7 +19,7 @@ use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
 use leafless::mesh::MeshReport;
 use leafless::op::DexelOptions;
 use leafless::surface::{
-    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, marching_cubes_solid,
+    Resolve, Snap, VertexPlacement, boundary, coplanar_shrink, coplanar_shrink_solid, marching_cubes_solid,
     marching_cubes_volume, published_shrink, published_shrink_solid, simple_marching_cubes,
     simple_marching_cubes_solid,
 };
@@ -34,12 +34,20 @@ use std::path::Path;
 /// The depth of meshes, scenes, and octrees whose cells keep surfaces, if none is asked for.
 const DEPTH: u8 = 8;
 
+/// The same where cells end by themselves.
+const DEEP: u8 = 14;
+
+/// The tolerance of curved faces, if none is asked for, as a part of the longest extent.
+const FACES: f64 = 1e-3;
+
 /// How a surface is made and written.
 #[derive(Default)]
 pub struct Wanted {
     pub method: Method,
     pub snap: SnapName,
     pub vertices: At,
+    /// How far chords may be from curved surfaces (model units), where these are known.
+    pub tolerance: Option<f64>,
     pub resolve: Option<ResolveName>,
     /// The format to write. Without it the name of the output tells.
     pub format: Option<MeshFormat>,
@@ -59,6 +67,9 @@ pub enum Method {
     /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene or a volume
     /// one is made first
     Dual,
+    /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces as they are, with sharp edges, and
+    /// curved ones in chords (--tolerance). Few triangles
+    Faces,
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
     Smc,
     /// The surface of smc, with one region of few triangles for all that lies in one plane; no cracks
@@ -108,6 +119,11 @@ pub enum ResolveName {
 pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     output.check()?;
+    if wanted.tolerance.is_some() && wanted.method != Method::Faces {
+        return Err(Failure::Usage(
+            "--tolerance is for --method faces: others have the cells of --depth".into(),
+        ));
+    }
     let format = format(wanted.format, output.path())?;
     if wanted.normals && !matches!(format, MeshFormat::Ply | MeshFormat::Obj) {
         let name = format_name(format).to_uppercase();
@@ -119,7 +135,7 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     let is_stored = shape.is_stored();
     let certain = match &shape {
         // Vertices that are samples lie beside the surface; those of the other methods lie on it.
-        Shape::Source(source) if !matches!(wanted.method, Method::Mc | Method::Dual) => {
+        Shape::Source(source) if !matches!(wanted.method, Method::Mc | Method::Dual | Method::Faces) => {
             certain_volume(source).of(input)?
         }
         _ => None,
@@ -134,6 +150,9 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
         Shape::Source(Source::Mesh(mesh, _, unit)) if wanted.copy => {
             is_copy = true;
             (unit, mesh, None)
+        }
+        Shape::Source(source) if wanted.method == Method::Faces => {
+            (source.unit(), by_surfaces(source, job, wanted)?, None)
         }
         Shape::Source(source) if asks_rays(&source, wanted) => {
             let unit = source.unit();
@@ -294,6 +313,38 @@ fn by_rays(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, 
     }
 }
 
+/// The surface of a solid that knows its surfaces.
+fn by_surfaces(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, Failure> {
+    let input = &job.input;
+    let is_known = match &source {
+        Source::Scene(_) => true,
+        Source::Octree(_) => !source.is_of_cells(),
+        _ => false,
+    };
+    if !is_known {
+        let problem = "is neither a scene nor a solid whose cells keep surfaces, which --method faces is for";
+        return Err(Failure::of(input, problem));
+    }
+    if wanted.resolve.is_some() {
+        return Err(Failure::Usage("--resolve does not go with --method faces, which cuts surfaces".into()));
+    }
+    let (low, high) = source.bounds(input)?;
+    let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    let tolerance = wanted.tolerance.unwrap_or(FACES * size);
+    let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEEP)?;
+    let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
+    let found =
+        watched("mesh", job.threads, |control| boundary(&solid, &frame, tolerance, control)).of(input)?;
+    let pairs = found.report().intersecting_pairs;
+    if pairs > 0 {
+        let pairs = counted(pairs, "pair", "pairs");
+        complain(&format!(
+            "{input}: warning: {pairs} of triangles intersect: a greater --depth may tell them apart"
+        ));
+    }
+    Ok(found.into_mesh())
+}
+
 fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, Failure> {
     let input = &job.input;
     let resolve = match (wanted.resolve, &source) {
@@ -389,7 +440,7 @@ fn of_cells(
 ) -> Result<TriangleMesh, Error> {
     let snap = wanted.snap.into();
     match wanted.method {
-        Method::Dual => unreachable!("dual contouring asks rays"),
+        Method::Dual | Method::Faces => unreachable!("rays and surfaces are asked elsewhere"),
         Method::Mc => marching_cubes(octree.view(), resolve, control),
         Method::Smc => simple_marching_cubes(octree.view(), snap, resolve, control),
         Method::Shrink => coplanar_shrink(octree.view(), snap, resolve, control),
@@ -410,7 +461,7 @@ pub fn of_solid(
     };
     let snap = wanted.snap.into();
     match wanted.method {
-        Method::Dual => unreachable!("dual contouring asks rays"),
+        Method::Dual | Method::Faces => unreachable!("rays and surfaces are asked elsewhere"),
         Method::Mc => marching_cubes_solid(solid, frame, placement, control),
         Method::Smc => simple_marching_cubes_solid(solid, frame, snap, control),
         Method::Shrink => coplanar_shrink_solid(solid, frame, snap, control),

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(100);
 
 /// The commands that take a solid, `F`, with what they read behind `<`; those that write, to `out`.
-pub const COMMANDS: [&str; 50] = [
+pub const COMMANDS: [&str; 51] = [
     "info F",
     "verify F",
     "dexelize F -o out.lfl --rule outer",
@@ -46,6 +46,7 @@ pub const COMMANDS: [&str; 50] = [
     "mesh F -o out.ply --resolve outer --method shrink",
     "mesh F -o out.ply --resolve outer --method shrink-published",
     "mesh F -o out.ply --method dual",
+    "mesh F -o out.ply --method faces --depth 8",
     "bitmap F -o out.nrrd --resolve outer",
     "bitmap F -o out.raw --resolve outer --level 1",
     "voxels F -o out.npz",

@@ -351,3 +351,36 @@ fn solids_from_files_are_meshed_at_coarser_levels() {
     assert_eq!(place.bytes("open.ply"), place.bytes("fine.ply"));
     place.run("mesh cube.lfl -o no.ply --depth 6").bad(2, &["--depth 6", "cube.lfl", "5"]);
 }
+
+/// A plate with a bore: few triangles, sharp edges, and within the tolerance by proof, from a scene and from a solid that keeps its
+/// surfaces.
+#[test]
+fn faces_of_a_plate_with_a_bore() {
+    let place = solids();
+    let scene = "difference() { cube([80,60,10]); translate([40,30,-1]) cylinder(h=12, r=5, $fn=0); }";
+    place.write("plate.csg", scene);
+    let report = json(&place, "mesh plate.csg -o plate.stl --method faces --intersections --json");
+    let count = report["triangles"].as_u64().unwrap();
+    assert!(count <= 400, "{count}");
+    assert_eq!((&report["closed"], &report["manifold"]), (&Value::Bool(true), &Value::Bool(true)));
+    assert_eq!((&report["euler"], &report["intersecting"]), (&Value::from(0), &Value::from(0)));
+    assert_eq!((&report["degenerate"], &report["method"]), (&Value::from(0), &Value::from("faces")));
+    let proof = json(&place, "deviation plate.csg plate.stl --within 0.08 --json");
+    assert_eq!(proof["verdict"], "within", "{proof}");
+    for (tolerance, most) in [("0.008", 1500), ("0.0008", 5000)] {
+        let line = format!(
+            "mesh plate.csg -o fine.stl --method faces --tolerance {tolerance} --intersections --json"
+        );
+        let report = json(&place, &line);
+        assert!(report["triangles"].as_u64().unwrap() <= most, "{report}");
+        assert_eq!(report["intersecting"], 0);
+    }
+    place.run("csg plate.csg -o plate.lfl --surfaces").good();
+    let stored = json(&place, "mesh plate.lfl -o stored.ply --method faces --json");
+    assert!(stored["triangles"].as_u64().unwrap() <= 400 && stored["euler"] == 0, "{stored}");
+    // What knows no surfaces, and options that do not fit.
+    place.run("mesh plate.stl -o out.ply --method faces").bad(1, &["plate.stl", "--method faces"]);
+    place.run("mesh plate.csg -o out.ply --tolerance 0.1").bad(2, &["--tolerance", "--method faces"]);
+    place.run("mesh plate.csg -o out.ply --method faces --resolve outer").bad(2, &["--resolve"]);
+    place.run("mesh plate.csg -o out.ply --method faces --tolerance 0").bad(1, &["tolerance"]);
+}
