@@ -128,9 +128,9 @@ static void closed_mesh(const leafless_solid *ball) {
             }
         }
         CHECK(!near[6].has_nearest && near[6].surface == UINT32_MAX && near[6].nearest_model[0] == 0);
-        /* A ball tells none. */
+        /* A ball has no numbers of surfaces, and a point unless the distance is that of a point within. */
         OK(leafless_solid_distances(ball, &frame, &at[0][0], 1, to, 1e-3, NULL, near));
-        CHECK(!near[0].has_nearest && near[0].surface == UINT32_MAX && near[0].nearest_model[2] == 0);
+        CHECK(near[0].has_nearest == (near[0].distance_model.lower != 0) && near[0].surface == UINT32_MAX);
     }
     leafless_solid_free(cube);
     leafless_mesh_free(mesh);

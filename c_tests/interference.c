@@ -107,6 +107,19 @@ static void many(const leafless_solid *a, const leafless_solid *b) {
         }
     }
     OK(leafless_solid_clearance_many(a, b, &frame, NULL, 0, &frame, 1, &options, NULL));
+    for (threads = 1; threads <= 2; threads++) {
+        leafless_placed_gap gaps[4];
+        options.threads = threads;
+        OK(leafless_solid_gap_at_least_many(a, b, &frame, matrices[28], 4, &frame, 4, &options, gaps));
+        for (i = 0; i < 4; i++) {
+            /* Equal balls of radius 30, whose centres are 64, 72, 80 and 88 apart. */
+            const double apart = matrices[28 + i][3] - 60;
+            CHECK(gaps[i].verdict != LEAFLESS_GAP_VERDICT_NO);
+            CHECK(gaps[i].distance_model.lower <= apart);
+            CHECK(!gaps[i].has_points || apart <= gaps[i].distance_model.upper);
+        }
+    }
+    OK(leafless_solid_gap_at_least_many(a, b, &frame, NULL, 0, &frame, 1, &options, NULL));
 }
 
 /* Two balls around one centre, and a ball beside itself. */

@@ -361,16 +361,28 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_solid_gap_at_least, gap, leafless_solid_gap_at_least(solid, solid, &frame, 1, NULL, NULL));
     NULL_POINTER(leafless_solid_clearance_many, a,
                  leafless_solid_clearance_many(NULL, solid, &frame, matrix, 1, &frame, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_gap_at_least_many, a,
+                 leafless_solid_gap_at_least_many(NULL, solid, &frame, matrix, 1, &frame, 1, NULL, (leafless_placed_gap *)out));
     NULL_POINTER(leafless_solid_clearance_many, b,
                  leafless_solid_clearance_many(solid, NULL, &frame, matrix, 1, &frame, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_gap_at_least_many, b,
+                 leafless_solid_gap_at_least_many(solid, NULL, &frame, matrix, 1, &frame, 1, NULL, (leafless_placed_gap *)out));
     NULL_POINTER(leafless_solid_clearance_many, own,
                  leafless_solid_clearance_many(solid, solid, NULL, matrix, 1, &frame, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_gap_at_least_many, own,
+                 leafless_solid_gap_at_least_many(solid, solid, NULL, matrix, 1, &frame, 1, NULL, (leafless_placed_gap *)out));
     NULL_POINTER(leafless_solid_clearance_many, matrices,
                  leafless_solid_clearance_many(solid, solid, &frame, NULL, 1, &frame, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_gap_at_least_many, matrices,
+                 leafless_solid_gap_at_least_many(solid, solid, &frame, NULL, 1, &frame, 1, NULL, (leafless_placed_gap *)out));
     NULL_POINTER(leafless_solid_clearance_many, frame,
                  leafless_solid_clearance_many(solid, solid, &frame, matrix, 1, NULL, 0, NULL, (leafless_placed_clearance *)out));
+    NULL_POINTER(leafless_solid_gap_at_least_many, frame,
+                 leafless_solid_gap_at_least_many(solid, solid, &frame, matrix, 1, NULL, 1, NULL, (leafless_placed_gap *)out));
     NULL_POINTER(leafless_solid_clearance_many, clearances,
                  leafless_solid_clearance_many(solid, solid, &frame, matrix, 1, &frame, 0, NULL, NULL));
+    NULL_POINTER(leafless_solid_gap_at_least_many, gaps,
+                 leafless_solid_gap_at_least_many(solid, solid, &frame, matrix, 1, &frame, 1, NULL, NULL));
     NULL_POINTER(leafless_solid_clearance, clearance, leafless_solid_clearance(solid, solid, &frame, 0, NULL, NULL));
     NULL_POINTER(leafless_solid_deviation, a,
                  leafless_solid_deviation(NULL, solid, &frame, 0, 0, NULL, (leafless_deviation *)out));
@@ -601,6 +613,7 @@ static void null_pointers(void) {
         leafless_deviation apart = LEAFLESS_INIT(leafless_deviation);
         leafless_gap gap = LEAFLESS_INIT(leafless_gap);
         leafless_placed_clearance placed;
+        leafless_placed_gap placed_gap;
         MAY_BE_NULL(leafless_solid_interfere, options,
                     leafless_solid_interfere(solid, solid, &frame, 0, NULL, &found));
         MAY_BE_NULL(leafless_solid_interfere_many, options,
@@ -617,10 +630,16 @@ static void null_pointers(void) {
                     leafless_solid_gap_at_least(solid, solid, &frame, 1, NULL, &gap));
         MAY_BE_NULL(leafless_solid_clearance_many, options,
                     leafless_solid_clearance_many(solid, solid, &frame, matrix, 1, &frame, 1, NULL, &placed));
+        MAY_BE_NULL(leafless_solid_gap_at_least_many, options,
+                    leafless_solid_gap_at_least_many(solid, solid, &frame, matrix, 1, &frame, 1, NULL, &placed_gap));
         MAY_BE_NULL(leafless_solid_clearance_many, matrices,
                     leafless_solid_clearance_many(solid, solid, &frame, NULL, 0, &frame, 0, NULL, &placed));
+        MAY_BE_NULL(leafless_solid_gap_at_least_many, matrices,
+                    leafless_solid_gap_at_least_many(solid, solid, &frame, NULL, 0, &frame, 1, NULL, &placed_gap));
         MAY_BE_NULL(leafless_solid_clearance_many, clearances,
                     leafless_solid_clearance_many(solid, solid, &frame, NULL, 0, &frame, 0, NULL, NULL));
+        MAY_BE_NULL(leafless_solid_gap_at_least_many, gaps,
+                    leafless_solid_gap_at_least_many(solid, solid, &frame, NULL, 0, &frame, 1, NULL, NULL));
     }
     {
         leafless_membership membership;
@@ -807,12 +826,21 @@ static void misaligned(void) {
     MISALIGNED(leafless_solid_clearance_many, matrices,
                leafless_solid_clearance_many(solid, solid, &frame, (const double *)WRONG(point), 1, &frame, 0, NULL,
                                              (leafless_placed_clearance *)out));
+    MISALIGNED(leafless_solid_gap_at_least_many, matrices,
+               leafless_solid_gap_at_least_many(solid, solid, &frame, (const double *)WRONG(point), 1, &frame, 1, NULL,
+                                                (leafless_placed_gap *)out));
     MISALIGNED(leafless_solid_clearance_many, clearances,
                leafless_solid_clearance_many(solid, solid, &frame, room, 0, &frame, 0, NULL,
                                              (leafless_placed_clearance *)WRONG(out)));
+    MISALIGNED(leafless_solid_gap_at_least_many, gaps,
+               leafless_solid_gap_at_least_many(solid, solid, &frame, room, 0, &frame, 1, NULL,
+                                                (leafless_placed_gap *)WRONG(out)));
     MISALIGNED(leafless_solid_clearance_many, own,
                leafless_solid_clearance_many(solid, solid, (leafless_frame *)WRONG(&frame), room, 0, &frame, 0, NULL,
                                              (leafless_placed_clearance *)out));
+    MISALIGNED(leafless_solid_gap_at_least_many, own,
+               leafless_solid_gap_at_least_many(solid, solid, (leafless_frame *)WRONG(&frame), room, 0, &frame, 1, NULL,
+                                                (leafless_placed_gap *)out));
     MISALIGNED(leafless_solid_clearance, clearance,
                leafless_solid_clearance(solid, solid, &frame, 0, NULL, (leafless_clearance *)WRONG(out)));
     MISALIGNED(leafless_solid_deviation, deviation,

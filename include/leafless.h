@@ -3391,8 +3391,10 @@ typedef struct leafless_point_distance {
     /// solid next to the point, if one is found. UINT32_MAX if there is none.
     uint32_t surface;
     leafless_stop_reason measured;  ///< Why the search ended.
-    /// Whether the solid answered itself and told the nearest point: a mesh within the universe does, unless
-    /// the nearest triangle intersects another one, or the boundary may lie nearer over a hole.
+    /// Whether the nearest point is known. A mesh within the universe tells it with the triangle, unless the
+    /// nearest triangle intersects another one, or the boundary may lie nearer over a hole. Of other solids
+    /// it is known if the upper bound is finite, unless the point may lie on the side of the boundary from
+    /// which no distance is measured; then it is as near as that bound says.
     bool has_nearest;
 } leafless_point_distance;
 
@@ -3680,6 +3682,21 @@ typedef struct leafless_gap {
     bool is_clipped;
 } leafless_gap;
 
+/// Whether two solids, one of which is moved, are at least as far apart as they should be.
+typedef struct leafless_placed_gap {
+    leafless_interval distance_model;  ///< As leafless_gap has it.
+    double point_a_model[3];  ///< If `has_points`, a point of the first solid, in model units; else zeros.
+    double point_b_model[3];  ///< A point of the second solid.
+    uint64_t splits_a;  ///< Cells of the first solid that were split.
+    uint64_t splits_b;  ///< Cells of the second solid that were split.
+    uint32_t verdict;  ///< A leafless_gap_verdict.
+    /// Why the search ended; LEAFLESS_STOP_REASON_TOLERANCE if the verdict is proven.
+    leafless_stop_reason measured;
+    bool has_points;  ///< Whether the upper bound is finite.
+    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    bool is_clipped;
+} leafless_placed_gap;
+
 /// What is known of the distance between two solids, one of which is moved.
 typedef struct leafless_placed_clearance {
     leafless_interval distance_model;  ///< As leafless_clearance has it.
@@ -3720,6 +3737,21 @@ leafless_status leafless_solid_gap_at_least(const leafless_solid *a, const leafl
 leafless_status leafless_solid_clearance_many(const leafless_solid *a, const leafless_solid *b,
     const leafless_frame *own, const double *matrices, uint64_t count, const leafless_frame *frame,
     double tolerance_model, const leafless_options *options, leafless_placed_clearance *clearances);
+
+/// As leafless_solid_gap_at_least of `a` with `b` under each of many affine maps, as
+/// leafless_solid_transformed makes them. `max_splits` concerns each of them. The results are the same for
+/// any number of threads.
+///
+/// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
+///   that of `a`; `options`, one struct or NULL; `gaps`, room for `count`. `matrices` and `gaps` may be NULL
+///   if `count` is 0.
+/// - Result: `gaps[i]` for map i.
+/// - Errors: as leafless_solid_gap_at_least and leafless_solid_transformed; nothing is then written.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_solid_gap_at_least, and any numbers.
+leafless_status leafless_solid_gap_at_least_many(const leafless_solid *a, const leafless_solid *b,
+    const leafless_frame *own, const double *matrices, uint64_t count, const leafless_frame *frame,
+    double least_model, const leafless_options *options, leafless_placed_gap *gaps);
 
 /// How far points of one boundary are from another one.
 typedef struct leafless_one_way {

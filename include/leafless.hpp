@@ -479,6 +479,9 @@ public:
     returns<void> clearance_many(const leafless::solid &b, const leafless_frame &own,
         span<const affine> matrices, const leafless_frame &frame, double tolerance_model,
         const leafless_options *options, span<leafless_placed_clearance> clearances) const;
+    returns<void> gap_at_least_many(const leafless::solid &b, const leafless_frame &own,
+        span<const affine> matrices, const leafless_frame &frame, double least_model,
+        const leafless_options *options, span<leafless_placed_gap> gaps) const;
     [[nodiscard]] returns<leafless_deviation> deviation(const leafless::solid &b, const leafless_frame &frame,
         double tolerance_model, double within_model, const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<std::vector<leafless_material>> materials(const leafless::channel &channel,
@@ -1474,6 +1477,15 @@ inline returns<void> solid::clearance_many(const leafless::solid &b, const leafl
     detail::same_size(matrices.size(), clearances.size());
     const leafless_status status = leafless_solid_clearance_many(get(), b.get(), &own,
         detail::numbers(matrices), matrices.size(), &frame, tolerance_model, options, clearances.data());
+    return detail::finish(status);
+}
+
+inline returns<void> solid::gap_at_least_many(const leafless::solid &b, const leafless_frame &own,
+    span<const affine> matrices, const leafless_frame &frame, double least_model,
+    const leafless_options *options, span<leafless_placed_gap> gaps) const {
+    detail::same_size(matrices.size(), gaps.size());
+    const leafless_status status = leafless_solid_gap_at_least_many(get(), b.get(), &own,
+        detail::numbers(matrices), matrices.size(), &frame, least_model, options, gaps.data());
     return detail::finish(status);
 }
 

@@ -1,15 +1,15 @@
 //! Two solids: are they far enough apart, and how far in many places?
 
-use super::boundary::{buffer, filled, guard, out, output, shared, slice};
+use super::boundary::{Failure, buffer, filled, guard, out, output, shared, slice};
 use super::control::{controlled, leafless_options};
 use super::csg::placement;
 use super::frame::{frame, frame_of, leafless_frame, leafless_interval};
 use super::measure::leafless_stop_reason;
 use super::solid::leafless_solid;
 use super::status::leafless_status;
-use leafless::Clearance;
 use leafless::memory;
-use leafless::query::{Gap, GapVerdict, clearance_at, gap_at_least};
+use leafless::query::{Gap, GapVerdict, clearance_at, gap_at_least, gap_at_least_at};
+use leafless::{Affine, Clearance};
 
 /// Whether two solids are at least as far apart as they should be.
 #[derive(Clone, Copy)]
@@ -77,6 +77,47 @@ impl From<&Gap> for leafless_gap {
             measured: evidence.stop_reason.into(),
             has_points: evidence.points.is_some(),
             is_clipped: evidence.clipped,
+        }
+    }
+}
+
+/// Whether two solids, one of which is moved, are at least as far apart as they should be.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_placed_gap {
+    /// As leafless_gap has it.
+    pub distance_model: leafless_interval,
+    /// If `has_points`, a point of the first solid, in model units; else zeros.
+    pub point_a_model: [f64; 3],
+    /// A point of the second solid.
+    pub point_b_model: [f64; 3],
+    /// Cells of the first solid that were split.
+    pub splits_a: u64,
+    /// Cells of the second solid that were split.
+    pub splits_b: u64,
+    /// A leafless_gap_verdict.
+    pub verdict: u32,
+    /// Why the search ended; LEAFLESS_STOP_REASON_TOLERANCE if the verdict is proven.
+    pub measured: leafless_stop_reason,
+    /// Whether the upper bound is finite.
+    pub has_points: bool,
+    /// Whether one of the solids may go on outside of the universe, of which nothing is said.
+    pub is_clipped: bool,
+}
+
+impl From<&Gap> for leafless_placed_gap {
+    fn from(found: &Gap) -> leafless_placed_gap {
+        let whole = leafless_gap::from(found);
+        leafless_placed_gap {
+            distance_model: whole.distance_model,
+            point_a_model: whole.point_a_model,
+            point_b_model: whole.point_b_model,
+            splits_a: whole.splits_a,
+            splits_b: whole.splits_b,
+            verdict: whole.verdict,
+            measured: whole.measured,
+            has_points: whole.has_points,
+            is_clipped: whole.is_clipped,
         }
     }
 }
@@ -180,13 +221,57 @@ pub unsafe extern "C" fn leafless_solid_clearance_many(
             out(clearances, "clearances")?;
         }
         let results = buffer(clearances, count, "clearances")?;
-        let mut placements = memory::with_capacity(matrices.len())?;
-        for matrix in matrices {
-            placements.push(placement(matrix.as_ptr())?);
-        }
+        let placements = placements(matrices)?;
         let found = controlled(options, |control| {
             clearance_at(a, b, &own, &placements, &frame, tolerance_model, control)
         })?;
         results.fill_with(&found)
     })
+}
+
+/// As leafless_solid_gap_at_least of `a` with `b` under each of many affine maps, as leafless_solid_transformed makes them.
+/// `max_splits` concerns each of them. The results are the same for any number of threads.
+///
+/// - Buffers: `own`, one struct, the frame of `b`; `matrices`, `count` times 12 numbers; `frame`, one struct,
+///   that of `a`; `options`, one struct or NULL; `gaps`, room for `count`. `matrices` and `gaps` may be NULL if `count` is 0.
+/// - Result: `gaps[i]` for map i.
+/// - Errors: as leafless_solid_gap_at_least and leafless_solid_transformed; nothing is then written.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: as leafless_solid_gap_at_least, and any numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_gap_at_least_many(
+    a: *const leafless_solid,
+    b: *const leafless_solid,
+    own: *const leafless_frame,
+    matrices: *const f64,
+    count: u64,
+    frame: *const leafless_frame,
+    least_model: f64,
+    options: *const leafless_options,
+    gaps: *mut leafless_placed_gap,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (&shared(a, "a")?.solid, &shared(b, "b")?.solid);
+        let own = frame_of(own, "own")?;
+        let matrices: &[[f64; 12]] = slice(matrices.cast(), count, "matrices")?;
+        let frame = self::frame(frame)?;
+        if count > 0 {
+            out(gaps, "gaps")?;
+        }
+        let results = buffer(gaps, count, "gaps")?;
+        let placements = placements(matrices)?;
+        let found = controlled(options, |control| {
+            gap_at_least_at(a, b, &own, &placements, &frame, least_model, control)
+        })?;
+        results.fill_with(&found)
+    })
+}
+
+/// The maps of a list of matrices.
+unsafe fn placements(matrices: &[[f64; 12]]) -> Result<Vec<Affine>, Failure> {
+    let mut placements = memory::with_capacity(matrices.len())?;
+    for matrix in matrices {
+        placements.push(unsafe { placement(matrix.as_ptr())? });
+    }
+    Ok(placements)
 }

@@ -48,8 +48,9 @@ pub struct leafless_point_distance {
     pub surface: u32,
     /// Why the search ended.
     pub measured: leafless_stop_reason,
-    /// Whether the solid answered itself and told the nearest point: a mesh within the universe does, unless the nearest
-    /// triangle intersects another one, or the boundary may lie nearer over a hole.
+    /// Whether the nearest point is known. A mesh within the universe tells it with the triangle, unless the nearest triangle intersects
+    /// another one, or the boundary may lie nearer over a hole. Of other solids it is known if the upper bound is finite, unless the
+    /// point may lie on the side of the boundary from which no distance is measured; then it is as near as that bound says.
     pub has_nearest: bool,
 }
 

@@ -133,6 +133,9 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_gap { struct_size,
             verdict, distance_model, point_a_model, point_b_model, splits_a, splits_b, measured, has_points, is_clipped
         }
+        leafless_placed_gap {
+            distance_model, point_a_model, point_b_model, splits_a, splits_b, verdict, measured, has_points, is_clipped
+        }
         leafless_placed_clearance {
             distance_model, point_a_model, point_b_model, depth_model, splits_a, splits_b, measured, has_points, is_clipped
         }

@@ -138,11 +138,11 @@ pub fn short(x: f64) -> String {
 }
 
 /// Lines whose columns are aligned to the right.
-pub fn table<const N: usize>(head: &[String; N], rows: &[[String; N]]) -> String {
-    let width =
-        |column: usize| (rows.iter().chain([head])).map(|row| row[column].chars().count()).max().unwrap_or(0);
+pub fn table<R: AsRef<[String]>>(head: &R, rows: &[R]) -> String {
+    let all = || [head].into_iter().chain(rows).map(AsRef::as_ref);
+    let width = |column: usize| all().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let mut text = String::new();
-    for row in [head].into_iter().chain(rows) {
+    for row in all() {
         for (column, cell) in row.iter().enumerate() {
             let gap = if column == 0 { "" } else { "  " };
             let _ = write!(text, "{gap}{cell:>width$}", width = width(column));

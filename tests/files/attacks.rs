@@ -1,6 +1,6 @@
 //! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense arrays.
 
-use crate::{attributes, direct, measures, records};
+use crate::{attributes, contacts, direct, measures, records};
 use leafless::attribute::{
     Attribute, Criterion, Detail, FillOptions, MovedAttribute, ScalarType, ValueRange, ValueType,
     fill_channel,
@@ -138,10 +138,16 @@ fn what_is_no_cell_has_no_children_among_records() {
 #[test]
 fn what_the_fuzzer_found_interesting() {
     corpus("measures", measures::measures);
+    corpus("contacts", contacts::contacts);
     corpus("attributes", attributes::attributes);
     corpus("records", records::records);
     corpus("direct", direct::direct);
     corpus("layers", direct::layers);
+}
+
+#[test]
+fn solids_in_contact() {
+    any_bytes(contacts::contacts, 0..200, 40);
 }
 
 #[test]

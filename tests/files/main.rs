@@ -6,6 +6,8 @@ mod attributes;
 mod bodies;
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../fuzz/bodies/contacts.rs"]
+mod contacts;
 #[path = "../../fuzz/bodies/direct.rs"]
 mod direct;
 #[cfg(feature = "volumes")]

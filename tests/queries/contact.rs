@@ -129,6 +129,98 @@ fn balls_that_touch() {
     check("inside", &inside, &hollow, &frame, Overlap::Disjoint, 2000);
 }
 
+/// A little beside a contact: so far, and what is expected there.
+const BESIDE: [(f64, Overlap); 5] = {
+    const A_LITTLE: f64 = 1.0 / (1u64 << 20) as f64;
+    const LESS: f64 = 1.0 / (1u64 << 30) as f64;
+    [
+        (0.0, Overlap::Disjoint),
+        (A_LITTLE, Overlap::Disjoint),
+        (LESS, Overlap::Disjoint),
+        (-A_LITTLE, Overlap::Overlapping),
+        (-LESS, Overlap::Overlapping),
+    ]
+};
+
+/// Pairs that touch, the second of which is moved away along `x`, or into the first.
+fn check_beside(name: &str, a: &Csg, b: &Csg, most: u64) {
+    check_some_beside(name, a, b, &BESIDE, most);
+}
+
+fn check_some_beside(name: &str, a: &Csg, b: &Csg, beside: &[(f64, Overlap)], most: u64) {
+    let frame = Frame::new([-8.0; 3], 16.0, 20).unwrap();
+    for &(offset, expected) in beside {
+        check(&format!("{name}, {offset}"), a, &moved(b, [offset, 0.0, 0.0]), &frame, expected, most);
+    }
+}
+
+/// The points x, y, z become y, z, x.
+fn rolled() -> Affine {
+    Affine::new([[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0]]).unwrap()
+}
+
+#[test]
+fn cylinders_that_touch() {
+    let wall = Csg::cuboid([1.0, -4.0, -4.0], [3.0, 4.0, 4.0]).unwrap();
+    let upright = Csg::cylinder(1.0, -3.0, 3.0).unwrap();
+    check_beside("on a plane", &upright, &wall, 40_000);
+    let other = Csg::cylinder(1.5, -3.5, 2.5).unwrap();
+    check_beside("parallel", &upright, &moved(&other, [2.5, 0.0, 0.0]), 40_000);
+    // Across, at right angles and askew: what turns about x keeps what is in its way.
+    let (s, c) = 0.3f64.sin_cos();
+    let askew = Affine::new([[1.0, 0.0, 0.0, 0.0], [0.0, c, -s, 0.0], [0.0, s, c, 0.0]]).unwrap();
+    let across = placed(&other, &rolled());
+    check_beside("across", &upright, &moved(&across, [2.5, 0.0, 0.0]), 2000);
+    check_beside("askew", &upright, &moved(&placed(&other, &askew), [2.5, 0.0, 0.0]), 2000);
+    // In a bore that is larger.
+    let bore = Csg::cuboid([-4.0, -4.0, -2.0], [4.0, 4.0, 2.0]).unwrap();
+    let bore = bore.difference(&moved(&other, [-0.5, 0.0, 0.0])).unwrap();
+    // (What overlaps least would take a million cells along the line of contact.)
+    check_some_beside("in a bore", &upright, &bore, &BESIDE[..4], 40_000);
+}
+
+#[test]
+fn balls_on_cylinders_and_cones() {
+    let ball = |at: [f64; 3], radius: f64| Csg::ball(at, radius).unwrap();
+    let cylinder = Csg::cylinder(1.0, -3.0, 3.0).unwrap();
+    check_beside("on a cylinder", &cylinder, &ball([2.5, 0.0, 0.1], 1.5), 2000);
+    let tube = Csg::cylinder(3.0, -3.0, 3.0).unwrap().difference(&cylinder).unwrap();
+    check_beside("in a tube", &ball([0.25, 0.0, 0.1], 0.75), &tube, 2000);
+    // x² + y² = (3/4 z)² has the normal (4, 0, −3) / 5.
+    for (name, cone) in [
+        ("cone", Csg::frustum(0.0, 3.0, 0.0, 4.0).unwrap()),
+        ("frustum", Csg::frustum(0.75, 3.0, 1.0, 4.0).unwrap()),
+    ] {
+        check_beside(&format!("on a {name}"), &cone, &ball([2.5, 0.0, 1.25], 1.25), 2000);
+        let cup = Csg::cuboid([-4.0, -4.0, 0.5], [4.0, 4.0, 3.5]).unwrap().difference(&cone).unwrap();
+        check_beside(&format!("in a {name}"), &ball([5.0 / 64.0, 0.0, 2.5], 1.437_5), &cup, 4000);
+        let frame = Frame::new([-8.0; 3], 16.0, 20).unwrap();
+        check("all around", &ball([0.0, 0.0, 2.5], 1.5), &cup, &frame, Overlap::Disjoint, 2000);
+    }
+}
+
+#[test]
+fn cones_on_planes() {
+    let around = Csg::cuboid([-6.0; 3], [6.0; 3]).unwrap();
+    let slope = Csg::half_space([4.0, 0.0, -3.0], 0.0).unwrap();
+    let slope = Csg::intersection_of([slope, around]).unwrap();
+    // (Beside contact, the plane cuts the other nappe: nothing but cells tells, and of the cone's apex these do not.)
+    let cone = Csg::frustum(0.0, 3.0, 0.0, 4.0).unwrap();
+    check_some_beside("a cone on a slope", &cone, &slope, &[BESIDE[0], BESIDE[3], BESIDE[4]], 20_000);
+    let frustum = Csg::frustum(0.75, 3.0, 1.0, 4.0).unwrap();
+    let beside = [BESIDE[0], BESIDE[1], BESIDE[3], BESIDE[4]];
+    check_some_beside("a frustum on a slope", &frustum, &slope, &beside, 20_000);
+}
+
+#[test]
+fn ellipsoids_of_different_shapes() {
+    let a = Csg::ellipsoid([0.0; 3], [1.0, 2.0, 3.0]).unwrap();
+    let b = Csg::ellipsoid([2.5, 0.0, 0.0], [1.5, 1.0, 0.5]).unwrap();
+    check_beside("ellipsoids", &a, &b, 2000);
+    let upright = Csg::cylinder(1.0, -3.0, 3.0).unwrap();
+    check_beside("on a cylinder", &upright, &b, 2000);
+}
+
 /// The volume of what two convex polyhedra have in common, beside one that is clipped by the planes of the other.
 #[test]
 fn overlaps_of_convex_polyhedra() {

@@ -403,3 +403,37 @@ fn mapped_files() {
     }
     assert_eq!(fields[0], fields[1]);
 }
+
+/// Points of the boundary that come with distances: as near as said, and on the boundary, to second order.
+#[test]
+fn nearest_points_of_balls_and_octrees() {
+    let frame = Frame::new([-2.0; 3], 4.0, 20).unwrap();
+    let ball = Csg::ball([0.0; 3], 1.0).unwrap();
+    let stored = leafless::build_extended(
+        &ball,
+        &frame.with_depth(8).unwrap(),
+        &leafless::SurfaceOptions::default(),
+        &alone(),
+    )
+    .unwrap();
+    let mut random = Random(3);
+    let points: Vec<[f64; 3]> =
+        (0..50).map(|_| [0; 3].map(|_| random.between(-1.9, 1.9))).filter(|p| length(*p) > 0.3).collect();
+    for solid in [AnySolid::new(ball), AnySolid::new(stored)] {
+        let found = distances(&solid, &frame, &points, DistanceTo::Boundary, 1e-9, &alone()).unwrap();
+        for (point, found) in points.iter().zip(&found) {
+            let near = found.nearest.unwrap().point;
+            let apart = length([0, 1, 2].map(|k| near[k] - point[k]));
+            let truth = (length(*point) - 1.0).abs();
+            assert!((apart - truth).abs() < 2e-9 && (length(near) - 1.0).abs() < 2e-9, "{point:?} {found:?}");
+        }
+        // A point inside is no distance from the solid, and nothing is said of the boundary.
+        let inside = distances(&solid, &frame, &[[0.1; 3]], DistanceTo::Solid, 1e-9, &alone()).unwrap();
+        assert!(inside[0].distance.lower == 0.0 && inside[0].distance.upper <= 1e-9, "{inside:?}");
+        assert_eq!(inside[0].nearest, None);
+    }
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+}

@@ -4,12 +4,12 @@ use super::poses;
 use crate::failure::{Failure, Of};
 use crate::options::{bounds, seconds};
 use crate::progress::{watched, within_time};
-use crate::report::bounds::{Proven, stop_word, verdict_word};
+use crate::report::bounds::{Proven, Range, gap_word, stop_word, verdict_word};
 use crate::sink::print_told;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::{Corners, Source, evaluations};
-use crate::words::{count, measured, number, put_line};
+use crate::words::{count, number, put_line};
 use clap::Args;
 use leafless::lattice::Cube;
 use leafless::query::{Gap, GapVerdict, Overlap, StopReason, gap_at_least};
@@ -55,9 +55,13 @@ pub struct Arguments {
     cells: bool,
     #[command(flatten)]
     taking: Taking,
-    /// Ask for the verdict alone, of B under each of the matrices in a file: a line for each as --place takes it, after the other moves
+    /// Ask for the verdict alone, of B under each of the matrices in a file: a line for each as --place takes it, after the other moves.
+    /// With --gap-at-least, say of each place whether the solids are that far apart
     #[arg(long, value_name = "FILE", conflicts_with = "seconds")]
     poses: Option<std::path::PathBuf>,
+    /// With --poses, tell the clearance in each place, too, and a point of each solid that are as near
+    #[arg(long, requires = "poses", conflicts_with = "gap_at_least")]
+    clearance: bool,
     /// Say no more than whether no two points of them are nearer than that, in units of the model, and print two points if some are.
     /// The exit code is 0 if that is proven, and 1 if not
     #[arg(long, value_name = "D", conflicts_with = "seconds", allow_hyphen_values = true)]
@@ -76,32 +80,6 @@ struct Witness {
     max: [f64; 3],
     centre: [f64; 3],
     radius: f64,
-}
-
-/// Bounds of a number that is not negative; null where nothing is known.
-#[derive(Serialize)]
-struct Range {
-    lower: Option<f64>,
-    upper: Option<f64>,
-}
-
-impl Range {
-    /// Of what lies in the universe only, if `clipped`: then the lower bound says nothing of the rest.
-    fn new(interval: Interval, clipped: bool) -> Range {
-        let upper = interval.upper.is_finite().then_some(interval.upper);
-        Range { lower: (!clipped || interval.lower > 0.0).then_some(interval.lower), upper }
-    }
-
-    /// The same for people.
-    fn text(&self) -> String {
-        match (self.lower, self.upper) {
-            (None, None) => "unknown".into(),
-            (lower, upper) => {
-                let (lower, upper) = (lower.unwrap_or(0.0), upper.unwrap_or(f64::INFINITY));
-                measured(Interval::new(lower, upper).unwrap_or(Interval::ALL))
-            }
-        }
-    }
 }
 
 /// Why a verdict is undecided, in a word and in a sentence.
@@ -197,7 +175,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             [first.placed(a, &Affine::IDENTITY, &frame)?, second.placed(b, &Affine::IDENTITY, &own)?];
         let control = Control { max_splits: Some(arguments.splits.unwrap_or(SPLITS)), ..Control::default() };
         let asked = poses::Asked { inputs: &inputs, solids: &solids, frames: [&frame, &own] };
-        return asked.run(&placements, &control, arguments.json);
+        let wanted = match arguments.gap_at_least {
+            Some(least) => poses::Wanted::Gap(least),
+            None if arguments.clearance => poses::Wanted::Clearance(tolerance(is_exact, &frame)),
+            None => poses::Wanted::Verdict,
+        };
+        return asked.run(&placements, wanted, &control, arguments.json);
     }
     let first = Prepared::new(first.placed(a, &Affine::IDENTITY, &frame)?);
     let second = Prepared::new(second.placed(b, &placement, &frame)?);
@@ -242,13 +225,8 @@ fn gap(
         gap_at_least(first, second, frame, least, &Control { max_splits, ..*control })
     });
     let Gap { verdict, evidence } = found.of(a)?;
-    let word = match verdict {
-        GapVerdict::Yes => "yes",
-        GapVerdict::No => "no",
-        GapVerdict::Undecided => "undecided",
-    };
     let report = GapReport {
-        gap_at_least: word,
+        gap_at_least: gap_word(verdict),
         least,
         clearance: Range::new(evidence.distance, evidence.clipped),
         points: evidence.points,
@@ -257,7 +235,7 @@ fn gap(
     };
     print_told(arguments.json, &report, |report| {
         let mut text = String::new();
-        put_line(&mut text, "gap", &format!("at least {}: {word}", number(least)));
+        put_line(&mut text, "gap", &format!("at least {}: {}", number(least), report.gap_at_least));
         put_line(&mut text, "clearance", &report.clearance.text());
         if let Some(points) = &report.points {
             put_line(&mut text, "points", &ends(points));
@@ -335,6 +313,11 @@ struct Answers {
     is_spent: bool,
 }
 
+/// How well a clearance is to be known: where surfaces are known, as well as one likes; else as cells tell it.
+fn tolerance(is_exact: bool, frame: &Frame) -> f64 {
+    if is_exact { 1e-9 * frame.edge() } else { 4.0 * frame.cell_size() }
+}
+
 /// The verdict; then how much, or how far.
 fn ask(
     [a, b]: [&Prepared; 2],
@@ -367,9 +350,7 @@ fn ask(
         };
         return Ok(Answers { found, near, evaluations, is_spent: spends(measured.splits) });
     }
-    // (Where surfaces are known, so is the distance, as well as one likes; else cells tell it.)
-    let tolerance = if is_exact { 1e-9 * frame.edge() } else { 4.0 * frame.cell_size() };
-    let near = clearance(a, b, frame, tolerance, control)?;
+    let near = clearance(a, b, frame, tolerance(is_exact, frame), control)?;
     let is_open = found.verdict == Overlap::Undecided && spends(found.splits);
     Ok(Answers { found, is_spent: is_open || near.stop_reason == StopReason::Budget, near, evaluations })
 }

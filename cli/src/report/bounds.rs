@@ -1,7 +1,7 @@
 //! What is told of what is known: volumes as intervals, what cells prove, and why a search ended.
 
-use crate::words::number;
-use leafless::query::{Overlap, StopReason};
+use crate::words::{measured, number};
+use leafless::query::{GapVerdict, Overlap, StopReason};
 use leafless::{Interval, Proof};
 use serde::Serialize;
 
@@ -27,6 +27,41 @@ impl Volume {
 impl From<Interval> for Volume {
     fn from(interval: Interval) -> Volume {
         Volume { lower: interval.lower, upper: interval.upper }
+    }
+}
+
+/// Bounds of a number that is not negative; null where nothing is known.
+#[derive(Serialize)]
+pub struct Range {
+    pub lower: Option<f64>,
+    pub upper: Option<f64>,
+}
+
+impl Range {
+    /// Of what lies in the universe only, if `clipped`: then the lower bound says nothing of the rest.
+    pub fn new(interval: Interval, clipped: bool) -> Range {
+        let upper = interval.upper.is_finite().then_some(interval.upper);
+        Range { lower: (!clipped || interval.lower > 0.0).then_some(interval.lower), upper }
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        match (self.lower, self.upper) {
+            (None, None) => "unknown".into(),
+            (lower, upper) => {
+                let (lower, upper) = (lower.unwrap_or(0.0), upper.unwrap_or(f64::INFINITY));
+                measured(Interval::new(lower, upper).unwrap_or(Interval::ALL))
+            }
+        }
+    }
+}
+
+/// Whether solids are far enough apart, in a word.
+pub fn gap_word(verdict: GapVerdict) -> &'static str {
+    match verdict {
+        GapVerdict::Yes => "yes",
+        GapVerdict::No => "no",
+        GapVerdict::Undecided => "undecided",
     }
 }
 

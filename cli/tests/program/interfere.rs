@@ -108,6 +108,54 @@ fn gaps_and_points() {
     assert!(text.lines().any(|line| line.starts_with("nearest")), "{text}");
 }
 
+/// Clearances and gaps in the places of a file.
+#[test]
+fn many_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::write(path.join("a.csg"), "sphere(2);").unwrap();
+    std::fs::write(path.join("b.csg"), "sphere(3);").unwrap();
+    let places = "# beside each other, in contact, into each other\n\n1 0 0 7 0 1 0 0 0 0 1 0\n\
+        1 0 0 3 0 1 0 0 0 0 1 4\n1 0 0 4.5 0 1 0 0 0 0 1 0\n";
+    std::fs::write(path.join("places.txt"), places).unwrap();
+    let command = ["a.csg", "b.csg", "--poses", "places.txt"];
+    let found = json(path, &command);
+    assert!(found["poses"][0].get("clearance").is_none() && found.get("least").is_none(), "{found}");
+    let found = json(path, &[&command[..], &["--clearance"]].concat());
+    let verdicts = ["disjoint", "disjoint", "overlapping"];
+    for ((pose, verdict), apart) in
+        found["poses"].as_array().unwrap().iter().zip(verdicts).zip([2.0, 0.0, 0.0])
+    {
+        assert!(pose["verdict"] == verdict && contains(&pose["clearance"], apart), "{found}");
+    }
+    let ends = &found["poses"][0]["points"];
+    assert!(
+        (ends[0][0].as_f64().unwrap() - 2.0).abs() < 1e-3
+            && (ends[1][0].as_f64().unwrap() - 4.0).abs() < 1e-3
+    );
+    let output = run(path, &[&["interfere"], &command[..], &["--clearance"]].concat());
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.lines().count() == 4 && text.contains("clearance") && text.contains(" and "), "{text}");
+
+    // Far enough apart in the first place only.
+    let gap = [&["interfere"], &command[..], &["--gap-at-least", "1.5"]].concat();
+    let output = run(path, &[&gap[..], &["--json"]].concat());
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let words = told["poses"].as_array().unwrap().iter().map(|pose| pose["gap_at_least"].as_str().unwrap());
+    assert_eq!((words.collect::<Vec<_>>(), told["least"].as_f64()), (vec!["yes", "no", "no"], Some(1.5)));
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        output.status.code() == Some(1) && errors.contains("nearer than 1.5 in 2 of 3 places"),
+        "{errors}"
+    );
+    let text = String::from_utf8(run(path, &gap).stdout).unwrap();
+    assert!(text.contains("at least 1.5") && text.lines().count() == 4, "{text}");
+    std::fs::write(path.join("places.txt"), "1 0 0 7 0 1 0 0 0 0 1 0\n").unwrap();
+    assert!(run(path, &gap).status.success());
+    // A clearance of one place is told anyway.
+    assert_eq!(run(path, &["interfere", "a.csg", "b.csg", "--clearance"]).status.code(), Some(2));
+}
+
 /// The area that a polygon has in [0, w] × [0, h], counter-clockwise.
 fn clipped_area(polygon: [[f64; 2]; 4], size: [f64; 2]) -> f64 {
     let mut points = polygon.to_vec();

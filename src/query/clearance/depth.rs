@@ -15,7 +15,7 @@ use crate::solid::Classifier;
 use crate::walk::Queue;
 use core::cmp::Reverse;
 
-/// Cells that are looked at for a cell that lies in both, and for each ball.
+/// Cells that are looked at for a cell that lies in both, and for each centre.
 const CELLS: u64 = 1 << 12;
 
 /// Centres at most.
@@ -112,19 +112,21 @@ fn around<A: Classifier, B: Classifier>(
     centre: [f64; 3],
     job: &Job<'_>,
 ) -> Result<f64, Error> {
-    let mut spent = 0;
-    let own = free(&mut search.a, centre, f64::INFINITY, &mut spent, job)?;
-    let other = if own > 0.0 { free(&mut search.b, centre, own, &mut spent, job)? } else { 0.0 };
-    search.left = search.left.saturating_sub(spent);
+    let before = CELLS.min(search.left);
+    let mut left = before;
+    let own = free(&mut search.a, centre, f64::INFINITY, &mut left, job)?;
+    let other = if own > 0.0 { free(&mut search.b, centre, own, &mut left, job)? } else { 0.0 };
+    search.left -= before - left;
     Ok(own.min(other))
 }
 
-/// The radius of a ball around a point that is proven to lie in a solid; more than `most` is not asked for.
+/// The radius of a ball around a point that is proven to lie in a solid; more than `most` is not asked for, and no more than `left` cells
+/// are looked at.
 fn free<C: Classifier>(
     nodes: &mut Nodes<'_, C>,
     centre: [f64; 3],
     most: f64,
-    spent: &mut u64,
+    left: &mut u64,
     job: &Job<'_>,
 ) -> Result<f64, Error> {
     let cells = f64::from(nodes.subject.classifier.frame().cells());
@@ -156,7 +158,6 @@ fn free<C: Classifier>(
     // The nearest cells first.
     let mut open: Queue<(Reverse<u64>, u64), usize> = Queue::new();
     open.push((Reverse(0), 0), 0)?;
-    let mut left = CELLS;
     loop {
         let Some(first) = open.peek() else { return Ok(radius) };
         let least = f64::from_bits(first.key.0.0);
@@ -165,10 +166,10 @@ fn free<C: Classifier>(
         }
         let Some(node) = open.pop() else { return Ok(radius) };
         job.check()?;
-        if !nodes.can_be_split(node) || left == 0 || nodes.subject.takes(4) {
+        if !nodes.can_be_split(node) || *left == 0 || nodes.subject.takes(4) {
             return Ok(least);
         }
-        (left, *spent) = (left - 1, *spent + 1);
+        *left -= 1;
         let Piece { centre, half, .. } = nodes.piece(node);
         for (octant, child) in nodes.octants(node)?.into_iter().enumerate() {
             let half = 0.5 * half;

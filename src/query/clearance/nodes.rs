@@ -7,6 +7,9 @@ use crate::error::Error;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Cell, Cube, Frame, MAX_DEPTH, axes};
 use crate::memory;
+use crate::solid::half_space::Placed;
+use crate::solid::half_space::literals::Literals;
+use crate::solid::half_space::possible::possible;
 use crate::solid::{
     Ask, AskWhole, Classifier, Enclosure, Form, OpenSurfaces, PlacedHalfSpace, Verdict, Worker,
 };
@@ -53,7 +56,12 @@ pub(super) struct Nodes<'s, C: Classifier> {
     surfaces: Vec<PlacedHalfSpace>,
     /// The forms of the surfaces, once somebody has asked.
     forms: Vec<Option<Option<Form>>>,
+    /// The surfaces on the frame, once a cell has several; none if exact numbers would become too long.
+    placed: Option<Vec<Placed>>,
 }
+
+/// A function of fewer surfaces tells as much as it can.
+const SEVERAL: usize = 3;
 
 impl<'s, C: Classifier> Nodes<'s, C> {
     /// The universe, unless it is EMPTY.
@@ -61,7 +69,7 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         let surfaces = classifier.surfaces(control)?.unwrap_or_default();
         let forms = memory::filled(surfaces.len(), None)?;
         let subject = Subject::new(classifier, control)?;
-        let mut nodes = Nodes { subject, nodes: Vec::new(), lore: Vec::new(), surfaces, forms };
+        let mut nodes = Nodes { subject, nodes: Vec::new(), lore: Vec::new(), surfaces, forms, placed: None };
         let root = nodes.subject.worker.root()?;
         nodes.add(Cell::ROOT, root, NONE)?;
         Ok(nodes)
@@ -187,6 +195,19 @@ impl<'s, C: Classifier> Nodes<'s, C> {
             true => None,
             false => self.subject.worker.surfaces(*cell, part)?,
         };
+        let (enclosure, open) = match open {
+            Some(open) if open.indices().len() >= SEVERAL => {
+                let (simple, slabs) = simplified(
+                    &mut self.placed,
+                    &self.surfaces,
+                    self.subject.classifier.frame(),
+                    *cell,
+                    &open,
+                )?;
+                (slabs.filter(is_sound).or(enclosure), Some(simple))
+            }
+            open => (enclosure, open),
+        };
         let mut lore = Lore { enclosure, rings: [None; 2], open };
         let mut count = 0;
         for (place, &index) in open.iter().flat_map(|open| open.indices()).enumerate() {
@@ -220,6 +241,32 @@ impl<'s, C: Classifier> Nodes<'s, C> {
 
     pub(super) fn lore(&self, node: usize) -> Option<&Lore> {
         self.lore.get(self.nodes[node].lore as usize)
+    }
+
+    /// Whether the solid lies within a ball or a cylinder in a cell.
+    pub(super) fn is_round(&self, node: usize) -> bool {
+        self.lore(node).is_some_and(|lore| lore.rings.iter().flatten().any(|ring| ring.is_near))
+    }
+
+    /// How far the solid may be from what is known of it in a cell, in finest cells, but for rounding: what splitting the cell may tell.
+    pub(super) fn doubt(&self, node: usize) -> f64 {
+        let Piece { half, content, rings, .. } = self.piece(node);
+        let open = self.lore(node).and_then(|lore| lore.open);
+        // (Where a plane cuts a ball, neither alone tells where the nearest point is; a cylinder ends somewhere.)
+        let is_ball = open.is_some_and(|open| open.indices().len() == 1)
+            && rings.iter().flatten().any(|ring| ring.is_near && ring.round.axis.is_none());
+        match content {
+            _ if is_ball => 0.0,
+            Content::Full => 0.0,
+            Content::Unknown => 2.0 * half,
+            Content::Slabs(known) => {
+                let widths = known.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
+                let widths =
+                    widths.map(|slab| (slab.outer - slab.inner) / sqrt(dot(slab.normal, slab.normal)));
+                // What is one-sided has an infinite width.
+                half * widths.fold(0.0, f64::max).min(2.0)
+            }
+        }
     }
 
     /// A unit vector that leads out of the solid next to a point of a cell, if slabs tell.
@@ -322,6 +369,42 @@ fn form<'f>(
         });
     }
     Ok(place.as_ref().and_then(Option::as_ref))
+}
+
+/// The function of a cell on those signs that its surfaces may have there together, and the slabs of that if it is of fewer surfaces.
+/// (A bore that goes on beyond a block has an end in the same cell as the block has, and nothing of the solid lies there.)
+fn simplified(
+    placed: &mut Option<Vec<Placed>>,
+    surfaces: &[PlacedHalfSpace],
+    frame: &Frame,
+    cell: Cell,
+    open: &OpenSurfaces,
+) -> Result<(OpenSurfaces, Option<Enclosure>), Error> {
+    let all = match placed {
+        Some(all) => all,
+        None => {
+            let mut all = memory::with_capacity(surfaces.len())?;
+            for surface in surfaces {
+                match surface.on(frame) {
+                    Err(Error::Limit { .. }) => break,
+                    surface => all.push(surface?),
+                }
+            }
+            placed.insert(if all.len() == surfaces.len() { all } else { Vec::new() })
+        }
+    };
+    let mut own = memory::with_capacity(OpenSurfaces::MOST)?;
+    own.extend(open.indices().iter().filter_map(|&index| all.get(index as usize)));
+    if own.len() < open.indices().len() {
+        return Ok((*open, None));
+    }
+    let simple = open.with_table(open.table().simplified(possible(own.into_iter(), cell))).shortened();
+    let is_simpler = simple.settled().is_none() && simple.indices().len() < open.indices().len();
+    if !is_simpler {
+        return Ok((*open, None));
+    }
+    let literals = Literals::of_table(simple.variables(), simple.table());
+    Ok((simple, literals.and_then(|literals| literals.enclosure(all, cell))))
 }
 
 /// Which sign a surface's function has wherever the solid is; `None` if the solid has points on both sides.

@@ -11,7 +11,7 @@
 
 use super::simplex::{Near, dot, minus, nearest, plus};
 use crate::cut::reach;
-use crate::lattice::exact::sqrt;
+use crate::lattice::exact::{floor, sqrt};
 use crate::lattice::{Interval, axes};
 use crate::solid::{Enclosure, Round, Slab, SlabJoin};
 
@@ -385,7 +385,7 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
         gap.over(length(&towards)).lower
     };
     let (from, to) = (own.seen(a, a.centre), other.seen(b, a.centre));
-    let Near { points, way } = nearest(&from[..own.count], &to[..other.count], apart);
+    let way = nearest(&from[..own.count], &to[..other.count], apart).way;
     let about = sqrt(dot(way, way));
     let is_round = a.near_rounds().next().is_some() || b.near_rounds().next().is_some();
     if about <= known && !is_round {
@@ -393,18 +393,19 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
     }
     let mut best = if about <= known { 0.0 } else { prove(way).max(0.0) };
     if is_round {
-        // From core to core.
-        let [mut p, mut q] = points.map(|point| plus(point, 1.0, a.centre));
-        for _ in 0..4 {
-            if let Some(round) = a.near_rounds().next() {
-                p = round.nearest(q);
+        // From core to core, or to the nearest point of the other body.
+        let core = |piece: &Piece<'_>, corners: [[f64; 3]; MOST], count: usize| {
+            let Some(round) = piece.near_rounds().next() else { return (corners, count) };
+            let mut own = corners;
+            for (place, end) in own.iter_mut().zip(round.ends(piece)) {
+                *place = axes(|k| 0.5 * (end[k].lower + end[k].upper) - a.centre[k]);
             }
-            if let Some(round) = b.near_rounds().next() {
-                q = round.nearest(p);
-            }
-        }
-        let way = minus(q, p);
-        let radii = a.near_rounds().chain(b.near_rounds()).take(2).map(|round| sqrt(round.square.upper));
+            (own, if round.axis.is_some() { 2 } else { 1 })
+        };
+        let ((from, of_from), (to, of_to)) = (core(a, from, own.count), core(b, to, other.count));
+        let way = nearest(&from[..of_from], &to[..of_to], apart).way;
+        let radii = [a, b].into_iter().filter_map(|piece| piece.near_rounds().next());
+        let radii = radii.map(|round| sqrt(round.square.upper));
         if sqrt(dot(way, way)) - radii.sum::<f64>() > best.max(known) {
             best = best.max(prove(way));
         }
@@ -437,6 +438,9 @@ pub(super) fn upper(a: &Piece<'_>, b: &Piece<'_>) -> Option<(Interval, [Place; 2
             let apart = minus(b.centre, a.centre);
             let Near { points: [p, q], .. } = nearest(&from[..own.count], &to[..other.count], apart);
             let towards = minus(q, p);
+            if let Some(place) = common([(a, own), (b, other)], plus(plus(p, 0.5, towards), 1.0, a.centre)) {
+                return Some((Interval::exactly(0.0), [place; 2]));
+            }
             let (Some(p), Some(q)) =
                 (proven(own, a, p, towards), proven(other, b, minus(q, apart), towards.map(|c| -c)))
             else {
@@ -449,6 +453,19 @@ pub(super) fn upper(a: &Piece<'_>, b: &Piece<'_>) -> Option<(Interval, [Place; 2
         }
     }
     best
+}
+
+/// A point next to a given one (in finest cells from the universe's corner) that is proven to lie in two bodies.
+fn common(bodies: [(&Piece<'_>, &Body); 2], point: [f64; 3]) -> Option<Place> {
+    // So short that differences to centres are exact.
+    const STEPS: f64 = (1u64 << 20) as f64;
+    if !point.iter().all(|c| (0.0..STEPS * 2.0).contains(c)) {
+        return None;
+    }
+    let point = point.map(|c| floor(c * STEPS + 0.5) as f64 / STEPS);
+    let lies_in =
+        |(piece, body): &(&Piece<'_>, &Body)| body.holds(minus(point, piece.centre).map(|c| c / piece.half));
+    bodies.iter().all(lies_in).then(|| exact(point))
 }
 
 /// A point near `point`, from the cell's centre in finest cells, that is proven to be a limit of points of a body.

@@ -87,6 +87,9 @@ const SPLITS_BETWEEN: u64 = 64;
 /// Steps of a plunge that do not lower the upper bound any more.
 const STALLED: u64 = 16;
 
+/// By which factor what is not known of two cells may differ before it counts.
+const ALIKE: f64 = 4.0;
+
 /// Pairs of cells in which points are moved to the surfaces, one after the other.
 const CELLS_ON: usize = 4;
 
@@ -319,9 +322,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
                 (true, true) => likeliest,
             };
             let least = f64::from_bits(nearest.0);
-            // The larger one, so that neither is split without need.
-            let (level_a, level_b) = (self.a.cell(a).level, self.b.cell(b).level);
-            if self.a.can_be_split(a) && (!self.b.can_be_split(b) || level_a <= level_b) {
+            if self.a.can_be_split(a) && (!self.b.can_be_split(b) || self.is_first_due(a, b)) {
                 self.left = self.left.saturating_sub(1);
                 for child in self.a.children(a)? {
                     self.meet(child, companions.iter().copied(), least)?;
@@ -332,6 +333,16 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             return Ok(true);
         }
         Ok(false)
+    }
+
+    /// Whether of two cells the first is to be split: for a lower bound that of which less is known, and among equals the larger one, so
+    /// that neither is split without need. (Points are found in small cells of both.)
+    fn is_first_due(&self, a: usize, b: usize) -> bool {
+        // (What is round is bounded by its core, next to which the doubt in a cell says little.)
+        let are_alike = self.plunging || self.a.is_round(a) && self.b.is_round(b);
+        let [of_a, of_b] = if are_alike { [0.0; 2] } else { [self.a.doubt(a), self.b.doubt(b)] };
+        let is_alike = of_a.max(of_b) <= ALIKE * of_a.min(of_b);
+        if is_alike { self.a.cell(a).level <= self.b.cell(b).level } else { of_a > of_b }
     }
 
     /// Splits the companion `b` of `a`, and if a proof needs them all the others of its size, too.

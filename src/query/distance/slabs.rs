@@ -24,11 +24,14 @@ pub(super) fn lower(enclosure: &Enclosure, point: &Seen) -> f64 {
     }
 }
 
-/// Proven: the distance of the solid in the cell is at most that. `None` if no point of it is found.
-pub(super) fn upper(enclosure: &Enclosure, point: &Seen) -> Option<f64> {
+/// Proven: a point of the closed solid in the cell, and a distance that it is not further away. `None` if no point of it is found.
+pub(super) fn upper(enclosure: &Enclosure, point: &Seen) -> Option<(f64, [f64; 3])> {
     match enclosure.join {
         SlabJoin::All => upper_of_all(enclosure, point),
-        SlabJoin::Any => alone(enclosure).filter_map(|one| upper_of_all(&one, point)).reduce(f64::min),
+        SlabJoin::Any => {
+            let each = alone(enclosure).filter_map(|one| upper_of_all(&one, point));
+            each.min_by(|a, b| a.0.total_cmp(&b.0))
+        }
     }
 }
 
@@ -88,7 +91,7 @@ fn lower_of_all(enclosure: &Enclosure, point: &Seen) -> f64 {
     best
 }
 
-fn upper_of_all(enclosure: &Enclosure, point: &Seen) -> Option<f64> {
+fn upper_of_all(enclosure: &Enclosure, point: &Seen) -> Option<(f64, [f64; 3])> {
     let about = middle(point);
     let near = pulled(enclosure, about);
     let found = if is_inside(enclosure, near) {
@@ -97,7 +100,7 @@ fn upper_of_all(enclosure: &Enclosure, point: &Seen) -> Option<f64> {
         let towards = minus(about, near);
         reach::witness(enclosure, towards)?
     };
-    Some(length(&axes(|axis| point[axis].minus(Interval::exactly(found[axis])))).upper)
+    Some((length(&axes(|axis| point[axis].minus(Interval::exactly(found[axis])))).upper, found))
 }
 
 /// A point of the cell near `point` that lies, to rounding, a little inside of all slabs, if some turns of projections

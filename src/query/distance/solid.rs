@@ -6,7 +6,7 @@ use super::slabs;
 use crate::control::{Control, Job};
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
-use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH, valid};
+use crate::lattice::{Cell, Cube, Frame, Interval, MAX_DEPTH, axes, valid};
 use crate::memory;
 use crate::octree::Tag;
 use crate::query::StopReason;
@@ -29,14 +29,16 @@ pub struct PointDistance {
     pub stop_reason: StopReason,
     /// How many times a cell was split.
     pub splits: u64,
-    /// The nearest point of the boundary, if the solid answers distances itself.
+    /// The nearest point of the boundary, if one is known: whenever a solid answers distances itself, and of others if the upper bound is
+    /// finite, unless the point that was asked for may lie on the side of the boundary from which no distance is measured.
     pub nearest: Option<NearPoint>,
 }
 
 /// A point of a solid's boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearPoint {
-    /// The point (model units), but for rounding: the nearest, or one whose distance lies in the interval as well.
+    /// The point (model units), but for rounding: the nearest, or one whose distance lies in the interval as well. If the interval
+    /// of a distance from the boundary holds 0, it may lie within the solid, next to the boundary.
     pub point: [f64; 3],
     /// The number of its surface: of a mesh, the triangle's. Of several on which the point lies, one that bounds the solid next to
     /// it, if one is found.
@@ -78,7 +80,8 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 ///
 /// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), these bound how near it comes: each
 /// level then makes the interval about four times as narrow, and a plane face is known at once. Without slabs a level
-/// makes it half as wide.
+/// makes it half as wide. A point of the boundary that is as near as the upper bound says comes with the answer
+/// ([`PointDistance::nearest`]).
 ///
 /// A closed mesh in the universe answers each point from a tree over its triangles, in microseconds and to the rounding of
 /// doubles (some 10^-12 of the distance and of the triangle), and tells the nearest point and its triangle. The first question
@@ -101,6 +104,8 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// let (ball, points) = (Csg::ball([0.0; 3], 1.0)?, [[3.0, 0.0, 4.0], [0.0, 0.5, 0.0]]);
 /// let found = distances(&ball, &frame, &points, DistanceTo::Boundary, 1e-9, &Control::default())?;
 /// assert!(found[0].distance.contains(4.0) && found[0].distance.width() <= 1e-9);
+/// let near = found[0].nearest.unwrap().point;
+/// assert!((near[0] - 0.6).abs() < 1e-4 && (near[2] - 0.8).abs() < 1e-4);
 /// assert!(found[1].distance.contains(-0.5) && found[1].distance.width() <= 1e-9);
 /// # Ok::<(), leafless::Error>(())
 /// ```
@@ -146,6 +151,9 @@ pub fn distances<S: Solid>(
     Ok(distances)
 }
 
+/// A distance in which there is some of a solid, and a point of it that is as near (model units).
+type Found = (f64, [f64; 3]);
+
 /// Points that one worker takes on.
 const CHUNK: usize = 1 << 4;
 
@@ -164,6 +172,7 @@ fn distance<W: Worker>(
     };
     let budget = job.control().max_splits.unwrap_or(DISTANCE_SPLITS);
     let (mut left, mut is_spent) = (budget, false);
+    let mut near = [None; 2];
     let distance = to.ask(|hollow| {
         let mut search = Search {
             worker,
@@ -174,12 +183,14 @@ fn distance<W: Worker>(
             // Near the boundary the interval is that of both searches.
             tolerance: if to == DistanceTo::Boundary { 0.5 * tolerance } else { tolerance },
             upper: f64::INFINITY,
+            nearest: None,
             settled: f64::INFINITY,
             has_slabs: false,
             open: Queue::new(),
             job,
         };
         is_spent |= search.run(exterior, &mut left)?;
+        near[usize::from(hollow)] = search.nearest;
         Ok(search.found())
     })?;
     let is_known = distance.width() <= tolerance || distance.lower == f64::INFINITY;
@@ -188,7 +199,16 @@ fn distance<W: Worker>(
         (false, true) => StopReason::Budget,
         (false, false) => StopReason::Exhausted,
     };
-    Ok(PointDistance { distance, stop_reason, splits: budget - left, nearest: None })
+    let point = match to {
+        DistanceTo::Boundary if distance.upper < 0.0 => near[1],
+        DistanceTo::Boundary => near[0],
+        // (Of what holds the point itself, no point of the boundary is known.)
+        _ if distance.lower <= 0.0 => None,
+        DistanceTo::Solid => near[0],
+        DistanceTo::Complement => near[1],
+    };
+    let nearest = point.map(|point| NearPoint { point, surface: None });
+    Ok(PointDistance { distance, stop_reason, splits: budget - left, nearest })
 }
 
 /// The least distance of what may lie in a cell (the bits of a double that is not negative), the cell's height above the
@@ -203,8 +223,9 @@ struct Search<'a, W: Worker> {
     /// Whether the complement is sought.
     hollow: bool,
     tolerance: f64,
-    /// The least distance of what is proven to be there.
+    /// The least distance of what is proven to be there, and a point that is as near, unless that lies beyond the universe.
     upper: f64,
+    nearest: Option<[f64; 3]>,
     /// The least distance of what may be there, in cells that are not split any more.
     settled: f64,
     /// Whether the solid has told slabs.
@@ -220,7 +241,7 @@ impl<W: Worker> Search<'_, W> {
         let outside = self.place.distance(self.place.square_from_outside());
         match if self.hollow { exterior.complement() } else { exterior } {
             Tag::Empty => {}
-            Tag::Full => self.reach(outside),
+            Tag::Full => self.reach(outside, None),
             Tag::Partial | Tag::Branch => self.settled = outside.lower,
         }
         let root = self.worker.root()?;
@@ -270,8 +291,10 @@ impl<W: Worker> Search<'_, W> {
     }
 
     /// Takes in what is proven to be there.
-    fn reach(&mut self, distance: Interval) {
-        self.upper = self.upper.min(distance.upper);
+    fn reach(&mut self, distance: Interval, point: Option<[f64; 3]>) {
+        if distance.upper < self.upper {
+            (self.upper, self.nearest) = (distance.upper, point);
+        }
         self.settled = self.settled.min(distance.lower);
     }
 
@@ -283,12 +306,14 @@ impl<W: Worker> Search<'_, W> {
             Verdict::Empty => {}
             // What is no nearer than something that is there does not matter.
             _ if least >= self.upper => {}
-            Verdict::Full => self.reach(distance),
+            Verdict::Full => self.reach(distance, Some(self.place.nearest_in(cell, self.point))),
             Verdict::Undecided => self.settled = self.settled.min(least),
             Verdict::Partial(part) => {
                 let (nearest, proven) = self.by_slabs(cell, &part)?;
                 least = least.max(nearest);
-                self.upper = self.upper.min(proven);
+                if let Some((upper, point)) = proven.filter(|proven| proven.0 < self.upper) {
+                    (self.upper, self.nearest) = (upper, Some(point));
+                }
                 if least < self.upper && cell.level < self.frame.depth() {
                     let key = Reverse((least.to_bits(), MAX_DEPTH - cell.level, self.open.met()));
                     self.open.push(key, (cell, part))?;
@@ -300,10 +325,10 @@ impl<W: Worker> Search<'_, W> {
         Ok(())
     }
 
-    /// Between which distances the solid in a PARTIAL cell begins, as its slabs tell: the first is ∞ if there is none of
-    /// it, the second if none is proven to be there.
-    fn by_slabs(&mut self, cell: Cell, part: &W::Part) -> Result<(f64, f64), Error> {
-        let Some(enclosure) = self.worker.enclosure(cell, part)? else { return Ok((0.0, f64::INFINITY)) };
+    /// From which distance on the solid in a PARTIAL cell begins, as its slabs tell: ∞ if there is none of it; and a distance in which,
+    /// with a point at which, some of it is proven to be.
+    fn by_slabs(&mut self, cell: Cell, part: &W::Part) -> Result<(f64, Option<Found>), Error> {
+        let Some(enclosure) = self.worker.enclosure(cell, part)? else { return Ok((0.0, None)) };
         self.has_slabs = true;
         let enclosure = if self.hollow { enclosure.complement() } else { enclosure };
         let cube = Cube { frame: self.frame, cell };
@@ -311,9 +336,11 @@ impl<W: Worker> Search<'_, W> {
         let seen = cube.centre_from(self.point).map(|c| c.negated().over(half));
         let to_model = |halves: f64| Interval::exactly(halves).times(half);
         let lower = slabs::lower(&enclosure, &seen);
-        Ok((
-            if lower == f64::INFINITY { lower } else { to_model(lower).lower },
-            slabs::upper(&enclosure, &seen).map_or(f64::INFINITY, |upper| to_model(upper).upper),
-        ))
+        let upper = slabs::upper(&enclosure, &seen).map(|(upper, at)| {
+            let (low, high) = cube.bounds();
+            let point = axes(|k| 0.5 * low[k] + 0.5 * high[k] + cube.half_edge() * at[k]);
+            (to_model(upper).upper, point)
+        });
+        Ok((if lower == f64::INFINITY { lower } else { to_model(lower).lower }, upper))
     }
 }

@@ -90,7 +90,8 @@ pub struct Interference {
 ///
 /// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces), cells are asked for the
 /// function of both: a plane, a quadric or another surface that bounds both, however both were placed, is one, and solids that touch in
-/// it from opposite sides are `Disjoint` by proof. Where a solid is known between two planes (a mesh, a host's function), solids in
+/// it from opposite sides are `Disjoint` by proof. So are solids on two planes or quadrics that touch: of any two, exact numbers tell
+/// whether a point lies inside of both. Where a solid is known between two planes (a mesh, a host's function), solids in
 /// contact stay `Undecided` within that width.
 ///
 /// The work ends at the frame's depth, or once `control.max_splits` cells of both are split or what is remembered of

@@ -1,153 +1,250 @@
-//! Ellipsoids and planes that touch: closed forms in exact numbers, where bounds over cells never tell.
+//! Planes and quadrics that touch: exact numbers decide, where bounds over cells never tell.
 //!
-//! What an affine map does to both alike does not count: balls under one map are ellipsoids whose terms of second order are
-//! proportional, and two such ellipsoids lie to each other as the balls do.
+//! Two polynomials of degree two that are positive together at no point have a sum, with a positive factor, that is nowhere positive
+//! ([`pencil`]): so for balls, ellipsoids, cylinders and cones beside and inside of each other, and for all of these on planes.
+//! What an affine map does to both does not count, since it keeps the signs of all values.
+//!
+//! A quadric of two sheets that lie on both sides of a plane, such as the two nappes of a cone whose ruling lies in the plane, has no
+//! such factor: one sheet is positive together with the plane. Then there may be a linear function ℓ such that f + ℓ g is nowhere
+//! positive. Where ℓ is not negative, f and g are not positive together: that is so in cells on one side of the cone's apex, and,
+//! for a cone that ends at its apex, wherever its base's function is positive.
 
-use super::PlacedHalfSpace;
-use super::Surface;
+use super::bounds::{centre, half_edge};
+use super::linear;
 use super::map::ExactMap;
-use super::quadric::{Coefficients, substitute};
+use super::pencil::{self, Form};
+use super::quadric::{Coefficients, place, substitute};
+use super::{PlacedHalfSpace, Surface};
 use crate::error::Error;
-use crate::lattice::exact::{Dyadic, dot};
+use crate::lattice::exact::Dyadic;
+use crate::lattice::{Cell, Frame, axes};
 use alloc::boxed::Box;
+use core::array::from_fn;
 
-/// An ellipsoid or a plane, by its exact function.
-enum Figure {
-    Ellipsoid(Box<Ellipsoid>),
-    /// n · x + c.
-    Plane {
-        n: [Dyadic; 3],
-        c: Dyadic,
-    },
+/// The four coefficients of a linear function, in unit coordinates.
+type Linear = [Dyadic; 4];
+
+/// What two functions exclude of each other.
+#[derive(Debug)]
+pub(crate) enum Contact {
+    /// Nothing is known.
+    Unknown,
+    /// The signs that they have together at no point: whether the first and the second are negative.
+    Excluded(bool, bool),
+    /// A quadric has points on both sides of a plane, but none in it.
+    Sheets(Box<Sheets>),
 }
 
-/// ½ xᵀ H x + g · x + j with a positive definite matrix H, which is negative inside.
-struct Ellipsoid {
-    /// Rows.
-    h: [[Dyadic; 3]; 3],
-    g: [Dyadic; 3],
-    j: Dyadic,
-    /// Whether the half-space's function is the negative of this, so that the inside is its inside.
-    negated: bool,
+/// A quadric of which no point inside lies in a plane.
+#[derive(Debug)]
+pub(crate) struct Sheets {
+    /// Whether the plane is the second of both.
+    is_plane_second: bool,
+    /// Whether the quadric's function is negative in what is called inside.
+    is_inside_negative: bool,
+    /// Twice the matrix of the quadric's function, which is positive inside.
+    form: Form,
+    plane: Linear,
+    /// Where this is not negative, nothing inside lies where the plane's function is positive; where it is not positive, nothing where
+    /// that is negative.
+    factor: Linear,
+}
+
+impl Contact {
+    pub(crate) fn heap_bytes(&self) -> usize {
+        let Contact::Sheets(sheets) = self else { return 0 };
+        let numbers = sheets.form.as_flattened().iter().chain(&sheets.plane).chain(&sheets.factor);
+        size_of::<Sheets>() + numbers.map(Dyadic::heap_bytes).sum::<usize>()
+    }
 }
 
 impl PlacedHalfSpace {
-    /// The signs that two functions have together at no point: whether the first and the second are negative. `None` if there are none,
-    /// and of surfaces other than planes and ellipsoids of one kind: such as an affine map makes of balls.
-    pub(crate) fn excluded(&self, other: &PlacedHalfSpace) -> Result<Option<(bool, bool)>, Error> {
-        let (Some(a), Some(b)) = (self.figure()?, other.figure()?) else { return Ok(None) };
-        Ok(match (&a, &b) {
-            (Figure::Ellipsoid(a), Figure::Ellipsoid(b)) => of_ellipsoids(a, b),
-            (Figure::Ellipsoid(a), Figure::Plane { n, c }) => a.beside(n, c),
-            (Figure::Plane { n, c }, Figure::Ellipsoid(b)) => {
-                b.beside(n, c).map(|(inside, plane)| (plane, inside))
-            }
-            (Figure::Plane { .. }, Figure::Plane { .. }) => None,
-        })
+    /// What two functions exclude of each other in the universe of a frame. Nothing is known of surfaces other than planes and
+    /// quadrics.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] if exact numbers of placements become too long.
+    pub(crate) fn contact(&self, other: &PlacedHalfSpace, frame: &Frame) -> Result<Contact, Error> {
+        let is_known = |surface: &Surface| matches!(surface, Surface::Plane(_) | Surface::Quadric(_));
+        if !is_known(&self.half_space.0) || !is_known(&other.half_space.0) {
+            return Ok(Contact::Unknown);
+        }
+        // What both were moved by last does not count.
+        let both = self.placements.iter().zip(&*other.placements);
+        let common = both.take_while(|(a, b)| a == b).count();
+        let (Some(a), Some(b)) = (self.matrix(common)?, other.matrix(common)?) else {
+            return Ok(Contact::Unknown);
+        };
+        if let Some((negative_a, negative_b)) = pencil::excluded(&a, &b) {
+            return Ok(Contact::Excluded(negative_a, negative_b));
+        }
+        let sheets = match (&*self.half_space.0, &*other.half_space.0) {
+            (Surface::Quadric(_), Surface::Plane(_)) => self.sheets(other, true, frame)?,
+            (Surface::Plane(_), Surface::Quadric(_)) => other.sheets(self, false, frame)?,
+            _ => None,
+        };
+        Ok(sheets.map_or(Contact::Unknown, |sheets| Contact::Sheets(Box::new(sheets))))
     }
 
-    fn figure(&self) -> Result<Option<Figure>, Error> {
+    /// Twice the matrix of the function, without the first placements.
+    fn matrix(&self, left_out: usize) -> Result<Option<Form>, Error> {
+        let map = || {
+            let mut placements = self.placements.iter().skip(left_out);
+            placements.try_fold(ExactMap::identity(), |map, placement| map.of_placed(placement))
+        };
         Ok(match &*self.half_space.0 {
             Surface::Plane(plane) => {
-                let map = self.map(ExactMap::identity())?;
-                let [x, y, z, c] = map.linear(plane);
-                let [x, y, z, c] = if map.w.sign() < 0 { [-&x, -&y, -&z, -&c] } else { [x, y, z, c] };
-                Some(Figure::Plane { n: [x, y, z], c })
+                let [x, y, z, c] = oriented(plane, &map()?);
+                let zero = Dyadic::zero;
+                Some(symmetric(&[zero(), zero(), zero(), zero(), zero(), zero(), x, y, z, c]))
             }
-            Surface::Quadric(quadric) => Ellipsoid::of(substitute(quadric, &self.map(ExactMap::identity())?))
-                .map(|own| Figure::Ellipsoid(Box::new(own))),
+            Surface::Quadric(quadric) => Some(symmetric(&substitute(quadric, &map()?))),
             _ => None,
         })
     }
-}
 
-impl Ellipsoid {
-    fn of(coefficients: Coefficients) -> Option<Ellipsoid> {
-        let negated = coefficients[0].sign() < 0;
-        let [a, b, c, d, e, f, x, y, z, j] = coefficients.map(|c| if negated { -&c } else { c });
-        let [a, b, c] = [a, b, c].map(|square| square.shifted(1));
-        let h = [[a, d.clone(), f.clone()], [d, b, e.clone()], [f, e, c]];
-        let minor = &(&h[0][0] * &h[1][1]) - &(&h[0][1] * &h[1][0]);
-        let own = Ellipsoid { h, g: [x, y, z], j, negated };
-        // (Without a point inside it is no surface.)
-        let is_definite = own.h[0][0].sign() > 0 && minor.sign() > 0 && own.determinant().sign() > 0;
-        (is_definite && own.square().sign() > 0).then_some(own)
+    pub(crate) fn is_plane(&self) -> bool {
+        matches!(&*self.half_space.0, Surface::Plane(_))
     }
 
-    /// The same function times a positive number.
-    fn times(&self, factor: &Dyadic) -> Ellipsoid {
-        let times = |x: &Dyadic| x * factor;
-        Ellipsoid {
-            h: self.h.each_ref().map(|row| row.each_ref().map(times)),
-            g: self.g.each_ref().map(times),
-            j: times(&self.j),
-            negated: self.negated,
+    /// The coefficients of a plane in the unit coordinates of a frame.
+    pub(crate) fn linear(&self, frame: &Frame) -> Result<Option<Linear>, Error> {
+        match &*self.half_space.0 {
+            Surface::Plane(plane) => Ok(Some(oriented(plane, &self.map(ExactMap::from_universe(frame))?))),
+            _ => Ok(None),
         }
     }
 
-    fn determinant(&self) -> Dyadic {
-        dot(self.h[0].each_ref(), self.adjugate()[0].each_ref())
-    }
-
-    /// det H times the inverse of H.
-    fn adjugate(&self) -> [[Dyadic; 3]; 3] {
-        [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|k| {
-                let at = |a: usize, b: usize| &self.h[(i + a) % 3][(k + b) % 3];
-                &(at(1, 1) * at(2, 2)) - &(at(1, 2) * at(2, 1))
-            })
-        })
-    }
-
-    /// vᵀ adj(H) w.
-    fn product(&self, v: &[Dyadic; 3], w: &[Dyadic; 3]) -> Dyadic {
-        let rows = self.adjugate();
-        let image = rows.each_ref().map(|row| dot(row.each_ref(), w.each_ref()));
-        dot(v.each_ref(), image.each_ref())
-    }
-
-    /// The square of the radius in the metric of the ellipsoid: minus the least value of the function, times 2 det H.
-    fn square(&self) -> Dyadic {
-        &self.product(&self.g, &self.g) - &(&self.j * &self.determinant()).shifted(1)
-    }
-
-    /// The signs that are nowhere together if a plane does not cut the ellipsoid.
-    fn beside(&self, n: &[Dyadic; 3], c: &Dyadic) -> Option<(bool, bool)> {
-        // The plane's function at the centre, times det H.
-        let value = &(c * &self.determinant()) - &self.product(n, &self.g);
-        let is_apart = (&(&value * &value) - &(&self.square() * &self.product(n, n))).sign() >= 0;
-        // All of the inside has the sign that the centre has.
-        (is_apart && !value.is_zero()).then_some((self.inside_is_negative(), value.sign() > 0))
-    }
-
-    fn inside_is_negative(&self) -> bool {
-        !self.negated
+    /// A quadric beside a plane in which the quadric, or its complement, has no point inside.
+    fn sheets(
+        &self,
+        plane: &PlacedHalfSpace,
+        is_plane_second: bool,
+        frame: &Frame,
+    ) -> Result<Option<Sheets>, Error> {
+        let (Surface::Quadric(quadric), Some(plane)) = (&*self.half_space.0, plane.linear(frame)?) else {
+            return Ok(None);
+        };
+        let form = symmetric(&substitute(quadric, &self.map(ExactMap::from_universe(frame))?));
+        let Some(pivot) = (0..3).max_by_key(|&k| plane[k].magnitude()) else { return Ok(None) };
+        let moved = on_plane(&form, &plane, pivot);
+        let is_inside_negative = match [false, true].map(|sign| pencil::is_semi_definite(&moved, pivot, sign))
+        {
+            [true, _] => false,
+            [_, true] => true,
+            _ => return Ok(None),
+        };
+        // So chosen, f + ℓ g is the form without the pivot's row and column, which is semi-definite.
+        let row = &moved[pivot];
+        let factor = from_fn(|k| {
+            let own = &row[pivot] * &plane[k];
+            let sum = if k == pivot { own } else { &own + &row[k].shifted(1) };
+            if is_inside_negative { sum } else { -&sum }
+        });
+        let form = if is_inside_negative { form.map(|row| row.map(|c| -&c)) } else { form };
+        Ok(Some(Sheets { is_plane_second, is_inside_negative, form, plane, factor }))
     }
 }
 
-fn of_ellipsoids(first: &Ellipsoid, second: &Ellipsoid) -> Option<(bool, bool)> {
-    // With the same matrix.
-    let (a, b) = (first.times(&second.h[0][0]), second.times(&first.h[0][0]));
-    if a.h != b.h {
-        return None;
+impl Sheets {
+    /// The signs of the first and the second function that occur together at no point of a cell.
+    pub(crate) fn excluded(&self, cell: Cell) -> Option<(bool, bool)> {
+        let (centre, half) = (centre(cell), half_edge(cell));
+        let corners: [[Dyadic; 3]; 8] = from_fn(|corner| {
+            axes(|axis| {
+                Dyadic::new(if corner >> axis & 1 == 0 { centre[axis] - half } else { centre[axis] + half })
+            })
+        });
+        let [plane, factor] =
+            [&self.plane, &self.factor].map(|of| corners.each_ref().map(|corner| linear::value(of, corner)));
+        [false, true]
+            .into_iter()
+            .find(|&negative| is_above(&factor, &plane, negative))
+            .map(|negative| self.signs(negative))
     }
-    // Squares of radii and of the distance of the centres in the metric of both, times the same.
-    let off = [0, 1, 2].map(|k| &a.g[k] - &b.g[k]);
-    let (p, q, apart) = (a.square(), b.square(), a.product(&off, &off));
-    // Of x ≥ 0 and y ≥ 0 whether √whole ≥ √x + √y.
-    let is_sum = |whole: &Dyadic, x: &Dyadic, y: &Dyadic| {
-        let rest = &(whole - x) - y;
-        rest.sign() >= 0 && (&(&rest * &rest) - &(x * y).shifted(2)).sign() >= 0
-    };
-    let (in_a, in_b) = (first.inside_is_negative(), second.inside_is_negative());
-    if is_sum(&apart, &p, &q) {
-        Some((in_a, in_b))
-    } else if is_sum(&q, &p, &apart) {
-        // The first in the second.
-        Some((in_a, !in_b))
-    } else if is_sum(&p, &q, &apart) {
-        Some((!in_a, in_b))
-    } else {
-        None
+
+    /// Twice the signs of both functions, and of that of a third surface, a plane, that occur together at no point: whether they are
+    /// negative. `None` if the third surface does not tell.
+    pub(crate) fn excluded_with(&self, third: &Linear) -> Option<[((bool, bool), bool); 2]> {
+        // Moved to the plane along any direction w, a point has the value f + ℓ g, where ℓ g(w)² is f(w) g − 2 g(w) (w F): of a
+        // cone there is a w such that w F is the function h of the plane through the apex.
+        let (f, g, h) = (&self.form, &self.plane, third);
+        let adjugate = |i: usize, k: usize| {
+            let at = |a: usize, b: usize| &f[(i + a) % 3][(k + b) % 3];
+            &(at(1, 1) * at(2, 2)) - &(at(1, 2) * at(2, 1))
+        };
+        let of = |row: &dyn Fn(usize) -> Dyadic, v: &[Dyadic]| {
+            v.iter().enumerate().fold(Dyadic::zero(), |sum, (k, c)| &sum + &(&row(k) * c))
+        };
+        let w: [Dyadic; 3] = from_fn(|i| of(&|k| adjugate(i, k), &h[..3]));
+        let determinant = (0..3).fold(Dyadic::zero(), |sum, k| &sum + &(&f[0][k] * &adjugate(0, k)));
+        let polar: Linear = from_fn(|i| of(&|k| f[i][k].clone(), &w));
+        let [of_f, of_g] = [&polar, g].map(|linear| of(&|k| linear[k].clone(), &w).sign());
+        let is_apex = (0..4).all(|i| polar[i] == &determinant * &h[i]);
+        if !is_apex || of_f < 0 || of_g * determinant.sign() == 0 {
+            return None;
+        }
+        // Where the third plane's function has the sign that makes its share of ℓ that of g, ℓ has that sign.
+        let is_turned = of_g * determinant.sign() > 0;
+        Some([false, true].map(|is_negative| (self.signs(is_negative), is_negative != is_turned)))
     }
+
+    fn signs(&self, is_plane_negative: bool) -> (bool, bool) {
+        match self.is_plane_second {
+            true => (self.is_inside_negative, is_plane_negative),
+            false => (is_plane_negative, self.is_inside_negative),
+        }
+    }
+}
+
+/// Whether there is an a ≥ 0 such that no value is less than a times the other: where the other is positive, the value is not negative.
+/// Of the negatives of all values if so said.
+fn is_above(values: &[Dyadic; 8], others: &[Dyadic; 8], negative: bool) -> bool {
+    // Bounds of a: fractions, with positive denominators.
+    let mut least = (Dyadic::zero(), Dyadic::new(1.0));
+    let mut most: Option<(Dyadic, Dyadic)> = None;
+    let is_less = |a: &(Dyadic, Dyadic), b: &(Dyadic, Dyadic)| &a.0 * &b.1 < &b.0 * &a.1;
+    for (value, other) in values.iter().zip(others) {
+        let (value, other) = if negative { (-value, -other) } else { (value.clone(), other.clone()) };
+        match other.sign() {
+            1 if most.as_ref().is_none_or(|most| is_less(&(value.clone(), other.clone()), most)) => {
+                most = Some((value, other));
+            }
+            -1 if is_less(&least, &(-&value, -&other)) => least = (-&value, -&other),
+            0 if value.sign() < 0 => return false,
+            _ => {}
+        }
+    }
+    most.is_none_or(|most| !is_less(&most, &least))
+}
+
+/// The function of a plane as the map shows it, with its own sign.
+fn oriented(plane: &Linear, map: &ExactMap) -> Linear {
+    let linear = map.linear(plane);
+    if map.w.sign() < 0 { linear.map(|c| -&c) } else { linear }
+}
+
+/// Twice the symmetric matrix of a polynomial of degree two.
+fn symmetric(coefficients: &Coefficients) -> Form {
+    from_fn(|i| {
+        from_fn(|k| {
+            let c = &coefficients[place(i, k)];
+            if i == k { c.shifted(1) } else { c.clone() }
+        })
+    })
+}
+
+/// The form in other coordinates: those of points over the plane's factor `pivot`, but in that place the plane's function over it.
+fn on_plane(form: &Form, plane: &Linear, pivot: usize) -> Form {
+    let map: Form = from_fn(|i| {
+        from_fn(|k| match (i == pivot, i == k) {
+            (true, true) => Dyadic::new(1.0),
+            (true, false) => -&plane[k],
+            (false, true) => plane[pivot].clone(),
+            (false, false) => Dyadic::zero(),
+        })
+    });
+    let sum = |of: &dyn Fn(usize) -> Dyadic| (0..4).fold(Dyadic::zero(), |sum, j| &sum + &of(j));
+    let right: Form = from_fn(|i| from_fn(|k| sum(&|j| &form[i][j] * &map[j][k])));
+    from_fn(|i| from_fn(|k| sum(&|j| &map[j][i] * &right[j][k])))
 }

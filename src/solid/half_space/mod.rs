@@ -2,7 +2,7 @@
 
 pub(crate) mod bounds;
 mod bytes;
-mod contact;
+pub(crate) mod contact;
 pub(crate) mod function;
 mod host;
 pub(crate) mod identity;
@@ -13,6 +13,7 @@ pub(crate) mod lines;
 pub(crate) mod literals;
 pub(crate) mod map;
 mod open;
+mod pencil;
 mod plane;
 pub(crate) mod points;
 pub(crate) mod possible;

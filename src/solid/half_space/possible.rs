@@ -13,6 +13,26 @@ use crate::lattice::{Cell, axes};
 /// plane, or two quadrics, in all of space there is such a multiple whenever no point has both signs: the S-lemma of Yakubovich,
 /// 1971.)
 pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Table {
+    met(half_spaces, cell).possible
+}
+
+/// Which combinations of signs may occur in a cell, and where signs surely do.
+pub(crate) struct Met {
+    /// The combinations that may occur.
+    pub(crate) possible: Table,
+    /// Of some points those at which each function surely is positive, and negative.
+    seen: [[u32; 2]; MOST],
+}
+
+impl Met {
+    /// Whether there surely is a point with all of these signs: functions, and whether they are negative.
+    pub(crate) fn is_seen(&self, signs: &[(usize, bool)]) -> bool {
+        signs.iter().fold(!0, |all, &(i, negative)| all & self.seen[i][usize::from(negative)]) != 0
+    }
+}
+
+/// As [`possible`], with the signs that surely occur.
+pub(crate) fn met<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Met {
     let (mut tangents, mut closely) = ([None; MOST], [None; MOST]);
     let (centre, half) = (centre(cell), half_edge(cell));
     for ((tangent, close), half_space) in tangents.iter_mut().zip(&mut closely).zip(half_spaces) {
@@ -43,7 +63,8 @@ pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: 
             }
         }
     }
-    Table(possible)
+    let seen = closely.map(|close| close.map_or([0; 2], |close| [close.positive, close.negative]));
+    Met { possible: Table(possible), seen }
 }
 
 /// A function to second order, and at which of the 27 vertices, middles of edges and faces, and the centre of the cell it surely is

@@ -16,7 +16,7 @@ const PAIRS: [(usize, usize); 10] =
     [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3), (3, 3)];
 
 /// Where a coefficient is in [`PAIRS`].
-const fn place(a: usize, b: usize) -> usize {
+pub(super) const fn place(a: usize, b: usize) -> usize {
     [[0, 3, 5, 6], [3, 1, 4, 7], [5, 4, 2, 8], [6, 7, 8, 9]][a][b]
 }
 

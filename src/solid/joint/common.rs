@@ -2,20 +2,41 @@
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::Cell;
+use crate::lattice::{Cell, Frame};
 use crate::memory;
 use crate::solid::half_space::Placed;
-use crate::solid::half_space::possible::possible;
+use crate::solid::half_space::contact::Contact;
+use crate::solid::half_space::possible::{Met, met};
 use crate::solid::half_space::record::Pool;
 use crate::solid::half_space::table::Table;
 use crate::solid::{AskWhole, Classifier, OpenSurfaces, PlacedHalfSpace};
 use alloc::vec::Vec;
+use hashbrown::HashMap;
+use hashbrown::hash_map::Entry;
 
-/// Closed forms are looked at in the cells of each so manieth level: they are dear, and the same everywhere.
-const CONTACT: u8 = 4;
+/// The signs of two functions: whether they are negative.
+const SIGNS: [(bool, bool); 4] = [(false, false), (false, true), (true, false), (true, true)];
+
+/// Pairs of surfaces at most of which it is remembered what they exclude. (What is forgotten is found out again.)
+const REMEMBERED: usize = 1 << 12;
+
+/// What pairs of surfaces exclude of each other, as far as somebody has asked.
+#[derive(Default)]
+pub(super) struct Contacts {
+    known: HashMap<[u32; 2], Contact>,
+    /// What they take beside the table.
+    heap_bytes: usize,
+}
+
+impl Contacts {
+    pub(super) fn bytes(&self) -> usize {
+        self.known.capacity() * size_of::<([u32; 2], Contact)>() + self.heap_bytes
+    }
+}
 
 /// The surfaces of two solids. A surface that bounds both has one number, whichever side of it the one and the other lie on.
 pub(crate) struct Common {
+    frame: Frame,
     surfaces: Vec<PlacedHalfSpace>,
     /// On the universe.
     pub(super) all: Vec<Placed>,
@@ -45,7 +66,7 @@ impl Common {
             control.check()?;
             all.push(surface.on(a.frame())?);
         }
-        Ok(Some(Common { surfaces: numbered.surfaces, all, names }))
+        Ok(Some(Common { frame: *a.frame(), surfaces: numbered.surfaces, all, names }))
     }
 
     pub(super) fn bytes(&self) -> usize {
@@ -62,12 +83,13 @@ impl Common {
         cell: Cell,
         a: &OpenSurfaces,
         b: &OpenSurfaces,
+        contacts: &mut Contacts,
     ) -> Result<Option<OpenSurfaces>, Error> {
         let mut both = OpenSurfaces::constant(false);
         let Some((of_a, of_b)) = self.named(&mut both, 0, a).zip(self.named(&mut both, 1, b)) else {
             return Ok(None);
         };
-        self.possible(cell, &both.with_table(Table(of_a.0 & of_b.0)).shortened()).map(Some)
+        self.possible(cell, &both.with_table(Table(of_a.0 & of_b.0)).shortened(), contacts).map(Some)
     }
 
     /// The table of the function of one solid, by the numbers in `both`, to which its surfaces are added.
@@ -84,29 +106,105 @@ impl Common {
     }
 
     /// The same function on the combinations of signs that are possible in a cell, of as few surfaces as that takes.
-    pub(super) fn possible(&self, cell: Cell, own: &OpenSurfaces) -> Result<OpenSurfaces, Error> {
+    pub(super) fn possible(
+        &self,
+        cell: Cell,
+        own: &OpenSurfaces,
+        contacts: &mut Contacts,
+    ) -> Result<OpenSurfaces, Error> {
         if own.settled().is_some() {
             return Ok(*own);
         }
-        let mut possible = possible(own.indices().iter().map(|&index| &self.all[index as usize]), cell);
-        if cell.level > 0 && cell.level.is_multiple_of(CONTACT) {
-            possible.0 &= self.not_excluded(own)?.0;
+        let met = met(own.indices().iter().map(|&index| &self.all[index as usize]), cell);
+        let simple = |possible| own.with_table(own.table().simplified(possible)).shortened();
+        let known = simple(met.possible);
+        if known.settled().is_some() || cell.level == 0 {
+            return Ok(known);
         }
-        Ok(own.with_table(own.table().simplified(possible)).shortened())
+        Ok(match self.left_by_contacts(cell, own, &met, contacts)? {
+            left if left == met.possible => known,
+            left => simple(left),
+        })
     }
 
-    /// The combinations of signs that closed forms of two surfaces leave.
-    fn not_excluded(&self, own: &OpenSurfaces) -> Result<Table, Error> {
-        let mut left = Table::FULL;
+    /// The combinations of signs that surfaces in contact leave.
+    fn left_by_contacts(
+        &self,
+        cell: Cell,
+        own: &OpenSurfaces,
+        met: &Met,
+        contacts: &mut Contacts,
+    ) -> Result<Table, Error> {
+        let mut left = met.possible;
         for (i, a) in own.variables() {
             for (j, b) in own.variables().filter(|&(j, _)| j > i) {
-                let [a, b] = [a, b].map(|index| &self.surfaces[index as usize]);
-                if let Some((negative_a, negative_b)) = a.excluded(b)? {
-                    left.0 &= !(Table::of(i, negative_a).0 & Table::of(j, negative_b).0);
+                let both = |(negative_a, negative_b)| Table::of(i, negative_a).0 & Table::of(j, negative_b).0;
+                // What surely occurs, nothing excludes.
+                let is_open = |&signs: &(bool, bool)| {
+                    left.0 & both(signs) != 0 && !met.is_seen(&[(i, signs.0), (j, signs.1)])
+                };
+                let is_pair_open = SIGNS.iter().any(is_open);
+                let are_sheets_possible = self.is_plane(a) != self.is_plane(b);
+                let thirds = || {
+                    let others = own.variables().filter(move |&(k, _)| k != i && k != j);
+                    others.filter(|&(_, index)| are_sheets_possible && self.is_plane(index))
+                };
+                let is_third_open = |(k, _)| {
+                    SIGNS.iter().any(|&signs| {
+                        [false, true].into_iter().any(|negative| {
+                            left.0 & both(signs) & Table::of(k, negative).0 != 0
+                                && !met.is_seen(&[(i, signs.0), (j, signs.1), (k, negative)])
+                        })
+                    })
+                };
+                if !is_pair_open && !thirds().any(is_third_open) {
+                    continue;
+                }
+                let sheets = match self.contact([a, b], contacts)? {
+                    Contact::Unknown => continue,
+                    &Contact::Excluded(negative_a, negative_b) => {
+                        left.0 &= !both((negative_a, negative_b));
+                        continue;
+                    }
+                    Contact::Sheets(sheets) => sheets,
+                };
+                if let Some(signs) = sheets.excluded(cell) {
+                    left.0 &= !both(signs);
+                    continue;
+                }
+                for (k, third) in thirds() {
+                    let third = self.surfaces[third as usize].linear(&self.frame)?;
+                    let excluded = third.and_then(|third| sheets.excluded_with(&third));
+                    for (signs, is_negative) in excluded.into_iter().flatten() {
+                        left.0 &= !(both(signs) & Table::of(k, is_negative).0);
+                    }
                 }
             }
         }
         Ok(left)
+    }
+
+    fn is_plane(&self, number: u32) -> bool {
+        self.surfaces[number as usize].is_plane()
+    }
+
+    /// What two surfaces exclude of each other.
+    fn contact<'c>(&self, pair: [u32; 2], contacts: &'c mut Contacts) -> Result<&'c Contact, Error> {
+        let Contacts { known, heap_bytes } = contacts;
+        if known.len() >= REMEMBERED && !known.contains_key(&pair) {
+            known.clear();
+            *heap_bytes = 0;
+        }
+        known.try_reserve(1)?;
+        match known.entry(pair) {
+            Entry::Occupied(known) => Ok(known.into_mut()),
+            Entry::Vacant(place) => {
+                let [a, b] = pair.map(|index| &self.surfaces[index as usize]);
+                let contact = a.contact(b, &self.frame)?;
+                *heap_bytes += contact.heap_bytes();
+                Ok(place.insert(contact))
+            }
+        }
     }
 }
 

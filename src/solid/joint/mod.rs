@@ -14,7 +14,7 @@ use crate::memory;
 use crate::octree::{Proof, Tag};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
-use common::Common;
+use common::{Common, Contacts};
 
 /// The intersection of two solids on one frame.
 ///
@@ -49,6 +49,7 @@ impl<A: Classifier, B: Classifier> Classifier for Joint<A, B> {
             a: self.a.worker()?,
             b: self.b.worker()?,
             common: self.common.clone(),
+            contacts: Contacts::default(),
             heights: Vec::new(),
             spared: 0,
         })
@@ -109,6 +110,7 @@ pub(crate) struct JointWorker<A, B> {
     a: A,
     b: B,
     common: Option<Arc<Common>>,
+    contacts: Contacts,
     /// How high the memory of both was before each step.
     heights: Vec<[usize; 2]>,
     /// Splits of the second solid that were spared, because nothing of the first is there.
@@ -131,7 +133,10 @@ impl<A: Worker, B: Worker> Parts for JointWorker<A, B> {
     }
 
     fn scratch_bytes(&self) -> usize {
-        self.a.scratch_bytes() + self.b.scratch_bytes() + memory::bytes_of(&self.heights)
+        self.a.scratch_bytes()
+            + self.b.scratch_bytes()
+            + memory::bytes_of(&self.heights)
+            + self.contacts.bytes()
     }
 
     fn hand_over(&mut self, from: &Self, part: &Self::Part) -> Result<Self::Part, Error> {
@@ -296,12 +301,16 @@ impl<A: Worker, B: Worker> JointWorker<A, B> {
         memory::push(&mut self.heights, [self.a.mark(), self.b.mark()])
     }
 
-    fn split_function(&self, cell: Cell, known: &OpenSurfaces) -> Result<[Verdict<PartOf<A, B>>; 8], Error> {
+    fn split_function(
+        &mut self,
+        cell: Cell,
+        known: &OpenSurfaces,
+    ) -> Result<[Verdict<PartOf<A, B>>; 8], Error> {
         let Some(common) = &self.common else { return Ok(OCTANTS.map(|_| Verdict::Undecided)) };
         let children = surface_cell::split(&common.all, cell, known)?;
         let mut met = OCTANTS.map(|_| Verdict::Empty);
         for ((k, known), met) in OCTANTS.into_iter().zip(children).zip(&mut met) {
-            *met = of_function(common.possible(cell.child(k), &known)?, 1.0);
+            *met = of_function(common.possible(cell.child(k), &known, &mut self.contacts)?, 1.0);
         }
         let likely = guesses(&met);
         for (met, likely) in met.iter_mut().zip(likely) {
@@ -342,7 +351,7 @@ impl<A: Worker, B: Worker> JointWorker<A, B> {
                 if let Some(common) = &self.common
                     && let Some(known_a) = self.a.surfaces(cell, of_a)?
                     && let Some(known_b) = self.b.surfaces(cell, of_b)?
-                    && let Some(both) = common.both(cell, &known_a, &known_b)?
+                    && let Some(both) = common.both(cell, &known_a, &known_b, &mut self.contacts)?
                 {
                     return Ok(of_function(both, likely));
                 }

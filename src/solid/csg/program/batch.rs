@@ -173,8 +173,8 @@ impl Scratch {
         answers: &mut [Option<bool>],
     ) -> Result<(), Error> {
         // (Half-spaces alone are as fast by cells.) Two solids may both say that a point is outside on which their faces meet, and
-        // which their union holds: where there are several, cells decide.
-        if program.solids.len() != 1 || program.paper || part.words() > MOST_WORDS {
+        // which their union holds: where there are several, cells decide. The words of a table are no operations.
+        if program.solids.len() != 1 || program.paper || part.is_table() || part.words() > MOST_WORDS {
             return Ok(());
         }
         let mut known = memory::with_capacity(program.solids.len())?;
@@ -186,7 +186,7 @@ impl Scratch {
         if known.iter().flatten().all(Option::is_none) {
             return Ok(());
         }
-        let Scratch { words, operands, evaluations, .. } = self;
+        let Scratch { words, operands, slots, evaluations, .. } = self;
         let words = Scratch::list(program, words, part);
         for (i, (&point, answer)) in points.iter().zip(answers).enumerate() {
             let Some(at) = program.frame.cell_of(point) else { continue };
@@ -201,7 +201,9 @@ impl Scratch {
                         Kleene::of(sides, complement)
                     }
                     Op::Solid { index, complement } => {
-                        let kleene = match known[index as usize][i] {
+                        let slot = (index as usize).checked_sub(program.solids.len());
+                        let solid = slot.map_or(index, |slot| slots[slot].solid);
+                        let kleene = match known[solid as usize][i] {
                             Some(true) => Kleene::FULL,
                             Some(false) => Kleene::EMPTY,
                             None => Kleene::UNKNOWN,
