@@ -3640,7 +3640,12 @@ leafless_status leafless_solid_interfere_many(const leafless_solid *a, const lea
 /// 576 if that is 0. A step looks at the children of one cell. A cell whose children are looked at again,
 /// next to another cell, counts once more.
 ///
-/// Where both solids know slabs, as expressions, meshes and extended octrees do, each level makes the
+/// The distance of two closed meshes in the universe is found by their triangles, to rounding: some 10^-13 of
+/// their sizes and of the distance. Bodies of a mesh may overlap, unless only positive winding numbers count,
+/// triangles lie on each other, or vertices were moved. A step is then 64 pairs of boxes around triangles,
+/// and no cells are split.
+///
+/// Where both solids know slabs, as expressions, open meshes and extended octrees do, each level makes the
 /// interval about four times as narrow, and plane faces, balls and cylinders are known at once. Other solids
 /// are known to the size of cells: the upper bound is finite once the search has met a FULL cell of each, and
 /// the work grows with the area where the distance is about the least one, measured in cells as large as the

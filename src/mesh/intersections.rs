@@ -6,6 +6,7 @@
 //! Neighbours in one plane, or nearly so, are told apart by a line or plane between them as a rule: exact signs would have to find
 //! out that they are zero.
 
+use super::self_pairs::self_pairs;
 use super::signs::{Point, cross_sign, sure_volume_sign, volume_sign};
 use super::tree::{Search, Steps};
 use super::triangle_mesh::TriangleMesh;
@@ -41,7 +42,8 @@ impl TriangleMesh {
     /// The pairs of triangles that have a point in common which is not on a common vertex or edge: they cross,
     /// touch, or fold onto each other. Decided exactly. Triangles without area are left out.
     ///
-    /// O(t log t) time for triangles that lie apart, and the mesh keeps a tree of 36 bytes a triangle. A search ends after
+    /// O(t log t) time for triangles that lie apart, also for slivers of which many have a vertex in common, and the mesh keeps a tree of 36
+    /// bytes a triangle. A search ends after
     /// 2^26 steps and 512 a triangle; [`is_complete`](IntersectingPairs::is_complete) tells. It is deterministic.
     ///
     /// # Errors
@@ -89,7 +91,6 @@ pub(super) fn intersections(
     control: &Control<'_>,
     visit: &mut impl FnMut(u32, u32) -> Result<bool, Error>,
 ) -> Result<Search, Error> {
-    let tree = mesh.tree(control)?;
     let mut flat = memory::filled(mesh.triangles().len().div_ceil(64), 0u64)?;
     for (triangle, corners) in mesh.triangles().iter().enumerate() {
         flat[triangle / 64] |= u64::from(mesh.is_flat(corners)) << (triangle % 64);
@@ -97,7 +98,7 @@ pub(super) fn intersections(
     let is_flat = |triangle: u32| flat[triangle as usize / 64] >> (triangle % 64) & 1 != 0;
     let mut steps = Steps((1 << 26) + 512 * mesh.triangles().len() as u64);
     let mut tests = 0u32;
-    tree.pairs(&mut steps, &mut |a, b| {
+    self_pairs(mesh, &is_flat, &mut steps, control, &mut |a, b| {
         tests = tests.wrapping_add(1);
         if tests.is_multiple_of(4096) {
             control.check()?;
@@ -269,8 +270,8 @@ fn cones_overlap(v: &Point, a: [&Point; 2], b: [&Point; 2], axis: usize) -> bool
     b.iter().any(|p| within(a, p)) || a.iter().any(|p| within(b, p))
 }
 
-/// Whether two triangles meet.
-fn meet(a: &[Point; 3], b: &[Point; 3], is_line_between: impl FnOnce() -> bool) -> bool {
+/// Whether two triangles meet. `is_line_between` tells, where rounding may decide it, whether they are surely apart.
+pub(super) fn meet(a: &[Point; 3], b: &[Point; 3], is_line_between: impl FnOnce() -> bool) -> bool {
     let is_apart = |sides: [i32; 3]| sides[0] != 0 && sides == [sides[0]; 3];
     let Some(of_b) = sides(a.each_ref(), b.each_ref(), is_line_between) else { return false };
     if is_apart(of_b) {
@@ -318,4 +319,134 @@ fn meet_in_plane(triangle: &[Point; 3], p: &Point, q: &Point) -> bool {
     // No edge separates them. Neither does the segment's line if the corners lie on both sides of it.
     let of_corners = [a, b, c].map(|x| cross_sign([p, q], [p, x], axis));
     of_corners.contains(&0) || of_corners.contains(&1) && of_corners.contains(&-1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    /// All pairs, one by one.
+    fn slowly(mesh: &TriangleMesh) -> Vec<[u32; 2]> {
+        let has_area = |t: &u32| !mesh.is_flat(&mesh.triangles()[*t as usize]);
+        let all: Vec<u32> = (0..mesh.triangles().len() as u32).filter(has_area).collect();
+        let pairs = all.iter().flat_map(|&a| all.iter().map(move |&b| [a, b]));
+        pairs.filter(|&[a, b]| a < b && intersect(mesh, a, b)).collect()
+    }
+
+    fn quickly(mesh: &TriangleMesh) -> Vec<[u32; 2]> {
+        let found = mesh.intersecting_pairs(usize::MAX, &Control::default()).unwrap();
+        assert!(found.is_complete && found.count == found.pairs.len() as u64);
+        found.pairs.iter().map(|pair| pair.triangles).collect()
+    }
+
+    /// A disc of slivers around one vertex, the cone below it, both, or the side of a prism, turned so that no sliver lies along an axis.
+    fn slivers(count: u32, kind: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
+        let rim = |k: u32| 2 + k % count;
+        let mut vertices = vec![[0.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
+        let mut triangles = vec![];
+        for k in 0..count {
+            let angle = 2.0 * core::f64::consts::PI * f64::from(k) / f64::from(count);
+            vertices.push([libm::cos(angle), libm::sin(angle), 0.0]);
+            if kind != 1 {
+                triangles.push([0, rim(k), rim(k + 1)]);
+            }
+            if kind == 1 || kind == 2 {
+                triangles.push([1, rim(k + 1), rim(k)]);
+            }
+        }
+        if kind == 3 {
+            let above = |k: u32| 2 + count + k % count;
+            for k in 0..count {
+                let [x, y, _] = vertices[2 + k as usize];
+                vertices.push([x, y, 3.0]);
+                triangles.push([rim(k), rim(k + 1), above(k)]);
+                triangles.push([rim(k + 1), above(k + 1), above(k)]);
+            }
+        }
+        let turn = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]];
+        let turned = |p: &Point| turn.map(|row: Point| row[0] * p[0] + row[1] * p[1] + row[2] * p[2]);
+        (vertices.iter().map(turned).collect(), triangles)
+    }
+
+    /// The same with a needle through one sliver.
+    fn pierced(count: u32, kind: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
+        let (mut vertices, mut triangles) = slivers(count, kind);
+        let own = triangles[triangles.len() / 3].map(|vertex| vertices[vertex as usize]);
+        let middle: Point = array(|axis| (own[0][axis] + own[1][axis] + own[2][axis]) / 3.0);
+        let [u, v]: [Point; 2] = [own[1], own[2]].map(|p| array(|axis| p[axis] - own[0][axis]));
+        let normal: Point = array(|k| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            (u[i] * v[j] - u[j] * v[i]) * 1e-2 * f64::from(count)
+        });
+        let first = vertices.len() as u32;
+        let thin = 0.01 / f64::from(count);
+        vertices.push(array(|axis| middle[axis] + normal[axis] / f64::from(count)));
+        vertices.push(array(|axis| middle[axis] - normal[axis] / f64::from(count)));
+        vertices.push([
+            middle[0] + thin * normal[1],
+            middle[1] + thin * normal[2],
+            middle[2] - thin * normal[0],
+        ]);
+        triangles.push([first, first + 1, first + 2]);
+        (vertices, triangles)
+    }
+
+    #[test]
+    fn few_slivers_beside_all_pairs() {
+        for count in [65, 70, 301] {
+            for kind in 0..4 {
+                for (vertices, triangles) in [slivers(count, kind), pierced(count, kind)] {
+                    let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+                    assert_eq!(quickly(&mesh), slowly(&mesh), "{count} {kind}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn random_triangles_around_busy_vertices() {
+        let mut state = 3u64;
+        let mut random = |below: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % below
+        };
+        let mut met = 0;
+        for round in 0..40 {
+            // On few steps of a lattice, so that much lies in one line or plane.
+            let steps = [2, 4, 1000][round % 3];
+            let mut vertices: Vec<Point> =
+                (0..3).map(|_| array(|_| random(steps) as f64 - (steps / 2) as f64)).collect();
+            let mut triangles = vec![];
+            for _ in 0..130 {
+                let first = vertices.len() as u32;
+                let (count, busy) = (1 + random(2) as u32, random(3) as u32);
+                (0..2).for_each(|_| vertices.push(array(|_| random(steps) as f64 - (steps / 2) as f64)));
+                triangles.push(match count {
+                    1 => [busy, first, first + 1],
+                    _ => [busy, (busy + 1) % 3, first],
+                });
+            }
+            let Ok(mesh) = TriangleMesh::new(vertices, triangles) else { continue };
+            let found = quickly(&mesh);
+            met += found.len();
+            assert_eq!(found, slowly(&mesh), "{round}");
+        }
+        assert!(met > 1000);
+    }
+
+    /// As many slivers as would take hours in pairs.
+    #[test]
+    fn many_slivers() {
+        for kind in 0..4 {
+            let count = if cfg!(debug_assertions) { 20_000 } else { 100_000 };
+            let (vertices, triangles) = slivers(count, kind);
+            let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+            let before = quickly(&mesh).len();
+            let (vertices, triangles) = pierced(count, kind);
+            let mesh = TriangleMesh::new(vertices, triangles).unwrap();
+            let found = quickly(&mesh);
+            assert!(found.len() > before, "{kind}: {} {before}", found.len());
+        }
+    }
 }

@@ -6,13 +6,15 @@
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `attributes`
 //! (data on triangles), `topology` (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
 //! mesh `normals`, `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles), `nearest`,
-//! `intersections`, `planes` (in which triangles lie), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle) and `moments`
+//! `self_pairs` (whose boxes meet), `intersections`, `triangle_pair`, `discs` and `apart` (how far two meshes are apart), `planes` (in which triangles lie), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle) and `moments`
 //! (volume and inertia); `polygon` (triangulation), `polyhedron` and its `faces`.
 
+mod apart;
 mod attributes;
 mod body;
 mod boundary;
 mod defects;
+mod discs;
 #[cfg(feature = "std")]
 mod faces;
 mod in_box;
@@ -30,6 +32,7 @@ pub(crate) mod polygon;
 mod polyhedron;
 mod positions;
 mod report;
+mod self_pairs;
 mod sew;
 mod sheets;
 mod sides;
@@ -37,12 +40,15 @@ mod signs;
 mod topology;
 mod tree;
 mod triangle_mesh;
+mod triangle_pair;
 mod turned;
 mod weld;
 
+pub(crate) use apart::{Apart, Enough, Facets, MeshPair, NearTriangles};
 pub use attributes::{AttributeDomain, MeshAttribute};
 pub(crate) use boundary::Loops;
 pub use defects::{DefectKind, MeshDefect};
+pub(crate) use discs::Discs;
 #[cfg(feature = "std")]
 pub use faces::PolyhedronPart;
 pub use intersections::{IntersectingPair, IntersectingPairs};

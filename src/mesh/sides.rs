@@ -2,6 +2,7 @@
 
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
+use super::signs::volume_sign;
 use super::tree::Search;
 use super::triangle_mesh::{FillRule, TriangleMesh};
 use crate::control::Control;
@@ -56,6 +57,40 @@ impl Sides {
             return Ok(Some(Vec::new()));
         }
         Ok(Some(memory::collected(self.senses.iter().map(bounds))?))
+    }
+
+    /// Which triangles of a closed mesh lie in the closed solid and may bound it, where all triangles with an area do lie in it.
+    /// `None` if that is not known.
+    ///
+    /// It holds for a rule by which a step of the winding number by one leads to the inside from one side at least, if no two triangles lie
+    /// on each other: then almost everywhere on a triangle the number changes by one. (On a fin of two triangles it does not change.)
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
+    pub(crate) fn walls(
+        &self,
+        mesh: &TriangleMesh,
+        rule: FillRule,
+        control: &Control<'_>,
+    ) -> Result<Option<Vec<bool>>, Error> {
+        // (Of vertices that were moved it is not known whether triangles lie on each other.)
+        if rule == FillRule::Positive || mesh.displacement() > 0.0 {
+            return Ok(None);
+        }
+        for (k, &[a, b]) in self.pairs.iter().enumerate() {
+            if k % 4096 == 0 {
+                control.check()?;
+            }
+            let [[p, q, r], other] = [a, b].map(|triangle| corners(mesh, triangle));
+            if a < b && other.iter().all(|x| volume_sign(&p, &q, &r, x) == 0) {
+                return Ok(None);
+            }
+        }
+        let (senses, triangles) = (self.senses.iter(), mesh.triangles());
+        let is_wall = |(&sense, corners): (&i8, &[u32; 3])| {
+            sense != 0 && sense != Sides::FLAT && (sense < Sides::UNKNOWN || !mesh.is_flat(corners))
+        };
+        Ok(Some(memory::collected(senses.zip(triangles).map(is_wall))?))
     }
 
     /// Whether two triangles intersect beyond common vertices and edges.

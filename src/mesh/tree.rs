@@ -109,6 +109,13 @@ impl Node {
         Box3 { low: array(|axis| self.planes[axis][0][k]), high: array(|axis| self.planes[axis][1][k]) }
     }
 
+    /// A node with one part.
+    pub(super) fn of(part: &Box3) -> Node {
+        let mut node = Node::NONE;
+        node.set(0, part);
+        node
+    }
+
     fn set(&mut self, k: usize, part: &Box3) {
         for axis in 0..3 {
             self.planes[axis][0][k] = part.low[axis];
@@ -116,7 +123,7 @@ impl Node {
         }
     }
 
-    fn around(&self) -> Box3 {
+    pub(super) fn around(&self) -> Box3 {
         (0..WIDTH).fold(Box3::NONE, |mut around, k| {
             around.include(&self.part(k));
             around
@@ -227,7 +234,7 @@ pub(super) struct Steps(pub(super) u64);
 
 impl Steps {
     #[inline(always)]
-    fn take(&mut self, steps: usize) -> bool {
+    pub(super) fn take(&mut self, steps: usize) -> bool {
         let left = self.0.checked_sub(steps as u64);
         self.0 = left.unwrap_or(0);
         left.is_some()

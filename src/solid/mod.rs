@@ -20,6 +20,7 @@
 //! | answers [`Question::Surfaces`], [`WholeQuestion::Surfaces`] | extended octrees that keep the surfaces, and are as exact as the solid |
 //! | answers [`Question::Layers`], [`WholeQuestion::Layers`] | the same where surfaces are known within a width |
 //! | answers [`WholeQuestion::Facets`] | how far its boundary is from another one, to rounding and without cells |
+//! | answers [`WholeQuestion::Walls`], writes [`Batch::inside`] | how far it is from another solid, to rounding and without cells |
 //! | answers [`Question::Ray`], [`Question::Nearest`], writes [`Batch::inside`] | single rays, distances and points in microseconds |
 //! | answers [`Question::Chords`], writes [`fill`](Worker::fill) | nothing but speed: tri-dexel models, octrees |
 //! | writes [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for functions that take long; points without a descent ([`Batch::inside`]); cells without the way to them ([`Batch::recall`]) |

@@ -335,6 +335,10 @@ pub enum WholeQuestion<'q> {
     /// The triangles that the whole boundary consists of, none of which lies inside of the solid or outside of it, if there are such
     /// and all of the boundary lies in the universe. Whether the solid or its complement is meant does not matter.
     Facets(&'q mut Option<BoundaryFacets>),
+
+    /// The same with triangles beside those of the boundary, all of which lie in the closed solid, or, if its complement is meant, outside of
+    /// that.
+    Walls(&'q mut Option<BoundaryFacets>),
 }
 
 /// A kind of questions about the universe that some solids answer without a descent.
@@ -411,6 +415,16 @@ pub trait AskWhole: Classifier {
     fn facets(&self, control: &Control<'_>) -> Result<Option<BoundaryFacets>, Error> {
         let mut known = None;
         self.answer_whole(WholeQuestion::Facets(&mut known), control)?;
+        Ok(known)
+    }
+
+    /// Triangles in the closed solid among which its whole boundary is: [`WholeQuestion::Walls`].
+    ///
+    /// # Errors
+    /// As [`moments`](Self::moments).
+    fn walls(&self, control: &Control<'_>) -> Result<Option<BoundaryFacets>, Error> {
+        let mut known = None;
+        self.answer_whole(WholeQuestion::Walls(&mut known), control)?;
         Ok(known)
     }
 

@@ -308,6 +308,20 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
         clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(300), ..CONTROL })
     });
+    operation!("clearance of meshes", [closed], {
+        let solid = || MeshSolid::new(closed.clone(), FillRule::NonZero);
+        let turn = Affine::translation([0.5, 0.25, 40.0])?;
+        clearance_at(
+            &solid()?,
+            &solid()?,
+            &frame(),
+            &[turn],
+            &Frame::new([-128.0; 3], 256.0, 5)?,
+            0.0,
+            &CONTROL,
+        )?;
+        gap_at_least(&solid()?, &solid()?.placed(&turn)?, &Frame::new([-128.0; 3], 256.0, 5)?, 0.5, &CONTROL)
+    });
     operation!("deviation", [a], {
         deviation(&a, &Csg::ball([15.0; 3], 9.0)?, &frame(), 0.5, &Control { max_splits: Some(8), ..CONTROL })
     });

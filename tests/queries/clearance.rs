@@ -1,12 +1,12 @@
 //! Clearance to second order: distances of primitives against closed forms, the points that are told with them, how deep solids
 //! overlap, and gaps that are decided.
 
-use crate::common::{Random, alone, model};
+use crate::common::{Random, alone};
 use leafless::query::{GapVerdict, StopReason, clearance_at, gap_at_least, gap_at_least_at};
 use leafless::solid::Transform;
 use leafless::{
     Affine, Clearance, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, SurfaceOptions, build,
-    build_extended, clearance, exchange,
+    build_extended, clearance,
 };
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -438,50 +438,4 @@ fn solids_of_all_kinds_agree() {
         // (Of a solid that is moved by its cells, up to four cells.)
         assert!(widths[0] <= 0.0625 && widths[1] <= 0.25 && widths[2] <= 1e-2, "{widths:?}");
     }
-}
-
-/// Distances of a mesh to itself in many places are no greater than those of its vertices and of points on its triangles, and no
-/// such points are nearer than the lower bound.
-#[test]
-#[ignore = "minutes"]
-fn a_mesh_beside_itself() {
-    let Some(path) = model("featuretype.STL") else { return };
-    let mesh =
-        exchange::read_mesh(&std::fs::read(path).unwrap(), &exchange::MeshOptions::default()).unwrap().mesh;
-    let (min, max) = mesh.bounds();
-    let extent = [0, 1, 2].map(|axis| max[axis] - min[axis]);
-    let longest = extent.iter().copied().fold(0.0, f64::max);
-    let middle = [0, 1, 2].map(|axis| 0.5 * (min[axis] + max[axis]));
-    let frame = Frame::around(
-        [0, 1, 2].map(|k| middle[k] - 3.0 * longest),
-        [0, 1, 2].map(|k| middle[k] + 3.0 * longest),
-        9,
-    )
-    .unwrap();
-    let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
-    let mut random = Random(16);
-    let (mut widest, mut apart) = (0.0f64, 0);
-    for case in 0..1000 {
-        let turn = rigid(&mut random, 0.0);
-        let turned = turn.apply(middle);
-        let mut rows = *turn.rows();
-        for axis in 0..3 {
-            rows[axis][3] = middle[axis] - turned[axis] + random.between(-1.2, 1.2) * longest;
-        }
-        let placed = mesh.placed(&Affine::new(rows).unwrap()).unwrap();
-        let moved = MeshSolid::new(placed.clone(), FillRule::NonZero).unwrap();
-        let found = clearance(&solid, &moved, &frame, 1e-3 * longest, &up_to(2000)).unwrap();
-        // The nearest of some points of both surfaces, by brute force.
-        let thin = |vertices: &[[f64; 3]]| vertices.iter().step_by(7).copied().collect::<Vec<_>>();
-        let (own, others) = (thin(mesh.vertices()), thin(placed.vertices()));
-        let nearest = own.iter().flat_map(|&p| others.iter().map(move |&q| dot(minus(p, q), minus(p, q))));
-        let nearest = nearest.fold(f64::INFINITY, f64::min).sqrt();
-        assert!(found.distance.lower <= nearest, "case {case}: {found:?} {nearest}");
-        if found.distance.lower > 0.0 {
-            apart += 1;
-            widest = widest.max(found.distance.width());
-        }
-    }
-    println!("{apart} apart, at most {widest} wide, of {longest}");
-    assert!(apart > 100);
 }

@@ -12,6 +12,7 @@ mod random;
 
 mod area;
 mod clearance;
+mod clearance_meshes;
 mod columns;
 mod contact;
 mod content;

@@ -23,8 +23,9 @@ use leafless::surface::{
 use leafless::voxel::{Symmetry, Viewpoint, VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
     Affine, Bounds, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership, MeshSolid, Octree, Ray,
-    Rule, SurfaceOptions, Tag, TriDexel, Volume, bounding_box, build, build_extended, cast_rays, clearance,
-    complement, contains, deviation, dexelize, difference, intersection, marching_cubes, measure, union, xor,
+    Rule, SurfaceOptions, Tag, TriDexel, TriangleMesh, Volume, bounding_box, build, build_extended,
+    cast_rays, clearance, complement, contains, deviation, dexelize, difference, intersection,
+    marching_cubes, measure, union, xor,
 };
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -72,8 +73,17 @@ impl Heard {
 }
 
 /// Operations that are one search until what they look for is known well enough: nobody knows how long it will be.
-const SEARCHES: &[&str] =
-    &["bounding box", "clearance", "clearances", "deviation", "gap", "gaps", "interference", "section area"];
+const SEARCHES: &[&str] = &[
+    "bounding box",
+    "clearance",
+    "clearances",
+    "clearance of meshes",
+    "deviation",
+    "gap",
+    "gaps",
+    "interference",
+    "section area",
+];
 
 /// Operations that are one step of which only the end is told, or nothing.
 const ONE_STEP: &[&str] = &[
@@ -241,6 +251,15 @@ fn all_operations(depth: u8) -> Vec<Told> {
     heard.of("clearances", |control| {
         let turn = Affine::translation([0.1, 0.2, 0.3]).unwrap();
         clearance_at(&ball, &part, &frame, &[turn; 4], &frame, 1e-3, control)
+    });
+    heard.of("clearance of meshes", |control| {
+        let mesh = || -> Result<MeshSolid, Error> {
+            let vertices = vec![[-0.2; 3], [0.4, -0.2, -0.2], [-0.2, 0.4, -0.2], [-0.2, -0.2, 0.4]];
+            let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+            MeshSolid::new(TriangleMesh::new(vertices, triangles)?, FillRule::NonZero)
+        };
+        let turn = Affine::translation([0.45, 0.2, 0.3]).unwrap();
+        clearance_at(&mesh()?, &mesh()?, &frame, &[turn; 4], &frame, 0.0, control)
     });
     heard.of("gap", |control| {
         let apart = Csg::ball([-0.6, 0.0, 0.0], 0.3)?;

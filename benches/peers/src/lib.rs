@@ -79,3 +79,38 @@ impl Peer {
         self.child.wait().map(drop)
     }
 }
+
+/// splitmix64: a number in [0, 1).
+fn share(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mut z = *state;
+    z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^= z >> 31;
+    (z >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Rows of [R | t]: rotations, all equally likely, and offsets of up to `reach` along each axis.
+pub fn random_poses(count: usize, reach: [f64; 3]) -> Vec<[[f64; 4]; 3]> {
+    let mut state = 1;
+    let mut pose = || {
+        let (q, square) = loop {
+            let q = [0; 4].map(|_| 2.0 * share(&mut state) - 1.0);
+            let square: f64 = q.iter().map(|c| c * c).sum();
+            if (0.01..1.0).contains(&square) {
+                break (q, square);
+            }
+        };
+        let [w, x, y, z] = q.map(|c| c / square.sqrt());
+        let turn = [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ];
+        [0, 1, 2].map(|i| {
+            let [a, b, c] = turn[i];
+            [a, b, c, reach[i] * (2.0 * share(&mut state) - 1.0)]
+        })
+    };
+    (0..count).map(|_| pose()).collect()
+}

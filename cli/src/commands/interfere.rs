@@ -13,7 +13,7 @@ use crate::words::{count, number, put_line};
 use clap::Args;
 use leafless::lattice::Cube;
 use leafless::query::{Gap, GapVerdict, Overlap, StopReason, gap_at_least};
-use leafless::solid::Prepared;
+use leafless::solid::{AskWhole, Prepared, Solid};
 use leafless::{
     Affine, Clearance, Control, Error, Frame, Interference, Interval, Proof, clearance, interference,
 };
@@ -26,8 +26,8 @@ use std::ffi::OsString;
 /// clearance is 0. Of scenes and of solids that keep surfaces this is proven also where the surfaces on which they touch are one.
 ///
 /// The volume that the solids have in common and the clearance, the least distance between them, are
-/// intervals that hold the true ones. An upper bound of the clearance needs cells that are proven to be
-/// inside. What is not known is null in JSON.
+/// intervals that hold the true ones. The clearance of two closed meshes is found by their triangles, to rounding. Of other solids
+/// an upper bound of the clearance needs cells that are proven to be inside. What is not known is null in JSON.
 #[derive(Args)]
 #[command(mut_arg("place", |place| place.visible_alias("place-b")))]
 pub struct Arguments {
@@ -177,7 +177,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let asked = poses::Asked { inputs: &inputs, solids: &solids, frames: [&frame, &own] };
         let wanted = match arguments.gap_at_least {
             Some(least) => poses::Wanted::Gap(least),
-            None if arguments.clearance => poses::Wanted::Clearance(tolerance(is_exact, &frame)),
+            None if arguments.clearance => {
+                let [first, second] = &solids;
+                let is_exact = is_exact
+                    || has_walls(first, &frame, &control).of(a)?
+                        && has_walls(second, &own, &control).of(b)?;
+                poses::Wanted::Clearance(tolerance(is_exact, &frame))
+            }
             None => poses::Wanted::Verdict,
         };
         return asked.run(&placements, wanted, &control, arguments.json);
@@ -318,6 +324,11 @@ fn tolerance(is_exact: bool, frame: &Frame) -> f64 {
     if is_exact { 1e-9 * frame.edge() } else { 4.0 * frame.cell_size() }
 }
 
+/// Whether triangles tell distances from a solid.
+fn has_walls<S: Solid>(solid: &S, frame: &Frame, control: &Control<'_>) -> Result<bool, Error> {
+    Ok(solid.on(frame, control)?.walls(control)?.is_some())
+}
+
 /// The verdict; then how much, or how far.
 fn ask(
     [a, b]: [&Prepared; 2],
@@ -350,6 +361,7 @@ fn ask(
         };
         return Ok(Answers { found, near, evaluations, is_spent: spends(measured.splits) });
     }
+    let is_exact = is_exact || has_walls(a, frame, control)? && has_walls(b, frame, control)?;
     let near = clearance(a, b, frame, tolerance(is_exact, frame), control)?;
     let is_open = found.verdict == Overlap::Undecided && spends(found.splits);
     Ok(Answers { found, is_spent: is_open || near.stop_reason == StopReason::Budget, near, evaluations })

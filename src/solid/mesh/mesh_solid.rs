@@ -415,6 +415,18 @@ impl Classifier for MeshClassifier {
                         sides.boundary()?.map(|chosen| BoundaryFacets { mesh: solid.mesh.clone(), chosen });
                 }
             }
+            WholeQuestion::Walls(known) => {
+                if solid.is_closed()
+                    && self.exterior() == Tag::Empty
+                    && let Some(sides) = solid.sides(control)?
+                {
+                    let chosen = match sides.boundary()? {
+                        None => sides.walls(&solid.mesh, solid.fill, control)?,
+                        facets => facets,
+                    };
+                    *known = chosen.map(|chosen| BoundaryFacets { mesh: solid.mesh.clone(), chosen });
+                }
+            }
             WholeQuestion::OffLattice(known) => {
                 *known = self.mesh.placed.displacement == 0.0
                     && self.mesh.caps.is_empty()

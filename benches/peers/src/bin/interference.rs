@@ -12,7 +12,7 @@
 use leafless::octree::Cursor;
 use leafless::query::{Interference, Overlap, interference_at};
 use leafless::{Affine, Control, Frame, OctreeRef, Proof, Rule, Solid, Tag, build};
-use peers::{Peer, median, read, solid, spent};
+use peers::{Peer, median, random_poses, read, solid, spent};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::fs;
@@ -20,41 +20,6 @@ use std::path::Path;
 use std::process::Command;
 
 const ROUNDS: usize = 9;
-
-/// splitmix64: a number in [0, 1).
-fn share(state: &mut u64) -> f64 {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *state;
-    z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^= z >> 31;
-    (z >> 11) as f64 / (1u64 << 53) as f64
-}
-
-/// Rows of [R | t], seen from the centre of the box.
-fn poses(count: usize, extent: [f64; 3]) -> Vec<[[f64; 4]; 3]> {
-    let mut state = 1;
-    let mut pose = || {
-        let (q, square) = loop {
-            let q = [0; 4].map(|_| 2.0 * share(&mut state) - 1.0);
-            let square: f64 = q.iter().map(|c| c * c).sum();
-            if (0.01..1.0).contains(&square) {
-                break (q, square);
-            }
-        };
-        let [w, x, y, z] = q.map(|c| c / square.sqrt());
-        let turn = [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ];
-        [0, 1, 2].map(|i| {
-            let [a, b, c] = turn[i];
-            [a, b, c, 1.2 * extent[i] * (2.0 * share(&mut state) - 1.0)]
-        })
-    };
-    (0..count).map(|_| pose()).collect()
-}
 
 /// Adds the nodes below a cursor as OctoMap's `.bt` has them: two bits a child, which is unknown, occupied or cut. Returns how
 /// many nodes OctoMap makes of them.
@@ -99,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let extent = [0, 1, 2].map(|axis| bounds.max[axis] - bounds.min[axis]);
     let centre = [0, 1, 2].map(|axis| 0.5 * (bounds.min[axis] + bounds.max[axis]));
     let edge = extent.into_iter().fold(0.0, f64::max);
-    let poses = poses(count, extent);
+    let poses = random_poses(count, extent.map(|side| 1.2 * side));
     let folder = std::env::temp_dir().join(format!("interference-{}", std::process::id()));
     fs::create_dir_all(&folder)?;
     let [tree_file, pose_file, verdict_file] =
