@@ -1260,6 +1260,9 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_solid_surface, solid, leafless_solid_surface(NULL, &frame, &surface, NULL, mesh_result));
     NULL_POINTER(leafless_solid_surface, frame, leafless_solid_surface(solid, NULL, &surface, NULL, mesh_result));
     NULL_POINTER(leafless_solid_surface, mesh, leafless_solid_surface(solid, &frame, &surface, NULL, NULL));
+    NULL_POINTER(leafless_solid_boundary, solid, leafless_solid_boundary(NULL, &frame, 1, NULL, count, mesh_result));
+    NULL_POINTER(leafless_solid_boundary, frame, leafless_solid_boundary(solid, NULL, 1, NULL, count, mesh_result));
+    NULL_POINTER(leafless_solid_boundary, mesh, leafless_solid_boundary(solid, &frame, 1, NULL, count, NULL));
     NULL_POINTER(leafless_mesh_normals, mesh, leafless_mesh_normals(NULL, NULL, 0, count));
     NULL_POINTER(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 8, count));
     NULL_POINTER(leafless_mesh_normals, count, leafless_mesh_normals(mesh, NULL, 0, NULL));
@@ -1314,6 +1317,12 @@ static void volumes_and_surfaces(void) {
                leafless_solid_surface(solid, (leafless_frame *)WRONG(&frame), NULL, NULL, mesh_result));
     MISALIGNED(leafless_solid_surface, mesh,
                leafless_solid_surface(solid, &frame, NULL, NULL, (leafless_mesh **)WRONG(out)));
+    MISALIGNED(leafless_solid_boundary, frame,
+               leafless_solid_boundary(solid, (leafless_frame *)WRONG(&frame), 1, NULL, NULL, mesh_result));
+    MISALIGNED(leafless_solid_boundary, intersecting_pairs,
+               leafless_solid_boundary(solid, &frame, 1, NULL, (uint64_t *)WRONG(out), mesh_result));
+    MISALIGNED(leafless_solid_boundary, mesh,
+               leafless_solid_boundary(solid, &frame, 1, NULL, NULL, (leafless_mesh **)WRONG(out)));
     surface.resolve = LEAFLESS_RESOLVE_SOURCE;
     NULL_POINTER(leafless_octree_surface, surface.source, leafless_octree_surface(octree, &surface, NULL, mesh_result));
     surface.source = (leafless_solid *)WRONG(solid);
@@ -1368,6 +1377,19 @@ static void volumes_and_surfaces(void) {
     surface.resolve = 0;
     MAY_BE_NULL(leafless_solid_surface, options, leafless_solid_surface(solid, &frame, &surface, NULL, mesh_result));
     leafless_mesh_free(*mesh_result);
+    {
+        const double middle[3] = {frame.origin[0] + 0.5 * frame.edge, frame.origin[1] + 0.5 * frame.edge,
+                                  frame.origin[2] + 0.5 * frame.edge};
+        leafless_solid *round = NULL;
+        OK(leafless_solid_new_ball(middle, 0.25 * frame.edge, &round));
+        MAY_BE_NULL(leafless_solid_boundary, options,
+                    leafless_solid_boundary(round, &frame, frame.edge, NULL, &number, mesh_result));
+        leafless_mesh_free(*mesh_result);
+        MAY_BE_NULL(leafless_solid_boundary, intersecting_pairs,
+                    leafless_solid_boundary(round, &frame, frame.edge, &options, NULL, mesh_result));
+        leafless_mesh_free(*mesh_result);
+        leafless_solid_free(round);
+    }
     MAY_BE_NULL(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 0, &number));
     CHECK(number == 8);
     OK(leafless_mesh_area(mesh, &real));

@@ -536,7 +536,44 @@ static void refusals(void) {
     leafless_octree_free(octree);
 }
 
+/* A block with a hole: plane faces between their corners, a wall in chords. */
+static void boundaries(void) {
+    const double low[3] = {0, 0, 0}, high[3] = {80, 60, 10};
+    const double from[3] = {40, 30, -1}, to[3] = {40, 30, 11};
+    const leafless_frame frame = {{-10, -20, -45}, 100, 14};
+    const double pi = 3.14159265358979323846;
+    leafless_solid *block = NULL, *bore = NULL, *plate = NULL;
+    leafless_mesh *mesh = NULL;
+    uint64_t pairs = 1;
+    OK(leafless_solid_new_box(low, high, &block));
+    OK(leafless_solid_boundary(block, &frame, 1, NULL, &pairs, &mesh));
+    CHECK(pairs == 0 && told(mesh).triangles == 12 && told(mesh).vertices == 8);
+    CHECK(fabs(volume_of(mesh) - 48000) < 1e-9);
+    leafless_mesh_free(mesh);
+    OK(leafless_solid_new_cylinder(from, to, 5, &bore));
+    {
+        const leafless_solid *both[2];
+        both[0] = block;
+        both[1] = bore;
+        OK(leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, both, 2, &plate));
+    }
+    OK(leafless_solid_boundary(plate, &frame, 0.008, NULL, &pairs, &mesh));
+    CHECK(pairs == 0 && told(mesh).is_manifold && told(mesh).euler_characteristic == 0);
+    CHECK(told(mesh).triangles < 1500 && fabs(volume_of(mesh) - (48000 - 250 * pi)) < 1);
+    leafless_mesh_free(mesh);
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &frame, 0, NULL, &pairs, &mesh));
+    {
+        leafless_frame small = frame;
+        small.edge = 50;
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &small, 1, NULL, &pairs, &mesh));
+    }
+    leafless_solid_free(plate);
+    leafless_solid_free(bore);
+    leafless_solid_free(block);
+}
+
 int main(void) {
+    boundaries();
     octrees();
     solids();
     shrink();

@@ -4882,6 +4882,34 @@ leafless_status leafless_octree_surface(const leafless_octree *octree,
 leafless_status leafless_solid_surface(const leafless_solid *solid, const leafless_frame *frame,
     const leafless_surface_options *surface, const leafless_options *options, leafless_mesh **mesh);
 
+/// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep
+/// theirs: its plane faces as they are, with triangles between their corners alone, and curved ones in chords
+/// that are no further from them than about `tolerance_model`. Edges are sharp, and corners are exact to
+/// rounding. The solid must end inside of the universe of the frame.
+///
+/// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices
+/// lie at one place. Cells are split until at most three surfaces in each have a simple arrangement. Where
+/// more meet in a point, and where surfaces touch, they are split as far as the depth of the frame, which
+/// costs little: 12 to 16 is good for parts. leafless_solid_deviation proves how far the mesh is from the
+/// solid.
+///
+/// About 10 microseconds and 500 bytes a cell; one thread does it all.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `intersecting_pairs`, one number or NULL;
+///   `mesh`, one pointer.
+/// - Result: `*mesh`; `*intersecting_pairs`, the pairs of its triangles that intersect each other, which are
+///   0 but where cells of the frame's depth do not tell surfaces apart.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of
+///   something else than surfaces, as a mesh or a host program's function does, or `tolerance_model` is not
+///   between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*mesh` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
+leafless_status leafless_solid_boundary(const leafless_solid *solid, const leafless_frame *frame,
+    double tolerance_model, const leafless_options *options, uint64_t *intersecting_pairs,
+    leafless_mesh **mesh);
+
 /// The surface of a volume by marching cubes: its samples are the centres of voxels, which need not be cubes,
 /// and its vertices lie where the samples, interpolated between two voxels, leave the band. For samples of a
 /// smooth function that is on the surface to second order in the spacing. Between bits, and beside a sample

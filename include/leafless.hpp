@@ -489,6 +489,8 @@ public:
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_frame &frame,
         const leafless_surface_options *surface = nullptr, const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<std::tuple<uint64_t, leafless::mesh>> boundary(const leafless_frame &frame,
+        double tolerance_model, const leafless_options *options = nullptr) const;
     [[nodiscard]] static returns<leafless::solid> from_tridexel(const leafless::tridexel &tridexel,
         bool is_truth, const leafless_options *options = nullptr);
 };
@@ -1517,6 +1519,16 @@ inline returns<leafless::mesh> solid::surface(const leafless_frame &frame,
     leafless_mesh *mesh_handle = nullptr;
     const leafless_status status = leafless_solid_surface(get(), &frame, surface, options, &mesh_handle);
     return detail::finish(status, leafless::mesh(mesh_handle));
+}
+
+inline returns<std::tuple<uint64_t, leafless::mesh>> solid::boundary(const leafless_frame &frame,
+    double tolerance_model, const leafless_options *options) const {
+    uint64_t intersecting_pairs{};
+    leafless_mesh *mesh_handle = nullptr;
+    const leafless_status status = leafless_solid_boundary(get(), &frame, tolerance_model, options,
+        &intersecting_pairs, &mesh_handle);
+    return detail::finish(status, std::tuple<uint64_t, leafless::mesh>(intersecting_pairs,
+        leafless::mesh(mesh_handle)));
 }
 
 inline returns<leafless::solid> solid::from_tridexel(const leafless::tridexel &tridexel, bool is_truth,

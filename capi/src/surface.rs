@@ -11,7 +11,7 @@ use super::status::leafless_status;
 use super::volume::leafless_volume;
 use leafless::marching_cubes;
 use leafless::surface::{
-    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, dual_contouring_solid,
+    Resolve, Snap, VertexPlacement, boundary, coplanar_shrink, coplanar_shrink_solid, dual_contouring_solid,
     marching_cubes_solid, marching_cubes_volume, published_shrink, published_shrink_solid,
     simple_marching_cubes, simple_marching_cubes_solid,
 };
@@ -300,6 +300,54 @@ pub unsafe extern "C" fn leafless_solid_surface(
             Method::PublishedShrink(snap) => published_shrink_solid(solid, &frame, snap, control),
             Method::DualContouring => Ok(dual_contouring_solid(solid, &frame, control)?.0),
         })?))
+    })
+}
+
+/// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep theirs: its plane faces as they
+/// are, with triangles between their corners alone, and curved ones in chords that are no further from them than about
+/// `tolerance_model`. Edges are sharp, and corners are exact to rounding. The solid must end inside of the universe of the frame.
+///
+/// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices lie at one place. Cells are
+/// split until at most three surfaces in each have a simple arrangement. Where more meet in a point, and where surfaces touch, they are
+/// split as far as the depth of the frame, which costs little: 12 to 16 is good for parts. leafless_solid_deviation proves how far
+/// the mesh is from the solid.
+///
+/// About 10 microseconds and 500 bytes a cell; one thread does it all.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `intersecting_pairs`, one number or NULL;
+///   `mesh`, one pointer.
+/// - Result: `*mesh`; `*intersecting_pairs`, the pairs of its triangles that intersect each other, which are 0 but where cells of the
+///   frame's depth do not tell surfaces apart.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of something else than
+///   surfaces, as a mesh or a host program's function does, or `tolerance_model` is not between 2^-256 and 2^256;
+///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: give `*mesh` back with leafless_mesh_free.
+/// - Threads: any.
+/// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_boundary(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    tolerance_model: f64,
+    options: *const leafless_options,
+    intersecting_pairs: *mut u64,
+    mesh: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        // The cells lie on a lattice of their own, for which nothing is kept.
+        let solid = shared(solid, "solid")?.solid.solid();
+        let frame = self::frame(frame)?;
+        let pairs = match intersecting_pairs.is_null() {
+            true => None,
+            false => Some(out(intersecting_pairs, "intersecting_pairs")?),
+        };
+        let mesh = out(mesh, "mesh")?;
+        let found = controlled(options, |control| boundary(solid, &frame, tolerance_model, control))?;
+        if let Some(pairs) = pairs {
+            pairs.write(found.report().intersecting_pairs)?;
+        }
+        mesh.write(give(found.into_mesh()))
     })
 }
 

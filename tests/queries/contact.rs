@@ -4,6 +4,7 @@ use crate::common::Random;
 use leafless::query::{Interference, Overlap};
 use leafless::{
     Affine, Control, Csg, Frame, Octree, Solid, SurfaceOptions, build_extended, interference, measure,
+    query::{clearance_at, interference_at},
 };
 
 /// What the program allows by default.
@@ -52,6 +53,37 @@ fn check(name: &str, a: &Csg, b: &Csg, frame: &Frame, expected: Overlap, most: u
             assert!(found.splits.iter().all(|&splits| splits <= most), "{}", told());
             assert_eq!(found.ball.is_some(), expected == Overlap::Overlapping, "{}", told());
             assert_eq!(found.volume.lower > 0.0, expected == Overlap::Overlapping, "{}", told());
+        }
+    }
+}
+
+/// Under many placements octrees that keep their surfaces decide contacts as one by one.
+#[test]
+fn octrees_in_many_places() {
+    let frame = Frame::new([-32.0; 3], 64.0, 10).unwrap();
+    let own = Frame::new([-12.0; 3], 24.0, 9).unwrap();
+    let hole = moved(&Csg::cylinder(5.0, -11.0, 11.0).unwrap(), [2.125, -3.25, 0.0]);
+    let plate = Csg::cuboid([-20.0, -20.0, -10.0], [20.0, 20.0, 10.0]).unwrap().difference(&hole).unwrap();
+    let plate = stored(&plate, &frame);
+    let turns = [[[1.0, 0.0], [0.0, 1.0]], [[0.0, -1.0], [1.0, 0.0]]];
+    let at = |[[a, b], [c, d]]: [[f64; 2]; 2], x: f64| {
+        Affine::new([[a, b, 0.0, x], [c, d, 0.0, -3.25], [0.0, 0.0, 1.0, 0.0]]).unwrap()
+    };
+    let places = [at(turns[0], 2.125), at(turns[1], 2.125), at(turns[0], 2.25), at(turns[1], 2.25)];
+    for (radius, gap, verdicts) in [
+        (4.75, [0.25, 0.125], [Overlap::Disjoint; 2]),
+        (5.0, [0.0; 2], [Overlap::Disjoint, Overlap::Overlapping]),
+        (5.015625, [0.0; 2], [Overlap::Overlapping; 2]),
+    ] {
+        let pin = stored(&Csg::cylinder(radius, -9.0, 9.0).unwrap(), &own);
+        let found = interference_at(&plate, &pin, &own, &places, &frame, PROOF, &alone()).unwrap();
+        let near = clearance_at(&plate, &pin, &own, &places, &frame, 1e-6, &alone()).unwrap();
+        for k in 0..4 {
+            assert_eq!(found[k].verdict, verdicts[k / 2], "{radius} {k}: {:?}", found[k]);
+            let distance = near[k].distance;
+            let (least, most) = (gap[k / 2] - 1e-9, gap[k / 2] + 1e-9);
+            assert!(distance.lower <= most && least <= distance.upper, "{radius} {k}: {:?}", near[k]);
+            assert!(gap[k / 2] == 0.0 || distance.width() <= 1e-6, "{radius} {k}: {:?}", near[k]);
         }
     }
 }

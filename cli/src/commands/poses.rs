@@ -77,8 +77,9 @@ struct Report<P> {
 
 /// The placements in a file: a line for each, as --place takes it. Empty lines and lines that begin with # are skipped.
 pub fn read(path: &Path, first: &Affine) -> Result<Vec<Affine>, Failure> {
-    let of_file = |problem: String| Failure::Usage(format!("{}: {problem}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|error| of_file(error.to_string()))?;
+    let input = Input::Path(path.into());
+    let of_file = |problem: String| Failure::of(&input, problem);
+    let text = String::from_utf8(input.read()?).map_err(|_| of_file("is no text".into()))?;
     let mut placements = Vec::new();
     for (line, text) in (1..).zip(text.lines()) {
         let text = text.trim();

@@ -15,7 +15,7 @@ use crate::lattice::{Affine, Cell, Frame, Interval, axes, valid};
 use crate::memory;
 use crate::octree::Proof;
 use crate::parallel::each;
-use crate::solid::{Classifier, Motion, Solid, TransformClassifier};
+use crate::solid::{AskWhole, Classifier, Motion, Solid, Transform, TransformClassifier};
 use crate::walk::Proven;
 use alloc::vec::Vec;
 use facets::{Boundary, ByFacets, Pair};
@@ -141,8 +141,8 @@ pub fn clearance<A: Solid, B: Solid>(
 /// As [`clearance`] of `a` and `b` under each of the `placements`, in their order; the first of both is
 /// known on `frame`, the second on its `own` frame, and both are prepared once. The same for any number of
 /// threads; `control.max_splits` concerns each placement. Meshes whose triangles tell the distance are moved exactly, and get ready
-/// once. Expressions are moved exactly
-/// ([`Motion::Exact`]); other solids by their cells, as [`Transform`](crate::solid::Transform) moves them.
+/// once. Expressions are moved exactly ([`Motion::Exact`]), octrees that keep their surfaces with these, as [`Transform`] moves them, and
+/// all others by their cells.
 ///
 /// # Errors
 /// As [`clearance`].
@@ -252,6 +252,7 @@ fn at_each<A: Solid, B: Solid>(
     let (bounds, solid) = (b.bounds(), b);
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(own, control)?));
     let boundaries = boundaries((&a, &b), solid.motion() == Motion::Vertices, control)?;
+    let keeps_surfaces = solid.home().is_some() && b.surfaces(control)?.is_some_and(|list| !list.is_empty());
     let one = |placement: &Affine| {
         if solid.motion() == Motion::Exact
             && let Some(moved) = solid.placed(placement)?
@@ -270,6 +271,10 @@ fn at_each<A: Solid, B: Solid>(
                     placement: Some(placement).filter(|placement| !placement.is_identity()),
                 };
                 apart_by_facets(&pair, (&a, &moved), wanted, &job)?
+            }
+            _ if keeps_surfaces => {
+                let moved = Transform::new(solid, own, placement).on(frame, control)?;
+                apart(&a, &Proven(moved), wanted, &job)?
             }
             _ => apart(&a, &moved, wanted, &job)?,
         };

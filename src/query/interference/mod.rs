@@ -13,7 +13,7 @@ use crate::octree::{Proof, Tag};
 use crate::parallel;
 use crate::parallel::each_with;
 use crate::solid::joint::Joint;
-use crate::solid::{Classifier, Motion, Solid, TransformClassifier};
+use crate::solid::{AskWhole, Classifier, Motion, Solid, Transform, TransformClassifier};
 use crate::walk::Proven;
 use alloc::vec::Vec;
 use oriented::{Oriented, Waiting};
@@ -180,6 +180,9 @@ fn of_classifiers<A: Classifier, B: Classifier>(
 /// frames that are given.
 /// Any affine placement will do. Where a finite `tolerance` asks for the volume of an overlap, the search by cells follows.
 ///
+/// Where that does not decide, an octree that keeps its surfaces is moved with these, as [`Transform`] moves it: contacts are decided as
+/// [`interference`] decides them.
+///
 /// A placement takes a few microseconds, and more where the solids nearly touch: the work grows with the area where the gap is as
 /// narrow as a cell, measured in such cells.
 ///
@@ -219,6 +222,7 @@ pub fn interference_at<A: Solid, B: Solid>(
         false => None,
     };
     let oriented = oriented.map(|(a, b)| Oriented::new(a, b));
+    let keeps_surfaces = solid.home().is_some() && b.surfaces(control)?.is_some_and(|list| !list.is_empty());
     let a = Proven(a);
     // The threads are those of the placements.
     let alone = Control { threads: 1, ..*control };
@@ -246,6 +250,13 @@ pub fn interference_at<A: Solid, B: Solid>(
                 let found = of_classifiers(a.clone(), b, tolerance, &own, &job)?;
                 known.map_or(found, |known| found.with(&known))
             }
+        };
+        // To move surfaces takes some thousand splits, which only close contacts are worth.
+        let found = if keeps_surfaces && found.verdict == Overlap::Undecided {
+            let moved = Transform::new(solid, own, placement).on(frame, control)?;
+            of_classifiers(a.clone(), Proven(moved), tolerance, &alone, &job)?.with(&found)
+        } else {
+            found
         };
         job.advance(WHOLE / placements.len());
         Ok::<_, Error>(found)

@@ -162,7 +162,7 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
         return Err(Error::Argument { name: "frame", problem: "must hold all of the solid" });
     }
     let frame = *classifier.frame();
-    let surfaces = classifier.surfaces(control)?.ok_or(UNKNOWN)?;
+    let surfaces = classifier.surfaces(control)?.filter(|list| !list.is_empty()).ok_or(UNKNOWN)?;
     let figures = Figures::new(&surfaces, &frame)?;
     let whole = tolerance / frame.edge();
     let tolerance = CHORDS * whole;
