@@ -158,6 +158,7 @@ impl<'a> Job<'a> {
     }
 
     /// Reports all that is left as done.
+    #[cfg(feature = "std")]
     pub(crate) fn finish(&self) {
         self.advance(WHOLE.saturating_sub(self.done.load(Relaxed)));
     }
