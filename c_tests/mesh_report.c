@@ -135,7 +135,42 @@ static void intersects(void) {
     leafless_mesh_free(mesh);
 }
 
+/* A boundary that lies somewhere within a deviation of the cube. */
+static void deviation(void) {
+    const double points[9] = {0.5, 0.5, 0.5, -0.1, 0.5, 0.5, -0.3, 0.5, 0.5}, wrong[3] = {-0.5, NAN, INFINITY};
+    const leafless_frame frame = check_frame(20);
+    leafless_mesh_info info = LEAFLESS_INIT(leafless_mesh_info);
+    leafless_mesh_moments moments = LEAFLESS_INIT(leafless_mesh_moments);
+    leafless_mesh *cube = check_cube(), *stated = NULL, *open = check_some_of_cube(11);
+    leafless_solid *solid = NULL;
+    leafless_membership answers[3];
+    size_t i;
+
+    OK(leafless_mesh_with_deviation(cube, 0.125, &stated));
+    OK(leafless_mesh_describe(stated, &info));
+    CHECK(info.deviation_model == 0.125 && info.displacement_model == 0.125);
+    OK(leafless_mesh_describe(cube, &info));
+    CHECK(info.deviation_model == 0.0 && info.displacement_model == 0.0);
+    OK(leafless_mesh_measure(stated, LEAFLESS_FILL_NON_ZERO, NULL, &moments));
+    CHECK(moments.volume_model.lower < 0.75 * 0.75 * 0.75 && 1.25 * 1.25 * 1.25 < moments.volume_model.upper);
+    OK(leafless_solid_from_mesh(stated, LEAFLESS_FILL_NON_ZERO, &solid));
+    OK(leafless_solid_contains_many(solid, &frame, points, 3, NULL, answers));
+    CHECK(answers[0] == LEAFLESS_MEMBERSHIP_INSIDE && answers[1] == LEAFLESS_MEMBERSHIP_UNDECIDED);
+    CHECK(answers[2] == LEAFLESS_MEMBERSHIP_OUTSIDE);
+    leafless_solid_free(solid);
+    leafless_mesh_free(stated);
+
+    OK(leafless_mesh_with_deviation(open, 0.125, &stated));
+    solid = NULL;
+    FAILS(LEAFLESS_E_MESH, leafless_solid_from_mesh(stated, LEAFLESS_FILL_NON_ZERO, &solid));
+    leafless_mesh_free(stated);
+    leafless_mesh_free(open);
+    for (i = 0; i < COUNT(wrong); i++) FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_with_deviation(cube, wrong[i], &stated));
+    leafless_mesh_free(cube);
+}
+
 int main(void) {
+    deviation();
     leafless_mesh_defect defect;
     leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     surface all = cube();

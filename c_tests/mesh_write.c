@@ -103,6 +103,28 @@ static void formats(void) {
     leafless_mesh_free(mesh);
 }
 
+/* What a file says of its distance from the true boundary. */
+static void deviations(void) {
+    leafless_mesh_write_options options = defaults();
+    leafless_mesh_file_info found = LEAFLESS_INIT(leafless_mesh_file_info);
+    leafless_mesh_info info = LEAFLESS_INIT(leafless_mesh_info);
+    leafless_mesh *mesh = tetrahedron(1), *back = NULL;
+    uint64_t length;
+    uint8_t *bytes;
+    options.format = LEAFLESS_MESH_FORMAT_PLY;
+    options.deviation_model = 0.25;
+    bytes = bytes_of(mesh, &options, &length);
+    OK(mesh_from_bytes(bytes, length, NULL, &found, &back));
+    CHECK(found.deviation_model == 0.25);
+    OK(leafless_mesh_describe(back, &info));
+    CHECK(info.deviation_model == 0.0);
+    leafless_mesh_free(back);
+    free(bytes);
+    options.deviation_model = -1;
+    FAILS(LEAFLESS_E_ARGUMENT, mesh_to_bytes(mesh, &options, NULL, 0, &length));
+    leafless_mesh_free(mesh);
+}
+
 static void units(void) {
     leafless_mesh_write_options options = defaults();
     leafless_mesh *mesh = tetrahedron(7), *back;
@@ -272,6 +294,7 @@ static void refusals(void) {
 
 int main(void) {
     formats();
+    deviations();
     units();
     normals();
     losses();

@@ -229,6 +229,8 @@ static void null_pointers(void) {
     NULL_POINTER(leafless_mesh_check_closed, mesh, leafless_mesh_check_closed(NULL, 0));
     NULL_POINTER(leafless_mesh_sewn, mesh, leafless_mesh_sewn(NULL, mesh_result));
     NULL_POINTER(leafless_mesh_sewn, sewn, leafless_mesh_sewn(mesh, NULL));
+    NULL_POINTER(leafless_mesh_with_deviation, mesh, leafless_mesh_with_deviation(NULL, 0.5, mesh_result));
+    NULL_POINTER(leafless_mesh_with_deviation, stated, leafless_mesh_with_deviation(mesh, 0.5, NULL));
     NULL_POINTER(leafless_mesh_transformed, mesh, leafless_mesh_transformed(NULL, matrix, mesh_result));
     NULL_POINTER(leafless_mesh_transformed, matrix, leafless_mesh_transformed(mesh, NULL, mesh_result));
     NULL_POINTER(leafless_mesh_transformed, moved, leafless_mesh_transformed(mesh, matrix, NULL));
@@ -1260,9 +1262,9 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_solid_surface, solid, leafless_solid_surface(NULL, &frame, &surface, NULL, mesh_result));
     NULL_POINTER(leafless_solid_surface, frame, leafless_solid_surface(solid, NULL, &surface, NULL, mesh_result));
     NULL_POINTER(leafless_solid_surface, mesh, leafless_solid_surface(solid, &frame, &surface, NULL, NULL));
-    NULL_POINTER(leafless_solid_boundary, solid, leafless_solid_boundary(NULL, &frame, 1, NULL, count, mesh_result));
-    NULL_POINTER(leafless_solid_boundary, frame, leafless_solid_boundary(solid, NULL, 1, NULL, count, mesh_result));
-    NULL_POINTER(leafless_solid_boundary, mesh, leafless_solid_boundary(solid, &frame, 1, NULL, count, NULL));
+    NULL_POINTER(leafless_solid_boundary, solid, leafless_solid_boundary(NULL, &frame, 1, NULL, NULL, mesh_result));
+    NULL_POINTER(leafless_solid_boundary, frame, leafless_solid_boundary(solid, NULL, 1, NULL, NULL, mesh_result));
+    NULL_POINTER(leafless_solid_boundary, mesh, leafless_solid_boundary(solid, &frame, 1, NULL, NULL, NULL));
     NULL_POINTER(leafless_mesh_normals, mesh, leafless_mesh_normals(NULL, NULL, 0, count));
     NULL_POINTER(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 8, count));
     NULL_POINTER(leafless_mesh_normals, count, leafless_mesh_normals(mesh, NULL, 0, NULL));
@@ -1319,8 +1321,8 @@ static void volumes_and_surfaces(void) {
                leafless_solid_surface(solid, &frame, NULL, NULL, (leafless_mesh **)WRONG(out)));
     MISALIGNED(leafless_solid_boundary, frame,
                leafless_solid_boundary(solid, (leafless_frame *)WRONG(&frame), 1, NULL, NULL, mesh_result));
-    MISALIGNED(leafless_solid_boundary, intersecting_pairs,
-               leafless_solid_boundary(solid, &frame, 1, NULL, (uint64_t *)WRONG(out), mesh_result));
+    MISALIGNED(leafless_solid_boundary, report,
+               leafless_solid_boundary(solid, &frame, 1, NULL, (leafless_boundary_report *)WRONG(out), mesh_result));
     MISALIGNED(leafless_solid_boundary, mesh,
                leafless_solid_boundary(solid, &frame, 1, NULL, NULL, (leafless_mesh **)WRONG(out)));
     surface.resolve = LEAFLESS_RESOLVE_SOURCE;
@@ -1383,9 +1385,9 @@ static void volumes_and_surfaces(void) {
         leafless_solid *round = NULL;
         OK(leafless_solid_new_ball(middle, 0.25 * frame.edge, &round));
         MAY_BE_NULL(leafless_solid_boundary, options,
-                    leafless_solid_boundary(round, &frame, frame.edge, NULL, &number, mesh_result));
+                    leafless_solid_boundary(round, &frame, frame.edge, NULL, NULL, mesh_result));
         leafless_mesh_free(*mesh_result);
-        MAY_BE_NULL(leafless_solid_boundary, intersecting_pairs,
+        MAY_BE_NULL(leafless_solid_boundary, report,
                     leafless_solid_boundary(round, &frame, frame.edge, &options, NULL, mesh_result));
         leafless_mesh_free(*mesh_result);
         leafless_solid_free(round);

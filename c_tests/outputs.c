@@ -35,6 +35,7 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_measures, leafless_solid_measure(solid, &frame, 0.1, 0, NULL, out))                                 \
     FILLS(leafless_surface_area, leafless_solid_surface_area(solid, &frame, 0.1, 0, NULL, out))                        \
     FILLS(leafless_section_area, leafless_solid_section_area(solid, &frame, zero, up, 0.1, 0, NULL, out))              \
+    FILLS(leafless_boundary_report, leafless_solid_boundary(solid, &frame, frame.edge, NULL, out, &made))              \
     FILLS(leafless_extent, leafless_solid_bounding_box(solid, &frame, 0.1, NULL, out))                                 \
     FILLS(leafless_clearance, leafless_solid_clearance(solid, other, &frame, 0.1, NULL, out))                          \
     FILLS(leafless_deviation, leafless_solid_deviation(solid, other, &frame, 0.1, 1, NULL, out))                       \

@@ -228,12 +228,12 @@ fn open_cascade() {
         let (lower, upper) = line.split_once(" to ").unwrap_or((line, line));
         [lower, upper].map(|bound| bound.trim().parse::<f64>().unwrap())
     };
-    // The block less its bore, whose side of 603 square millimetres has facets within the deflection.
+    // The block less its bore, of 4345 square millimetres in all. What lies within the deflection of its facets is not known.
     let truth = 40.0 * 24.0 * 16.0 - std::f64::consts::PI * 6.0 * 6.0 * 16.0;
     let [[by_them, _], triangles, distances] =
         ["volume by Open CASCADE", "volume by triangles", "volume by distances"].map(bounds);
     assert!((by_them - truth).abs() < 1e-3, "{told}");
-    assert!(triangles.into_iter().all(|bound| (bound - truth).abs() < 603.2 * 0.01), "{told}");
+    assert!(triangles[0] < truth && truth < triangles[1] && triangles[1] - triangles[0] < 100.0, "{told}");
     assert!(distances[0] < truth && truth < distances[1] && distances[1] - distances[0] < 4000.0, "{told}");
 
     let file = |name: &str, text: &str| std::fs::write(folder.join("build").join(name), text).unwrap();

@@ -544,10 +544,12 @@ static void boundaries(void) {
     const double pi = 3.14159265358979323846;
     leafless_solid *block = NULL, *bore = NULL, *plate = NULL;
     leafless_mesh *mesh = NULL;
-    uint64_t pairs = 1;
+    leafless_boundary_report report = LEAFLESS_INIT(leafless_boundary_report);
     OK(leafless_solid_new_box(low, high, &block));
-    OK(leafless_solid_boundary(block, &frame, 1, NULL, &pairs, &mesh));
-    CHECK(pairs == 0 && told(mesh).triangles == 12 && told(mesh).vertices == 8);
+    OK(leafless_solid_boundary(block, &frame, 1, NULL, &report, &mesh));
+    CHECK(report.intersecting_pairs == 0 && report.cells >= 8 && report.splits > 0);
+    CHECK(report.deviation_model >= 0 && report.deviation_model < 1e-9);
+    CHECK( told(mesh).triangles == 12 && told(mesh).vertices == 8);
     CHECK(fabs(volume_of(mesh) - 48000) < 1e-9);
     leafless_mesh_free(mesh);
     OK(leafless_solid_new_cylinder(from, to, 5, &bore));
@@ -557,15 +559,16 @@ static void boundaries(void) {
         both[1] = bore;
         OK(leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, both, 2, &plate));
     }
-    OK(leafless_solid_boundary(plate, &frame, 0.008, NULL, &pairs, &mesh));
-    CHECK(pairs == 0 && told(mesh).is_manifold && told(mesh).euler_characteristic == 0);
+    OK(leafless_solid_boundary(plate, &frame, 0.008, NULL, &report, &mesh));
+    CHECK(report.deviation_model > 0.001 && report.deviation_model <= 0.008);
+    CHECK(report.intersecting_pairs == 0 && told(mesh).is_manifold && told(mesh).euler_characteristic == 0);
     CHECK(told(mesh).triangles < 1500 && fabs(volume_of(mesh) - (48000 - 250 * pi)) < 1);
     leafless_mesh_free(mesh);
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &frame, 0, NULL, &pairs, &mesh));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &frame, 0, NULL, &report, &mesh));
     {
         leafless_frame small = frame;
         small.edge = 50;
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &small, 1, NULL, &pairs, &mesh));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &small, 1, NULL, &report, &mesh));
     }
     leafless_solid_free(plate);
     leafless_solid_free(bore);

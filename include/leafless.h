@@ -779,7 +779,9 @@ typedef struct leafless_mesh_report {
     /// Other bodies that enclose a negative volume: cavities, and bodies that are inside out.
     uint64_t inside_out_bodies;
     uint64_t sewn;  ///< Vertices that leafless_mesh_sewn moved onto another one.
-    double displacement_model;  ///< The farthest that any of them was moved along an axis, in model units.
+    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in
+    /// it.)
+    double displacement_model;
     /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the
     /// other with the same sense and no cavity between them. There the surface winds around points more than
     /// once, and leafless_mesh_volume is not what a fill rule encloses.
@@ -855,6 +857,11 @@ typedef struct leafless_mesh_info {
     /// Bytes of memory that it keeps: its arrays and attributes, and what was found out about its edges if
     /// somebody asked. What meshes and solids share counts for each of them.
     uint64_t bytes;
+    /// How far the true boundary may lie from the mesh: what leafless_mesh_with_deviation stated of it.
+    double deviation_model;
+    /// How far it may lie from the mesh along an axis: the deviation, what vertices were moved by to close
+    /// hair cracks, and what a placement rounded.
+    double displacement_model;
 } leafless_mesh_info;
 
 /// What can be said of a mesh at once. O(1), but for the names of attributes.
@@ -950,8 +957,31 @@ leafless_status leafless_mesh_check_closed(const leafless_mesh *mesh, leafless_f
 /// - Untrusted input: any mesh.
 leafless_status leafless_mesh_sewn(const leafless_mesh *mesh, leafless_mesh **sewn);
 
+/// The same mesh, of which it is known only that the true boundary lies within a distance of it, as the
+/// boundary of a part lies beside a tessellation with that deflection. It takes the place of a deviation that
+/// was stated before.
+///
+/// The true solid is bounded by the mesh's surface, of which each point was moved by that distance at the
+/// most, continuously, and no part of which was turned over. A dent, a hole or a body that the mesh does not
+/// have at all is not covered, however small it is. Whatever is proven of solids made of the mesh is then
+/// proven of the true solid: cells near to the triangles are undecided, intervals contain the truth, and
+/// nothing is told of a point that is too near. The area of the true boundary is not known. Placements and
+/// set operations carry the deviation along, and leafless_proof tells it. What is no proof, as a sampled
+/// octree, a tri-dexel model, a picture, leafless_mesh_bounds and leafless_mesh_volume, is that of the mesh.
+///
+/// - Buffers: `stated`, one pointer.
+/// - Result: `*stated`; leafless_mesh_describe tells its deviation. A solid of it needs a closed mesh, and is
+///   refused with LEAFLESS_E_MESH otherwise.
+/// - Errors: LEAFLESS_E_ARGUMENT unless `deviation_model` is finite, not negative, and at most 2^256;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*stated` back with leafless_mesh_free.
+/// - Untrusted input: any number.
+leafless_status leafless_mesh_with_deviation(const leafless_mesh *mesh, double deviation_model,
+    leafless_mesh **stated);
+
 /// The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices
-/// count as the truth, whatever cracks were closed before.
+/// count as the truth, whatever cracks were closed before, and whatever deviation was stated:
+/// leafless_solid_placed keeps both.
 ///
 /// - Buffers: `matrix`, 12 numbers: three rows of M and t, (m00 m01 m02 t0, m10 …); `moved`, one pointer.
 /// - Result: `*moved`, welded as by leafless_mesh_new.
@@ -962,7 +992,8 @@ leafless_status leafless_mesh_sewn(const leafless_mesh *mesh, leafless_mesh **se
 leafless_status leafless_mesh_transformed(const leafless_mesh *mesh, const double matrix[12],
     leafless_mesh **moved);
 
-/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known.
+/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known, and so does a
+/// deviation.
 ///
 /// - Buffers: `offset_model`, 3 numbers; `moved`, one pointer.
 /// - Result: `*moved`.
@@ -1193,6 +1224,9 @@ typedef struct leafless_mesh_file_info {
     /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
     /// not contain.
     uint64_t skipped;
+    /// How far, as the file says, the true boundary may lie from the mesh, converted and scaled; 0 if it does
+    /// not say so. It is not believed: leafless_mesh_with_deviation states it, for who does.
+    double deviation_model;
 } leafless_mesh_file_info;
 
 /// Reads a mesh file. Everything in it becomes one mesh, welded as by leafless_mesh_new; polygons become
@@ -1244,6 +1278,10 @@ typedef struct leafless_mesh_write_options {
     /// 1 to write PLY and OBJ with the normals that leafless_mesh_normals tells; other formats have none.
     /// Else 0.
     uint32_t has_normals;
+    /// How far the true boundary may lie from the mesh, which a comment of PLY, OBJ and OFF and metadata of a
+    /// 3MF tell; an STL has no place for it. leafless_mesh_file_info has it when the file is read. 0 tells
+    /// nothing.
+    double deviation_model;
 } leafless_mesh_write_options;
 
 /// Writes a mesh file: STL, PLY, OBJ, OFF or 3MF.
@@ -4882,6 +4920,19 @@ leafless_status leafless_octree_surface(const leafless_octree *octree,
 leafless_status leafless_solid_surface(const leafless_solid *solid, const leafless_frame *frame,
     const leafless_surface_options *surface, const leafless_options *options, leafless_mesh **mesh);
 
+/// What is known of the boundary of a solid as a mesh.
+typedef struct leafless_boundary_report {
+    uint32_t struct_size;  ///< sizeof(leafless_boundary_report).
+    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary
+    /// from the mesh (model units). That is proven; infinite if nothing is.
+    double deviation_model;
+    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell
+    /// surfaces apart.
+    uint64_t intersecting_pairs;
+    uint64_t cells;  ///< Cells that the boundary passes through.
+    uint64_t splits;  ///< Cells that were split.
+} leafless_boundary_report;
+
 /// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep
 /// theirs: its plane faces as they are, with triangles between their corners alone, and curved ones in chords
 /// that are no further from them than about `tolerance_model`. Edges are sharp, and corners are exact to
@@ -4890,15 +4941,16 @@ leafless_status leafless_solid_surface(const leafless_solid *solid, const leafle
 /// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices
 /// lie at one place. Cells are split until at most three surfaces in each have a simple arrangement. Where
 /// more meet in a point, and where surfaces touch, they are split as far as the depth of the frame, which
-/// costs little: 12 to 16 is good for parts. leafless_solid_deviation proves how far the mesh is from the
-/// solid.
+/// costs little: 12 to 16 is good for parts.
 ///
-/// About 10 microseconds and 500 bytes a cell; one thread does it all.
+/// How far the mesh and the boundary are from each other is proven by the surfaces. Where that is more than
+/// the tolerance, cells are split, as far as the depth of the frame.
 ///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `intersecting_pairs`, one number or NULL;
-///   `mesh`, one pointer.
-/// - Result: `*mesh`; `*intersecting_pairs`, the pairs of its triangles that intersect each other, which are
-///   0 but where cells of the frame's depth do not tell surfaces apart.
+/// About 50 microseconds and 500 bytes a cell; one thread does it all.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `report`, one struct or NULL; `mesh`, one
+///   pointer.
+/// - Result: `*mesh`; `*report`.
 /// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of
 ///   something else than surfaces, as a mesh or a host program's function does, or `tolerance_model` is not
 ///   between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles;
@@ -4907,7 +4959,7 @@ leafless_status leafless_solid_surface(const leafless_solid *solid, const leafle
 /// - Threads: any.
 /// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
 leafless_status leafless_solid_boundary(const leafless_solid *solid, const leafless_frame *frame,
-    double tolerance_model, const leafless_options *options, uint64_t *intersecting_pairs,
+    double tolerance_model, const leafless_options *options, leafless_boundary_report *report,
     leafless_mesh **mesh);
 
 /// The surface of a volume by marching cubes: its samples are the centres of voxels, which need not be cubes,

@@ -369,6 +369,7 @@ public:
     [[nodiscard]] returns<std::vector<leafless_mesh_defect>> defects(uint64_t limit) const;
     returns<void> check_closed(leafless_fill fill) const;
     [[nodiscard]] returns<leafless::mesh> sewn() const;
+    [[nodiscard]] returns<leafless::mesh> with_deviation(double deviation_model) const;
     [[nodiscard]] returns<leafless::mesh> transformed(const affine &matrix) const;
     [[nodiscard]] returns<leafless::mesh> translated(const point &offset_model) const;
     [[nodiscard]] static returns<leafless::mesh> make(const leafless_mesh_arrays &arrays);
@@ -489,8 +490,9 @@ public:
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_frame &frame,
         const leafless_surface_options *surface = nullptr, const leafless_options *options = nullptr) const;
-    [[nodiscard]] returns<std::tuple<uint64_t, leafless::mesh>> boundary(const leafless_frame &frame,
-        double tolerance_model, const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<std::tuple<leafless_boundary_report,
+        leafless::mesh>> boundary(const leafless_frame &frame, double tolerance_model,
+        const leafless_options *options = nullptr) const;
     [[nodiscard]] static returns<leafless::solid> from_tridexel(const leafless::tridexel &tridexel,
         bool is_truth, const leafless_options *options = nullptr);
 };
@@ -987,6 +989,12 @@ inline returns<leafless::mesh> mesh::sewn() const {
     leafless_mesh *sewn_handle = nullptr;
     const leafless_status status = leafless_mesh_sewn(get(), &sewn_handle);
     return detail::finish(status, leafless::mesh(sewn_handle));
+}
+
+inline returns<leafless::mesh> mesh::with_deviation(double deviation_model) const {
+    leafless_mesh *stated_handle = nullptr;
+    const leafless_status status = leafless_mesh_with_deviation(get(), deviation_model, &stated_handle);
+    return detail::finish(status, leafless::mesh(stated_handle));
 }
 
 inline returns<leafless::mesh> mesh::transformed(const affine &matrix) const {
@@ -1521,13 +1529,14 @@ inline returns<leafless::mesh> solid::surface(const leafless_frame &frame,
     return detail::finish(status, leafless::mesh(mesh_handle));
 }
 
-inline returns<std::tuple<uint64_t, leafless::mesh>> solid::boundary(const leafless_frame &frame,
-    double tolerance_model, const leafless_options *options) const {
-    uint64_t intersecting_pairs{};
+inline returns<std::tuple<leafless_boundary_report,
+    leafless::mesh>> solid::boundary(const leafless_frame &frame, double tolerance_model,
+    const leafless_options *options) const {
+    leafless_boundary_report report = LEAFLESS_INIT(leafless_boundary_report);
     leafless_mesh *mesh_handle = nullptr;
-    const leafless_status status = leafless_solid_boundary(get(), &frame, tolerance_model, options,
-        &intersecting_pairs, &mesh_handle);
-    return detail::finish(status, std::tuple<uint64_t, leafless::mesh>(intersecting_pairs,
+    const leafless_status status = leafless_solid_boundary(get(), &frame, tolerance_model, options, &report,
+        &mesh_handle);
+    return detail::finish(status, std::tuple<leafless_boundary_report, leafless::mesh>(report,
         leafless::mesh(mesh_handle)));
 }
 

@@ -42,7 +42,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             struct_size, reserved, path, path_length, write, write_ctx, bytes, capacity, length
         }
         leafless_cells_in { full_least, full_most, upper_least, upper_most }
-        leafless_mesh_info { struct_size, attributes, vertices, triangles, bytes }
+        leafless_mesh_info { struct_size, attributes, vertices, triangles, bytes, deviation_model, displacement_model }
         leafless_mesh_report { struct_size,
             facets_read, triangles, vertices, welded, degenerate, boundary_edges, boundary_loops, misoriented_edges,
             non_manifold_edges, duplicate, opposite, flat, bodies, open_bodies, inside_out_bodies, sewn,
@@ -63,8 +63,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_intersecting_pair { min_model, max_model, triangles }
         leafless_mesh_options { struct_size, format, unit, target, scale }
-        leafless_mesh_file_info { struct_size, format, unit, skipped }
-        leafless_mesh_write_options { struct_size, format, is_text, unit, has_normals }
+        leafless_mesh_file_info { struct_size, format, unit, skipped, deviation_model }
+        leafless_mesh_write_options { struct_size, format, is_text, unit, has_normals, deviation_model }
         leafless_volume_layout {
             struct_size, sample_type, extents, byte_order, skip, corner_model, spacing_model
         }
@@ -153,6 +153,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             measured, has_centroid, is_clipped, is_exact
         }
         leafless_surface_area { struct_size, area_model, splits, level, measured, is_clipped }
+        leafless_boundary_report { struct_size, deviation_model, intersecting_pairs, cells, splits }
         leafless_section_area { struct_size, area_model, proof, splits, measured, is_clipped }
         leafless_extent { struct_size,
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped

@@ -88,7 +88,7 @@ pub struct leafless_mesh_report {
     pub inside_out_bodies: u64,
     /// Vertices that leafless_mesh_sewn moved onto another one.
     pub sewn: u64,
-    /// The farthest that any of them was moved along an axis, in model units.
+    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in it.)
     pub displacement_model: f64,
     /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the other
     /// with the same sense and no cavity between them. There the surface winds around points more than once,
@@ -250,6 +250,11 @@ pub struct leafless_mesh_info {
     /// Bytes of memory that it keeps: its arrays and attributes, and what was found out about its edges if
     /// somebody asked. What meshes and solids share counts for each of them.
     pub bytes: u64,
+    /// How far the true boundary may lie from the mesh: what leafless_mesh_with_deviation stated of it.
+    pub deviation_model: f64,
+    /// How far it may lie from the mesh along an axis: the deviation, what vertices were moved by to close hair
+    /// cracks, and what a placement rounded.
+    pub displacement_model: f64,
 }
 
 output!(leafless_mesh_info);
@@ -271,6 +276,8 @@ pub unsafe extern "C" fn leafless_mesh_describe(
             vertices: mesh.vertices().len() as u64,
             triangles: mesh.triangles().len() as u64,
             bytes: mesh.bytes(),
+            deviation_model: mesh.deviation(),
+            displacement_model: mesh.displacement(),
         })
     })
 }
@@ -474,8 +481,40 @@ pub unsafe extern "C" fn leafless_mesh_sewn(
     })
 }
 
+/// The same mesh, of which it is known only that the true boundary lies within a distance of it, as the boundary of
+/// a part lies beside a tessellation with that deflection. It takes the place of a deviation that was stated before.
+///
+/// The true solid is bounded by the mesh's surface, of which each point was moved by that distance at the most,
+/// continuously, and no part of which was turned over. A dent, a hole or a body that the mesh does not have at all
+/// is not covered, however small it is. Whatever is proven of solids made of the mesh is then proven of the true
+/// solid: cells near to the triangles are undecided, intervals contain the truth, and nothing is told of a point that
+/// is too near. The area of the true boundary is not known. Placements and set operations carry the deviation along,
+/// and leafless_proof tells it. What is no proof, as a sampled octree, a tri-dexel model, a picture,
+/// leafless_mesh_bounds and leafless_mesh_volume, is that of the mesh.
+///
+/// - Buffers: `stated`, one pointer.
+/// - Result: `*stated`; leafless_mesh_describe tells its deviation. A solid of it needs a closed mesh, and is refused
+///   with LEAFLESS_E_MESH otherwise.
+/// - Errors: LEAFLESS_E_ARGUMENT unless `deviation_model` is finite, not negative, and at most 2^256;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*stated` back with leafless_mesh_free.
+/// - Untrusted input: any number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_with_deviation(
+    mesh: *const leafless_mesh,
+    deviation_model: f64,
+    stated: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let stated = out(stated, "stated")?;
+        stated.write(give(mesh.try_clone()?.with_deviation(deviation_model)?))
+    })
+}
+
 /// The mesh under an affine map: x' = M x + t, rounded. A reflection turns it inside out. The moved vertices
-/// count as the truth, whatever cracks were closed before.
+/// count as the truth, whatever cracks were closed before, and whatever deviation was stated:
+/// leafless_solid_placed keeps both.
 ///
 /// - Buffers: `matrix`, 12 numbers: three rows of M and t, (m00 m01 m02 t0, m10 …); `moved`, one pointer.
 /// - Result: `*moved`, welded as by leafless_mesh_new.
@@ -501,7 +540,7 @@ pub unsafe extern "C" fn leafless_mesh_transformed(
     })
 }
 
-/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known.
+/// The mesh moved by a vector, rounded. What leafless_mesh_sewn has found stays known, and so does a deviation.
 ///
 /// - Buffers: `offset_model`, 3 numbers; `moved`, one pointer.
 /// - Result: `*moved`.

@@ -122,6 +122,9 @@ pub struct leafless_mesh_file_info {
     /// Instances of objects that are not meant to be solid, such as supports in a 3MF, and that the mesh does
     /// not contain.
     pub skipped: u64,
+    /// How far, as the file says, the true boundary may lie from the mesh, converted and scaled; 0 if it does not say
+    /// so. It is not believed: leafless_mesh_with_deviation states it, for who does.
+    pub deviation_model: f64,
 }
 
 output!(leafless_mesh_file_info);
@@ -153,6 +156,7 @@ impl From<&MeshFile> for leafless_mesh_file_info {
             },
             unit: unit_of(file.unit),
             skipped: file.skipped,
+            deviation_model: file.deviation.unwrap_or(0.0),
         }
     }
 }

@@ -28,6 +28,9 @@ pub struct leafless_mesh_write_options {
     pub unit: Number<leafless_unit>,
     /// 1 to write PLY and OBJ with the normals that leafless_mesh_normals tells; other formats have none. Else 0.
     pub has_normals: u32,
+    /// How far the true boundary may lie from the mesh, which a comment of PLY, OBJ and OFF and metadata of a 3MF
+    /// tell; an STL has no place for it. leafless_mesh_file_info has it when the file is read. 0 tells nothing.
+    pub deviation_model: f64,
 }
 
 // SAFETY: numbers.
@@ -47,8 +50,9 @@ unsafe fn options(
         return Err(Failure::Argument { name: "options.has_normals", problem: "must be 0 or 1" });
     }
     let unit = given.unit.known("options.unit")?;
+    let deviation = if given.deviation_model == 0.0 { None } else { Some(given.deviation_model) };
     let (text, normals) = (given.is_text == 1, given.has_normals == 1);
-    Ok((given.format.known("options.format")?, WriteOptions { text, unit, normals }))
+    Ok((given.format.known("options.format")?, WriteOptions { text, unit, normals, deviation }))
 }
 
 /// The format that a path's extension says.

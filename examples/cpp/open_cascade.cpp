@@ -139,13 +139,13 @@ leafless::mesh tessellation(const TopoDS_Shape &model, double deflection) {
     arrays.indices = triangles.data();
     arrays.triangle_count = triangles.size();
     // Each face has corners of its own. Those that are equal become one; those that rounding or the tolerance of an
-    // edge keeps apart are sewn.
-    return leafless::mesh::make(arrays).sewn();
+    // edge keeps apart are sewn. The faces of the model lie within the deflection of the triangles.
+    return leafless::mesh::make(arrays).sewn().with_deviation(deflection);
 }
 
-// Every answer is certified for the solid that the triangles bound. How far that solid is from the model is Open
-// CASCADE's word: it keeps the deflection at the points that it checks. The octree keeps the planes of the triangles,
-// to a thousandth of the deflection.
+// Every answer is certified for each solid whose boundary lies within the deflection of the triangles. That the model's does
+// is Open CASCADE's word: it keeps the deflection at the points that it checks. The octree keeps the planes of the
+// triangles as layers that are no thicker than four deflections.
 void by_triangles(const TopoDS_Shape &model, const leafless_frame &frame, double deflection) {
     const leafless::mesh mesh = tessellation(model, deflection);
     mesh.check_closed(LEAFLESS_FILL_NON_ZERO);
@@ -153,7 +153,7 @@ void by_triangles(const TopoDS_Shape &model, const leafless_frame &frame, double
                 static_cast<unsigned long long>(mesh.describe().triangles), deflection);
 
     leafless_cut_options cuts = LEAFLESS_INIT(leafless_cut_options);
-    cuts.tolerance_model = 1e-3 * deflection;
+    cuts.tolerance_model = 4 * deflection;
     octree::build_extended(solid::from_mesh(mesh, LEAFLESS_FILL_NON_ZERO), frame, &cuts)
         .write(leafless_to_file("open_cascade.lfl"));
 

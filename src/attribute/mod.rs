@@ -16,6 +16,7 @@ mod sampled;
 mod source;
 mod summary;
 mod surface;
+mod triangles;
 mod value_region;
 mod volume;
 
@@ -29,6 +30,7 @@ pub use materials::{MaterialProperties, materials};
 pub use sampled::{FillOptions, fill_channel};
 pub use summary::ChannelSummary;
 pub use surface::SurfaceAttribute;
+pub use triangles::sample_triangles;
 pub use value_region::ValueRegion;
 pub use volume::{Interpolation, VolumeAttribute};
 

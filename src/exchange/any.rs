@@ -5,7 +5,7 @@ use super::stl::read_stl;
 #[cfg(feature = "threemf")]
 use super::threemf;
 use super::unit::{Factor, LengthUnit};
-use super::{MeshWarning, refuse_utf16};
+use super::{MeshWarning, refuse_utf16, stated};
 #[cfg(feature = "std")]
 use super::{ply, read_obj, read_off};
 use crate::error::{Error, MeshFileError};
@@ -46,6 +46,10 @@ pub struct MeshFile {
     /// Instances of objects that the file does not mean to be solid, such as supports, and that the mesh
     /// therefore does not contain. 0 for all formats but 3MF.
     pub skipped: u64,
+    /// How far, as a PLY, OBJ, OFF or 3MF that was written with [`WriteOptions::deviation`](super::WriteOptions::deviation) says,
+    /// the true boundary may lie from the mesh: converted and scaled as its coordinates are. The file is not believed:
+    /// [`TriangleMesh::with_deviation`] states it, for who does.
+    pub deviation: Option<f64>,
     /// Where the file departs from its format, though it could be read.
     pub warnings: Vec<MeshWarning>,
 }
@@ -100,14 +104,14 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         .ok_or(MeshFileError::UnknownFormat)?;
     #[cfg_attr(not(feature = "std"), expect(unused_mut, reason = "only these formats warn"))]
     let mut warnings = Vec::new();
-    let (mesh, own_unit, skipped) = match format {
-        MeshFormat::Stl => (read_stl(bytes)?, None, 0),
+    let (mesh, own_unit, skipped, said) = match format {
+        MeshFormat::Stl => (read_stl(bytes)?, None, 0, None),
         #[cfg(feature = "std")]
-        MeshFormat::Obj => (read_obj(bytes)?, None, 0),
+        MeshFormat::Obj => (read_obj(bytes)?, None, 0, None),
         #[cfg(feature = "std")]
-        MeshFormat::Ply => (ply::read(bytes, &mut warnings)?, None, 0),
+        MeshFormat::Ply => (ply::read(bytes, &mut warnings)?, None, 0, None),
         #[cfg(feature = "std")]
-        MeshFormat::Off => (read_off(bytes)?, None, 0),
+        MeshFormat::Off => (read_off(bytes)?, None, 0, None),
         #[cfg(not(feature = "std"))]
         MeshFormat::Obj | MeshFormat::Ply | MeshFormat::Off => {
             let what = "polygons, for which the library was built without the feature `std`,";
@@ -115,8 +119,8 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         }
         #[cfg(feature = "threemf")]
         MeshFormat::ThreeMf => {
-            let threemf::Built { mesh, unit, skipped } = threemf::read(bytes, &mut warnings)?;
-            (mesh, Some(unit), skipped)
+            let threemf::Built { mesh, unit, skipped, deviation } = threemf::read(bytes, &mut warnings)?;
+            (mesh, Some(unit), skipped, deviation)
         }
         #[cfg(not(feature = "threemf"))]
         MeshFormat::ThreeMf => {
@@ -124,6 +128,7 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
             return Err(MeshFileError::Unsupported { what }.into());
         }
     };
+    let said = said.or_else(|| stated::find(bytes, format));
     let unit = options.unit.or(own_unit);
     let conversion = match (unit, options.target) {
         (_, None) => None,
@@ -131,8 +136,11 @@ fn read(bytes: &[u8], extension: Option<&str>, options: &MeshOptions) -> Result<
         (None, Some(_)) => return Err(MeshFileError::UnknownUnit.into()),
     };
     let factor = Factor::new(conversion, options.scale)?;
+    // (What is rounded is rounded up. What is too large says nothing.)
+    let scaled = |said: f64| if said > 0.0 { factor.apply(said).next_up() } else { said };
+    let deviation = if factor.is_one() { said } else { said.map(scaled).filter(|said| said.is_finite()) };
     let mesh = if factor.is_one() { mesh } else { mesh.scaled(|x| factor.apply(x))? };
-    Ok(MeshFile { mesh, format, unit: options.target.or(unit), skipped, warnings })
+    Ok(MeshFile { mesh, format, unit: options.target.or(unit), skipped, deviation, warnings })
 }
 
 #[cfg(test)]

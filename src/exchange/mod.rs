@@ -6,10 +6,14 @@
 //! | format | what is read |
 //! |---|---|
 //! | STL | binary and ASCII, several solids in one file |
-//! | OBJ | polygons, relative indices, continued lines; groups, materials and normals are skipped |
+//! | OBJ | polygons, relative indices, continued lines, names of materials; groups and normals are skipped |
 //! | PLY | ASCII and both binary orders; colours of vertices and faces; any other elements and properties are skipped; triangle strips |
 //! | OFF | text and binary, with and without a keyword, with colours, normals and textures, which are skipped |
 //! | 3MF | (feature `threemf`) the core specification, its draft 0.93 and parts of the production extension: units, components, the build's transforms, base materials, colour groups |
+//!
+//! **Deviation.** A mesh may be known to lie within a distance of the true boundary only
+//! ([`TriangleMesh::with_deviation`]). [`WriteOptions::deviation`] writes that distance into a file, and [`MeshFile::deviation`]
+//! tells what a file says. Nobody is believed: the mesh that is read has no deviation before it is stated.
 //!
 //! **Colours and materials** are [attributes](TriangleMesh::attributes) of the mesh. `colour` has four numbers from
 //! 0 to 255: red, green and blue, in sRGB as a rule, and alpha, which is 255 where the file has none. In a PLY
@@ -17,12 +21,13 @@
 //! `face_colour`. In a 3MF corners or triangles have colours: those of a colour group, or how a base material is
 //! displayed. `material` is the number of a triangle's base material, with the materials' names, and `object` that
 //! of the object of a 3MF, if several are built, in the order in which they are first placed, with the objects'
-//! names. A file without such things gives a mesh without attributes.
+//! names. In an OBJ `material` is what `usemtl` names, numbered as the names come. A PLY that this library wrote has any other
+//! attributes. A file without such things gives a mesh without attributes.
 //!
 //! Some files depart from their format in a way that leaves no doubt about the mesh. They are read, and
 //! [`MeshFile::warnings`] tells of it.
 //!
-//! [`write_mesh`] writes a file of any of them. STL rounds coordinates to 32 bits: [`written_form`] tells the mesh that is
+//! [`write_mesh`] writes a file of any of them, and `write_polygons` an OBJ or OFF of polygons. STL rounds coordinates to 32 bits: [`written_form`] tells the mesh that is
 //! read back, and what is lost.
 //!
 //! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be
@@ -49,7 +54,11 @@ mod bytes;
 mod colours;
 #[cfg(feature = "std")]
 mod decimal;
+#[cfg(feature = "std")]
+mod declared;
 mod detect;
+#[cfg(feature = "std")]
+mod materials;
 #[cfg(feature = "std")]
 mod obj;
 #[cfg(feature = "std")]
@@ -58,6 +67,7 @@ mod off;
 mod ply;
 #[cfg(feature = "std")]
 mod polygons;
+mod stated;
 mod stl;
 #[cfg(all(test, feature = "std"))]
 mod tests;
@@ -98,6 +108,8 @@ pub use volume::{
 pub use warning::MeshWarning;
 #[cfg(feature = "png")]
 pub use write::write_png;
+#[cfg(feature = "std")]
+pub use write::write_polygons;
 pub use write::{WriteOptions, WrittenForm, write_mesh, write_stl, written_form};
 
 /// Refuses text in UTF-16. Of the formats that are one text, none can be read in it.

@@ -12,14 +12,18 @@
 //! skipped, and whether there are such is not checked. Vertices are counted from 1; -1 is the last one before
 //! the face. A face may come before its vertices. `fo`, which old files have, means the same.
 //!
-//! **Skipped** are all other statements: textures, normals, points, lines, groups, names, materials (also
-//! without a name), curves, and keywords that nobody knows. All groups and objects become one mesh.
+//! **`usemtl`** names the material of the faces behind it: the rest of its line, up to a blank and `#`. Without a name they have none.
+//! Files of materials (`mtllib`) are not read.
+//!
+//! **Skipped** are all other statements: textures, normals, points, lines, groups, names, curves, and keywords that nobody
+//! knows. All groups and objects become one mesh.
 //!
 //! **Refused**, since what is missing would be missed, are surfaces that are no polygons (`surf`, `bsp`,
 //! `bzp`) and parts that stand in another file (`call`). So is a file with neither `v` nor `f`.
 
 use alloc::vec::Vec;
 
+use super::materials::Materials;
 use super::polygons::Polygons;
 use super::text::Text;
 use super::{is_line_end, is_space, refuse_utf16};
@@ -32,7 +36,8 @@ use crate::mesh::TriangleMesh;
 /// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
 /// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
 /// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
-/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
+/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty. Where `usemtl` names materials, they
+/// are the attribute `material`.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file.
 ///
@@ -54,12 +59,14 @@ pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh, Error> {
         file = Reader { limit: Some(vertices), ..Reader::default() };
         file.read(Text::new(bytes))?;
     }
-    file.mesh.finish()
+    let Reader { mesh, materials, .. } = file;
+    mesh.finish_with(|triangles| materials.attributes(triangles.len()))
 }
 
 #[derive(Default)]
-struct Reader {
+struct Reader<'a> {
     mesh: Polygons,
+    materials: Materials<'a>,
     corners: Vec<u32>,
     /// The greatest number of a vertex in a face, counted from 1.
     most: u64,
@@ -67,8 +74,8 @@ struct Reader {
     limit: Option<u64>,
 }
 
-impl Reader {
-    fn read(&mut self, mut text: Text) -> Result<(), Error> {
+impl<'a> Reader<'a> {
+    fn read(&mut self, mut text: Text<'a>) -> Result<(), Error> {
         let mut any = false;
         loop {
             text.skip_space();
@@ -81,6 +88,11 @@ impl Reader {
                 b"f" | b"fo" => {
                     self.read_face(&mut ahead)?;
                     any = true;
+                }
+                b"usemtl" => {
+                    self.materials.begin(self.mesh.triangle_count())?;
+                    self.materials.choose(ahead.rest())?;
+                    ahead.skip_line();
                 }
                 b"surf" | b"bsp" | b"bzp" => {
                     let expected =
@@ -140,7 +152,8 @@ impl Reader {
             return Err(text.error("a face of at least three corners").into());
         }
         text.skip_line();
-        self.mesh.push_face(&self.corners)
+        self.mesh.push_face(&self.corners)?;
+        self.materials.give(self.mesh.triangle_count())
     }
 
     /// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn`.

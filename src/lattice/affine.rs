@@ -1,7 +1,7 @@
 //! Affine maps of model space.
 
 use super::axes;
-use super::exact::{Expansion, product_up, sign_of_products, two_product};
+use super::exact::{Expansion, product_up, sign_of_products, sqrt, two_product};
 use crate::error::Error;
 
 /// Entries beyond ±2^64 are refused, and so are those but zero below 2^-64.
@@ -66,6 +66,24 @@ impl Affine {
     pub(crate) fn stretched(&self, distance: f64) -> f64 {
         let stretch = self.rows.iter().map(|[x, y, z, _]| x.abs() + y.abs() + z.abs()).fold(0.0, f64::max);
         product_up(stretch * (1.0 + 2.0 * f64::EPSILON), distance)
+    }
+
+    /// A bound of the length of images of vectors that are no longer than `length`. Of turns, and of maps that stretch along axes,
+    /// it is hardly more than needed, and nowhere √3 times as much.
+    pub(crate) fn lengthened(&self, length: f64) -> f64 {
+        let is_translation =
+            (0..3).all(|i| (0..3).all(|j| self.rows[i][j] == if i == j { 1.0 } else { 0.0 }));
+        if length == 0.0 || is_translation {
+            return length;
+        }
+        // The square of the norm is the greatest eigenvalue of MᵀM: no more than a sum of magnitudes in a row.
+        let entry = |i: usize, j: usize| {
+            let parts = self.rows.map(|row| row[i] * row[j]);
+            let size = parts.iter().map(|part| part.abs()).sum::<f64>();
+            parts.iter().sum::<f64>().abs() + 8.0 * f64::EPSILON * size
+        };
+        let most = (0..3).fold(0.0, |most: f64, i| most.max((0..3).map(|j| entry(i, j)).sum()));
+        product_up(sqrt(most) * (1.0 + 16.0 * f64::EPSILON), length).next_up()
     }
 
     /// 1 if the map keeps orientation, −1 if it mirrors, 0 if M is singular: the exact sign of the

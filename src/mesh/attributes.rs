@@ -242,6 +242,11 @@ impl MeshAttribute {
         }
     }
 
+    /// Whether the values are the numbers of rows, which [`labels`](Self::labels) gave.
+    pub(crate) fn is_label(&self) -> bool {
+        matches!((&self.table, &self.rows), (Table::Labels, Rows::Triangles(_)))
+    }
+
     /// Keeps the triangles of which `is_kept` says so.
     pub(super) fn retain(&mut self, mut is_kept: impl FnMut(usize) -> bool) {
         let mut next = 0..;

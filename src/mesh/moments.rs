@@ -13,7 +13,10 @@
 //!
 //! **Displacement.** The surface may have been moved by some distance r. The solid changes by no more than the volume
 //! within r of the surface, which is at most the sum over all triangles of 2 A r + π/2 P r² + 4/3 π r³, for an area A
-//! and a perimeter P (Steiner's formula).
+//! and a perimeter P (Steiner's formula). The volume grows by no more than what of it lies outside, and shrinks by no more than what
+//! lies inside. Each is at most the sum of A r + π/4 P r² + 4/3 π r³: a point whose nearest one lies within a triangle lies on one
+//! side of it; one whose nearest one lies on an edge lies in the half cylinders of all triangles there, of which there are two at
+//! least; and around a corner there are three at least.
 
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
@@ -48,8 +51,8 @@ impl TriangleMesh {
     /// digits. They are known if the mesh is closed and no two triangles intersect. Nested bodies, cavities, and
     /// bodies that are inside out count as the rule says.
     ///
-    /// If vertices were moved ([`displacement`](Self::displacement)), the intervals contain the moments of each
-    /// solid whose surface lies within that distance along each axis.
+    /// If vertices were moved, or a [`deviation`](Self::with_deviation) was stated, the intervals contain the moments of each
+    /// solid whose surface lies within that distance ([`displacement`](Self::displacement)).
     ///
     /// O(t log t) time for triangles that lie apart, and the mesh keeps a tree of 36 bytes a triangle. Work is limited as
     /// in [`intersecting_pairs`](Self::intersecting_pairs).
@@ -98,28 +101,39 @@ impl TriangleMesh {
         Ok(MeshMoments::Known(sums.finish(&grid, grid.bits(self.vertices()), self.tube(&grid))))
     }
 
-    /// The volume within the displacement of the surface, and that distance, in units of the grid: upper bounds.
-    fn tube(&self, grid: &Grid) -> [f64; 2] {
-        if self.displacement() == 0.0 {
-            return [0.0; 2];
+    /// How far the true surface may lie from the mesh, and what that may change.
+    fn tube(&self, grid: &Grid) -> Tube {
+        let mut tube = Tube::default();
+        if self.radius() == 0.0 {
+            return tube;
         }
-        // √3 along each axis, and what is rounded here.
+        // What is rounded here.
         const SLACK: f64 = 1.0 + 1e-6;
         // More than what lengths and areas are off by, of coordinates up to 2.
         const ERROR: f64 = 1e-14;
-        let mut r = 1.7320508075688774 * SLACK * self.displacement();
-        r *= grid.scale();
-        let mut volume = 0.0;
+        let r = SLACK * self.radius() * grid.scale();
         for triangle in 0..self.triangles().len() as u32 {
             let [_, u, v] = grid.triangle(&corners(self, triangle));
             let length = |u: Point| sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
             let twice_area =
                 length([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]);
             let perimeter = length(u) + length(v) + length(array(|k| v[k] - u[k]));
-            volume += r * (twice_area + ERROR + r * (FRAC_PI_2 * (perimeter + ERROR) + 4.1888 * r));
+            let (area, round) = (0.5 * twice_area + ERROR, FRAC_PI_2 * (perimeter + ERROR));
+            tube.volume += SLACK * r * (2.0 * area + r * (round + 4.1888 * r));
+            tube.on_a_side += SLACK * r * (area + r * (0.5 * round + 4.1888 * r));
         }
-        [volume * SLACK, r]
+        Tube { reach: r, ..tube }
     }
+}
+
+/// Where the true surface may lie, in units of the grid: upper bounds.
+#[derive(Default)]
+struct Tube {
+    /// How far from the mesh.
+    reach: f64,
+    /// The volume within that distance, and that of what lies outside, or inside.
+    volume: f64,
+    on_a_side: f64,
 }
 
 /// Volume, first and second moments.
@@ -149,9 +163,8 @@ impl Sums {
         self.terms += 1.0;
     }
 
-    /// `bits` are those of the coordinates behind the point, if they are exact. `tube` is a volume that may belong to
-    /// the solid or not, and by how much it reaches beyond the mesh.
-    fn finish(&self, grid: &Grid, bits: Option<i32>, [tube, reach]: [f64; 2]) -> VolumeMoments {
+    /// `bits` are those of the coordinates behind the point, if they are exact. What lies in `tube` may belong to the solid or not.
+    fn finish(&self, grid: &Grid, bits: Option<i32>, tube: Tube) -> VolumeMoments {
         const HALF_UNIT: f64 = f64::EPSILON / 2.0;
         let unit = Interval::exactly(1.0 / grid.scale());
         let of = |k: usize, factor: f64, degree: usize| {
@@ -167,8 +180,11 @@ impl Sums {
             let sum = Interval::exactly(self.values[k]).plus(Interval::exactly(self.lost[k]));
             let sum = sum.plus(around_zero(error)).over(Interval::exactly(factor));
             // No point of the tube is further away from the centre along an axis.
-            let farthest = (1.0 + reach) * (1.0 + 1e-6);
-            let in_tube = (3..degree).fold(tube, |product, _| product * farthest) * (1.0 + 1e-6);
+            let farthest = (1.0 + tube.reach) * (1.0 + 1e-6);
+            let in_tube = match degree {
+                3 => tube.on_a_side,
+                _ => (3..degree).fold(tube.volume, |product, _| product * farthest) * (1.0 + 1e-6),
+            };
             let sum = sum.plus(around_zero(in_tube));
             (0..degree).fold(sum, |product, _| product.times(unit))
         };

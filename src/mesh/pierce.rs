@@ -13,7 +13,7 @@
 //! **The search.** The tree's boxes are looked at in single precision. In the grid's coordinates the half-line is cut to what
 //! lies in the cube around the mesh, and begins there. Along each axis a point of it is then off by no more than `slack`: by
 //! rounding its beginning and its direction to 24 bits, the way being no longer than the cube is wide, and by what was rounded
-//! before, which a beginning far away makes larger. Boxes are taken that much larger.
+//! before, which a beginning far away makes larger. Boxes are taken that much larger, and by what the surface may lie beside the mesh.
 
 use core::array::from_fn as array;
 
@@ -163,16 +163,22 @@ impl TriangleTree<'_> {
         self.mesh.displacement()
     }
 
+    /// How far it may lie from the mesh.
+    pub(crate) fn radius(&self) -> f64 {
+        self.mesh.radius()
+    }
+
     /// The axis along which, up (1) or down (−1), a point leaves the box around the mesh soonest. `None` if it surely lies beyond.
     pub(crate) fn way_out(&self, point: &Point) -> Option<(usize, f64)> {
         let around = self.tree.around()?;
         let at = self.tree.grid.scaled(point);
+        let beyond = SINGLE + self.displacement() * self.tree.grid.scale() * (1.0 + SINGLE);
         let mut best = (0, 0.0, f64::INFINITY);
         for axis in 0..3 {
             for (sign, plane) in [(1.0, around.high[axis]), (-1.0, around.low[axis])] {
                 let way = sign * (f64::from(plane) - at[axis]);
                 // (False for what is no number.)
-                let is_within = way >= -SINGLE;
+                let is_within = way >= -beyond;
                 if !is_within {
                     return None;
                 }
@@ -211,7 +217,9 @@ impl Cast {
         let speed = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         let direction = way.map(|c| c / speed);
         let furthest = from.iter().fold(1.0, |most: f64, c| most.max(c.abs()));
-        let slack = SINGLE + furthest * (1.0 / (1u64 << 48) as f64);
+        // The surface may lie that far beside the boxes.
+        let displacement = mesh.displacement() * scale * (1.0 + SINGLE);
+        let slack = SINGLE + furthest * (1.0 / (1u64 << 48) as f64) + displacement;
         let (mut begins, mut ends) = (0.0, f64::INFINITY);
         let reach = CUBE + slack;
         for axis in 0..3 {

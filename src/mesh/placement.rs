@@ -8,8 +8,9 @@ use crate::lattice::{Affine, SMALLEST};
 
 impl TriangleMesh {
     /// The mesh under an affine map. Vertices are rounded to doubles, and by how much one may be off counts
-    /// as [`displacement`](Self::displacement): what is proven of the solid is proven of the exact image. A
-    /// reflection turns the triangles round as well, so that outside stays outside. The report starts anew.
+    /// as [`displacement`](Self::displacement): what is proven of the solid is proven of the exact image. A stated
+    /// [`deviation`](Self::deviation) grows as lengths do at the most. A reflection turns the triangles round as well, so that
+    /// outside stays outside. The report starts anew.
     ///
     /// O(v + t). Fails as [`new`](Self::new) does.
     pub fn placed(&self, placement: &Affine) -> Result<TriangleMesh, Error> {
@@ -30,11 +31,12 @@ impl TriangleMesh {
         if placement.orientation() < 0 {
             placed.turn_round();
         }
-        let moved = placement.stretched(self.displacement());
+        let moved = placement.stretched(self.vertex_displacement());
         // `apply` is off by 2^-50 of the summands at the most; twice that for the sums here.
         let rounding = rounded * (8.0 * f64::EPSILON);
         let displacement = moved + rounding + dropped;
-        Ok(placed.displaced(if displacement > 0.0 { displacement.next_up() } else { 0.0 }))
+        let displacement = if displacement > 0.0 { displacement.next_up() } else { 0.0 };
+        Ok(placed.displaced(displacement, placement.lengthened(self.deviation())))
     }
 }
 

@@ -59,7 +59,8 @@ pub struct MeshReport {
     pub inside_out_bodies: u64,
     /// Vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
     pub sewn: u64,
-    /// The farthest that any of them was moved along an axis, in model units.
+    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in it:
+    /// [`TriangleMesh::displacement`] has both.)
     pub displacement: f64,
     /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the other
     /// with the same sense and no cavity between them. There the surface winds around points more than once,
@@ -127,7 +128,7 @@ impl TriangleMesh {
             open_bodies: details.open_bodies,
             inside_out_bodies: details.inside_out_bodies,
             sewn: self.sewn,
-            displacement: self.displacement(),
+            displacement: self.vertex_displacement(),
             overlapping_bodies: details.overlaps.overlapping,
             undecided_bodies: details.overlaps.undecided,
             polygons: self.faces.polygons,

@@ -26,6 +26,8 @@ use super::tree::{Grid, Tree};
 
 use crate::control::Control;
 use crate::error::{Error, MeshError};
+use crate::lattice::LARGEST;
+use crate::lattice::exact::sqrt;
 use crate::memory;
 
 /// Which points a surface encloses.
@@ -104,7 +106,10 @@ pub struct TriangleMesh {
     pub(super) welded: u64,
     pub(super) degenerate: u64,
     pub(super) sewn: u64,
+    /// How far vertices may be off along an axis: they were moved to close cracks, or rounded.
     displacement: f64,
+    /// How far the true boundary may lie from the surface, straight on.
+    deviation: f64,
     pub(super) faces: Faces,
     pub(super) topology: OnceBox<Topology>,
     pub(super) details: OnceBox<Details>,
@@ -239,6 +244,7 @@ impl TriangleMesh {
             degenerate,
             sewn: 0,
             displacement: 0.0,
+            deviation: 0.0,
             faces: Faces::default(),
             topology: OnceBox::new(),
             details: OnceBox::new(),
@@ -373,7 +379,7 @@ impl TriangleMesh {
 
     /// The mesh with every vertex moved to where `f` says. Vertices that meet are welded, as in
     /// [`new`](Self::new); a reflection turns the mesh inside out. The report starts anew, and the surface as
-    /// it then is counts as the truth, whatever cracks were closed before.
+    /// it then is counts as the truth, whatever cracks were closed before, and whatever deviation was stated.
     ///
     /// O(v + t). Fails as `new` does.
     pub fn transformed(&self, f: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, Error> {
@@ -399,13 +405,75 @@ impl TriangleMesh {
     /// The mesh moved by `offset`: [`transformed`](Self::transformed) by a rounded sum.
     pub fn translated(&self, offset: [f64; 3]) -> Result<Self, Error> {
         let moved = self.transformed(|p| (DVec3::from(p) + DVec3::from(offset)).to_array())?;
-        Ok(Self { displacement: self.displacement, ..moved })
+        Ok(Self { displacement: self.displacement, deviation: self.deviation, ..moved })
     }
 
-    /// How far any vertex was moved along an axis to close hair cracks, in model units: the surface that was
-    /// handed in lies within that distance.
+    /// The same mesh, of which it is known only that the true boundary lies within `deviation` (model units) of it, as the
+    /// boundary of a part lies beside a tessellation with that deflection. It takes the place of a deviation that was stated before.
+    ///
+    /// **What it means.** The true solid is bounded by the mesh's surface, of which each point was moved by `deviation` at the most,
+    /// continuously, and no part of which was turned over: around a point the true boundary winds as often as the mesh does
+    /// around some point within `deviation` of it. A dent, a hole or a body that the mesh does not have at all is not covered,
+    /// however small it is.
+    ///
+    /// **What follows.** Whatever is proven of a [`MeshSolid`](crate::MeshSolid) is proven of the true solid: cells near to the
+    /// triangles are undecided, intervals of volumes, moments, distances and clearances contain the truth, a ray is told in
+    /// which interval it meets the boundary, and nothing is told of a point that is too near. The area of the true boundary
+    /// is not known, since a boundary that waves has a larger one. The deviation is carried through placements, Booleans and
+    /// into octrees, whose [`Proof`](crate::Proof) tells the [`displacement`](Self::displacement). What is no proof, as a
+    /// sampled octree, a tri-dexel model, a picture, [`bounds`](Self::bounds) and [`volume`](Self::volume), is that of the mesh.
+    ///
+    /// A solid of a mesh with a deviation needs a closed mesh: what an open one encloses is a convention.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] unless the deviation is finite, not negative, and at most 2^256.
+    ///
+    /// ```
+    /// use leafless::{Control, FillRule, TriangleMesh, mesh::MeshMoments};
+    /// // A cube that may be a hundredth larger or smaller all around.
+    /// let corner = |k: u32| [k & 1, k >> 1 & 1, k >> 2].map(f64::from);
+    /// let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    /// let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    /// let mesh = TriangleMesh::new((0..8).map(corner).collect(), triangles)?.with_deviation(0.01)?;
+    /// let MeshMoments::Known(moments) = mesh.moments(FillRule::NonZero, &Control::default())? else { panic!() };
+    /// assert!(moments.volume.contains(1.02f64.powi(3)) && moments.volume.contains(0.98f64.powi(3)));
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    pub fn with_deviation(self, deviation: f64) -> Result<Self, Error> {
+        if (0.0..=LARGEST).contains(&deviation) {
+            return Ok(Self { deviation: deviation + 0.0, ..self });
+        }
+        Err(Error::Argument { name: "deviation", problem: "must be finite, not negative, and at most 2^256" })
+    }
+
+    /// How far the true boundary may lie from the mesh: what [`with_deviation`](Self::with_deviation) stated, under what placed the
+    /// mesh since then. In model units.
+    pub fn deviation(&self) -> f64 {
+        self.deviation
+    }
+
+    /// How far along an axis the true boundary may lie from the mesh, in model units: what vertices were moved by to close
+    /// hair cracks, what a placement rounded, and the [`deviation`](Self::deviation).
     pub fn displacement(&self) -> f64 {
+        if self.deviation == 0.0 {
+            return self.displacement;
+        }
+        if self.displacement == 0.0 { self.deviation } else { (self.displacement + self.deviation).next_up() }
+    }
+
+    /// How far vertices may be off along an axis, whatever deviation was stated.
+    pub(super) fn vertex_displacement(&self) -> f64 {
         self.displacement
+    }
+
+    /// How far, straight on, the true boundary may lie from the mesh at the most.
+    pub(crate) fn radius(&self) -> f64 {
+        let of_vertices =
+            if self.displacement > 0.0 { (self.displacement * sqrt(3.0)).next_up().next_up() } else { 0.0 };
+        match (of_vertices, self.deviation) {
+            (radius, 0.0) | (0.0, radius) => radius,
+            (one, other) => (one + other).next_up(),
+        }
     }
 
     /// The same with its triangles facing the other way.
@@ -422,9 +490,9 @@ impl TriangleMesh {
         Self { faces, ..self }
     }
 
-    /// The same with a surface that lies within this distance of it.
-    pub(super) fn displaced(self, displacement: f64) -> Self {
-        Self { displacement, ..self }
+    /// The same with vertices that may be off by so much along an axis, and a boundary that may lie so far from the surface.
+    pub(super) fn displaced(self, displacement: f64, deviation: f64) -> Self {
+        Self { displacement, deviation, ..self }
     }
 
     /// A copy.
@@ -533,7 +601,6 @@ impl fmt::Debug for TriangleMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::LARGEST;
     use crate::mesh::report::MeshReport;
     use alloc::vec;
 

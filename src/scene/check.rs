@@ -145,7 +145,10 @@ impl Checker<'_> {
                     "quadric" => self.quadric(call)?,
                     "power" => self.power(call)?,
                     "torus" => self.torus(call)?,
-                    "mesh" => self.mesh(call, Given::new(self.tree, call, ["file"], &[])?.required(0)?)?,
+                    "mesh" => {
+                        let given = Given::new(self.tree, call, ["file", "deviation"], &[])?;
+                        self.mesh(call, given.required(0)?, given.optional(1))?
+                    }
                     "import" => self.import(call)?,
                     "octree" => self.octree(call)?,
                     _ => {

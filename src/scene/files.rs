@@ -39,7 +39,13 @@ impl Checker<'_> {
         })
     }
 
-    pub(super) fn mesh(&mut self, call: &Call<'_>, file: Item<'_>) -> Result<Node, Error> {
+    /// `deviation` is that of the true boundary from the mesh.
+    pub(super) fn mesh(
+        &mut self,
+        call: &Call<'_>,
+        file: Item<'_>,
+        deviation: Option<Item<'_>>,
+    ) -> Result<Node, Error> {
         let read = self.read(&file, |path| open_mesh(path, &MeshOptions::default()))?;
         let fill = match read.format {
             MeshFormat::ThreeMf => FillRule::Positive,
@@ -49,12 +55,27 @@ impl Checker<'_> {
             return Err(file.fault(format!("{}", MeshError::Empty)));
         }
         // Files have hair cracks, because their coordinates are rounded.
-        self.solid_mesh(call, file.text()?, read.mesh.sewn()?, fill)
+        let mut mesh = read.mesh.sewn()?;
+        if let Some(item) = deviation {
+            mesh = mesh
+                .with_deviation(item.number()?)
+                .map_err(|error| item.fault(format!("{}", error.cause())))?;
+            if mesh.deviation() > 0.0 {
+                mesh.check_closed(fill).map_err(|error| match error {
+                    Error::OutOfMemory => error,
+                    error => file.fault(format!(
+                        "{}, and `deviation` needs a mesh that bounds a solid",
+                        error.cause()
+                    )),
+                })?;
+            }
+        }
+        self.solid_mesh(call, file.text()?, mesh, fill)
     }
 
     pub(super) fn import(&mut self, call: &Call<'_>) -> Result<Node, Error> {
         let ignored = ["origin", "scale", "convexity", "timestamp", "layer", "id", "dpi", "width", "height"];
-        let given = Given::new(self.tree, call, ["file", "center"], &ignored)?;
+        let given = Given::new(self.tree, call, ["file", "center", "deviation"], &ignored)?;
         if given.truth_or(1, false)? {
             return Err(self.fault(call, "is supported without `center` only"));
         }
@@ -63,7 +84,7 @@ impl Checker<'_> {
         if MeshFormat::from_extension(extension).is_none() {
             return Err(self.fault(call, format_args!("of files {} is not supported", shown(extension))));
         }
-        self.mesh(call, given.required(0)?)
+        self.mesh(call, given.required(0)?, given.optional(2))
     }
 
     pub(super) fn octree(&self, call: &Call<'_>) -> Result<Node, Error> {

@@ -51,7 +51,7 @@ use alloc::vec::Vec;
 /// | `quadric([a, …, j])` | as [`HalfSpace::quadric`](crate::solid::HalfSpace::quadric) |
 /// | `power([A, a, n1], [B, b, n2], [C, c, n3], R)` | A (x − a)^n1 + B (y − b)^n2 + C (z − c)^n3 + R ≥ 0 |
 /// | `torus(major, minor)` | around the z axis |
-/// | `mesh(file)` `import(file)` | a mesh file of any known format, as [`open_mesh`](crate::exchange::open_mesh) reads it, [sewn](crate::TriangleMesh::sewn) |
+/// | `mesh(file, deviation)` `import(file, deviation)` | a mesh file of any known format, as [`open_mesh`](crate::exchange::open_mesh) reads it, [sewn](crate::TriangleMesh::sewn); within `deviation` of it lies the [true boundary](crate::TriangleMesh::with_deviation) |
 /// | `octree(file)` | a file of this library |
 ///
 /// The faces of a polyhedron may face inward as well as outward, but all must face one side. Where one is turned

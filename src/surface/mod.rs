@@ -19,6 +19,7 @@
 //! `dexel` (tri-dexel models), `dexel_solid` (these as solids).
 //!
 //! `boundary` goes another way: where a solid knows its surfaces, these are cut to the pieces that bound it, and nothing is sampled.
+//! `contour` is dual contouring with cells of several sizes, of any solid.
 //!
 //! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
 //! corners as centres.
@@ -28,6 +29,8 @@ mod bon;
 #[cfg(feature = "std")]
 mod boundary;
 mod chunks;
+#[cfg(feature = "std")]
+mod contour;
 mod cubes;
 mod dexel;
 mod dexel_solid;
@@ -59,6 +62,8 @@ mod weld;
 
 #[cfg(feature = "std")]
 pub use boundary::{Boundary, BoundaryReport, boundary};
+#[cfg(feature = "std")]
+pub use contour::{Contour, ContourReport, contour};
 pub use cubes::{marching_cubes, marching_cubes_reusing};
 pub use dexel::{DexelSurfaceReport, dual_contouring_dexels, dual_contouring_solid, marching_cubes_dexels};
 pub use dexel_solid::DexelSolid;

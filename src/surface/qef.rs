@@ -173,7 +173,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// The eigenvalues of a symmetric matrix and their unit eigenvectors, by cyclic Jacobi rotations.
-fn eigen(matrix: [f64; 6]) -> ([f64; 3], [[f64; 3]; 3]) {
+pub(super) fn eigen(matrix: [f64; 6]) -> ([f64; 3], [[f64; 3]; 3]) {
     let mut m = full(&matrix);
     // Rows are the vectors.
     let mut vectors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -33,6 +33,7 @@ mod format_reader;
 mod format_spec;
 mod hostile_bytes;
 #[cfg(feature = "threemf")]
+mod mesh_attributes;
 mod mesh_colours;
 mod mesh_write;
 mod octrees;

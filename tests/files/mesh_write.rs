@@ -125,7 +125,7 @@ proptest! {
             mesh.vertex_normals().unwrap().iter().map(|normal| normal.map(|x| x as f32)).collect();
         for format in FORMATS {
             for text in [false, true] {
-                let options = WriteOptions { text, normals: true, unit: None };
+                let options = WriteOptions { text, normals: true, ..WriteOptions::default() };
                 let bytes = write_mesh(&mesh, format, &options).unwrap();
                 if matches!(format, MeshFormat::Stl | MeshFormat::Off) {
                     prop_assert_eq!(&bytes, &written(&mesh, format, text));
@@ -273,5 +273,41 @@ fn a_mesh_of_nothing_has_no_area() {
         let kept = written_form(&points, format, &WriteOptions::default()).unwrap();
         let back = read_mesh(&written(&points, format, false), &MeshOptions::default()).unwrap();
         assert_eq!(kept.mesh.vertices(), back.mesh.vertices(), "{format}");
+    }
+}
+
+/// What is known of a mesh's distance from the true boundary stands in the file, and is told, not believed.
+#[test]
+fn deviations_are_written_and_told() {
+    let mesh = mesh(7);
+    let formats = FORMATS.into_iter().chain(cfg!(feature = "threemf").then_some(MeshFormat::ThreeMf));
+    for (format, text) in formats.flat_map(|format| [(format, false), (format, true)]) {
+        for deviation in [0.0, 0.5, 1.0 / 3.0, 1e-30, 2f64.powi(256)] {
+            let options = WriteOptions { text, deviation: Some(deviation), ..WriteOptions::default() };
+            let bytes = write_mesh(&mesh, format, &options).unwrap();
+            let back = read_mesh(&bytes, &MeshOptions::default()).unwrap();
+            if format == MeshFormat::Stl {
+                assert_eq!((back.deviation, &bytes), (None, &written(&mesh, format, text)));
+                continue;
+            }
+            assert_eq!((back.format, back.deviation), (format, Some(deviation)));
+            assert_eq!((back.mesh.deviation(), back.mesh.vertices()), (0.0, mesh.vertices()));
+            // It is as long as before.
+            let unit = Some(LengthUnit::Inch);
+            let inches = MeshOptions { unit, target: Some(LengthUnit::Millimetre), ..MeshOptions::default() };
+            let back = read_mesh(&bytes, &inches).unwrap().deviation.unwrap();
+            assert!(back >= 25.4 * deviation && back <= 25.4 * deviation * (1.0 + 1e-15), "{deviation}");
+            assert_eq!(read_mesh(&written(&mesh, format, text), &inches).unwrap().deviation, None);
+        }
+        for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+            let options = WriteOptions { text, deviation: Some(wrong), ..WriteOptions::default() };
+            let error = write_mesh(&mesh, format, &options).unwrap_err();
+            assert!(matches!(error, Error::Argument { name: "deviation", .. }), "{error}");
+        }
+    }
+    // What is no number is no word.
+    for word in ["-1", "nan", "inf", "", "0.5 mm", "1e999"] {
+        let text = format!("# leafless deviation {word}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        assert_eq!(read_mesh(text.as_bytes(), &MeshOptions::default()).unwrap().deviation, None, "{word}");
     }
 }

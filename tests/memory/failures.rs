@@ -11,9 +11,9 @@ use crate::allocator::{most_held, refusing};
 use crate::bodies::{Aligned, Random};
 use crate::common::on_all_processors;
 use crate::{bodies, zip};
-use leafless::attribute::dexel_materials;
+use leafless::attribute::{FunctionAttribute, dexel_materials, sample_triangles};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
-use leafless::mesh::{Polyhedron, PolyhedronArrays};
+use leafless::mesh::{MeshAttribute, Polyhedron, PolyhedronArrays};
 use leafless::op::{DexelOptions, Zone, octree_from_dexel_ends, octree_from_dexels, resolve, union_of};
 use leafless::query::{
     Columns, DistanceTo, Obstacle, PointTable, SectionPlane, Side, cells_in, classify_box, classify_in,
@@ -26,7 +26,7 @@ use leafless::render::{
 };
 use leafless::solid::{Band, HalfSpace, Transform, VoxelGrid};
 use leafless::surface::{
-    Resolve, Snap, VertexPlacement, boundary, dual_contouring_dexels, marching_cubes_dexels,
+    Resolve, Snap, VertexPlacement, boundary, contour, dual_contouring_dexels, marching_cubes_dexels,
     marching_cubes_solid, marching_cubes_volume, simple_marching_cubes, simple_marching_cubes_solid,
 };
 use leafless::voxel::{VoxelOptions, VoxelRecords, dexel_voxels};
@@ -267,6 +267,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &CONTROL)?;
         let half = Csg::cuboid([14.0; 3], [28.0; 3])?;
         boundary(&ball.difference(&half)?, &frame, 1.0, &CONTROL)?;
+        contour(&ball.difference(&half)?, &frame, 2.0, &CONTROL)?;
         simple_marching_cubes_solid(&ball, &frame, Snap::Thin, &CONTROL)
     });
     #[cfg(feature = "volumes")]
@@ -442,11 +443,45 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("write STL", [closed], exchange::write_stl(&closed));
     operation!("write meshes", [closed], {
         for format in [exchange::MeshFormat::Stl, exchange::MeshFormat::Ply, exchange::MeshFormat::Off] {
-            let options = exchange::WriteOptions { text: true, normals: true, unit: None };
+            let options =
+                exchange::WriteOptions { text: true, normals: true, deviation: Some(0.5), unit: None };
             exchange::write_mesh(&closed, format, &options)?;
         }
         exchange::write_mesh(&closed, exchange::MeshFormat::Ply, &Default::default())?;
         exchange::write_mesh(&closed, exchange::MeshFormat::Obj, &Default::default())
+    });
+    operation!("write polygons", [], {
+        let tetrahedron = PolyhedronArrays {
+            vertices: &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            corners: &[0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3],
+            loops: &[0, 3, 6, 9, 12],
+            faces: &[0, 1, 2, 3, 4],
+            shells: &[0, 4],
+            solids: &[0, 1],
+        };
+        exchange::write_polygons(&tetrahedron, exchange::MeshFormat::Off, &Default::default())
+    });
+    operation!("values on triangles", [closed], {
+        let steps =
+            FunctionAttribute::new(1, |point: [f64; 3]| Some([(4.0 * point[0]).floor(), 0.0, 0.0, 0.0]))?;
+        sample_triangles(&closed, &steps, "steps", 0.01, &CONTROL)
+    });
+    let mut bearing = TriangleMesh::clone(&closed);
+    let count = bearing.triangles().len();
+    for attribute in [
+        MeshAttribute::per_triangle("colour", 3, &vec![7.0; 3 * count]),
+        MeshAttribute::labels("material", vec![1; count]),
+        MeshAttribute::per_triangle("heat", 2, &vec![0.5; 2 * count]),
+    ] {
+        bearing.add_attribute(attribute.unwrap()).unwrap();
+    }
+    let bearing = Arc::new(bearing);
+    operation!("write and read attributes", [bearing], {
+        for format in [exchange::MeshFormat::Ply, exchange::MeshFormat::Obj] {
+            let bytes = exchange::write_mesh(&bearing, format, &Default::default())?;
+            exchange::read_mesh(&bytes, &Default::default())?;
+        }
+        Ok(())
     });
     operation!("what STL keeps", [closed], {
         let options = exchange::WriteOptions { text: true, ..Default::default() };

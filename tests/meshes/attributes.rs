@@ -1,10 +1,14 @@
 //! Data on meshes: through everything that meshes go through, on polyhedra, and as attributes of space, against
 //! a look at all triangles.
 
-use crate::common::Random;
-use leafless::attribute::{Attribute, SurfaceAttribute, ValueRange};
+use crate::common::{Random, alone};
+use leafless::attribute::{
+    Attribute, FillOptions, FunctionAttribute, ScalarType, SurfaceAttribute, ValueRange, ValueType,
+    fill_channel, sample_triangles,
+};
 use leafless::mesh::{AttributeDomain, MeshAttribute, Polyhedron, PolyhedronArrays, PolyhedronPart};
-use leafless::{Affine, Bounds, Error, FillRule, TriangleMesh};
+use leafless::surface::{VertexPlacement, marching_cubes_solid};
+use leafless::{Affine, Bounds, Control, Csg, Error, FillRule, Frame, TriangleMesh};
 use std::array::from_fn as array;
 
 type Point = [f64; 3];
@@ -551,4 +555,56 @@ fn a_million_questions() {
         .collect();
     let mut values = vec![None; row.len()];
     timed("values in order", row.len(), &mut || place.values(&row, &mut values).unwrap());
+}
+
+/// A surface bears what is just inside of it.
+#[test]
+fn values_just_inside_of_a_surface() {
+    // Two materials side by side, which end at the ball.
+    let inside = |p: Point| p.iter().map(|c| c * c).sum::<f64>() < 0.49;
+    let sides = FunctionAttribute::new(1, move |p: Point| {
+        inside(p).then_some([if p[0] < 0.1 { 3.0 } else { 5.0 }, 0.0, 0.0, 0.0])
+    })
+    .unwrap();
+    let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();
+    let ball = Csg::ball([0.0; 3], 0.7).unwrap();
+    let mesh = marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &alone()).unwrap();
+    let depth = 0.5 * frame.cell_size();
+    let found = sample_triangles(&mesh, &sides, "material", depth, &alone()).unwrap();
+    for (t, triangle) in mesh.triangles().iter().enumerate() {
+        let x = triangle.iter().map(|&v| mesh.vertices()[v as usize][0]).sum::<f64>() / 3.0;
+        // The point behind the centroid lies aside by the depth at the most.
+        let expected = if x < 0.1 { 3.0 } else { 5.0 };
+        let value = found.value(t, 0).unwrap_or_else(|| panic!("{t} at {x} has none"));
+        assert!((x - 0.1).abs() <= depth || value == [expected, 0.0, 0.0, 0.0], "{value:?} at {x}");
+    }
+    // Values that many have are stored once, and threads do not matter.
+    assert!(found.bytes() < 4 * mesh.triangles().len() as u64 + 512);
+    assert_eq!(sample_triangles(&mesh, &sides, "material", depth, &Control::threads(4)).unwrap(), found);
+    // Of an octree's channel it is the same.
+    let value_type = ValueType::new(ScalarType::U8, 1).unwrap();
+    let options = FillOptions { value_type, frame, solid: None, detail: None };
+    let channel = fill_channel(&sides, &options, &alone()).unwrap();
+    let of_cells = sample_triangles(&mesh, &channel.view().unwrap(), "material", depth, &alone()).unwrap();
+    let others = (0..mesh.triangles().len()).filter(|&t| of_cells.value(t, 0) != found.value(t, 0)).count();
+    assert!(others * 10 < mesh.triangles().len(), "{others}");
+    assert!((0..mesh.triangles().len()).all(|t| of_cells.value(t, 0).is_some()));
+
+    // Where it is thin, and where nothing is.
+    let sheet = block([0.0; 3], [1.0, 1.0, 0.01]);
+    let thin =
+        FunctionAttribute::new(2, |p: Point| (0.0..0.01).contains(&p[2]).then_some([p[2], 1.0, 0.0, 0.0]));
+    let found = sample_triangles(&sheet, &thin.unwrap(), "thin", 0.02, &alone()).unwrap();
+    assert!((0..12).filter(|&t| found.value(t, 0).is_some()).count() >= 4);
+    let nothing = FunctionAttribute::new(1, |_: Point| None).unwrap();
+    let found = sample_triangles(&sheet, &nothing, "nothing", 0.0, &alone()).unwrap();
+    assert!((0..12).all(|t| found.value(t, 0).is_none()));
+    for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+        let error = sample_triangles(&sheet, &nothing, "nothing", wrong, &alone()).unwrap_err();
+        assert!(matches!(error, Error::Argument { name: "depth", .. }), "{error}");
+    }
+}
+
+fn block(min: Point, max: Point) -> TriangleMesh {
+    crate::shapes::mesh(&crate::shapes::block(min, max))
 }

@@ -8,6 +8,7 @@ mod cell_slabs;
 mod cells;
 mod closed;
 mod descended;
+mod deviation;
 mod direct;
 mod direct_awkward;
 mod direct_heavy;

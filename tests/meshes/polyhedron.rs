@@ -703,3 +703,79 @@ fn random_damage() {
     }
     assert!(sound > 300 && refused > 10_000, "{sound} {refused}");
 }
+
+/// A block of so many square holes in rows, from top to bottom.
+fn plate(holes: usize) -> Arrays {
+    let mut vertices = vec![];
+    let square = |vertices: &mut Vec<[f64; 3]>, [x, y]: [f64; 2], edge: [f64; 2]| -> [Vec<u32>; 2] {
+        [0.0, 1.0].map(|z| {
+            let first = vertices.len() as u32;
+            for [i, j] in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] {
+                vertices.push([x + i * edge[0], y + j * edge[1], z]);
+            }
+            (first..first + 4).collect()
+        })
+    };
+    let side = 3.0 * holes as f64 + 1.0;
+    let [low, high] = square(&mut vertices, [0.0, 0.0], [side, 4.0]);
+    let (mut bottom, mut top): (Face, Face) = (vec![low.iter().rev().copied().collect()], vec![high.clone()]);
+    let mut faces = vec![];
+    let mut walls = |low: &[u32], high: &[u32], is_hole: bool| {
+        for k in 0..4 {
+            let l = (k + 1) % 4;
+            let wall = vec![low[k], low[l], high[l], high[k]];
+            faces.push(vec![if is_hole { wall.into_iter().rev().collect() } else { wall }]);
+        }
+    };
+    walls(&low, &high, false);
+    for hole in 0..holes {
+        let [low, high] = square(&mut vertices, [3.0 * hole as f64 + 1.0, 1.0], [2.0, 2.0]);
+        walls(&low, &high, true);
+        bottom.push(low);
+        top.push(high.into_iter().rev().collect());
+    }
+    faces.extend([bottom, top]);
+    Arrays::solid(&[(vertices, faces)])
+}
+
+/// What is written as polygons is read back as the same solid.
+#[test]
+fn polygons_are_written() {
+    use leafless::exchange::{MeshFormat, MeshOptions, WriteOptions, read_mesh, write_polygons};
+    let options = WriteOptions { deviation: Some(0.125), ..WriteOptions::default() };
+    for holes in [0, 1, 2, 5, 40] {
+        let arrays = plate(holes);
+        let own = arrays.made();
+        let volume = (3.0 * holes as f64 + 1.0) * 4.0 - 4.0 * holes as f64;
+        for format in [MeshFormat::Obj, MeshFormat::Off] {
+            let bytes = write_polygons(&arrays.view(), format, &options).unwrap();
+            let file = read_mesh(&bytes, &MeshOptions::default()).unwrap();
+            assert_eq!((file.format, file.deviation), (format, Some(0.125)));
+            file.mesh.check_closed(FillRule::NonZero).unwrap();
+            assert_eq!(file.mesh.vertices(), own.mesh().vertices());
+            assert_eq!((file.mesh.volume(), own.mesh().volume()), (volume, volume));
+            assert_eq!(file.mesh.triangles().len(), own.mesh().triangles().len());
+            let report = file.mesh.report().unwrap();
+            assert!(report.is_manifold() && report.bent_polygons == 0);
+            // The sides, and a few polygons at the bottom and the top.
+            let text = String::from_utf8(bytes).unwrap();
+            let polygons = match format {
+                MeshFormat::Obj => text.lines().filter(|line| line.starts_with('f')).count(),
+                _ => text.lines().nth(2).unwrap().split(' ').nth(1).unwrap().parse().unwrap(),
+            };
+            let cut = polygons - 4 * (holes + 1);
+            assert!((2..=2 + 4 * holes).contains(&cut), "{cut} of {holes}");
+            if holes == 1 {
+                assert!(cut <= 6);
+            }
+        }
+    }
+    for format in [MeshFormat::Stl, MeshFormat::Ply, MeshFormat::ThreeMf] {
+        let error = write_polygons(&plate(1).view(), format, &options).unwrap_err();
+        assert!(matches!(error, Error::Argument { name: "format", .. }), "{error}");
+    }
+    let mut wrong = plate(1);
+    wrong.corners[0] = 99;
+    let error = write_polygons(&wrong.view(), MeshFormat::Obj, &options).unwrap_err();
+    assert!(matches!(error, Error::Polyhedron(_)), "{error}");
+}

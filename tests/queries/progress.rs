@@ -2,7 +2,7 @@
 
 use crate::common::Random;
 use leafless::attribute::{
-    FillOptions, FunctionAttribute, ScalarType, ValueType, dexel_materials, fill_channel,
+    FillOptions, FunctionAttribute, ScalarType, ValueType, dexel_materials, fill_channel, sample_triangles,
 };
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::{
@@ -16,7 +16,7 @@ use leafless::query::{
 use leafless::render::{Camera, Finish, Shot, SolidLayer, render};
 use leafless::solid::{Band, VoxelGrid};
 use leafless::surface::{
-    DexelSolid, Snap, VertexPlacement, boundary, coplanar_shrink, coplanar_shrink_solid,
+    DexelSolid, Snap, VertexPlacement, boundary, contour, coplanar_shrink, coplanar_shrink_solid,
     dual_contouring_dexels, marching_cubes_dexels, marching_cubes_solid, marching_cubes_volume,
     published_shrink, simple_marching_cubes,
 };
@@ -157,6 +157,7 @@ fn all_operations(depth: u8) -> Vec<Told> {
     let mesh = Arc::new(mesh);
     let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
     heard.of("build of a mesh", |control| build(&solid, &frame, Rule::Certified, control));
+    heard.of("contour of a mesh", |control| contour(&solid, &frame, 0.02, control));
     heard.of("rays of a mesh", |control| solid.odd_rays(&frame, control));
 
     // Volumes.
@@ -277,7 +278,11 @@ fn all_operations(depth: u8) -> Vec<Told> {
     let value_type = ValueType::new(ScalarType::F32, 1).unwrap();
     let options = FillOptions { value_type, frame, solid: Some(of_part.view()), detail: None };
     let steps = FunctionAttribute::new(1, |point: [f64; 3]| Some([(4.0 * point[0]).floor(), 0.0, 0.0, 0.0]));
-    let channel = heard.of("channel filled", |control| fill_channel(&steps.unwrap(), &options, control));
+    let steps = steps.unwrap();
+    let channel = heard.of("channel filled", |control| fill_channel(&steps, &options, control));
+    let surface =
+        marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &Control::threads(1)).unwrap();
+    heard.of("triangles sampled", |control| sample_triangles(&surface, &steps, "steps", 0.01, control));
     let view = channel.view().unwrap();
     heard.of("summary", |control| view.summary(Some(of_part.view()), None, control));
     heard.of("channel changed", |control| view.with_value_in(&views[0], Some([1.0, 0.0, 0.0, 0.0]), control));

@@ -6,6 +6,7 @@ mod aligned;
 mod common;
 
 mod boundary;
+mod contour;
 mod marching_cubes;
 mod methods;
 mod shrink;

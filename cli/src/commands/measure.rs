@@ -148,7 +148,7 @@ struct Report {
     max: Option<Bounds<[f64; 3]>>,
     /// Of the boundary; absent (null) if nothing is known of it.
     area: Option<Volume>,
-    /// How far vertices of the mesh were moved, at most, before its area was measured.
+    /// How far the boundary may lie beside the mesh whose area this is, along an axis: what vertices were moved by, and what was stated.
     area_displacement: f64,
     area_measured: &'static str,
     area_splits: u64,
@@ -233,8 +233,15 @@ struct Asking<'a> {
     tolerance: Tolerance,
     /// Of a mesh the corners of its triangles.
     corners: Option<&'a Corners>,
-    /// Of a mesh whose hair cracks were closed that mesh, as it then is.
-    sewn: Option<&'a MeshSolid>,
+    /// Of a mesh whose hair cracks were closed, or that is known within a deviation only, that mesh as it is.
+    sewn: Option<&'a AsItIs>,
+}
+
+/// A mesh that the boundary may lie beside, as if it did not.
+struct AsItIs {
+    solid: MeshSolid,
+    /// Whether that was stated of the mesh, and not only vertices were moved.
+    is_stated: bool,
 }
 
 /// What was found.
@@ -244,8 +251,10 @@ struct Found {
     weight: Option<Interval>,
     extent: Extent,
     surface: SurfaceArea,
-    /// How far vertices of the mesh were moved whose area this is.
+    /// How far the boundary may lie beside the mesh whose area this is.
     area_displacement: f64,
+    /// Whether that was stated of the mesh, and not only vertices were moved.
+    is_stated: bool,
     evaluations: u64,
     /// Of a mesh why its moments were not known without splitting cells, if they were not.
     inexact: Option<Option<String>>,
@@ -284,11 +293,12 @@ impl Asking<'_> {
         let mut surface = surface_area(solid.solid(), frame, tolerance.relative, &few)?;
         let mut area_displacement = 0.0;
         // A surface that is known to lie beside the mesh may have any area; that of the mesh is told instead.
-        if let Some(sewn) = sewn.filter(|_| !is_known(&surface)) {
-            surface = surface_area(sewn, frame, tolerance.relative, &few)?;
+        let is_stated = sewn.is_some_and(|sewn| sewn.is_stated);
+        if let Some(AsItIs { solid, .. }) = sewn.filter(|_| !is_known(&surface)) {
+            surface = surface_area(solid, frame, tolerance.relative, &few)?;
             area_displacement = mass.proof.displacement();
         }
-        Ok(Found { mass, weight: None, extent, surface, area_displacement, evaluations, inexact })
+        Ok(Found { mass, weight: None, extent, surface, area_displacement, is_stated, evaluations, inexact })
     }
 }
 
@@ -302,13 +312,14 @@ impl Found {
     }
 }
 
-/// A mesh whose hair cracks were closed, as if it had never had any.
-fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<MeshSolid>, Failure> {
+/// A mesh whose hair cracks were closed as if it had never had any, and one with a deviation as if it had none.
+fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<AsItIs>, Failure> {
     if mesh.displacement() == 0.0 {
         return Ok(None);
     }
     let same = TriangleMesh::new(mesh.vertices().to_vec(), mesh.triangles().to_vec()).of(input)?;
-    MeshSolid::new(same, fill).of(input).map(Some)
+    let solid = MeshSolid::new(same, fill).of(input)?;
+    Ok(Some(AsItIs { solid, is_stated: mesh.deviation() > 0.0 }))
 }
 
 /// What is left to move, and the frame to look at. A solid from a file is moved as a solid: cells of any size tell of it what its own
@@ -389,6 +400,11 @@ fn text(
         line("mass", format!("{} {unit}", measured(weight)).trim_end().to_owned());
     }
     let area = match is_known(surface) {
+        true if found.area_displacement > 0.0 && found.is_stated => format!(
+            "{}, of the mesh: the true boundary lies beside it by {} or less, and may have any area",
+            measured(surface.area),
+            number(found.area_displacement)
+        ),
         true if found.area_displacement > 0.0 => format!(
             "{}, of the mesh with hair cracks closed: vertices were moved by {} or less",
             measured(surface.area),
@@ -434,6 +450,10 @@ fn text(
         line("curves", curves);
     }
     match inexact {
+        _ if found.is_stated && mass.exact => line(
+            "exact",
+            "yes, but for the deviation: it is that of all solids that end so near to the mesh".into(),
+        ),
         Some(None) => {
             line("exact", "yes, but for rounding: the mesh is closed, and no triangles intersect".into())
         }

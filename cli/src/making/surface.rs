@@ -9,6 +9,7 @@ use crate::progress::watched;
 use crate::report::octree::Info;
 use crate::sink::written::{self, Losses};
 use crate::source::file::Taking;
+use crate::source::input::Input;
 use crate::source::mesh::format_name;
 use crate::source::solid::{Shape, Source};
 use crate::source::volume::Voxels;
@@ -19,9 +20,9 @@ use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
 use leafless::mesh::MeshReport;
 use leafless::op::DexelOptions;
 use leafless::surface::{
-    Resolve, Snap, VertexPlacement, boundary, coplanar_shrink, coplanar_shrink_solid, marching_cubes_solid,
-    marching_cubes_volume, published_shrink, published_shrink_solid, simple_marching_cubes,
-    simple_marching_cubes_solid,
+    BoundaryReport, Resolve, Snap, VertexPlacement, boundary, contour, coplanar_shrink,
+    coplanar_shrink_solid, marching_cubes_solid, marching_cubes_volume, published_shrink,
+    published_shrink_solid, simple_marching_cubes, simple_marching_cubes_solid,
 };
 use leafless::{
     Affine, AnySolid, Control, Error, Frame, Interval, Octree, Rule, TriDexel, TriangleMesh, build, dexelize,
@@ -36,6 +37,9 @@ const DEPTH: u8 = 8;
 
 /// The same where cells end by themselves.
 const DEEP: u8 = 14;
+
+/// The same where one vertex must do for what lies in a cell.
+const FINE: u8 = 12;
 
 /// The tolerance of curved faces, if none is asked for, as a part of the longest extent.
 const FACES: f64 = 1e-3;
@@ -70,6 +74,9 @@ pub enum Method {
     /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces as they are, with sharp edges, and
     /// curved ones in chords (--tolerance). Few triangles
     Faces,
+    /// Adaptive dual contouring: few triangles where the surface is flat, about as near as --tolerance says, with sharp edges. Of
+    /// whatever has a shape
+    Adaptive,
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
     Smc,
     /// The surface of smc, with one region of few triangles for all that lies in one plane; no cracks
@@ -119,9 +126,9 @@ pub enum ResolveName {
 pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     output.check()?;
-    if wanted.tolerance.is_some() && wanted.method != Method::Faces {
+    if wanted.tolerance.is_some() && !matches!(wanted.method, Method::Faces | Method::Adaptive) {
         return Err(Failure::Usage(
-            "--tolerance is for --method faces: others have the cells of --depth".into(),
+            "--tolerance is for --method faces and adaptive: others have the cells of --depth".into(),
         ));
     }
     let format = format(wanted.format, output.path())?;
@@ -135,7 +142,9 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     let is_stored = shape.is_stored();
     let certain = match &shape {
         // Vertices that are samples lie beside the surface; those of the other methods lie on it.
-        Shape::Source(source) if !matches!(wanted.method, Method::Mc | Method::Dual | Method::Faces) => {
+        Shape::Source(source)
+            if !matches!(wanted.method, Method::Mc | Method::Dual | Method::Faces | Method::Adaptive) =>
+        {
             certain_volume(source).of(input)?
         }
         _ => None,
@@ -153,6 +162,9 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
         }
         Shape::Source(source) if wanted.method == Method::Faces => {
             (source.unit(), by_surfaces(source, job, wanted)?, None)
+        }
+        Shape::Source(source) if wanted.method == Method::Adaptive => {
+            (source.unit(), by_contour(source, job, wanted)?, None)
         }
         Shape::Source(source) if asks_rays(&source, wanted) => {
             let unit = source.unit();
@@ -189,8 +201,15 @@ pub struct Made {
 pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
     let Made { mesh, unit, method, followed } = made;
-    let options = WriteOptions { text: wanted.text, unit, normals: wanted.normals };
+    let options = WriteOptions {
+        text: wanted.text,
+        unit,
+        normals: wanted.normals,
+        deviation: Some(mesh.deviation()).filter(|&deviation| deviation > 0.0),
+    };
     let (kept, losses) = written::kept(&mesh, format, &options, wanted.lossy, output)?;
+    // A vertex that is rounded is moved along each axis.
+    let deviation = options.deviation.map(|deviation| deviation + 1.7321 * losses.rounding);
     let bytes = write_mesh(&mesh, format, &options).of(output)?;
     // What is told is what a reader gets.
     let mesh = kept.mesh;
@@ -219,6 +238,7 @@ pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Resu
         euler: report.euler_characteristic,
         area: mesh.area(),
         volume: mesh.volume(),
+        deviation,
         losses,
         intersecting: intersecting.as_ref().map(|pairs| pairs.count),
         all_intersecting_pairs: intersecting.as_ref().map(|pairs| pairs.is_complete),
@@ -328,20 +348,53 @@ fn by_surfaces(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMes
     if wanted.resolve.is_some() {
         return Err(Failure::Usage("--resolve does not go with --method faces, which cuts surfaces".into()));
     }
-    let (low, high) = source.bounds(input)?;
-    let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-    let tolerance = wanted.tolerance.unwrap_or(FACES * size);
+    let tolerance = tolerance(&source, job, wanted)?;
     let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEEP)?;
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
     let found =
         watched("mesh", job.threads, |control| boundary(&solid, &frame, tolerance, control)).of(input)?;
-    let pairs = found.report().intersecting_pairs;
+    let &BoundaryReport { intersecting_pairs, deviation, .. } = found.report();
+    warn_of_pairs(input, intersecting_pairs);
+    if deviation > tolerance {
+        let (proven, wanted) = (short(deviation), short(tolerance));
+        complain(&if deviation.is_finite() {
+            format!("{input}: warning: the mesh is proven to be within {proven} of the solid, not {wanted}")
+        } else {
+            format!("{input}: warning: how far the mesh is from the solid is not proven")
+        });
+    }
+    let mesh = found.into_mesh();
+    if deviation.is_finite() { mesh.with_deviation(deviation).of(input) } else { Ok(mesh) }
+}
+
+/// How far a surface may be from the solid: a part of the longest extent, if nothing is said.
+fn tolerance(source: &Source, job: &Job, wanted: &Wanted) -> Result<f64, Failure> {
+    let (low, high) = source.bounds(&job.input)?;
+    let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+    Ok(wanted.tolerance.unwrap_or(FACES * size))
+}
+
+fn warn_of_pairs(input: &Input, pairs: u64) {
     if pairs > 0 {
         let pairs = counted(pairs, "pair", "pairs");
         complain(&format!(
             "{input}: warning: {pairs} of triangles intersect: a greater --depth may tell them apart"
         ));
     }
+}
+
+/// The surface in cells that end where one vertex will do.
+fn by_contour(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, Failure> {
+    let input = &job.input;
+    if wanted.resolve.is_some() {
+        return Err(Failure::Usage("--resolve does not go with --method adaptive".into()));
+    }
+    let tolerance = tolerance(&source, job, wanted)?;
+    let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, FINE)?;
+    let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
+    let found =
+        watched("mesh", job.threads, |control| contour(&solid, &frame, tolerance, control)).of(input)?;
+    warn_of_pairs(input, found.report().intersecting_pairs);
     Ok(found.into_mesh())
 }
 
@@ -440,7 +493,9 @@ fn of_cells(
 ) -> Result<TriangleMesh, Error> {
     let snap = wanted.snap.into();
     match wanted.method {
-        Method::Dual | Method::Faces => unreachable!("rays and surfaces are asked elsewhere"),
+        Method::Dual | Method::Faces | Method::Adaptive => {
+            unreachable!("rays, surfaces and cells of several sizes are asked elsewhere")
+        }
         Method::Mc => marching_cubes(octree.view(), resolve, control),
         Method::Smc => simple_marching_cubes(octree.view(), snap, resolve, control),
         Method::Shrink => coplanar_shrink(octree.view(), snap, resolve, control),
@@ -461,7 +516,9 @@ pub fn of_solid(
     };
     let snap = wanted.snap.into();
     match wanted.method {
-        Method::Dual | Method::Faces => unreachable!("rays and surfaces are asked elsewhere"),
+        Method::Dual | Method::Faces | Method::Adaptive => {
+            unreachable!("rays, surfaces and cells of several sizes are asked elsewhere")
+        }
         Method::Mc => marching_cubes_solid(solid, frame, placement, control),
         Method::Smc => simple_marching_cubes_solid(solid, frame, snap, control),
         Method::Shrink => coplanar_shrink_solid(solid, frame, snap, control),
@@ -493,6 +550,9 @@ struct Report {
     euler: i64,
     area: f64,
     volume: f64,
+    /// No point of the surface is further from the solid's boundary, and none of the boundary from the surface, if that is proven.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    deviation: Option<f64>,
     #[serde(flatten)]
     losses: Losses,
     /// Pairs of triangles that intersect, if they were asked for.
@@ -536,6 +596,9 @@ impl Report {
             number(self.volume),
             self.seconds,
         );
+        if let Some(deviation) = self.deviation {
+            let _ = writeln!(text, "within {} of the solid: proven", short(deviation));
+        }
         if let Some(losses) = self.losses.text() {
             let _ = writeln!(text, "{losses}");
         }

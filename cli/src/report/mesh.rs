@@ -150,6 +150,10 @@ pub struct Info {
     closed: bool,
     /// Objects of a 3MF that are no solids.
     skipped: u64,
+    /// How far the true boundary may lie from the mesh, as the file says; absent (null) if it does not. It is not believed.
+    told_deviation: Option<f64>,
+    /// The same as the user stated it; 0 if nothing was stated.
+    deviation: f64,
     /// Where the file departs from its format, though it could be read.
     warnings: Vec<String>,
     /// Pairs of triangles that intersect.
@@ -180,6 +184,8 @@ impl Info {
             rule: fill_name(fill),
             closed,
             skipped: file.skipped,
+            told_deviation: file.deviation,
+            deviation: file.mesh.deviation(),
             warnings: in_words(&file.warnings),
             intersecting_pairs: pairs.count,
             all_intersecting_pairs: pairs.is_complete,
@@ -193,6 +199,15 @@ impl Info {
         let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
         line("format", self.format.to_uppercase());
         line("unit", self.unit.unwrap_or("unknown").into());
+        if self.deviation > 0.0 {
+            line(
+                "deviation",
+                format!("the true boundary lies within {} of the mesh", number(self.deviation)),
+            );
+        } else if let Some(told) = self.told_deviation {
+            let told = number(told);
+            line("deviation", format!("{told}, as the file says; --deviation {told} believes it"));
+        }
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             line(name, format!("{} to {}", number(self.min[axis]), number(self.max[axis])));
         }

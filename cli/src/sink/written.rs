@@ -13,7 +13,7 @@ use serde::Serialize;
 #[derive(Serialize)]
 pub struct Losses {
     /// The farthest that a vertex is moved along an axis.
-    rounding: f64,
+    pub rounding: f64,
     /// Vertices that are put where others are.
     merged: u64,
     /// Triangles of which two corners are put at one place.

@@ -9,7 +9,7 @@ use leafless::{FillRule, Interval, TriangleMesh};
 pub struct Corners {
     min: [f64; 3],
     max: [f64; 3],
-    /// How far vertices were moved to close hair cracks.
+    /// How far the surface may lie beside the mesh.
     displacement: f64,
     /// Whether nothing lies beyond: an open mesh may enclose more.
     is_closed: bool,
@@ -29,7 +29,7 @@ impl Corners {
         }
         let is_closed = openness(&report).is_none() && report.triangles > 0;
         let is_reached = fill != FillRule::Positive || report.inside_out_bodies == 0;
-        Ok(Corners { min, max, displacement: report.displacement, is_closed, is_reached })
+        Ok(Corners { min, max, displacement: mesh.displacement(), is_closed, is_reached })
     }
 
     /// Whether the box is that of the solid, if the triangles do not intersect.

@@ -1,7 +1,7 @@
 //! Meshes from files of any format: the options of reading them.
 
 use crate::failure::{Failure, Of, complain};
-use crate::options::formats;
+use crate::options::{formats, tolerance};
 use crate::progress::at_work;
 use crate::source::content::Content;
 use crate::source::input::Input;
@@ -32,6 +32,11 @@ pub struct Reading {
     /// all others
     #[arg(long, value_enum)]
     fill: Option<FillName>,
+    /// The true boundary lies within this distance of a mesh, such as the deflection of a tessellation: what is proven is
+    /// then proven of the true solid, and what is nearer to the triangles is undecided. In units of the mesh after
+    /// --to-unit, before it is moved or scaled. The mesh must be closed
+    #[arg(long, value_name = "D", value_parser = tolerance)]
+    deviation: Option<f64>,
     #[command(flatten)]
     sampling: Sampling,
 }
@@ -107,6 +112,7 @@ impl Reading {
             ("--unit", self.unit.is_some()),
             ("--to-unit", self.to.is_some()),
             ("--fill", self.fill.is_some()),
+            ("--deviation", self.deviation.is_some()),
         ];
         match given.into_iter().find(|option| option.1) {
             Some((option, _)) => Err(Failure::Usage(format!("{option} is for meshes: {input} is {what}"))),
@@ -149,6 +155,11 @@ impl Reading {
         // Sewing needs memory of its own.
         drop(bytes);
         file.mesh = at_work("read", || file.mesh.sewn()).of(input)?;
+        if let Some(deviation) = self.deviation {
+            // (It is scaled as the mesh was.)
+            let scaled = factor.map_or(deviation, |factor| (deviation * factor).next_up());
+            file.mesh = file.mesh.with_deviation(if deviation > 0.0 { scaled } else { 0.0 }).of(input)?;
+        }
         if factor.is_none() {
             file.mesh = placing.mesh(file.mesh).of(input)?;
         }
@@ -159,15 +170,26 @@ impl Reading {
 }
 
 /// Whether nothing of a mesh lies beyond its vertices: what an open mesh encloses may, and so may a surface
-/// that was moved to close hair cracks.
+/// that was moved to close hair cracks, or one that is known within a deviation only.
 pub fn ends_at_vertices(mesh: &TriangleMesh) -> Result<bool, Error> {
-    let report = mesh.report()?;
-    Ok(report.displacement == 0.0 && openness(&report).is_none())
+    Ok(mesh.displacement() == 0.0 && openness(&mesh.report()?).is_none())
+}
+
+/// The corners of a box around a mesh, and around the true solid if it is known within a deviation only.
+pub fn reach_of(mesh: &TriangleMesh) -> ([f64; 3], [f64; 3]) {
+    let (min, max) = mesh.bounds();
+    match mesh.deviation() {
+        0.0 => (min, max),
+        _ => {
+            let beyond = mesh.displacement();
+            (min.map(|low| (low - beyond).next_down()), max.map(|high| (high + beyond).next_up()))
+        }
+    }
 }
 
 /// The frame around a mesh. Only one that ends at its vertices can do without a margin.
 pub fn frame_around(mesh: &TriangleMesh, depth: u8) -> Result<Frame, Error> {
-    let (min, max) = mesh.bounds();
+    let (min, max) = reach_of(mesh);
     if ends_at_vertices(mesh)? { Frame::fitted(min, max, depth) } else { Frame::around(min, max, depth) }
 }
 
@@ -202,13 +224,15 @@ pub fn warn_of_openness(input: &Input, report: &MeshReport, fill: FillRule) {
     }
 }
 
-/// Refuses a mesh that is open where the fill rule needs a closed one.
+/// Refuses a mesh that is open where the fill rule, or what is stated of it, needs a closed one.
 fn check_closed(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<(), Failure> {
-    if fill != FillRule::EvenOdd {
+    let is_stated = mesh.deviation() > 0.0;
+    if fill != FillRule::EvenOdd && !is_stated {
         return Ok(());
     }
     mesh.check_closed(fill).map_err(|error| {
         let hint = match error {
+            _ if is_stated => " (--deviation needs a mesh that bounds a solid)",
             Error::Mesh(MeshError::Open { .. }) => " (--fill nonzero and positive take open meshes)",
             _ => "",
         };

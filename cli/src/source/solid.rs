@@ -4,7 +4,7 @@ use crate::failure::{Failure, Of};
 use crate::source::content::Content;
 use crate::source::file::{Found, Stored, Taking};
 use crate::source::input::Input;
-use crate::source::mesh::{ends_at_vertices, frame_around, warn_of_openness};
+use crate::source::mesh::{ends_at_vertices, frame_around, reach_of, warn_of_openness};
 use crate::source::moved::{self, Onto};
 use crate::source::placing::Placing;
 use crate::source::scene::{bounds_of, frame_of};
@@ -257,7 +257,7 @@ impl Source {
                 let frame = octree.frame();
                 (frame.origin(), frame.origin().map(|low| low + frame.edge()))
             }
-            Source::Mesh(mesh, ..) => mesh.bounds(),
+            Source::Mesh(mesh, ..) => reach_of(mesh),
             Source::Scene(scene) => bounds_of(input, scene)?,
             Source::Volume(volume) => {
                 let bounds = volume.solid.bounds().ok_or_else(|| Failure::of(input, "has no bounds"))?;

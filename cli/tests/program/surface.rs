@@ -365,6 +365,8 @@ fn faces_of_a_plate_with_a_bore() {
     assert_eq!((&report["closed"], &report["manifold"]), (&Value::Bool(true), &Value::Bool(true)));
     assert_eq!((&report["euler"], &report["intersecting"]), (&Value::from(0), &Value::from(0)));
     assert_eq!((&report["degenerate"], &report["method"]), (&Value::from(0), &Value::from("faces")));
+    let proven = report["deviation"].as_f64().unwrap();
+    assert!(0.04 < proven && proven <= 0.08, "{report}");
     let proof = json(&place, "deviation plate.csg plate.stl --within 0.08 --json");
     assert_eq!(proof["verdict"], "within", "{proof}");
     for (tolerance, most) in [("0.008", 1500), ("0.0008", 5000)] {
@@ -374,7 +376,26 @@ fn faces_of_a_plate_with_a_bore() {
         let report = json(&place, &line);
         assert!(report["triangles"].as_u64().unwrap() <= most, "{report}");
         assert_eq!(report["intersecting"], 0);
+        assert!(report["deviation"].as_f64().unwrap() <= tolerance.parse().unwrap(), "{report}");
     }
+    // The file says so, and a person is told.
+    let said = place.run("mesh plate.csg -o told.3mf --method faces").good();
+    assert!(said.text().contains("of the solid: proven"), "{}", said.text());
+    let told = json(&place, "info told.3mf --json");
+    assert!((told["told_deviation"].as_f64().unwrap() - proven).abs() < 1e-5, "{told}");
+    // The volume of the true plate lies within what is measured of the file that is believed.
+    let line = format!("measure plate.stl --deviation {proven} --tolerance 1e-3 --json");
+    let volume = &json(&place, &line)["volume"];
+    let truth = 48000.0 - 250.0 * std::f64::consts::PI;
+    let [least, most] = ["lower", "upper"].map(|end| volume[end].as_f64().unwrap());
+    assert!(least <= truth && truth <= most, "{volume}");
+    // Whatever has a shape, in cells of several sizes.
+    let adaptive = json(&place, "mesh plate.stl -o adaptive.ply --method adaptive --json");
+    assert!(adaptive["closed"] == true && adaptive["manifold"] == true, "{adaptive}");
+    assert!(
+        adaptive["triangles"].as_u64().unwrap() < 10_000 && adaptive.get("deviation").is_none(),
+        "{adaptive}"
+    );
     place.run("csg plate.csg -o plate.lfl --surfaces").good();
     let stored = json(&place, "mesh plate.lfl -o stored.ply --method faces --json");
     assert!(stored["triangles"].as_u64().unwrap() <= 400 && stored["euler"] == 0, "{stored}");

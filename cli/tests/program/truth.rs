@@ -363,3 +363,82 @@ fn an_open_mesh_is_told_of_wherever_it_is_read() {
     warned(place.run("interfere open.stl open.stl --depth 4"));
     warned(place.run("voxelize open.stl -o open.lfl --depth 4"));
 }
+
+/// A cylinder in chords: the volume of the true one is 12000 π, and the mesh has less.
+#[test]
+fn a_stated_deviation_is_believed() {
+    use std::f64::consts::PI;
+    let place = meshes();
+    let segments = (PI / (1.0 - 0.5 / 20.0f64).acos()).ceil() as usize;
+    let at = |i: usize| (2.0 * PI * (i % segments) as f64 / segments as f64).sin_cos();
+    let facets = (0..segments).flat_map(|i| {
+        let [(s, c), (t, d)] = [at(i), at(i + 1)];
+        let [low, high] = [0.0, 30.0].map(|z| [[20.0 * c, 20.0 * s, z], [20.0 * d, 20.0 * t, z]]);
+        let [top, bottom] = [[0.0, 0.0, 30.0], [0.0; 3]];
+        [
+            [top, high[0], high[1]],
+            [bottom, low[1], low[0]],
+            [low[0], low[1], high[1]],
+            [low[0], high[1], high[0]],
+        ]
+    });
+    place.write("chords.stl", stl(&leafless::TriangleMesh::from_facets(facets).unwrap()));
+    let holds = |line: &str, truth: f64| {
+        let found = place.run(&format!("measure {line} --json")).good().json();
+        let [lower, upper] = ["lower", "upper"].map(|end| found["volume"][end].as_f64().unwrap());
+        lower <= truth && truth <= upper
+    };
+    let truth = PI * 400.0 * 30.0;
+    assert!(!holds("chords.stl", truth) && !holds("chords.stl --deviation 0", truth));
+    assert!(holds("chords.stl --deviation 0.5", truth));
+    // It is told after units, and moves and grows with the mesh.
+    assert!(holds("chords.stl --unit mm --to-unit cm --deviation 0.05", truth / 1000.0));
+    assert!(holds("chords.stl --deviation 0.5 --scale 2 ", 8.0 * truth));
+    assert!(holds(
+        "chords.stl --deviation 0.5 --rotate 1,2,3,40 --scale 2,2,2 --translate 1,2,3",
+        8.0 * truth
+    ));
+    let run = place.run("measure chords.stl --deviation 0.5").good();
+    assert!(
+        line(run.text(), "area").contains("of the mesh: the true boundary lies beside it by 0.5 or less")
+    );
+    assert!(line(run.text(), "exact").contains("but for the deviation"));
+
+    place.run("voxelize chords.stl -o chords.lfl --depth 6 --deviation 0.5").good();
+    place.run("voxelize chords.stl -o layers.lfl --depth 6 --surfaces=0.05 --deviation 0.5").good();
+    assert!(holds("chords.lfl", truth) && holds("layers.lfl", truth));
+    // Between the chord and the arc.
+    let (s, c) = (PI / segments as f64).sin_cos();
+    let point = format!("{} {} 11", 19.9 * c, 19.9 * s);
+    for file in ["chords.lfl", "layers.lfl"] {
+        let run = place.run_with(&format!("contains {file}"), point.as_bytes());
+        assert!(run.text().contains("undecided"), "{run:?}");
+    }
+
+    place.write("scene.csg", "translate([1, 2, 3]) import(file = \"chords.stl\", deviation = 0.5);");
+    assert!(holds("scene.csg", truth));
+    place.write("bad.csg", "import(\"chords.stl\", deviation = -0.5);");
+    place.run("measure bad.csg").bad(1, &["line 1, column 34", "must be finite"]);
+    place.run("measure chords.stl --deviation=-1").bad(2, &["--deviation", "not below 0"]);
+    place.run("measure scene.csg --deviation 1").bad(2, &["--deviation is for meshes"]);
+    place.write("open.off", "OFF 4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n");
+    place
+        .run("measure open.off --deviation 0.1")
+        .bad(1, &["open", "--deviation needs a mesh that bounds a solid"]);
+    place.write("open.csg", "mesh(\"open.off\", deviation = 0.1);");
+    place.run("measure open.csg").bad(1, &["`deviation` needs a mesh that bounds a solid"]);
+
+    // A file that was written with it says so, and is not believed.
+    place.run("convert chords.stl -o chords.ply --deviation 0.5").good();
+    place.run("convert chords.stl -o chords.3mf --deviation 0.5 --scale 2").good();
+    assert!(!holds("chords.ply", truth) && holds("chords.ply --deviation 0.5", truth));
+    let run = place.run("info chords.ply").good();
+    assert_eq!(line(run.text(), "deviation"), "0.5, as the file says; --deviation 0.5 believes it");
+    let found = place.run("info chords.3mf --to-unit cm --json").good().json();
+    assert!(
+        (found["told_deviation"].as_f64().unwrap() - 0.1).abs() < 1e-15 && found["deviation"] == 0.0,
+        "{found}"
+    );
+    let run = place.run("info chords.ply --deviation 0.25").good();
+    assert_eq!(line(run.text(), "deviation"), "the true boundary lies within 0.25 of the mesh");
+}

@@ -11,18 +11,19 @@ use crate::error::Error;
 use crate::exchange::MeshWarning;
 use crate::exchange::bytes::TOO_SHORT;
 use crate::exchange::colours::{self, Colours};
+use crate::exchange::declared::Declared;
 use crate::exchange::polygons::Polygons;
 use crate::memory;
 use crate::mesh::{MeshAttribute, TriangleMesh};
 
 /// Reads all elements, up to the end of the file.
 pub(super) fn read_elements<S: Source>(
-    elements: &[Element],
+    (elements, declared): (&[Element], Vec<Declared<'_>>),
     mut source: S,
     warnings: &mut Vec<MeshWarning>,
 ) -> Result<TriangleMesh, Error> {
     let mut mesh = Polygons::default();
-    let mut palette = Palette::default();
+    let mut palette = Palette { declared, ..Palette::default() };
     let vertex = elements.iter().find(|element| element.name == b"vertex");
     let vertices = vertex.map_or(0, |element| element.count);
     if let Some(vertex) = vertex.filter(|_| vertices > u32::MAX.into()) {
@@ -32,7 +33,7 @@ pub(super) fn read_elements<S: Source>(
     // The first line with too many values, and the number of such lines.
     let mut longer = (0, 0);
     for element in elements {
-        let steps = steps(element, warnings)?;
+        let steps = steps(element, &mut palette.declared, warnings)?;
         let least = least(element);
         // At most the count, hence no overflow.
         let present = (source.at_most(least.0, least.1) as u64).min(element.count) as usize;
@@ -50,10 +51,14 @@ pub(super) fn read_elements<S: Source>(
             colours::fill(&mut palette.rows, mesh.triangle_count(), MeshAttribute::NO_ROW)?;
         }
         let mut more = None;
+        let has_values = steps.iter().any(|step| matches!(step, Step::Value { .. }));
+        let mut values = memory::filled(if has_values { palette.declared.len() } else { 0 }, [f64::NAN; 4])?;
         for _ in 0..element.count {
             let start = source;
             let mut vertex = [0.0; 3];
             let mut colour = [0.0, 0.0, 0.0, 255.0];
+            let before = mesh.triangle_count();
+            values.iter_mut().for_each(|value| *value = [f64::NAN; 4]);
             for step in &steps {
                 match *step {
                     Step::Skip { values, bytes } => source.skip(values, bytes)?,
@@ -66,6 +71,9 @@ pub(super) fn read_elements<S: Source>(
                     Step::Coordinate { axis, kind } => vertex[axis] = source.coordinate(kind)?,
                     Step::Channel { channel, kind } => {
                         colour[channel] = source.value(kind)?.map_or(f64::NAN, |value| kind.channel(value));
+                    }
+                    Step::Value { attribute, component, kind } => {
+                        values[attribute][component] = source.value(kind)?.unwrap_or(f64::NAN);
                     }
                     Step::Indices(list) => {
                         let before = source;
@@ -93,6 +101,9 @@ pub(super) fn read_elements<S: Source>(
                     colours::fill(&mut palette.rows, mesh.triangle_count(), colours.len() as u32)?;
                 }
                 colours.push(colour)?;
+            }
+            for (attribute, value) in palette.declared.iter_mut().zip(&values) {
+                attribute.push(before, mesh.triangle_count(), value)?;
             }
             let found = source.end_element(&start, more)?;
             if found > 0 && longer.1 == 0 {

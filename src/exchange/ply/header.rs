@@ -4,8 +4,9 @@ use alloc::vec::Vec;
 
 use super::number_kind::NumberKind;
 use crate::error::Error;
-use crate::exchange::MeshWarning;
+use crate::exchange::declared::{Declared, declare};
 use crate::exchange::text::Text;
+use crate::exchange::{MeshWarning, is_line_end};
 use crate::memory;
 
 #[derive(Clone, Copy)]
@@ -33,6 +34,8 @@ pub(super) struct Element<'a> {
 pub(super) struct Header<'a> {
     pub encoding: Encoding,
     pub elements: Vec<Element<'a>>,
+    /// Attributes that comments announce.
+    pub declared: Vec<Declared<'a>>,
     /// Bytes.
     pub length: usize,
 }
@@ -49,12 +52,15 @@ impl<'a> Header<'a> {
         end_line(&mut text)?;
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let mut declared = Vec::new();
         let mut strange = (0, 0);
         loop {
             text.skip_space();
             let at = text;
             match text.word() {
                 b"comment" | b"obj_info" => {
+                    let comment = text.rest().split(|&byte| is_line_end(byte)).next().unwrap_or(&[]);
+                    declare(&mut declared, comment)?;
                     text.skip_line();
                     continue;
                 }
@@ -116,7 +122,7 @@ impl<'a> Header<'a> {
             [] => {}
             _ => return Err(text.error("a line end behind `end_header`").into()),
         }
-        Ok(Self { encoding, elements, length: text.taken() })
+        Ok(Self { encoding, elements, declared, length: text.taken() })
     }
 }
 

@@ -10,6 +10,8 @@
 //! `diffuse_red` and so on. Integers are from 0 to 255, but `ushort` from 0 to 65 535, and floating point numbers
 //! from 0 to 1. The colour of an element that has another number, or no number, is left out, with a warning.
 //!
+//! **Attributes** of faces that this library wrote are announced by comments of the header (`declared`).
+//!
 //! **Elements** come in any order; those of other names, and all properties that are not needed, single ones
 //! and lists, are skipped. `vertex` needs `x`, `y` and `z` of any type. `face` needs a list of integers that
 //! is called `vertex_indices` or `vertex_index`, of three or more vertices each; without such a list, and with
@@ -74,15 +76,17 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<MeshWarning>) -> Result<Tria
         return Err(MeshFileError::Empty.into());
     }
     refuse_utf16(bytes)?;
-    let Header { encoding, elements, length } = Header::read(bytes, warnings)?;
+    let Header { encoding, elements, declared, length } = Header::read(bytes, warnings)?;
     match encoding {
         Encoding::Ascii => {
             let mut text = Text::new(bytes);
             text.continue_with(text.rest().get(length..).unwrap_or(&[]));
-            read_elements(&elements, text, warnings)
+            read_elements((&elements, declared), text, warnings)
         }
-        Encoding::Little => read_elements(&elements, Bytes::<false>::new(bytes, length), warnings),
-        Encoding::Big => read_elements(&elements, Bytes::<true>::new(bytes, length), warnings),
+        Encoding::Little => {
+            read_elements((&elements, declared), Bytes::<false>::new(bytes, length), warnings)
+        }
+        Encoding::Big => read_elements((&elements, declared), Bytes::<true>::new(bytes, length), warnings),
     }
 }
 

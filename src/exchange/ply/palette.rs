@@ -4,19 +4,22 @@ use alloc::vec::Vec;
 
 use crate::error::Error;
 use crate::exchange::colours::{self, Colours};
+use crate::exchange::declared::Declared;
 use crate::memory;
 use crate::mesh::MeshAttribute;
 
 /// What the elements of a file say of colours.
 #[derive(Default)]
-pub(super) struct Palette {
+pub(super) struct Palette<'a> {
     pub vertices: Option<Colours>,
     pub faces: Option<Colours>,
     /// The colour of each triangle, of faces that have one.
     pub rows: Vec<u32>,
+    /// Attributes of faces that are announced.
+    pub declared: Vec<Declared<'a>>,
 }
 
-impl Palette {
+impl Palette<'_> {
     pub fn unreadable(&self) -> u64 {
         [&self.vertices, &self.faces].into_iter().flatten().map(|colours| colours.unreadable).sum()
     }
@@ -31,6 +34,9 @@ impl Palette {
         if let Some(colours) = self.faces {
             colours::fill(&mut self.rows, triangles.len(), MeshAttribute::NO_ROW)?;
             memory::push(&mut attributes, colours.of_triangles(face, self.rows)?)?;
+        }
+        for attribute in self.declared.into_iter().filter(Declared::is_found) {
+            memory::push(&mut attributes, attribute.finish(triangles.len())?)?;
         }
         Ok(attributes)
     }

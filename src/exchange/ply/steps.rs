@@ -7,6 +7,7 @@ use super::indices::Indices;
 use super::number_kind::NumberKind;
 use crate::error::Error;
 use crate::exchange::MeshWarning;
+use crate::exchange::declared::{Declared, place_of};
 use crate::memory;
 
 /// How the next values of an element are read.
@@ -29,17 +30,28 @@ pub(super) enum Step {
         channel: usize,
         kind: NumberKind,
     },
+    /// A number of an attribute of faces.
+    Value {
+        attribute: usize,
+        component: usize,
+        kind: NumberKind,
+    },
     Indices(Indices),
 }
 
 /// How to read an element; no step if it has no properties.
-pub(super) fn steps(element: &Element, warnings: &mut Vec<MeshWarning>) -> Result<Vec<Step>, Error> {
+pub(super) fn steps(
+    element: &Element,
+    declared: &mut [Declared<'_>],
+    warnings: &mut Vec<MeshWarning>,
+) -> Result<Vec<Step>, Error> {
     let mut steps = Vec::new();
     let (mut axes, mut lists) = ([0; 3], 0);
     let channels = channels(element);
     for (place, property) in element.properties.iter().enumerate() {
         let channel = channels.iter().position(|&channel| channel == Some(place));
         let axis = [b"x", b"y", b"z"].iter().position(|axis| *axis == property.name);
+        let value = place_of(declared, property.name);
         let is_list =
             matches!(property.name, b"vertex_indices" | b"vertex_index") && property.kind.is_integer();
         let step = match (element.name, axis, property.count) {
@@ -54,6 +66,11 @@ pub(super) fn steps(element: &Element, warnings: &mut Vec<MeshWarning>) -> Resul
             (_, _, Some(count)) => Step::SkipList { count, kind: property.kind },
             (_, _, None) if channel.is_some() => {
                 Step::Channel { channel: channel.unwrap_or_default(), kind: property.kind }
+            }
+            (b"face", _, None) if value.is_some() => {
+                let (attribute, component) = value.unwrap_or_default();
+                declared[attribute].found(property.kind.is_integer());
+                Step::Value { attribute, component, kind: property.kind }
             }
             (_, _, None) => {
                 let size = property.kind.size() as u64;

@@ -10,7 +10,7 @@
 //! turns the triangles round, so that a volume keeps its sign. Objects of all types but `model` (`support`,
 //! `solidsupport`, `surface`, and `other`, which a build should not reach, but slicers put their modifiers
 //! there) are left out, and counted; the type of an object of components has no meaning. Objects that the
-//! build does not reach are not built. Metadata, textures and triangle sets are ignored, and so are extensions that the model does not require. The fill rule of 3MF is `FillRule::Positive` for each
+//! build does not reach are not built. Textures and triangle sets are ignored, all metadata but the deviation that this library writes, and so are extensions that the model does not require. The fill rule of 3MF is `FillRule::Positive` for each
 //! object, and the union of the objects: the mesh as a whole differs from that only where an object that is
 //! inside out overlaps another one.
 //!
@@ -39,7 +39,7 @@
 //! to 2^25 vertices and 2^25 triangles, or to as many as the file has, and be made of 2^24 placements.
 //! Nothing is recursive.
 
-mod model;
+pub(super) mod model;
 mod package;
 mod properties;
 mod transform;
@@ -68,6 +68,8 @@ pub(super) struct Built {
     pub unit: LengthUnit,
     /// Instances of objects that are no solids.
     pub skipped: u64,
+    /// How far the true boundary may lie from the mesh, if the root model says so.
+    pub deviation: Option<f64>,
 }
 
 /// Reads a package.
@@ -108,7 +110,7 @@ pub(super) fn read(bytes: &[u8], warnings: &mut Vec<MeshWarning>) -> Result<Buil
     if models.draft {
         memory::push(warnings, MeshWarning::Draft)?;
     }
-    Ok(Built { mesh, unit, skipped: sum.skipped })
+    Ok(Built { mesh, unit, skipped: sum.skipped, deviation: models.deviation })
 }
 
 /// Reads the parts that the root model refers to, and replaces references to them by places of objects.

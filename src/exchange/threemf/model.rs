@@ -9,10 +9,13 @@ use hashbrown::HashMap;
 use super::package::Package;
 use super::properties::{Properties, Reference};
 use super::transform::Transform;
-use super::xml::{Element, Markup, Namespace, Text, Xml};
+use super::xml::{Attribute, Element, Markup, Namespace, Text, Xml};
 use crate::error::Error;
-use crate::exchange::LengthUnit;
+use crate::exchange::{LengthUnit, stated};
 use crate::memory;
+
+/// The name of metadata that tells how far the true boundary may lie from the mesh.
+pub(in crate::exchange) const DEVIATION: &str = "leafless:deviation";
 
 /// What all model parts of a package hold.
 #[derive(Default)]
@@ -30,6 +33,8 @@ pub(super) struct Models {
     pub properties: Properties,
     /// Whether a part is of the draft 0.93.
     pub draft: bool,
+    /// What the root model says of how far the true boundary may lie from the mesh.
+    pub deviation: Option<f64>,
 }
 
 pub(super) struct Object {
@@ -137,6 +142,14 @@ impl Models {
                     Node::Skipped
                 }
                 (Some(Node::Model), "resources") if core => Node::Resources,
+                (Some(Node::Model), "metadata") if core && is_root => {
+                    let is_it =
+                        |a: &Attribute| a.prefix.is_empty() && a.name == "name" && a.value == DEVIATION;
+                    if !element.empty && xml.attributes().iter().any(is_it) {
+                        self.deviation = self.deviation.or(stated::parsed(xml.content_ahead()));
+                    }
+                    Node::Skipped
+                }
                 (Some(Node::Model), "build") if core && is_root => {
                     has_build = true;
                     Node::Build

@@ -199,6 +199,12 @@ impl<'a> Xml<'a> {
         }
     }
 
+    /// The text behind the latest start, up to the next markup.
+    pub fn content_ahead(&self) -> &'a str {
+        let rest = self.text.get(self.position()..).unwrap_or("");
+        rest.split('<').next().unwrap_or("")
+    }
+
     /// The next start or end of an element; `None` at the end of a part with one element around all others.
     pub fn next(&mut self) -> Result<Option<Markup<'a>>, Error> {
         let depth = self.depth;

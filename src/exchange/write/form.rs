@@ -30,7 +30,8 @@ pub struct WrittenForm<'a> {
 /// move, vertices that meet are one vertex for a reader, and triangles of which two corners meet are dropped. A closed
 /// mesh stays closed, but it may be flat, pinched, or have no triangle at all: a cube of edge 3 around x = 10⁹ becomes a
 /// square. Its [`report`](TriangleMesh::report) tells. An STL has no vertices that no triangle uses, and has the others in
-/// the order in which triangles first use them. No format keeps the [attributes](TriangleMesh::attributes) of a mesh.
+/// the order in which triangles first use them. What is kept of [attributes](TriangleMesh::attributes) stands at
+/// [`write_mesh`](super::write_mesh); those of the mesh that is told are none, or all.
 ///
 /// O(n) time; O(1) memory where nothing is lost, else that of a second mesh, and for an STL as text also that of the
 /// file.
@@ -55,7 +56,7 @@ pub fn written_form<'a>(
     format: MeshFormat,
     options: &WriteOptions,
 ) -> Result<WrittenForm<'a>, Error> {
-    refuse(mesh, format)?;
+    refuse(mesh, format, options)?;
     if format != MeshFormat::Stl {
         // Without triangles a 3MF has no object.
         let is_nothing = format == MeshFormat::ThreeMf && mesh.triangles().is_empty();

@@ -4,6 +4,7 @@
 //! read as the same doubles, binary PLY has the doubles themselves. STL alone has 32-bit coordinates; [`written_form`]
 //! tells what becomes of a mesh.
 
+mod attributes;
 mod form;
 mod lines;
 mod obj;
@@ -11,6 +12,8 @@ mod off;
 mod ply;
 #[cfg(feature = "png")]
 mod png;
+#[cfg(feature = "std")]
+mod polygons;
 mod stl;
 #[cfg(feature = "threemf")]
 mod threemf;
@@ -18,9 +21,11 @@ mod threemf;
 pub use form::{WrittenForm, written_form};
 #[cfg(feature = "png")]
 pub use png::write_png;
+#[cfg(feature = "std")]
+pub use polygons::write_polygons;
 pub use stl::write_stl;
 
-use super::{LengthUnit, MeshFormat};
+use super::{LengthUnit, MeshFormat, stated};
 use crate::error::Error;
 #[cfg(not(feature = "threemf"))]
 use crate::error::MeshFileError;
@@ -28,7 +33,7 @@ use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
 /// How a mesh file is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WriteOptions {
     /// STL and PLY as text, which is several times as long. OBJ and OFF always are text.
     pub text: bool,
@@ -37,6 +42,10 @@ pub struct WriteOptions {
     pub unit: Option<LengthUnit>,
     /// PLY and OBJ with the normals at vertices ([`TriangleMesh::vertex_normals`]). Other formats have none.
     pub normals: bool,
+    /// How far the true boundary may lie from the mesh ([`TriangleMesh::deviation`]), in model units: told by a comment of a PLY,
+    /// an OBJ or an OFF, and by metadata of a 3MF. An STL has no place for it. [`MeshFile::deviation`](super::MeshFile::deviation)
+    /// reads it.
+    pub deviation: Option<f64>,
 }
 
 /// The file of a mesh in a format.
@@ -44,20 +53,31 @@ pub struct WriteOptions {
 /// | format | what is written |
 /// |---|---|
 /// | STL | binary, 32-bit coordinates; ASCII with all digits that these have |
-/// | PLY | little-endian or ASCII, coordinates of type `double`, normals of type `float` |
-/// | OBJ | vertices and triangles, normals |
+/// | PLY | little-endian or ASCII, coordinates of type `double`, normals of type `float`, colours, attributes of triangles |
+/// | OBJ | vertices and triangles, normals, materials |
 /// | OFF | vertices and triangles |
-/// | 3MF | (feature `threemf`) a package of the core specification: one object, which is the build's one item, in the given unit |
+/// | 3MF | (feature `threemf`) a package of the core specification: one object, which is the build's one item, in the given unit; base materials and colours |
 ///
 /// Coordinates are kept exactly by all but STL, which may lose vertices and triangles and flatten what is small and far
-/// away: [`written_form`] tells. Attributes of the mesh are not written.
+/// away: [`written_form`] tells.
+///
+/// **Attributes.** What a format has a place for is written, and read back by the readers of this library:
+///
+/// - Of `colour` and `face_colour` (three or four numbers from 0 to 255, which are rounded) a PLY has colours of faces, and of
+///   vertices if `colour` is one of corners: at a vertex that of the first corner there. What has no colour is black with an
+///   alpha of 0. A 3MF has colours of triangles or corners, of `face_colour` only if there is no `colour`.
+/// - Of `material` with its names an OBJ has `usemtl`, and no file of materials; a 3MF has base materials, of which each needs a
+///   colour: that of the first triangle of it, or grey. Materials are written, and not colours, where a 3MF would have both.
+/// - All other attributes of triangles whose names are one word of ASCII are properties of the faces of a PLY, with comments in the
+///   header that announce them to the reader.
 ///
 /// Vertices and triangles keep their order. A 3MF leaves out triangles that have a vertex twice, which it must not have.
 ///
 /// O(n) time and memory.
 ///
 /// # Errors
-/// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, and for an OBJ without vertices;
+/// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, for an OBJ without vertices, and for a deviation that
+/// [`TriangleMesh::with_deviation`] refuses;
 /// [`MeshFileError::Unsupported`](crate::error::MeshFileError::Unsupported) for a 3MF without the feature;
 /// [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB that cannot be refused.)
 ///
@@ -74,15 +94,15 @@ pub struct WriteOptions {
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOptions) -> Result<Vec<u8>, Error> {
-    refuse(mesh, format)?;
+    refuse(mesh, format, options)?;
     match format {
         MeshFormat::Stl if options.text => stl::text(mesh),
         MeshFormat::Stl => write_stl(mesh),
         MeshFormat::Ply => ply::write(mesh, options),
         MeshFormat::Obj => obj::write(mesh, options),
-        MeshFormat::Off => off::write(mesh),
+        MeshFormat::Off => off::write(mesh, options),
         #[cfg(feature = "threemf")]
-        MeshFormat::ThreeMf => threemf::write(mesh, options.unit.unwrap_or(LengthUnit::Millimetre)),
+        MeshFormat::ThreeMf => threemf::write(mesh, options),
         #[cfg(not(feature = "threemf"))]
         MeshFormat::ThreeMf => Err(WITHOUT_3MF.into()),
     }
@@ -92,8 +112,9 @@ pub fn write_mesh(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOption
 const WITHOUT_3MF: MeshFileError =
     MeshFileError::Unsupported { what: "3MF, which was left out of this build," };
 
-/// Refuses meshes that a format does not have, apart from their coordinates.
-fn refuse(mesh: &TriangleMesh, format: MeshFormat) -> Result<(), Error> {
+/// Refuses meshes that a format does not have, apart from their coordinates, and options that are none.
+fn refuse(mesh: &TriangleMesh, format: MeshFormat, options: &WriteOptions) -> Result<(), Error> {
+    stated::check(options.deviation)?;
     match format {
         // A file of neither cannot be told from other text.
         MeshFormat::Obj if mesh.vertices().is_empty() => {

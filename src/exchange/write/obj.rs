@@ -1,13 +1,18 @@
 //! Wavefront OBJ.
 
 use super::WriteOptions;
+use super::attributes::Materials;
 use super::lines::{Lines, Point};
 use crate::error::Error;
+use crate::exchange::stated::Line;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
 pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u8>, Error> {
     let mut lines = Lines::default();
+    if let Some(deviation) = options.deviation {
+        lines.add(format_args!("{}", Line("# ", deviation)))?;
+    }
     for &vertex in mesh.vertices() {
         lines.add(format_args!("v {}\n", Point(vertex)))?;
     }
@@ -16,7 +21,19 @@ pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u
             lines.add(format_args!("vn {}\n", Point(normal.map(|x| x as f32))))?;
         }
     }
-    for triangle in mesh.triangles() {
+    let (materials, mut current) = (Materials::of(mesh)?, None);
+    for (number, triangle) in mesh.triangles().iter().enumerate() {
+        if let Some(materials) = &materials {
+            let next = materials.get(number);
+            match next {
+                Some(material) if next != current => {
+                    lines.add(format_args!("usemtl {}\n", materials.names[material]))?;
+                }
+                None if next != current => lines.add(format_args!("usemtl\n"))?,
+                _ => {}
+            }
+            current = next;
+        }
         let [a, b, c] = triangle.map(|v| u64::from(v) + 1);
         if options.normals {
             lines.add(format_args!("f {a}//{a} {b}//{b} {c}//{c}\n"))?;

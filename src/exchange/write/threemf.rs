@@ -1,11 +1,17 @@
 //! 3MF packages of the core specification 1.x, one object each.
 
+use super::WriteOptions;
+use super::attributes::{self, Materials};
 use super::lines::Number;
 use crate::error::Error;
 use crate::exchange::LengthUnit;
+use crate::exchange::stated::Shown;
+use crate::exchange::threemf::model::DEVIATION;
+use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
+use hashbrown::HashMap;
 use miniz_oxide::deflate::core::{
     CompressorOxide, TDEFLFlush, TDEFLStatus, compress_to_output, create_comp_flags_from_zip_params,
 };
@@ -22,16 +28,19 @@ const RELATIONSHIPS: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" \
     Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
 
-pub(super) fn write(mesh: &TriangleMesh, unit: LengthUnit) -> Result<Vec<u8>, Error> {
+pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u8>, Error> {
+    let properties = Properties::of(mesh)?;
     // Writing to memory fails only for want of it.
-    package(mesh, unit).map_err(|_| Error::OutOfMemory)
+    package(mesh, &properties, options).map_err(|_| Error::OutOfMemory)
 }
 
-fn package(mesh: &TriangleMesh, unit: LengthUnit) -> io::Result<Vec<u8>> {
+fn package(mesh: &TriangleMesh, properties: &Properties<'_>, options: &WriteOptions) -> io::Result<Vec<u8>> {
     let mut archive = ZipArchiveWriter::new(Bytes::default());
     part(&mut archive, "[Content_Types].xml", |out| out.write_all(CONTENT_TYPES.as_bytes()))?;
     part(&mut archive, "_rels/.rels", |out| out.write_all(RELATIONSHIPS.as_bytes()))?;
-    part(&mut archive, "3D/3dmodel.model", |out| model(mesh, unit, &mut io::BufWriter::new(out)))?;
+    part(&mut archive, "3D/3dmodel.model", |out| {
+        model(mesh, properties, options, &mut io::BufWriter::new(out))
+    })?;
     Ok(archive.finish().map_err(io::Error::other)?.0)
 }
 
@@ -51,8 +60,13 @@ fn part(
     Ok(())
 }
 
-fn model(mesh: &TriangleMesh, unit: LengthUnit, out: &mut impl Write) -> io::Result<()> {
-    let unit = match unit {
+fn model(
+    mesh: &TriangleMesh,
+    properties: &Properties<'_>,
+    options: &WriteOptions,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let unit = match options.unit.unwrap_or(LengthUnit::Millimetre) {
         LengthUnit::Micrometre => "micron",
         LengthUnit::Millimetre => "millimeter",
         LengthUnit::Centimetre => "centimeter",
@@ -63,29 +77,151 @@ fn model(mesh: &TriangleMesh, unit: LengthUnit, out: &mut impl Write) -> io::Res
     write!(
         out,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"{unit}\" xml:lang=\"en-US\" \
-         xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n\
-         <metadata name=\"Application\">Leafless</metadata>\n"
+         xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\""
     )?;
-    let mut triangles = mesh.triangles().iter().filter(|[a, b, c]| a != b && b != c && c != a).peekable();
+    // A name of one's own has a namespace.
+    if options.deviation.is_some() {
+        write!(out, " xmlns:leafless=\"urn:leafless\"")?;
+    }
+    if matches!(properties, Properties::Colours { .. }) {
+        write!(out, " xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"")?;
+    }
+    write!(out, ">\n<metadata name=\"Application\">Leafless</metadata>\n")?;
+    if let Some(deviation) = options.deviation {
+        writeln!(out, "<metadata name=\"{DEVIATION}\">{}</metadata>", Shown(deviation))?;
+    }
+    let triangles = mesh.triangles().iter().enumerate();
+    let mut triangles = triangles.filter(|(_, [a, b, c])| a != b && b != c && c != a).peekable();
     // An object must have triangles.
     if triangles.peek().is_none() {
         writeln!(out, "<resources/>\n<build/>\n</model>")?;
         return out.flush();
     }
-    write!(out, "<resources>\n<object id=\"1\" type=\"model\">\n<mesh>\n<vertices>\n")?;
+    writeln!(out, "<resources>")?;
+    properties.group(out)?;
+    // What all triangles of an object have it should have, too.
+    let own = if properties.have_all(mesh.triangles().len()) { " pid=\"2\" pindex=\"0\"" } else { "" };
+    write!(out, "<object id=\"1\" type=\"model\"{own}>\n<mesh>\n<vertices>\n")?;
     for vertex in mesh.vertices() {
         let [x, y, z] = vertex.map(Number);
         writeln!(out, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")?;
     }
     write!(out, "</vertices>\n<triangles>\n")?;
-    for [a, b, c] in triangles {
-        writeln!(out, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>")?;
+    for (place, [a, b, c]) in triangles {
+        write!(out, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
+        match properties.get(place) {
+            Some([p, q, r]) if p != q || p != r => {
+                write!(out, " pid=\"2\" p1=\"{p}\" p2=\"{q}\" p3=\"{r}\"")?;
+            }
+            Some([p, ..]) => write!(out, " pid=\"2\" p1=\"{p}\"")?,
+            None => {}
+        }
+        writeln!(out, "/>")?;
     }
     write!(
         out,
         "</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item objectid=\"1\"/>\n</build>\n</model>\n"
     )?;
     out.flush()
+}
+
+/// What triangles refer to.
+enum Properties<'a> {
+    None,
+    /// Base materials, and how they are displayed.
+    Materials(Materials<'a>, Vec<[u8; 4]>),
+    /// Colours, and which of them corners have.
+    Colours {
+        colours: Vec<[u8; 4]>,
+        corners: Vec<Option<[u32; 3]>>,
+    },
+}
+
+impl<'a> Properties<'a> {
+    fn of(mesh: &'a TriangleMesh) -> Result<Properties<'a>, Error> {
+        /// How a material is displayed that has no colour.
+        const GREY: [u8; 4] = [128, 128, 128, 255];
+        let (all, colours) = (0..mesh.triangles().len(), attributes::of_corners(mesh));
+        let materials = Materials::of(mesh)?;
+        if let Some(materials) = materials.filter(|materials| all.clone().any(|t| materials.get(t).is_some()))
+        {
+            let mut shown = memory::filled(materials.names.len(), None)?;
+            for triangle in all {
+                if let (Some(material), Some(colours)) = (materials.get(triangle), &colours) {
+                    let own: &mut Option<[u8; 4]> = &mut shown[material];
+                    *own = own.or_else(|| colours(triangle).map(|corners| corners[0]));
+                }
+            }
+            let shown = memory::collected(shown.into_iter().map(|colour| colour.unwrap_or(GREY)))?;
+            return Ok(Properties::Materials(materials, shown));
+        }
+        let Some(of_corners) = colours else { return Ok(Properties::None) };
+        let (mut known, mut colours) = (HashMap::new(), Vec::new());
+        let mut corners = memory::with_capacity(all.len())?;
+        for triangle in all {
+            let Some(own) = of_corners(triangle) else {
+                corners.push(None);
+                continue;
+            };
+            let mut rows = [0; 3];
+            for (row, colour) in rows.iter_mut().zip(own) {
+                known.try_reserve(1)?;
+                let next = colours.len() as u32;
+                *row = *known.entry(colour).or_insert(next);
+                if *row == next {
+                    memory::push(&mut colours, colour)?;
+                }
+            }
+            corners.push(Some(rows));
+        }
+        Ok(if colours.is_empty() { Properties::None } else { Properties::Colours { colours, corners } })
+    }
+
+    /// What the corners of a triangle have.
+    fn get(&self, triangle: usize) -> Option<[u32; 3]> {
+        match self {
+            Properties::None => None,
+            Properties::Materials(materials, _) => {
+                materials.get(triangle).map(|material| [material as u32; 3])
+            }
+            Properties::Colours { corners, .. } => corners[triangle],
+        }
+    }
+
+    fn have_all(&self, triangles: usize) -> bool {
+        !matches!(self, Properties::None) && (0..triangles).all(|triangle| self.get(triangle).is_some())
+    }
+
+    /// Writes the group.
+    fn group(&self, out: &mut impl Write) -> io::Result<()> {
+        match self {
+            Properties::None => Ok(()),
+            Properties::Materials(materials, shown) => {
+                writeln!(out, "<basematerials id=\"2\">")?;
+                for (name, [r, g, b, a]) in materials.names.iter().zip(shown) {
+                    write!(out, "<base name=\"")?;
+                    for c in name.chars() {
+                        match c {
+                            '&' => write!(out, "&amp;")?,
+                            '<' => write!(out, "&lt;")?,
+                            '>' => write!(out, "&gt;")?,
+                            '"' => write!(out, "&quot;")?,
+                            other => write!(out, "{other}")?,
+                        }
+                    }
+                    writeln!(out, "\" displaycolor=\"#{r:02X}{g:02X}{b:02X}{a:02X}\"/>")?;
+                }
+                writeln!(out, "</basematerials>")
+            }
+            Properties::Colours { colours, .. } => {
+                writeln!(out, "<m:colorgroup id=\"2\">")?;
+                for [r, g, b, a] in colours {
+                    writeln!(out, "<m:color color=\"#{r:02X}{g:02X}{b:02X}{a:02X}\"/>")?;
+                }
+                writeln!(out, "</m:colorgroup>")
+            }
+        }
+    }
 }
 
 /// Bytes that grow as long as there is memory.

@@ -43,8 +43,7 @@ impl Boundary {
         if !solid.is_direct(Direct::Points, control)? {
             return Ok(None);
         }
-        // Along each axis the boundary may lie that far from the mesh.
-        let radius = length(facets.mesh.displacement());
+        let radius = facets.mesh.radius();
         let mut boundary = Boundary { facets, radius, parts: Vec::new(), discs: None };
         boundary.parts = boundary.seen(control)?.one_of_each_part()?;
         boundary.discs = Some(boundary.seen(control)?.make_discs()?);
@@ -181,8 +180,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
 
     /// How far the second boundary may lie beside its moved triangles.
     fn stretched(&self, other: &Boundary) -> f64 {
-        let displacement = other.facets.mesh.displacement();
-        self.placement.map_or(other.radius, |placement| length(placement.stretched(displacement)))
+        self.placement.map_or(other.radius, |placement| placement.lengthened(other.radius))
     }
 
     fn points(&self, near: &NearTriangles) -> [[f64; 3]; 2] {
@@ -255,7 +253,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
             }))?;
             // An inverse is off by less than 2^-50 of its entries, and the image of a point by as much.
             let rounding = length(most * (8.0 * f64::EPSILON));
-            let radius = length(map.stretched(boundary.facets.mesh.displacement()));
+            let radius = map.lengthened(boundary.radius);
             Ok(Probes { points, off: (rounding + radius) * (1.0 + 1e-9) })
         };
         Ok(Some([moved(&back, own)?, moved(placement, other)?]))
@@ -273,7 +271,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         let mut answers = memory::filled(probes.points.len(), None)?;
         solid.worker()?.inside(&probes.points, &mut answers)?;
         let off = match self.placement.filter(|_| k == 1) {
-            Some(placement) => length(placement.stretched(probes.off)),
+            Some(placement) => placement.lengthened(probes.off),
             None => probes.off,
         };
         // The point that is meant and the one that is asked lie on the same side of a boundary that is further away.

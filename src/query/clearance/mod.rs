@@ -30,7 +30,8 @@ pub struct Clearance {
     /// if one of them is proven to be empty. The lower bound is 0 if `clipped`.
     pub distance: Interval,
     /// A point of the first solid and one of the second (model units) that are no further apart than the upper bound, but for the
-    /// rounding of their coordinates to doubles. Of solids that are proven to overlap with a `depth`, the same point twice. They are
+    /// rounding of their coordinates to doubles; of a mesh with a [`displacement`](crate::TriangleMesh::displacement) it is one of the
+    /// mesh. Of solids that are proven to overlap with a `depth`, the same point twice. They are
     /// known whenever the upper bound is finite.
     pub points: Option<[[f64; 3]; 2]>,
     /// For each of the points, a unit vector that leads out of the solid there, if the point lies next to a surface whose direction

@@ -2,7 +2,6 @@
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Frame};
 use crate::memory;
 use crate::mesh::{TriangleMesh, TriangleTree};
@@ -39,9 +38,7 @@ impl Surface {
     /// A surface that is known exactly.
     pub(super) fn of_facets(facets: BoundaryFacets) -> Result<Surface, Error> {
         let BoundaryFacets { mesh, chosen } = facets;
-        let displacement = mesh.displacement();
-        // Along each axis the boundary may lie that far from the mesh.
-        let radius = if displacement > 0.0 { (displacement * sqrt(3.0)).next_up().next_up() } else { 0.0 };
+        let radius = mesh.radius();
         let mut covers = memory::with_capacity(1)?;
         if chosen.is_empty() || chosen.contains(&true) {
             covers.push(Layer { mesh, chosen, radius });

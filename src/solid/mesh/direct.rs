@@ -487,11 +487,9 @@ impl Tracer<'_> {
         mut distance: Interval,
         is_inside: Option<bool>,
     ) -> NearestSurface {
-        let displacement = self.tree.displacement();
-        if displacement > 0.0 {
-            // Along each axis the surface may lie that far from the mesh.
-            let moved = Interval::exactly(3.0).root().times(Interval::exactly(displacement)).upper;
-            distance = distance.plus(Interval::between(-moved, moved)).not_negative();
+        let radius = self.tree.radius();
+        if radius > 0.0 {
+            distance = distance.plus(Interval::between(-radius, radius)).not_negative();
         }
         let is_inside = is_inside.filter(|_| distance.lower > 0.0);
         let surface = Some(near.triangle);

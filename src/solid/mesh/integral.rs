@@ -107,12 +107,12 @@ impl View<'_> {
     /// The moments of the solid, of which `senses` tells on which side of each triangle it lies.
     fn integral(&self, base: &Base, fill: FillRule, senses: impl Iterator<Item = i8>) -> Option<CellMoments> {
         let mut sums = Sums::default();
-        let displacement = self.displacement();
+        let radius = self.radius();
         for (&triangle, sense) in self.triangles.iter().zip(senses).filter(|(_, sense)| *sense != 0) {
             let seen = self.seen(triangle);
             sums.add(&seen, &base.at, f64::from(sense))?;
-            if displacement > 0.0 {
-                sums.error += tube(&seen, displacement);
+            if radius > 0.0 {
+                sums.error += tube(&seen, radius * (1.0 + 1e-9));
             }
         }
         let known = sums.finish(fill.encloses(base.winding));
@@ -121,10 +121,8 @@ impl View<'_> {
     }
 }
 
-/// The volume around what of a triangle may lie in the cell, within a distance of `displacement` along each axis.
-fn tube(seen: &Seen, displacement: f64) -> f64 {
-    // √3 along each axis, and what is rounded here.
-    let r = 1.732_050_808 * displacement;
+/// The volume within a distance of what of a triangle may lie in the cell, with what is rounded here.
+fn tube(seen: &Seen, r: f64) -> f64 {
     // A plane section of a cube of edge 1 has an area of at most √2, and a perimeter below 5.
     let extent = seen.extent() + 2.0 * r;
     (2.83 * extent * extent + (7.86 * extent + 4.19 * r) * r) * r

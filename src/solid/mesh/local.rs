@@ -54,6 +54,11 @@ impl View<'_> {
         self.placed.displacement * self.scale()
     }
 
+    /// How far it may lie from the mesh, straight on.
+    pub(super) fn radius(&self) -> f64 {
+        self.placed.radius * self.scale()
+    }
+
     /// The coordinates of the centre of a finest cell.
     pub(super) fn centre(&self, cell: [i32; 3]) -> Point {
         array(|axis| (2 * (cell[axis] - self.at[axis]) + 1 - self.size) as f64 / self.size as f64)

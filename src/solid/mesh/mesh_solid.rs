@@ -107,10 +107,15 @@ impl MeshSolid {
     /// were analysed before, else O(t), and n log n in the edges of the boundary.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if the mesh is empty, or, for [`FillRule::EvenOdd`], if an odd number of triangles
-    /// meet on an edge; [`Error::OutOfMemory`].
+    /// [`Error::Mesh`] if the mesh is empty, for [`FillRule::EvenOdd`] if an odd number of triangles meet on an edge, and if the mesh
+    /// has a [deviation](TriangleMesh::with_deviation) and [is not closed](TriangleMesh::check_closed) as the rule demands;
+    /// [`Error::OutOfMemory`].
     pub fn new(mesh: impl Into<Arc<TriangleMesh>>, fill: FillRule) -> Result<MeshSolid, Error> {
         let mesh = mesh.into();
+        if mesh.deviation() > 0.0 {
+            // (A rim that bends may wind around a point in any way.)
+            mesh.check_closed(fill)?;
+        }
         let loops = match fill {
             FillRule::EvenOdd => {
                 mesh.check_closed(fill)?;
@@ -339,7 +344,9 @@ impl Solid for MeshSolid {
             .numbers(&[self.mesh.displacement()])
             .numbers(vertices)
             .words(triangles.len() as u64, triangles.iter().map(|&index| index.into()));
-        Some(all.finish())
+        // (So fingerprints of meshes without one are as they always were.)
+        let deviation = self.mesh.deviation();
+        Some(if deviation > 0.0 { all.numbers(&[deviation]) } else { all }.finish())
     }
 }
 

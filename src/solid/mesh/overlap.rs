@@ -51,7 +51,11 @@ impl Overlap {
             0.0
         } else {
             let (error, magnitude) = accuracy(placed, corners);
-            16.0 * (error + placed.displacement) + 64.0 * f64::EPSILON * magnitude
+            16.0 * error + 64.0 * f64::EPSILON * (magnitude + placed.displacement)
+        };
+        // A surface beside the mesh lies in the sum of the triangle and a cube, which reaches so far along a direction.
+        let aside = |direction: &[f64]| {
+            placed.displacement * direction.iter().fold(0.0, |sum: f64, c| sum + c.abs()) * (1.0 + 1e-9)
         };
         // Relative to the product of their factors' sizes the conditions are off by a few dozen roundings; a
         // level's widening exceeds that of the level below by more than both errors.
@@ -71,7 +75,8 @@ impl Overlap {
             let area = if w == 1 { -normal[1] } else { normal[w] };
             let side = |nu: f64, nv: f64, least: f64| {
                 let offset = size * (nu.max(0.0) + nv.max(0.0)) - least;
-                Edge { u: nu, v: nv, offset, slack: wrong * extent }
+                let aside = if placed.displacement > 0.0 { aside(&[nu, nv]) } else { 0.0 };
+                Edge { u: nu, v: nv, offset, slack: wrong * extent + aside }
             };
             if area.abs() > edge_on {
                 let sign = if area > 0.0 { 1.0 } else { -1.0 };
@@ -99,7 +104,8 @@ impl Overlap {
             ahead: reach(1.0) - height,
             behind: reach(-1.0) - height,
             // Three factors go into the plane's condition, and three times the terms.
-            slack: 4.0 * wrong * extent * extent,
+            slack: 4.0 * wrong * extent * extent
+                + if placed.displacement > 0.0 { aside(&normal) } else { 0.0 },
             edges,
         }
     }

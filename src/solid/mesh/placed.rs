@@ -35,8 +35,11 @@ pub(super) struct Vertex {
 pub(super) struct Placed {
     pub(super) frame: Frame,
     pub(super) mesh: Arc<TriangleMesh>,
-    /// How far the surface may lie from the mesh, in finest cells: what was moved to close hair cracks.
+    /// How far the surface may lie from the mesh along an axis, in finest cells: what was moved to close hair cracks, and what
+    /// deviation was stated.
     pub(super) displacement: f64,
+    /// How far it may lie from the mesh, straight on.
+    pub(super) radius: f64,
     vertices: Vertices,
     /// The triangles that close the surface, numbered on from the mesh's.
     pub(super) caps: Vec<[u32; 3]>,
@@ -103,8 +106,9 @@ impl Placed {
     /// [`Error::OutOfMemory`].
     pub(super) fn new(mesh: Arc<TriangleMesh>, frame: &Frame) -> Result<Placed, Error> {
         let vertices = Vertices::new(&mesh, frame)?;
-        let displacement = mesh.displacement() / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON);
-        Ok(Placed { frame: *frame, mesh, displacement, vertices, caps: Vec::new() })
+        let [displacement, radius] = [mesh.displacement(), mesh.radius()]
+            .map(|distance| distance / frame.cell_size() * (1.0 + 4.0 * f64::EPSILON));
+        Ok(Placed { frame: *frame, mesh, displacement, radius, vertices, caps: Vec::new() })
     }
 
     /// Adds the caps.

@@ -105,14 +105,23 @@ impl Figures {
     }
 
     fn over(&self, surface: u32, centre: [f64; 3], half: f64) -> Option<Taylor> {
+        Some(self.near(surface, centre, half)?.0)
+    }
+
+    /// What is known of a surface's function in a cube, by how much the surface may differ from where that is 0, and whether the terms
+    /// are all that the function has.
+    pub(super) fn near(&self, surface: u32, centre: [f64; 3], half: f64) -> Option<(Taylor, f64, bool)> {
         let placed = &self.list[surface as usize].placed;
-        if matches!(placed, Placed::Slab(_)) {
-            let tangent = placed.tangent(centre, half)?;
-            let value = 0.5 * (tangent.low + tangent.high);
-            let f = Quadratic { value, gradient: tangent.gradient, squares: [0.0; 6], error: 0.0 };
-            return Some(Taylor { f, bend: 0.0, degree: 1 });
+        match placed {
+            Placed::Slab(_) => {
+                let tangent = placed.tangent(centre, half)?;
+                let (value, width) = (0.5 * (tangent.low + tangent.high), 0.5 * (tangent.high - tangent.low));
+                let f = Quadratic { value, gradient: tangent.gradient, squares: [0.0; 6], error: 0.0 };
+                Some((Taylor { f, bend: 0.0, degree: 1 }, width, true))
+            }
+            Placed::Plane(_) | Placed::Quadric(_) => Some((placed.taylor(centre, half)?, 0.0, true)),
+            _ => Some((placed.taylor(centre, half)?, 0.0, false)),
         }
-        placed.taylor(centre, half)
     }
 
     /// The value of a surface's function and its gradient at a point.
@@ -200,7 +209,7 @@ impl Figures {
 }
 
 /// The shortest vector whose products with up to three unit vectors are `values`.
-fn shortest(rows: &[[f64; 3]], values: &[f64; 3]) -> Option<[f64; 3]> {
+pub(super) fn shortest(rows: &[[f64; 3]], values: &[f64; 3]) -> Option<[f64; 3]> {
     let factors = match *rows {
         [a] => {
             let square = dot(a, a);

@@ -1,0 +1,722 @@
+//! How far the boundary is from the mesh: surface by surface, in boxes that lie along it.
+//!
+//! In a box in which the surface is a graph over a plane, let the triangles of the surface be seen along the plane's normal. Where they
+//! cover the plane, the graph lies above them, and values of the surface's function on them tell how far. Where the solid begins on the
+//! surface only beside others, all of these go up along one direction in the plane: a line along it that starts where the
+//! boundary is stays there. It comes to a part of the plane that is covered, and so it enters the triangles by a side. How far it has
+//! come by then follows from the values of the others' functions on that side.
+
+use super::super::figures::{Figures, dot, length, minus};
+use super::clip::clip;
+use super::local::{Local, Prism, magnitude};
+use super::truth::{Around, LEAST, cube};
+use crate::error::Error;
+use crate::lattice::{Bounds, Cell, axes};
+use crate::memory;
+use crate::mesh::{TriangleMesh, TriangleTree};
+use crate::solid::OpenSurfaces;
+use alloc::vec::Vec;
+
+/// Boxes that a surface may take in any cell, and in one at most.
+const BOXES: [u32; 2] = [64, 1024];
+
+/// Places in the plane are off by less.
+const ROUNDING: f64 = 1e-14;
+
+/// A mesh that is proven to be near a solid, in the coordinates of the universe.
+pub(super) struct Subject<'m> {
+    pub(super) vertices: &'m [[f64; 3]],
+    pub(super) triangles: &'m [[u32; 3]],
+    /// The surface of each triangle.
+    pub(super) surfaces: &'m [u32],
+    /// The triangles on the other side of the sides.
+    pub(super) mates: Vec<[u32; 3]>,
+    pub(super) tree: TriangleTree<'m>,
+    pub(super) origin: [f64; 3],
+    pub(super) edge: f64,
+}
+
+impl Subject<'_> {
+    pub(super) fn corners(&self, triangle: u32) -> [[f64; 3]; 3] {
+        self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
+    }
+
+    /// The triangles of a surface that meet a box, and perhaps some beside it.
+    fn meeting(&self, around: &Around, surface: u32, found: &mut Vec<u32>) -> Result<(), Error> {
+        found.clear();
+        let model = |p: [f64; 3]| axes(|k| self.origin[k] + p[k] * self.edge);
+        let bounds = Bounds { min: model(around.low), max: model(around.high) };
+        let mut failed = None;
+        self.tree.in_box(&bounds, &mut |triangle| {
+            if self.surfaces[triangle as usize] == surface
+                && let Err(error) = memory::push(found, triangle)
+            {
+                failed = Some(error);
+            }
+        });
+        found.sort_unstable();
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// More than the distance of the point that is furthest from the mesh in a box; infinite without a mesh.
+    pub(super) fn away(&self, around: &Around) -> f64 {
+        let centre = around.centre();
+        let point = axes(|k| self.origin[k] + centre[k] * self.edge);
+        let Some((_, away)) = self.tree.nearest_of(&point, |_| true) else { return f64::INFINITY };
+        away.upper / self.edge * (1.0 + ROUNDING) + length(minus(around.high, centre)) + ROUNDING
+    }
+}
+
+/// The triangles on the other side of the sides of each; `None` if a side has not exactly one.
+pub(super) fn mates(mesh: &TriangleMesh) -> Result<Option<Vec<[u32; 3]>>, Error> {
+    let triangles = mesh.triangles();
+    let mut sides = memory::with_capacity(3 * triangles.len())?;
+    for (number, triangle) in (0u32..).zip(triangles) {
+        for k in 0..3 {
+            let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
+            sides.push((from.min(to), from.max(to), from < to, number, k as u8));
+        }
+    }
+    sides.sort_unstable();
+    let mut mates = memory::filled(triangles.len(), [0; 3])?;
+    let mut pairs = sides.chunks_exact(2);
+    for pair in &mut pairs {
+        let [one, other] = [pair[0], pair[1]];
+        if (one.0, one.1) != (other.0, other.1) || one.2 == other.2 {
+            return Ok(None);
+        }
+        mates[one.3 as usize][usize::from(one.4)] = other.3;
+        mates[other.3 as usize][usize::from(other.4)] = one.3;
+    }
+    Ok(pairs.remainder().is_empty().then_some(mates))
+}
+
+/// What is found out about a box.
+enum Outcome {
+    /// No point of the boundary in it is further from the mesh than that.
+    Within(f64),
+    /// It is to be cut across a direction.
+    Cut([f64; 3]),
+}
+
+/// One surface in one cell.
+pub(super) struct Sheet<'s> {
+    pub(super) subject: &'s Subject<'s>,
+    pub(super) figures: &'s Figures,
+    pub(super) open: &'s OpenSurfaces,
+    /// The surface's place in the list.
+    place: usize,
+    /// Whether the solid is where the surface's function is positive. (Where it is on the other side, that is another sheet.)
+    is_above: bool,
+    pub(super) cell: Cell,
+    pub(super) tolerance: f64,
+    /// Triangles of the surface next to a box.
+    found: Vec<u32>,
+    boxes: u32,
+}
+
+/// Another surface beside which the solid begins on this one.
+#[derive(Clone, Copy)]
+struct Limit {
+    surface: u32,
+    bit: u8,
+    /// Whether the solid begins where its function is positive.
+    is_up: bool,
+    /// Its function with that sign, less so much of the surface's own that it is level along the normal.
+    function: Local,
+}
+
+impl<'s> Sheet<'s> {
+    pub(super) fn new(
+        subject: &'s Subject<'s>,
+        figures: &'s Figures,
+        open: &'s OpenSurfaces,
+        (place, is_above): (usize, bool),
+        cell: Cell,
+        tolerance: f64,
+    ) -> Sheet<'s> {
+        Sheet { subject, figures, open, place, is_above, cell, tolerance, found: Vec::new(), boxes: 0 }
+    }
+
+    fn surface(&self) -> u32 {
+        self.open.indices()[self.place]
+    }
+
+    /// Whether the solid begins on the surface where the others have signs.
+    fn is_active(&self, signs: u8) -> bool {
+        let bit = 1 << self.place;
+        [self.open.inside(signs | bit), self.open.inside(signs & !bit)] == [self.is_above, !self.is_above]
+    }
+
+    /// How far the boundary on the surface is from the mesh at most; `None` if that is not found out. What boxes are taken beyond those of
+    /// any cell is taken off `more`.
+    pub(super) fn away(&mut self, more: &mut u32) -> Result<Option<f64>, Error> {
+        let all = (1u8 << self.open.indices().len()) - 1;
+        if (0..=all).all(|signs| !self.is_active(signs)) {
+            return Ok(Some(0.0));
+        }
+        let cube = cube(self.cell);
+        let (centre, half) = (cube.centre(), cube.half());
+        let Some(local) = Local::new(self.figures, self.surface(), centre, half) else { return Ok(None) };
+        let whole = Prism { centre, axes: UNITS, half: [half; 3] };
+        let [low, high] = local.within(&whole);
+        if low > 0.0 || high < 0.0 {
+            return Ok(Some(0.0));
+        }
+        let most = BOXES[1].min(BOXES[0] + *more);
+        self.boxes = most;
+        let found = self.box_of(&whole)?;
+        *more -= (most - self.boxes).saturating_sub(BOXES[0]);
+        Ok(found)
+    }
+
+    /// The part of the surface in a box, in which another box is laid along it.
+    fn box_of(&mut self, old: &Prism) -> Result<Option<f64>, Error> {
+        if self.boxes == 0 {
+            return Ok(None);
+        }
+        self.boxes -= 1;
+        let start = old.centre;
+        let reach = old.reach().iter().fold(LEAST, |most: f64, &c| most.max(c));
+        let centre = match self.figures.onto(&[self.surface()], None, start) {
+            Some(point) if length(minus(point, start)) <= 2.0 * reach => point,
+            _ => start,
+        };
+        let (_, gradient) = self.figures.about(self.surface(), centre);
+        let steep = length(gradient);
+        let normal = gradient.map(|c| c / steep);
+        if !normal.iter().all(|c| c.is_finite()) {
+            return Ok(None);
+        }
+        let axes3 = frame(normal, old.axes[0]);
+        let mut prism = Prism { centre: start, axes: axes3, half: [0.0; 3] };
+        // What the old box and the cell have in common.
+        let cube = cube(self.cell);
+        let from_cube = minus(cube.centre(), start);
+        for i in 0..3 {
+            let size: f64 = axes3[i].iter().map(|c| c.abs() * cube.half()).sum();
+            let (old, middle) = (old.along(axes3[i]), dot(from_cube, axes3[i]));
+            let low = (-old).max(middle - size) - ROUNDING;
+            let high = old.min(middle + size) + ROUNDING;
+            if low > high {
+                return Ok(Some(0.0));
+            }
+            prism.half[i] = 0.5 * (high - low);
+            prism.centre = axes(|k| prism.centre[k] + 0.5 * (low + high) * axes3[i][k]);
+        }
+        let outcome = self.look(&mut prism)?;
+        let wide = prism.half[0].max(prism.half[1]);
+        match outcome {
+            Outcome::Within(most) if most <= self.tolerance => Ok(Some(most)),
+            outcome => {
+                if wide <= 0.125 * self.tolerance {
+                    // Nothing but its extent is known of the box.
+                    let most = self.subject.away(&around(&prism));
+                    return Ok(Some(if let Outcome::Within(known) = outcome {
+                        known.min(most)
+                    } else {
+                        most
+                    }));
+                }
+                let reach = match outcome {
+                    Outcome::Cut(direction) if direction != [0.0; 3] => axes(|k| {
+                        f64::from(u8::from(k < 2)) * dot(direction, prism.axes[k]).abs() * prism.half[k]
+                    }),
+                    _ => prism.half,
+                };
+                let longest =
+                    |sizes: [f64; 3]| (0..3).fold(0, |best, k| if sizes[k] > sizes[best] { k } else { best });
+                let across = longest(reach);
+                let across = if reach[across] < 0.01 * wide { longest(prism.half) } else { across };
+                let mut most: f64 = 0.0;
+                for sign in [-0.5, 0.5] {
+                    let mut part = prism;
+                    part.half[across] *= 0.5;
+                    part.centre =
+                        axes(|k| part.centre[k] + sign * prism.half[across] * prism.axes[across][k]);
+                    let Some(own) = self.box_of(&part)? else { return Ok(None) };
+                    most = most.max(own);
+                }
+                Ok(Some(most))
+            }
+        }
+    }
+
+    /// Looks at a box, whose height becomes that of the surface in it.
+    fn look(&mut self, prism: &mut Prism) -> Result<Outcome, Error> {
+        let anywhere = Outcome::Cut([0.0; 3]);
+        let normal = prism.axes[2];
+        let Some(local) = Local::new(self.figures, self.surface(), prism.centre, farthest(prism)) else {
+            return Ok(anywhere);
+        };
+        let [least, most] = local.within(prism);
+        if least > 0.0 || most < 0.0 {
+            return Ok(Outcome::Within(0.0));
+        }
+        // The surface has one height above each place.
+        if local.slopes(normal, prism)[0] <= 0.0 {
+            return Ok(anywhere);
+        }
+        // What there is of it lies about as high as above the middle.
+        let mut low = *prism;
+        if View::new(self.figures, self.surface(), &mut low, self.tolerance).is_none() {
+            return Ok(anywhere);
+        }
+        let up = dot(minus(low.centre, prism.centre), normal);
+        let (bottom, top) = ((up - low.half[2]).max(-prism.half[2]), (up + low.half[2]).min(prism.half[2]));
+        if bottom > top {
+            return Ok(Outcome::Within(0.0));
+        }
+        prism.centre = axes(|k| prism.centre[k] + 0.5 * (bottom + top) * normal[k]);
+        prism.half[2] = 0.5 * (top - bottom) + ROUNDING;
+        if self.in_cell(prism)?.is_empty() {
+            return Ok(Outcome::Within(0.0));
+        }
+        // The signs of the other surfaces.
+        let reach = farthest(prism);
+        let Some(local) = Local::new(self.figures, self.surface(), prism.centre, reach) else {
+            return Ok(anywhere);
+        };
+        let (mut signs, mut unknown) = (0u8, 0u8);
+        let mut limits: Vec<Limit> = Vec::new();
+        for (place, &other) in
+            self.open.indices().iter().enumerate().filter(|&(place, _)| place != self.place)
+        {
+            let Some(function) = Local::new(self.figures, other, prism.centre, reach) else {
+                return Ok(anywhere);
+            };
+            let along = leveled(&function, 1.0, &local, normal);
+            let ([low, high], [level_low, level_high]) = (function.within(prism), along.within(prism));
+            let bit = 1 << place;
+            if low.max(level_low) > 0.0 {
+                signs |= bit;
+            } else if high.min(level_high) >= 0.0 {
+                unknown |= bit;
+                memory::push(&mut limits, Limit { surface: other, bit, is_up: true, function: along })?;
+            }
+        }
+        if !subsets(unknown).any(|subset| self.is_active(signs | subset)) {
+            return Ok(Outcome::Within(0.0));
+        }
+        // Those beside which the solid begins, or ends.
+        let mut count = 0;
+        for k in 0..limits.len() {
+            let mut limit = limits[k];
+            let changes = |before: bool| {
+                subsets(unknown & !limit.bit).any(|subset| {
+                    let [without, with] = [0, limit.bit].map(|bit| self.is_active(signs | subset | bit));
+                    without == before && with != before
+                })
+            };
+            match (changes(false), changes(true)) {
+                (true, true) => return Ok(Outcome::Cut(limit.function.gradient())),
+                (false, false) => continue,
+                (true, false) => {}
+                (false, true) => {
+                    limit.is_up = false;
+                    limit.function = limit.function.combined(-1.0, 0.0, &limit.function);
+                }
+            }
+            limits[count] = limit;
+            count += 1;
+        }
+        limits.truncate(count);
+        self.cover(prism, signs, &limits)
+    }
+
+    /// Whether the triangles of the surface cover it in a box, up to what the limits leave away.
+    fn cover(&mut self, prism: &Prism, signs: u8, limits: &[Limit]) -> Result<Outcome, Error> {
+        let normal = prism.axes[2];
+        let cut = Outcome::Cut(limits.first().map_or([0.0; 3], |limit| limit.function.gradient()));
+        // The direction along which all limits go up, and how far one goes.
+        let mut up = [0.0; 3];
+        for limit in limits {
+            let flat = level(limit.function.gradient(), normal);
+            let size = length(flat);
+            up = axes(|k| up[k] + flat[k] / size);
+        }
+        let mut ahead = 0.0;
+        if !limits.is_empty() {
+            let size = length(up);
+            if size.is_nan() || size < 0.1 {
+                return Ok(cut);
+            }
+            up = up.map(|c| c / size);
+            let wide: f64 = (0..2).map(|k| prism.half[k] * dot(prism.axes[k], up).abs()).sum();
+            ahead = 2.2 * wide + 4.0 * self.tolerance;
+        }
+        let mut long = *prism;
+        long.centre = axes(|k| prism.centre[k] + 0.5 * ahead * up[k]);
+        for k in 0..2 {
+            long.half[k] += 0.5 * ahead * dot(up, prism.axes[k]).abs();
+        }
+        let Some(mut view) = View::new(self.figures, self.surface(), &mut long, self.tolerance) else {
+            return Ok(cut);
+        };
+        let tall = Prism { half: [long.half[0], long.half[1], view.high], ..long };
+        let mut kept = memory::with_capacity(limits.len())?;
+        for limit in limits {
+            let Some(function) = Local::new(self.figures, limit.surface, long.centre, view.reach) else {
+                return Ok(cut);
+            };
+            let sign = if limit.is_up { 1.0 } else { -1.0 };
+            let function = leveled(&function, sign, &view.local, normal);
+            let askew = magnitude(function.slopes(normal, &tall)) / view.slope;
+            let slope = function.slopes(up, &tall)[0] - askew * magnitude(view.local.slopes(up, &tall));
+            if slope.is_nan() || slope <= 0.0 {
+                return Ok(Outcome::Cut(up));
+            }
+            kept.push(Kept { limit: Limit { function, ..*limit }, slope, askew });
+        }
+        let own = [dot(up, prism.axes[0]), dot(up, prism.axes[1])];
+        // Where lines come to: the box, moved.
+        let moved = axes(|k| prism.centre[k] + ahead * up[k]);
+        let (first, last) = (view.flat(prism.centre, &long), view.flat(moved, &long));
+        let half = |prism: &Prism| [prism.half[0], prism.half[1]];
+        view.boxes = [[[0.0; 2], half(&long)], [first, half(prism)], [last, half(prism)]];
+        if limits.is_empty() {
+            // A place in the cell.
+            let part = self.in_cell(&long)?;
+            if part.is_empty() {
+                return Ok(Outcome::Within(0.0));
+            }
+            let share = 1.0 / part.len() as f64;
+            view.covered = view.flat(axes(|k| part.iter().map(|p| p[k] * share).sum()), &long);
+        } else {
+            view.covered = last;
+        }
+        self.see(&view, &long, own, &kept, signs)
+    }
+
+    /// The triangles seen along the normal.
+    fn see(
+        &mut self,
+        view: &View,
+        long: &Prism,
+        up: [f64; 2],
+        kept: &[Kept],
+        signs: u8,
+    ) -> Result<Outcome, Error> {
+        let mut found = core::mem::take(&mut self.found);
+        let near = around(long).grown(2.0 * self.tolerance);
+        self.subject.meeting(&near, self.surface(), &mut found)?;
+        self.found = found;
+        let direction = axes(|k| long.axes[0][k] * up[0] + long.axes[1][k] * up[1]);
+        let Some(high) = self.above(view, long)? else { return Ok(Outcome::Cut(direction)) };
+        let Some(most) = self.beside(view, long, up, kept, signs)? else {
+            return Ok(Outcome::Cut(direction));
+        };
+        Ok(Outcome::Within(high.max(most) + ROUNDING))
+    }
+
+    /// The area of a triangle seen along the normal, which is positive if the triangle faces the way that the boundary does there, and 0
+    /// if it is so small that it covers nothing.
+    fn area(&self, places: &[[f64; 3]; 3]) -> f64 {
+        let flat = places.map(|[u, v, _]| [u, v]);
+        let area = turn(flat[0], flat[1], flat[2]);
+        let size = length(minus(places[1], places[0])).max(length(minus(places[2], places[0])));
+        match area.abs() > ROUNDING * size * size {
+            true if self.is_above => -area,
+            true => area,
+            false => 0.0,
+        }
+    }
+
+    /// How far the surface is from the triangles above the box at most; `None` if they do not cover the place that lines lead to.
+    fn above(&self, view: &View, long: &Prism) -> Result<Option<f64>, Error> {
+        let first = view.boxes[1];
+        let (mut most, mut is_covered) = (0.0f64, false);
+        let mut part = Vec::new();
+        for &triangle in &self.found {
+            let places = self.subject.corners(triangle).map(|p| long.place(p));
+            let area = self.area(&places);
+            if area < 0.0 {
+                continue;
+            }
+            is_covered |= area > 0.0 && holds(places.map(|[u, v, _]| [u, v]), view.covered);
+            part.clear();
+            part.try_reserve(3)?;
+            part.extend(places);
+            clip(&mut part, corner(first, -1.0), corner(first, 1.0))?;
+            if part.len() >= 3 {
+                let Some(high) = view.height_over(long, &part)? else { return Ok(None) };
+                most = most.max(high);
+            }
+        }
+        Ok(is_covered.then_some(most))
+    }
+
+    /// How far the surface goes on at most beside the sides at which its triangles end; `None` if lines may leave the triangles there,
+    /// or nothing is known. `up` is the direction of lines.
+    fn beside(
+        &self,
+        view: &View,
+        long: &Prism,
+        up: [f64; 2],
+        kept: &[Kept],
+        signs: u8,
+    ) -> Result<Option<f64>, Error> {
+        let [whole, _, last] = view.boxes;
+        let (subject, surface) = (self.subject, self.surface());
+        let mut most = 0.0f64;
+        for &triangle in &self.found {
+            let places = subject.corners(triangle).map(|p| long.place(p));
+            if self.area(&places) < 0.0 {
+                continue;
+            }
+            for (k, &mate) in subject.mates[triangle as usize].iter().enumerate() {
+                let ends = [places[k], places[(k + 1) % 3]];
+                let Some(side) = within(ends, whole) else { continue };
+                let is_same = subject.surfaces[mate as usize] == surface
+                    && self.area(&subject.corners(mate).map(|p| long.place(p))) >= 0.0;
+                if is_same && self.found.binary_search(&mate).is_ok() {
+                    continue;
+                }
+                // Without limits, what lies outside of the cell does not matter: all that lies inside is convex, and is covered at one
+                // place.
+                if kept.is_empty() && !self.is_in_cell(long, &side)? {
+                    continue;
+                }
+                if is_same || within(ends, last).is_some() {
+                    return Ok(None);
+                }
+                let way = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
+                // A line comes from where the triangle is not: it faces up or down.
+                let enters = (way[0] * up[1] - way[1] * up[0]) * if self.is_above { -1.0 } else { 1.0 };
+                if enters <= ROUNDING * way[0].hypot(way[1]) {
+                    return Ok(None);
+                }
+                let Some(high) = view.height_over(long, &side)? else { return Ok(None) };
+                let ahead = self.ahead(view, long, &side, high, kept, signs);
+                most = most.max(ahead.hypot(high + view.steep * ahead));
+            }
+        }
+        Ok(Some(most))
+    }
+
+    /// The part of the plane through the middle of a box above or below which points of the box may lie in the cell: a convex polygon.
+    fn in_cell(&self, prism: &Prism) -> Result<Vec<[f64; 3]>, Error> {
+        let corner = |u: f64, v: f64| prism.point([u * prism.half[0], v * prism.half[1], 0.0]);
+        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let mut part = memory::copied(&corners)?;
+        self.clip_to_cell(&mut part, prism)?;
+        Ok(part)
+    }
+
+    fn clip_to_cell(&self, part: &mut Vec<[f64; 3]>, prism: &Prism) -> Result<(), Error> {
+        let cube = cube(self.cell).grown(prism.half[2] + ROUNDING);
+        clip(part, cube.low, cube.high)
+    }
+
+    /// Whether points of a box above or below a side may lie in the cell.
+    fn is_in_cell(&self, long: &Prism, side: &[[f64; 3]; 2]) -> Result<bool, Error> {
+        let mut part = memory::copied(&side.map(|[u, v, _]| long.point([u, v, 0.0])))?;
+        self.clip_to_cell(&mut part, long)?;
+        Ok(!part.is_empty())
+    }
+
+    /// How far before a side the boundary may begin, of whose limits none is further than on the side.
+    fn ahead(
+        &self,
+        view: &View,
+        long: &Prism,
+        side: &[[f64; 3]; 2],
+        high: f64,
+        kept: &[Kept],
+        signs: u8,
+    ) -> f64 {
+        let ends = side.map(|place| long.point(place));
+        let reach = |kept: &Kept| {
+            let [_, most] = kept.limit.function.over(&ends);
+            (most + kept.limit.function.error() + high * kept.askew * view.slope) / kept.slope
+        };
+        // (The function of a limit is known up to its error in two places.)
+        let mut best = f64::INFINITY;
+        for ahead in kept.iter().map(reach).map(|far| far.max(0.0)).chain([0.0]) {
+            let mut own = signs;
+            for kept in kept {
+                let is_on = reach(kept) > ahead;
+                if is_on == kept.limit.is_up {
+                    own |= kept.limit.bit;
+                }
+            }
+            if !self.is_active(own) {
+                best = best.min(ahead);
+            }
+        }
+        best
+    }
+}
+
+/// The directions x, y and z.
+pub(super) const UNITS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// A limit on its way up.
+struct Kept {
+    limit: Limit,
+    /// What it goes up at least along the surface.
+    slope: f64,
+    /// What it changes along the normal at most, as a part of what the surface's own function does.
+    askew: f64,
+}
+
+/// A box as one sees it along the normal of the surface.
+struct View {
+    local: Local,
+    /// The least slope of the surface's function along the normal.
+    slope: f64,
+    /// The greatest of the surface over the plane.
+    steep: f64,
+    /// Rectangles in the plane, as centres and half edges: all of it, the box itself, and where lines lead from there.
+    boxes: [[[f64; 2]; 2]; 3],
+    /// A place that triangles must cover.
+    covered: [f64; 2],
+    /// How far from the plane the slopes hold.
+    high: f64,
+    reach: f64,
+}
+
+impl View {
+    /// The box is brought to the surface, and becomes as high as the surface is there.
+    fn new(figures: &Figures, surface: u32, prism: &mut Prism, tolerance: f64) -> Option<View> {
+        let normal = prism.axes[2];
+        prism.half[2] = prism.half[2].min(prism.half[0].max(prism.half[1]));
+        let reach = 1.25 * farthest(prism) + 2.0 * tolerance;
+        let (value, gradient) = figures.about(surface, prism.centre);
+        let up = value / dot(gradient, normal);
+        if !up.is_finite() || up.abs() > reach {
+            return None;
+        }
+        prism.centre = axes(|k| prism.centre[k] - up * normal[k]);
+        let local = Local::new(figures, surface, prism.centre, reach)?;
+        prism.half[2] = height(&local, prism)?;
+        // Triangles may lie above or below what the surface takes.
+        let mut tall = *prism;
+        tall.half[2] = tall.half[2].max(2.0 * tolerance);
+        let slope = local.slopes(normal, &tall)[0];
+        let sideways = [0, 1].map(|k| magnitude(local.slopes(prism.axes[k], &tall)));
+        let steep = sideways[0].hypot(sideways[1]) / slope;
+        (slope > 0.0 && prism.half[2] <= reach).then_some(View {
+            local,
+            slope,
+            steep,
+            boxes: [[[0.0; 2]; 2]; 3],
+            covered: [0.0; 2],
+            high: tall.half[2],
+            reach,
+        })
+    }
+
+    fn flat(&self, point: [f64; 3], prism: &Prism) -> [f64; 2] {
+        let [u, v, _] = prism.place(point);
+        [u, v]
+    }
+
+    /// How far the surface is from a polygon along the normal at most; `None` if that is not known.
+    fn height_over(&self, prism: &Prism, places: &[[f64; 3]]) -> Result<Option<f64>, Error> {
+        let points = memory::collected(places.iter().map(|&place| prism.point(place)))?;
+        if !points.iter().all(|&p| length(minus(p, prism.centre)) <= self.reach) {
+            return Ok(None);
+        }
+        let high = magnitude(self.local.over(&points)) / self.slope;
+        // (The line from the polygon to the surface must lie where the slope is known.)
+        let reaches = |place: &[f64; 3]| place[2].abs() <= self.high;
+        Ok(places.iter().all(reaches).then_some(high))
+    }
+}
+
+/// How high a surface may be above and below the plane through the centre of a box; `None` if that is not known.
+fn height(local: &Local, prism: &Prism) -> Option<f64> {
+    let normal = prism.axes[2];
+    let corner = |u: f64, v: f64| prism.point([u * prism.half[0], v * prism.half[1], 0.0]);
+    let plane = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    let most = magnitude(local.over(&plane));
+    // Twice as high as it seems must be enough.
+    let mut tall = *prism;
+    tall.half[2] = 2.0 * most / dot(local.gradient(), normal).abs();
+    let high = most / local.slopes(normal, &tall)[0];
+    (0.0 <= high && high <= tall.half[2]).then_some(high)
+}
+
+/// A function times a sign, less so much of another one that it is level along a direction.
+fn leveled(function: &Local, sign: f64, other: &Local, normal: [f64; 3]) -> Local {
+    let factor = sign * dot(function.gradient(), normal) / dot(other.gradient(), normal);
+    function.combined(sign, factor, other)
+}
+
+/// The part of a vector across a direction of length 1.
+fn level(vector: [f64; 3], normal: [f64; 3]) -> [f64; 3] {
+    let along = dot(vector, normal);
+    axes(|k| vector[k] - along * normal[k])
+}
+
+/// All sets of bits of a mask.
+fn subsets(mask: u8) -> impl Iterator<Item = u8> {
+    let mut next = Some(mask);
+    core::iter::from_fn(move || {
+        let own = next?;
+        next = (own != 0).then(|| (own - 1) & mask);
+        Some(own)
+    })
+}
+
+/// Half the edge of the cube along x, y and z around a box.
+fn farthest(prism: &Prism) -> f64 {
+    prism.reach().iter().fold(LEAST, |most: f64, &c| most.max(c))
+}
+
+/// The box along x, y and z around another one.
+fn around(prism: &Prism) -> Around {
+    let reach = prism.reach();
+    Around { low: axes(|k| prism.centre[k] - reach[k]), high: axes(|k| prism.centre[k] + reach[k]) }
+}
+
+/// Three directions at right angles, of which the last is given, and the first is about another one.
+fn frame(normal: [f64; 3], about: [f64; 3]) -> [[f64; 3]; 3] {
+    let least = (0..3).fold(0, |best, k| if normal[k].abs() < normal[best].abs() { k } else { best });
+    let mut first = level(about, normal);
+    if length(first) < 0.5 {
+        first = level(UNITS[least], normal);
+    }
+    let size = length(first);
+    let first = first.map(|c| c / size);
+    let second =
+        axes(|k| normal[(k + 1) % 3] * first[(k + 2) % 3] - normal[(k + 2) % 3] * first[(k + 1) % 3]);
+    [first, second, normal]
+}
+
+fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Whether a triangle of either direction holds a point.
+fn holds([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> bool {
+    let turns = [turn(a, b, point), turn(b, c, point), turn(c, a, point)];
+    turns.iter().all(|&turn| turn >= 0.0) || turns.iter().all(|&turn| turn <= 0.0)
+}
+
+/// A corner of a rectangle, and all that lies above and below.
+fn corner([centre, half]: [[f64; 2]; 2], sign: f64) -> [f64; 3] {
+    let [u, v] = [0, 1].map(|k| centre[k] + sign * (half[k] + ROUNDING));
+    [u, v, sign * f64::MAX]
+}
+
+/// The part of a side above a rectangle; `None` if there is none.
+fn within(ends: [[f64; 3]; 2], [centre, half]: [[f64; 2]; 2]) -> Option<[[f64; 3]; 2]> {
+    let way: [f64; 3] = axes(|k| ends[1][k] - ends[0][k]);
+    let (mut first, mut last) = (0.0f64, 1.0f64);
+    for k in 0..2 {
+        let wide = half[k] + ROUNDING;
+        let away = ends[0][k] - centre[k];
+        if way[k] == 0.0 {
+            if away.abs() > wide {
+                return None;
+            }
+            continue;
+        }
+        let (a, b) = ((-wide - away) / way[k], (wide - away) / way[k]);
+        first = first.max(a.min(b));
+        last = last.min(a.max(b));
+    }
+    (first <= last).then(|| [first, last].map(|t| axes(|k| ends[0][k] + t * way[k])))
+}

@@ -1,0 +1,101 @@
+//! The vertex that stands for the surface in a cell: where its planes meet.
+
+use super::triangles::{Place, dot};
+use crate::lattice::axes;
+use crate::surface::qef::{Qef, eigen};
+
+/// Eigenvalues below this part of the greatest one say nothing, each plane counted once.
+const LEAST: f64 = 0.01;
+
+/// Planes are one if their normals, and their offsets in edges of the cell, differ by no more.
+const SAME: f64 = 1e-7;
+
+/// Distinct planes that are looked at.
+const MOST: usize = 48;
+
+/// A vertex.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    /// In unit coordinates.
+    pub(super) at: [f64; 3],
+    /// In how many directions the planes tell where it lies.
+    pub(super) rank: usize,
+}
+
+/// A box in unit coordinates: the lower corner, and the edge.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Space {
+    pub(super) low: [f64; 3],
+    pub(super) edge: f64,
+}
+
+impl Space {
+    fn inward(&self, at: [f64; 3]) -> [f64; 3] {
+        axes(|k| (at[k] - self.low[k]) / self.edge)
+    }
+
+    fn outward(&self, own: [f64; 3]) -> [f64; 3] {
+        axes(|k| self.low[k] + own[k] * self.edge)
+    }
+}
+
+/// The vertex that is no further than `allowed` from all planes, and no further than `slack` edges out of its cell. Of several ones, that
+/// which most planes have a say in.
+pub(super) fn fit(places: &[Place], space: &Space, allowed: f64, slack: f64) -> Option<Fit> {
+    let mut planes = [([0.0; 3], 0.0); MOST];
+    let mut count = 0;
+    let mut sum = [0.0; 3];
+    for place in places {
+        let own = space.inward(place.at);
+        sum = axes(|k| sum[k] + own[k]);
+        let plane = (place.normal, dot(place.normal, own));
+        let is_same = |known: &([f64; 3], f64)| {
+            (known.1 - plane.1).abs() <= SAME && (0..3).all(|k| (known.0[k] - plane.0[k]).abs() <= SAME)
+        };
+        if place.normal != [0.0; 3] && !planes[..count].iter().any(is_same) {
+            *planes.get_mut(count)? = plane;
+            count += 1;
+        }
+    }
+    let planes = &planes[..count];
+    if planes.is_empty() {
+        return None;
+    }
+    let mean = sum.map(|c| c / places.len() as f64);
+    let mut matrix = [0.0; 6];
+    let mut rest = [0.0; 3];
+    for &(n, offset) in planes {
+        let products = [n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]];
+        matrix.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+        let off = offset - dot(n, mean);
+        rest = axes(|k| rest[k] + off * n[k]);
+    }
+    let (values, vectors) = eigen(matrix);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    let greatest = values[order[0]];
+    let full = order.iter().filter(|&&k| values[k] >= LEAST * greatest).count();
+    let allowed = allowed / space.edge;
+    for rank in (1..=full).rev() {
+        let mut own = mean;
+        for &k in &order[..rank] {
+            let along = dot(vectors[k], rest) / values[k];
+            own = axes(|axis| own[axis] + along * vectors[k][axis]);
+        }
+        let off = planes.iter().fold(0.0, |most: f64, (n, offset)| most.max((dot(*n, own) - offset).abs()));
+        if off <= allowed && own.iter().all(|c| (-slack..=1.0 + slack).contains(c)) {
+            return Some(Fit { at: space.outward(own), rank });
+        }
+    }
+    None
+}
+
+/// The vertex in a cell that fits its planes best, however well that is.
+pub(super) fn best(places: impl Iterator<Item = Place>, space: &Space) -> [f64; 3] {
+    let mut qef = Qef::default();
+    for place in places {
+        let own = space.inward(place.at).map(|c| c.clamp(0.0, 1.0));
+        qef.add(own, Some(place.normal).filter(|normal| *normal != [0.0; 3]));
+    }
+    space.outward(qef.solve().at)
+}

@@ -1,0 +1,299 @@
+//! Which pieces of the surface there are in each cell.
+//!
+//! Corners of cells lie inside or outside. Minimal edges between an inside corner and an outside one are crossed by the surface.
+//! In a minimal face crossings are joined in pairs by arcs, which both cells beside the face see. Arcs form loops around cells,
+//! and each loop bounds one sheet, a disc. So crossings, arcs and sheets form a closed surface, whatever the signs are: each arc
+//! lies between two sheets, and around each crossing there are three or four sheets.
+
+use super::cells::{Cells, Kind, OUTSIDE};
+use super::walk::{Edge, Face, Visitor, walk};
+use crate::error::{Error, MeshError};
+use crate::memory;
+use alloc::vec::Vec;
+use hashbrown::HashMap;
+
+/// No arc.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Tells which points lie inside. Their coordinates are counted in halves of finest cells.
+pub(super) trait Inside {
+    fn is_inside(&mut self, at: [u32; 3]) -> Result<bool, Error>;
+}
+
+/// A minimal edge that the surface crosses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crossing {
+    pub(super) axis: u8,
+    pub(super) starts_inside: bool,
+    pub(super) length: u32,
+    /// The lower end, in finest cells.
+    pub(super) at: [u32; 3],
+    /// The leaves around it, counter-clockwise seen from above.
+    pub(super) around: [u32; 4],
+    /// The arc between each and the next of them; [`NONE`] if they are one.
+    pub(super) arcs: [u32; 4],
+}
+
+impl Crossing {
+    /// Crossings in the order in which those on one line follow each other.
+    fn key(&self) -> (u8, u32, u32, u32) {
+        let axis = usize::from(self.axis);
+        (self.axis, self.at[(axis + 1) % 3], self.at[(axis + 2) % 3], self.at[axis])
+    }
+
+    /// The first place of a leaf around it.
+    fn place(&self, leaf: u32) -> Option<usize> {
+        self.around.iter().position(|&around| around == leaf)
+    }
+}
+
+/// What joins two crossings in a face.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arc {
+    pub(super) crossings: [u32; 2],
+    /// The leaves beside it.
+    pub(super) leaves: [u32; 2],
+    pub(super) axis: u8,
+}
+
+/// A disc in a cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sheet {
+    pub(super) leaf: u32,
+    /// How many crossings there are around it.
+    pub(super) crossings: u32,
+}
+
+pub(super) struct Sheets {
+    pub(super) crossings: Vec<Crossing>,
+    pub(super) arcs: Vec<Arc>,
+    pub(super) sheets: Vec<Sheet>,
+    /// For each crossing the sheets in the cells around it.
+    pub(super) around: Vec<[u32; 4]>,
+    /// How many sheets each leaf has.
+    pub(super) counts: Vec<u32>,
+}
+
+/// What decided cells say of a corner: some of these.
+const EMPTY: u8 = 1;
+const FULL: u8 = 2;
+/// A corner that was asked for.
+const ASKED: u8 = 4;
+const INSIDE: u8 = 8;
+
+/// Finds out what cells say of corners.
+struct Touched<'c> {
+    cells: &'c Cells,
+    states: HashMap<[u32; 3], u8>,
+}
+
+impl Visitor for Touched<'_> {
+    fn face(&mut self, _: &Face) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn edge(&mut self, edge: &Edge) -> Result<(), Error> {
+        let mut state = 0;
+        for leaf in edge.around {
+            state |= match self.cells.leaves.get(leaf as usize).map(|leaf| leaf.kind) {
+                None | Some(Kind::Empty) => EMPTY,
+                Some(Kind::Full) => FULL,
+                Some(Kind::Open) => 0,
+            };
+        }
+        let mut end = edge.at;
+        end[edge.axis] += edge.length;
+        for corner in [edge.at, end] {
+            self.states.try_reserve(1)?;
+            *self.states.entry(corner).or_insert(0) |= state;
+        }
+        Ok(())
+    }
+}
+
+/// Finds the edges that are crossed.
+struct Crossed<'i, I> {
+    states: HashMap<[u32; 3], u8>,
+    inside: &'i mut I,
+    crossings: Vec<Crossing>,
+}
+
+impl<I: Inside> Crossed<'_, I> {
+    fn is_inside(&mut self, corner: [u32; 3]) -> Result<bool, Error> {
+        let Some(state) = self.states.get_mut(&corner) else { return Ok(false) };
+        if *state & ASKED == 0 {
+            // (Where an empty cell and a full one touch, the surface lies in their common corners.)
+            let is_inside = match *state & (EMPTY | FULL) {
+                0 => self.inside.is_inside(corner.map(|c| 2 * c))?,
+                FULL => true,
+                _ => false,
+            };
+            *state |= ASKED | if is_inside { INSIDE } else { 0 };
+        }
+        Ok(*state & INSIDE != 0)
+    }
+}
+
+impl<I: Inside> Visitor for Crossed<'_, I> {
+    fn face(&mut self, _: &Face) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn edge(&mut self, edge: &Edge) -> Result<(), Error> {
+        let mut end = edge.at;
+        end[edge.axis] += edge.length;
+        let starts_inside = self.is_inside(edge.at)?;
+        if starts_inside == self.is_inside(end)? {
+            return Ok(());
+        }
+        let &Edge { axis, at, length, around } = edge;
+        let crossing = Crossing { axis: axis as u8, starts_inside, length, at, around, arcs: [NONE; 4] };
+        memory::push(&mut self.crossings, crossing)
+    }
+}
+
+/// Finds arcs.
+struct Joined<'i, I> {
+    inside: &'i mut I,
+    crossings: Vec<Crossing>,
+    arcs: Vec<Arc>,
+    /// Of the face at hand, counter-clockwise: crossings, and whether the corner before each lies inside.
+    ring: Vec<(u32, bool)>,
+}
+
+impl<I> Joined<'_, I> {
+    /// Takes in the crossings from a corner along an axis.
+    fn along(&mut self, axis: usize, at: [u32; 3], length: u32, is_backward: bool) -> Result<(), Error> {
+        let key = |start: u32| (axis as u8, at[(axis + 1) % 3], at[(axis + 2) % 3], start);
+        let first = self.crossings.partition_point(|crossing| crossing.key() < key(at[axis]));
+        let end = self.crossings.partition_point(|crossing| crossing.key() < key(at[axis] + length));
+        for k in 0..end - first {
+            let number = if is_backward { end - 1 - k } else { first + k };
+            let starts_inside = self.crossings[number].starts_inside;
+            memory::push(&mut self.ring, (number as u32, starts_inside != is_backward))?;
+        }
+        Ok(())
+    }
+}
+
+impl<I: Inside> Visitor for Joined<'_, I> {
+    fn edge(&mut self, _: &Edge) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn face(&mut self, face: &Face) -> Result<(), Error> {
+        let &Face { axis, at, length, sides } = face;
+        if sides.contains(&OUTSIDE) {
+            return Ok(());
+        }
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (mut right, mut top) = (at, at);
+        right[u] += length;
+        top[v] += length;
+        self.ring.clear();
+        self.along(u, at, length, false)?;
+        self.along(v, right, length, false)?;
+        self.along(u, top, length, true)?;
+        self.along(v, at, length, true)?;
+        let count = self.ring.len();
+        if count < 2 {
+            return Ok(());
+        }
+        // Where there is a choice, the centre decides whether inside or outside is in one piece.
+        let mut centre = at.map(|c| 2 * c);
+        centre[u] += length;
+        centre[v] += length;
+        let is_whole = count > 2 && self.inside.is_inside(centre)?;
+        // An arc cuts off the corners between a crossing and the next one that lie inside; or those that lie outside.
+        let first = usize::from(self.ring[0].1 != is_whole);
+        for k in (first..count + first).step_by(2) {
+            let crossings = [self.ring[k % count].0, self.ring[(k + 1) % count].0];
+            let number = self.arcs.len() as u32;
+            memory::push(&mut self.arcs, Arc { crossings, leaves: sides, axis: axis as u8 })?;
+            for crossing in crossings {
+                let crossing = &mut self.crossings[crossing as usize];
+                for place in 0..4 {
+                    let pair = [crossing.around[place], crossing.around[(place + 1) % 4]];
+                    if pair == sides || pair == [sides[1], sides[0]] {
+                        crossing.arcs[place] = number;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Sheets {
+    pub(super) fn find(cells: &Cells, inside: &mut impl Inside) -> Result<Sheets, Error> {
+        let mut touched = Touched { cells, states: HashMap::new() };
+        walk(cells, &mut touched)?;
+        let mut crossed = Crossed { states: touched.states, inside, crossings: Vec::new() };
+        walk(cells, &mut crossed)?;
+        let Crossed { mut crossings, states, .. } = crossed;
+        drop(states);
+        if crossings.len() > (u32::MAX / 8) as usize {
+            return Err(MeshError::TooMany.into());
+        }
+        crossings.sort_unstable_by_key(Crossing::key);
+        let mut joined = Joined { inside, crossings, arcs: Vec::new(), ring: Vec::new() };
+        walk(cells, &mut joined)?;
+        let Joined { crossings, arcs, .. } = joined;
+        let mut sheets =
+            Sheets { crossings, arcs, sheets: Vec::new(), around: Vec::new(), counts: Vec::new() };
+        sheets.link(cells)?;
+        Ok(sheets)
+    }
+
+    /// Makes loops of arcs.
+    fn link(&mut self, cells: &Cells) -> Result<(), Error> {
+        // The place of a cell around a crossing stands for the part of the cell's surface there.
+        let mut parents = memory::collected(0..4 * self.crossings.len() as u32)?;
+        for arc in &self.arcs {
+            for leaf in arc.leaves {
+                let [a, b] = arc.crossings.map(|crossing| {
+                    let place = self.crossings[crossing as usize].place(leaf).unwrap_or(0);
+                    root(&mut parents, 4 * crossing + place as u32)
+                });
+                parents[a.max(b) as usize] = a.min(b);
+            }
+        }
+        self.counts = memory::filled(cells.leaves.len(), 0)?;
+        self.around = memory::with_capacity(self.crossings.len())?;
+        let mut numbers = memory::filled(parents.len(), NONE)?;
+        for (number, crossing) in (0u32..).zip(&self.crossings) {
+            let mut around = [NONE; 4];
+            for (slot, &leaf) in around.iter_mut().zip(&crossing.around) {
+                let place = crossing.place(leaf).unwrap_or(0) as u32;
+                let root = root(&mut parents, 4 * number + place) as usize;
+                if numbers[root] == NONE {
+                    numbers[root] = self.sheets.len() as u32;
+                    memory::push(&mut self.sheets, Sheet { leaf, crossings: 0 })?;
+                    self.counts[leaf as usize] += 1;
+                }
+                *slot = numbers[root];
+            }
+            for k in 0..4 {
+                if !around[..k].contains(&around[k]) {
+                    self.sheets[around[k] as usize].crossings += 1;
+                }
+            }
+            self.around.push(around);
+        }
+        Ok(())
+    }
+
+    /// The sheets beside an arc.
+    pub(super) fn beside(&self, arc: &Arc) -> [u32; 2] {
+        let crossing = arc.crossings[0] as usize;
+        arc.leaves.map(|leaf| self.around[crossing][self.crossings[crossing].place(leaf).unwrap_or(0)])
+    }
+}
+
+fn root(parents: &mut [u32], mut node: u32) -> u32 {
+    while parents[node as usize] != node {
+        parents[node as usize] = parents[parents[node as usize] as usize];
+        node = parents[node as usize];
+    }
+    node
+}
