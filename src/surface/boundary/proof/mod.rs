@@ -11,7 +11,7 @@ mod truth;
 mod witness;
 
 use super::figures::{Figures, length, minus};
-use super::leaves::{Leaves, OpenLeaf};
+use super::leaves::{Leaf, Leaves, OpenLeaf};
 use crate::control::Job;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, axes};
@@ -108,7 +108,52 @@ pub(super) fn prove(
         };
         proof.add(leaf.cell, most, tolerance)?;
     }
+    contacts(&truth, &subject, (Cell::ROOT, leaves.root), &mut Vec::new(), &mut |cell, most| {
+        proof.add(cell, most, tolerance)
+    })?;
     Ok(proof)
+}
+
+/// Calls `told` for the cells that are full next to an empty one, where the boundary lies in no cell between, with how far it is from the
+/// mesh there at most.
+fn contacts(
+    truth: &Truth<'_>,
+    subject: &Subject<'_>,
+    (cell, leaf): (Cell, Leaf),
+    found: &mut Vec<(Cell, Leaf)>,
+    told: &mut impl FnMut(Cell, f64) -> Result<(), Error>,
+) -> Result<(), Error> {
+    if let Leaf::Branch(node) = leaf {
+        for (octant, &child) in (0u8..).zip(&truth.leaves.nodes[node as usize]) {
+            contacts(truth, subject, (cell.child(octant), child), found, told)?;
+        }
+    }
+    if !matches!(leaf, Leaf::Full) {
+        return Ok(());
+    }
+    let own = cube(cell);
+    for side in 0..6 {
+        let (axis, is_upper) = (side / 2, side % 2 == 1);
+        // What lies behind the inside of the face. (No cell is as small as `LEAST`.)
+        let mut behind = own.grown(-truth::LEAST);
+        let face = if is_upper { own.high[axis] } else { own.low[axis] };
+        let away = if is_upper { truth::LEAST } else { -truth::LEAST };
+        (behind.low[axis], behind.high[axis]) = (face + away, face + away);
+        truth.meeting(&behind, found)?;
+        for &(other, leaf) in &*found {
+            let other = match leaf {
+                Leaf::Empty => cube(other),
+                Leaf::Outside => own,
+                _ => continue,
+            };
+            let shared = Around {
+                low: axes(|k| if k == axis { face } else { own.low[k].max(other.low[k]) }),
+                high: axes(|k| if k == axis { face } else { own.high[k].min(other.high[k]) }),
+            };
+            told(cell, subject.away(&shared))?;
+        }
+    }
+    Ok(())
 }
 
 impl Proof {

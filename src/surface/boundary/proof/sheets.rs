@@ -424,7 +424,7 @@ impl<'s> Sheet<'s> {
 
     /// How far the surface is from the triangles above the box at most; `None` if they do not cover the place that lines lead to.
     fn above(&self, view: &View, long: &Prism) -> Result<Option<f64>, Error> {
-        let first = view.boxes[1];
+        let [whole, first, _] = view.boxes;
         let (mut most, mut is_covered) = (0.0f64, false);
         let mut part = Vec::new();
         for &triangle in &self.found {
@@ -433,10 +433,18 @@ impl<'s> Sheet<'s> {
             if area < 0.0 {
                 continue;
             }
-            is_covered |= area > 0.0 && holds(places.map(|[u, v, _]| [u, v]), view.covered);
             part.clear();
             part.try_reserve(3)?;
             part.extend(places);
+            clip(&mut part, corner(whole, -1.0), corner(whole, 1.0))?;
+            if part.len() < 3 {
+                continue;
+            }
+            // What is far above is no part of this sheet.
+            if part.iter().any(|place| place[2].abs() > view.high) {
+                return Ok(None);
+            }
+            is_covered |= area > 0.0 && holds(places.map(|[u, v, _]| [u, v]), view.covered);
             clip(&mut part, corner(first, -1.0), corner(first, 1.0))?;
             if part.len() >= 3 {
                 let Some(high) = view.height_over(long, &part)? else { return Ok(None) };
