@@ -248,7 +248,7 @@ impl MeshAttribute {
     }
 
     /// Keeps the triangles of which `is_kept` says so.
-    pub(super) fn retain(&mut self, mut is_kept: impl FnMut(usize) -> bool) {
+    pub(crate) fn retain(&mut self, mut is_kept: impl FnMut(usize) -> bool) {
         let mut next = 0..;
         // There is always a next one.
         let mut keeps = || next.next().is_some_and(&mut is_kept);

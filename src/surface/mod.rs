@@ -19,7 +19,7 @@
 //! `dexel` (tri-dexel models), `dexel_solid` (these as solids).
 //!
 //! `boundary` goes another way: where a solid knows its surfaces, these are cut to the pieces that bound it, and nothing is sampled.
-//! `contour` is dual contouring with cells of several sizes, of any solid.
+//! `contour` is dual contouring with cells of several sizes, of any solid. `simplify` takes vertices out of meshes.
 //!
 //! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
 //! corners as centres.
@@ -49,6 +49,8 @@ mod resolve;
 mod samples;
 mod shrink;
 mod simple;
+#[cfg(feature = "std")]
+mod simplify;
 mod size;
 mod snapped;
 mod solid;
@@ -70,6 +72,8 @@ pub use dexel_solid::DexelSolid;
 pub use resolve::Resolve;
 pub use shrink::{coplanar_shrink, published_shrink};
 pub use simple::{Snap, simple_marching_cubes};
+#[cfg(feature = "std")]
+pub use simplify::{Simplified, SimplifiedReport, simplify};
 pub use solid::{
     VertexPlacement, coplanar_shrink_solid, marching_cubes_solid, published_shrink_solid,
     simple_marching_cubes_solid,

@@ -11,5 +11,6 @@ mod marching_cubes;
 mod methods;
 mod shrink;
 mod simple;
+mod simplify;
 mod solid;
 mod volume;

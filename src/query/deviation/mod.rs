@@ -11,9 +11,12 @@ use super::StopReason;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Frame, Interval, valid};
+use crate::memory;
+use crate::mesh::TriangleMesh;
 use crate::octree::{Proof, Tag};
 use crate::solid::{AskWhole, Classifier, Solid};
 use crate::walk::Proven;
+use alloc::vec::Vec;
 use search::Search;
 use surface::{Seen, Surface};
 
@@ -93,6 +96,9 @@ impl Deviation {
 
 /// Cells of a solid that [`deviation`] splits if `control.max_splits` sets no other limit; and a 64th of the cuts of pieces.
 pub const DEVIATION_SPLITS: u64 = 1 << 18;
+
+/// How exactly a limit is looked at, as a part of it.
+const EXACT: f64 = 1.0 / 128.0;
 
 /// Pieces are cut that much more often than cells are split.
 const CUTS: u64 = 64;
@@ -183,6 +189,40 @@ pub fn deviation<A: Solid, B: Solid>(
     }
     job.advance(WHOLE);
     Ok(found)
+}
+
+/// How far the triangles of two meshes are from each other at the most, in both directions, found no more exactly than `limit` asks, and
+/// the triangles of the second mesh next to which it is not proven to be within the limit (model units; in no order, some more than
+/// once). Unlike [`deviation`] of closed meshes it looks at all triangles, whatever they enclose.
+pub(crate) fn meshes_apart(
+    a: &TriangleMesh,
+    b: &TriangleMesh,
+    limit: f64,
+    control: &Control<'_>,
+) -> Result<(f64, Vec<u32>), Error> {
+    let job = Job::new(control);
+    let surfaces = [Surface::of_triangles(a)?, Surface::of_triangles(b)?];
+    let seen = [surfaces[0].seen(control)?, surfaces[1].seen(control)?];
+    if seen[0].is_empty() || seen[1].is_empty() {
+        let far = if seen[0].is_empty() && seen[1].is_empty() { 0.0 } else { f64::INFINITY };
+        return Ok((far, Vec::new()));
+    }
+    let worth = seen.iter().any(Seen::is_large);
+    let (mut most, mut beyond) = (0.0, Vec::new());
+    for k in 0..2 {
+        let (from, to) = (&seen[k], &seen[1 - k]);
+        let search = Search { from, to, tolerance: limit * EXACT, budget: DEVIATION_SPLITS };
+        let (own, list) =
+            control.run(worth, |parallel| search.beyond((1.0 - EXACT) * limit, parallel, &job))?;
+        most = f64::max(most, own);
+        for (triangle, other) in list {
+            let of_second = if k == 0 { other } else { Some(triangle) };
+            if let Some(triangle) = of_second {
+                memory::push(&mut beyond, triangle)?;
+            }
+        }
+    }
+    Ok((most, beyond))
 }
 
 /// The boundary of a solid, to a part of the tolerance.

@@ -30,6 +30,9 @@ const CHUNK: usize = 1 << 10;
 const BATCH: usize = 128;
 const CUTS: u64 = 64;
 
+/// How often a triangle is cut to find out whether it is within a limit.
+const BEYOND: u64 = 1 << 10;
+
 /// Facets that are tried for the upper bound of a piece.
 const TRIED: usize = 5;
 
@@ -120,6 +123,52 @@ impl Search<'_> {
                 (false, false) => StopReason::Exhausted,
             };
         Ok((OneWay { distance, at: self.witness(&best) }, cuts, stop_reason))
+    }
+
+    /// How far the first surface is from the second one at the most, found no more exactly than `limit` asks, and for each triangle of
+    /// the first that is not proven to be within the limit: its number, and which triangle of the second is nearest to where it is
+    /// farthest, if that is known.
+    pub(super) fn beyond(
+        &self,
+        limit: f64,
+        parallel: bool,
+        job: &Job<'_>,
+    ) -> Result<(f64, Vec<(u32, Option<u32>)>), Error> {
+        let none = Best { lower: limit, at: None };
+        let nears = self.vertices(parallel, &mut none.clone(), job)?;
+        let (mut most, mut beyond) = (0.0, Vec::new());
+        for (number, layer) in self.from.covers.iter().enumerate() {
+            let count = layer.mesh.triangles().len();
+            let found = each(parallel, 0..count.div_ceil(CHUNK), |task| {
+                let (mut most, mut beyond): (f64, _) = (0.0, Vec::new());
+                for triangle in task * CHUNK..count.min((task + 1) * CHUNK) {
+                    let triangle = triangle as u32;
+                    let (mut piece, mut best) = (self.triangle(&nears, number, triangle), none);
+                    self.bound(&mut piece, limit, &mut best);
+                    let mut upper = piece.upper;
+                    if upper > limit && layer.is_chosen(triangle) {
+                        let refined = self.refine(piece, best, BEYOND, job)?;
+                        let rest = refined.rest.iter().map(|piece| piece.upper);
+                        upper = rest.fold(refined.settled, f64::max);
+                        if refined.best.lower > limit {
+                            upper = upper.max(refined.best.lower);
+                        }
+                        if upper > limit {
+                            let facet = refined.best.at.map_or(piece.hint, |(_, _, facet)| facet);
+                            memory::push(&mut beyond, (triangle, facet.triangle()))?;
+                        }
+                    }
+                    most = most.max(upper);
+                }
+                Ok((most, beyond))
+            })?;
+            for (own, list) in found {
+                most = f64::max(most, own);
+                beyond.try_reserve(list.len())?;
+                beyond.extend(list);
+            }
+        }
+        Ok((most, beyond))
     }
 
     fn witness(&self, best: &Best) -> Option<Witness> {
@@ -345,11 +394,6 @@ impl Search<'_> {
     /// Cuts a piece. False if it cannot be cut.
     fn cut(&self, piece: &Piece, parts: &mut [Option<Piece>; 4]) -> bool {
         let corners = piece.corners();
-        if corners.len() > MOST - 3 {
-            let [one, other] = piece.fans();
-            (parts[0], parts[1]) = (Some(one), Some(other));
-            return true;
-        }
         let mut two = |cut: Option<[Piece; 2]>| {
             let is_cut = cut.is_some();
             if let Some([one, other]) = cut {
@@ -357,8 +401,12 @@ impl Search<'_> {
             }
             is_cut
         };
-        if piece.generation % 3 == 2 {
-            return two(piece.halves());
+        // (Before all else: cuts along facets may leave long pieces long, however often there are some.)
+        if piece.generation % 3 == 2 && two(piece.halves()) {
+            return true;
+        }
+        if corners.len() > MOST - 3 {
+            return two(Some(piece.fans()));
         }
         let least = corners.iter().map(|corner| corner.near.upper).fold(f64::INFINITY, f64::min);
         if least * least < piece.diameter().2

@@ -46,6 +46,15 @@ impl Surface {
         Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
     }
 
+    /// The triangles of a mesh, wherever the boundary that it stands for may lie.
+    pub(super) fn of_triangles(mesh: &TriangleMesh) -> Result<Surface, Error> {
+        let mut covers = memory::with_capacity(1)?;
+        if !mesh.triangles().is_empty() {
+            covers.push(Layer { mesh: Arc::new(mesh.try_clone()?), chosen: Vec::new(), radius: 0.0 });
+        }
+        Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
+    }
+
     /// The same with the trees of the triangles.
     pub(super) fn seen<'s>(&'s self, control: &Control<'_>) -> Result<Seen<'s>, Error> {
         let trees = |layers: &'s [Layer]| {
@@ -75,6 +84,11 @@ pub(super) struct Facet {
 
 impl Facet {
     pub(super) const NONE: Facet = Facet { layer: u32::MAX, triangle: u32::MAX };
+
+    /// Its number in its layer, if it is one.
+    pub(super) fn triangle(self) -> Option<u32> {
+        (self != Facet::NONE).then_some(self.triangle)
+    }
 
     fn of_layer(self, layer: u32) -> Option<u32> {
         (self.layer == layer).then_some(self.triangle)

@@ -8,13 +8,15 @@
 //! decided by signs at corners of the lattice, which neighbours share, so that the result is closed. Places are found last.
 //!
 //! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `leaves` (the cells), `walk` (their
-//! minimal faces and edges), `edges`, `curve` (curves as chords), `faces`, `cells`, `patches` (triangles).
+//! minimal faces and edges), `edges`, `curve` (curves as chords), `faces`, `cells`, `patches` (triangles), `held` (where these stay),
+//! `proof`.
 
 mod cells;
 mod curve;
 mod edges;
 mod faces;
 mod figures;
+mod held;
 mod leaves;
 mod patches;
 mod proof;
@@ -27,13 +29,15 @@ use crate::lattice::{Affine, Cell, Frame, axes, valid};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::Tag;
-use crate::solid::{AskWhole, Classifier, PlacedHalfSpace, Solid, Transform, Worker};
+use crate::solid::{AskWhole, BoundaryFacets, Classifier, PlacedHalfSpace, Solid, Transform, Worker};
+use crate::surface::simplify::{Reduction, Regions, simplify};
 use crate::walk::Trail;
 use alloc::vec::Vec;
 use cells::Pieces;
 use edges::{Corners, Edges, NONE};
 use faces::Faces;
 use figures::{Figures, UNKNOWN};
+use held::Held;
 use leaves::{Leaves, Refused, Wanted};
 use patches::Patches;
 use proof::prove;
@@ -96,8 +100,12 @@ const PROOFS: usize = 6;
 /// Intersecting pairs that are looked at in one round.
 const PAIRS: usize = 4096;
 
-/// How far chords of edges may be from these, as a part of the tolerance.
-const CHORDS: f64 = 0.8;
+/// How far surfaces may rise between the sides of a cell, and chords of edges be from these, as parts of the tolerance.
+const CELLS: f64 = 0.8;
+const CHORDS: f64 = 0.5;
+
+/// How far the surface may move where vertices are taken out, as a part of the tolerance.
+const FEWER: f64 = 0.35;
 
 /// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies in it.
 const SHIFTS: [f64; 3] = [0.013_371, 0.017_317, 0.011_831];
@@ -105,7 +113,11 @@ const LARGER: f64 = 1.031_77;
 
 /// The boundary of a solid that knows its surfaces, as expressions of half-spaces do, and octrees that keep theirs
 /// ([`build_extended`](crate::build_extended)): its plane faces as they are, and curved ones in chords. The solid must end inside of the
-/// universe of `frame`.
+/// universe of `frame`. The boundary of a closed mesh whose triangles do not intersect is the mesh, [simplified](super::simplify()),
+/// without triangles inside of other bodies.
+///
+/// Vertices that are not needed within the tolerance are taken out, along edges and within the pieces of one surface, so that walls of
+/// cylinders and cones have triangles from end to end.
 ///
 /// A plane face becomes triangles between its corners alone, whatever its shape, and a corner is the point in which its surfaces meet, to
 /// rounding (some 10^-15 of the coordinates). Where two plane faces meet, they have a straight edge without further vertices. Vertices on
@@ -128,8 +140,8 @@ const LARGER: f64 = 1.031_77;
 /// 12 to 16 is good for parts, and costs little, because only such places are cut that far. What is thinner than such a cell may vanish
 /// there. The lattice is not that of the frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
 ///
-/// Some 50 µs a cell, most of it for the proof; one thread does it all. The result depends on the solid, the frame and the tolerance alone. The memory is that of the
-/// cells and of the triangles, some 500 bytes a cell; `control.max_nodes` bounds the splits.
+/// Some 50 µs a cell, most of it for the proof; one thread does it all. The result depends on the solid, the frame and the tolerance
+/// alone. The memory is that of the cells and of the triangles, some 500 bytes a cell; `control.max_nodes` bounds the splits.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, surface::boundary};
@@ -176,16 +188,18 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
         return Err(Error::Argument { name: "frame", problem: "must hold all of the solid" });
     }
     let frame = *classifier.frame();
-    let surfaces = classifier.surfaces(control)?.filter(|list| !list.is_empty()).ok_or(UNKNOWN)?;
+    let Some(surfaces) = classifier.surfaces(control)?.filter(|list| !list.is_empty()) else {
+        return of_facets(classifier.facets(control)?.ok_or(UNKNOWN)?, tolerance, control);
+    };
     let figures = Figures::new(&surfaces, &frame)?;
     let whole = tolerance / frame.edge();
-    let tolerance = CHORDS * whole;
-    let mut refused = Refused::default();
+    let (bent, tolerance) = (CELLS * whole, CHORDS * whole);
+    let (mut refused, mut held) = (Refused::default(), Held::default());
     let (mut round, mut proofs) = (0, 0);
     loop {
         // (How many rounds there will be is not known: the first one is taken for all.)
         let parts = if round == 0 { WHOLE / 8 } else { 0 };
-        let wanted = Wanted { figures: &figures, tolerance, refused: &refused, parts: 2 * parts };
+        let wanted = Wanted { figures: &figures, tolerance: bent, refused: &refused, parts: 2 * parts };
         let leaves = Leaves::grow(classifier, &wanted, job)?;
         let corners = Points { trail: Trail::new(classifier.worker()?)?, frame, control };
         let mut edges = Edges::find(&leaves, &figures, corners)?;
@@ -216,17 +230,51 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
             continue;
         }
         let lattice = (&frame, whole);
-        let proof = prove(&leaves, &figures, &mesh, &patches.surfaces, lattice, job)?;
+        let slack = FEWER * whole * frame.edge();
+        let numbers = Regions::Numbered(&patches.surfaces);
+        let unit = |point: &[f64; 3]| -> [f64; 3] { axes(|k| (point[k] - frame.origin()[k]) / frame.edge()) };
+        let mut reduction = Reduction::new(&mesh, numbers, slack)?;
+        reduction.keep(&held.chosen(mesh.vertices().iter().map(unit))?);
+        if proofs + 2 >= PROOFS {
+            // At last all vertices stay.
+            reduction.keep(&memory::filled(mesh.vertices().len(), true)?);
+        }
+        let (mesh, kept, pairs) = reduction.run(job)?;
+        let of_kept = kept.iter().map(|&triangle| patches.surfaces[triangle as usize]);
+        let of_triangles = memory::collected(of_kept)?;
+        let proof = prove(&leaves, &figures, &mesh, &of_triangles, lattice, job)?;
+        held.add(&proof.beyond)?;
         proofs += 1;
         let beyond = proof.beyond.iter().filter(|cell| cell.level < frame.depth());
         beyond.clone().try_for_each(|&cell| refused.add(cell))?;
         if proofs >= PROOFS || !refused.settle() || round >= ROUNDS {
             let (cells, splits) = (leaves.open.len() as u64, leaves.splits);
             let deviation = rounded_up(proof.most, &frame);
-            let report = BoundaryReport { intersecting_pairs: found.count, cells, splits, deviation };
-            return Ok(Boundary { mesh, surfaces, of_triangles: patches.surfaces, report });
+            let report = BoundaryReport { intersecting_pairs: pairs, cells, splits, deviation };
+            return Ok(Boundary { mesh, surfaces, of_triangles, report });
         }
     }
+}
+
+/// The boundary of a solid that is bounded by triangles: by fewer of them.
+fn of_facets(facets: BoundaryFacets, tolerance: f64, control: &Control<'_>) -> Result<Boundary, Error> {
+    let BoundaryFacets { mesh, chosen } = facets;
+    let mut triangles = memory::copied(mesh.triangles())?;
+    if !chosen.is_empty() {
+        let mut chosen = chosen.iter();
+        triangles.retain(|_| chosen.next().is_some_and(|&own| own));
+    }
+    let outer = TriangleMesh::from_welded(memory::copied(mesh.vertices())?, triangles, 0, 0);
+    let found = simplify(&outer, tolerance, &quiet(control))?;
+    let report = BoundaryReport {
+        intersecting_pairs: found.report().intersecting_pairs,
+        cells: 0,
+        splits: 0,
+        deviation: (found.report().deviation + mesh.radius()).next_up(),
+    };
+    let mesh = found.into_mesh();
+    let of_triangles = memory::filled(mesh.triangles().len(), NONE)?;
+    Ok(Boundary { mesh, surfaces: Vec::new(), of_triangles, report })
 }
 
 /// A length in model units, with what places of vertices are rounded by.

@@ -1,0 +1,45 @@
+//! Cells in which no vertex is taken out, because the mesh was too far from the boundary there.
+
+use crate::error::Error;
+use crate::lattice::{Cell, axes};
+use crate::memory;
+use alloc::vec::Vec;
+
+/// How far beside a cell its vertices may lie by rounding, as a part of the universe's edge.
+const BESIDE: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// Cells of any levels, in ascending order.
+#[derive(Default)]
+pub(super) struct Held {
+    cells: Vec<(u8, [u32; 3])>,
+}
+
+impl Held {
+    /// Adds cells.
+    pub(super) fn add(&mut self, cells: &[Cell]) -> Result<(), Error> {
+        self.cells.try_reserve(cells.len())?;
+        self.cells.extend(cells.iter().map(|cell| (cell.level, cell.at)));
+        self.cells.sort_unstable();
+        self.cells.dedup();
+        Ok(())
+    }
+
+    /// Which points (unit coordinates) lie in a cell, or on its sides.
+    pub(super) fn chosen(&self, points: impl ExactSizeIterator<Item = [f64; 3]>) -> Result<Vec<bool>, Error> {
+        let mut levels = [false; 32];
+        self.cells.iter().for_each(|cell| levels[usize::from(cell.0 & 31)] = true);
+        memory::collected(points.map(|point| {
+            (0u8..32).filter(|&level| levels[usize::from(level)]).any(|level| self.holds(point, level))
+        }))
+    }
+
+    fn holds(&self, point: [f64; 3], level: u8) -> bool {
+        let side = f64::from(1u32 << level);
+        let places = [-BESIDE, BESIDE]
+            .map(|beside| -> [u32; 3] { axes(|k| ((point[k] + beside) * side).max(0.0) as u32) });
+        (0..8usize).any(|k| {
+            let at = axes(|axis| places[k >> axis & 1][axis]);
+            self.cells.binary_search(&(level, at)).is_ok()
+        })
+    }
+}
