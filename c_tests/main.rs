@@ -459,6 +459,7 @@ fn examples() {
         ("c/drilled_plate.c", C99),
         ("cpp/cut_stock.cpp", CPP17),
         ("cpp/part.cpp", CPP17),
+        ("cpp/faces.cpp", CPP17),
     ];
     for (name, standard) in examples {
         let source = root().join("examples").join(name);

@@ -97,7 +97,60 @@ static void parts(void) {
     leafless_mesh_free(mesh);
 }
 
+/* The values of an attribute on the triangles of a surface: of each just inside of it. */
+static void sampled(void) {
+    const double low[3] = {0, 0, 0}, high[3] = {4, 4, 4}, five = 5;
+    const leafless_frame frame = {{-2, -2, -2}, 8, 3};
+    leafless_solid *solid = NULL;
+    leafless_mesh *mesh = NULL, *bearing = NULL, *again = NULL;
+    leafless_attribute *constant = NULL, *of_faces = NULL;
+    const char *name;
+    size_t length;
+    uint64_t count = 0, all = 0, i;
+    uint32_t components;
+    bool per_corner;
+    double *values, *own;
+    OK(leafless_solid_new_box(low, high, &solid));
+    OK(leafless_solid_surface(solid, &frame, NULL, NULL, &mesh));
+    OK(leafless_attribute_new_constant(&five, 1, &constant));
+    OK(leafless_mesh_with_values(mesh, constant, "material", 8, 0.25, NULL, &bearing));
+    OK(leafless_mesh_peek_attribute_at(mesh, 0, &count, NULL, NULL, NULL, NULL));
+    CHECK(count == 0);
+    OK(leafless_mesh_peek_attribute_at(bearing, 0, &count, &name, &length, &components, &per_corner));
+    CHECK(count == 1 && length == 8 && memcmp(name, "material", 8) == 0 && components == 1 && !per_corner);
+    OK(leafless_mesh_attribute_values(bearing, 0, NULL, 0, &all));
+    values = (double *)malloc((size_t)all * sizeof *values);
+    own = (double *)malloc((size_t)all * sizeof *own);
+    CHECK(all > 0 && values != NULL && own != NULL);
+    OK(leafless_mesh_attribute_values(bearing, 0, values, all, &all));
+    for (i = 0; i < all; i++) {
+        CHECK(values[i] == 5);
+        own[i] = (double)(i / 3);
+    }
+    /* Its number for each triangle: the nearest triangle is the triangle itself. The name is given once more. */
+    OK(leafless_attribute_from_mesh_values(mesh, own, all, 1, true, &of_faces));
+    OK(leafless_mesh_with_values(bearing, of_faces, "material", 8, 0, NULL, &again));
+    OK(leafless_mesh_peek_attribute_at(again, 0, &count, NULL, NULL, NULL, NULL));
+    CHECK(count == 1);
+    OK(leafless_mesh_attribute_values(again, 0, values, all, &all));
+    for (i = 0; i < all; i++) {
+        CHECK(values[i] == own[i]);
+    }
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_with_values(mesh, constant, "a", 1, -1, NULL, &bearing));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_with_values(mesh, constant, "a", 1, (double)INFINITY, NULL, &bearing));
+    FAILS(LEAFLESS_E_UTF8, leafless_mesh_with_values(mesh, constant, "\xff", 1, 0, NULL, &bearing));
+    free(values);
+    free(own);
+    leafless_attribute_free(of_faces);
+    leafless_attribute_free(constant);
+    leafless_mesh_free(again);
+    leafless_mesh_free(bearing);
+    leafless_mesh_free(mesh);
+    leafless_solid_free(solid);
+}
+
 int main(void) {
+    sampled();
     colours();
     parts();
     return 0;

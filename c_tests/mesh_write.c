@@ -292,8 +292,41 @@ static void refusals(void) {
     leafless_mesh_free(mesh);
 }
 
+/* A tetrahedron of which one corner is cut off by less than single precision tells. */
+static void mended(void) {
+    static const double CORNERS[5][3] = {{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {1, 1, 2}, {1 + 1e-9, 1, 1}};
+    static const uint32_t TRIANGLES[6][3] = {{0, 2, 4}, {4, 2, 1}, {0, 4, 3}, {4, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    leafless_mesh_arrays arrays = LEAFLESS_INIT(leafless_mesh_arrays);
+    leafless_single_precision told = LEAFLESS_INIT(leafless_single_precision);
+    leafless_mesh_info info = LEAFLESS_INIT(leafless_mesh_info);
+    leafless_mesh *mesh = NULL, *single = NULL, *kept = NULL;
+    leafless_mesh_write_options options = defaults();
+    arrays.vertices = CORNERS;
+    arrays.vertex_count = 5;
+    arrays.indices = TRIANGLES;
+    arrays.triangle_count = 6;
+    OK(leafless_mesh_new(&arrays, &mesh));
+    OK(leafless_mesh_in_single_precision(mesh, 1e-3, NULL, &told, &single));
+    CHECK(told.collapsed == 2 && told.flipped == 0 && told.moved == 0);
+    CHECK(told.degenerate == 0 && told.intersecting_pairs == 0);
+    CHECK(told.rounding_model > 0.9e-9 && told.deviation_model >= told.rounding_model && told.deviation_model < 2e-9);
+    OK(leafless_mesh_describe(single, &info));
+    CHECK(info.triangles == 4 && info.vertices == 4);
+    OK(leafless_mesh_check_closed(single, LEAFLESS_FILL_NON_ZERO));
+    /* An STL loses nothing of it. */
+    options.format = LEAFLESS_MESH_FORMAT_STL;
+    OK(leafless_mesh_written_form(single, &options, &kept));
+    same(single, kept, true);
+    leafless_mesh_free(kept);
+    leafless_mesh_free(single);
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_in_single_precision(mesh, -1, NULL, &told, &single));
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_in_single_precision(mesh, (double)NAN, NULL, &told, &single));
+    leafless_mesh_free(mesh);
+}
+
 int main(void) {
     formats();
+    mended();
     deviations();
     units();
     normals();

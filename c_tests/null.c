@@ -43,6 +43,68 @@ static leafless_point_table *point_table;
 static leafless_options options;
 static const double point[3] = {0, 0, 0}, above[3] = {1, 1, 1}, outline[6] = {0, 0, 1, 0, 0, 1};
 
+/* Functions of the boundary of a ball. */
+static void boundaries(void) {
+    const double middle[3] = {frame.origin[0] + 0.5 * frame.edge, frame.origin[1] + 0.5 * frame.edge,
+                              frame.origin[2] + 0.5 * frame.edge};
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    uint64_t number = 77;
+    leafless_solid *round = NULL;
+    leafless_boundary *boundary = NULL;
+    leafless_boundary **reference = (leafless_boundary **)&never;
+    leafless_mesh **made = (leafless_mesh **)&never;
+    leafless_boundary_report *report = (leafless_boundary_report *)out;
+    leafless_polyhedron_arrays *arrays = (leafless_polyhedron_arrays *)out;
+    OK(leafless_solid_new_ball(middle, 0.25 * frame.edge, &round));
+    OK(leafless_solid_boundary(round, &frame, frame.edge, NULL, &boundary));
+    leafless_solid_free(round);
+    NULL_POINTER(leafless_boundary_ref, boundary, leafless_boundary_ref(NULL, reference));
+    NULL_POINTER(leafless_boundary_ref, reference, leafless_boundary_ref(boundary, NULL));
+    MISALIGNED(leafless_boundary_ref, reference, leafless_boundary_ref(boundary, (leafless_boundary **)WRONG(out)));
+    NULL_POINTER(leafless_boundary_describe, boundary, leafless_boundary_describe(NULL, report));
+    NULL_POINTER(leafless_boundary_describe, report, leafless_boundary_describe(boundary, NULL));
+    MISALIGNED(leafless_boundary_describe, report,
+               leafless_boundary_describe(boundary, (leafless_boundary_report *)WRONG(out)));
+    NULL_POINTER(leafless_boundary_mesh, boundary, leafless_boundary_mesh(NULL, made));
+    NULL_POINTER(leafless_boundary_mesh, mesh, leafless_boundary_mesh(boundary, NULL));
+    MISALIGNED(leafless_boundary_mesh, mesh, leafless_boundary_mesh(boundary, (leafless_mesh **)WRONG(out)));
+    NULL_POINTER(leafless_boundary_surfaces, boundary, leafless_boundary_surfaces(NULL, NULL, 0, &number));
+    NULL_POINTER(leafless_boundary_surfaces, surfaces, leafless_boundary_surfaces(boundary, NULL, 1, &number));
+    NULL_POINTER(leafless_boundary_surfaces, count, leafless_boundary_surfaces(boundary, NULL, 0, NULL));
+    MISALIGNED(leafless_boundary_surfaces, surfaces,
+               leafless_boundary_surfaces(boundary, (leafless_boundary_surface *)WRONG(out), 1, &number));
+    MISALIGNED(leafless_boundary_surfaces, count, leafless_boundary_surfaces(boundary, NULL, 0, (uint64_t *)WRONG(out)));
+    NULL_POINTER(leafless_boundary_regions, boundary, leafless_boundary_regions(NULL, NULL, 0, &number));
+    NULL_POINTER(leafless_boundary_regions, regions, leafless_boundary_regions(boundary, NULL, 1, &number));
+    NULL_POINTER(leafless_boundary_regions, count, leafless_boundary_regions(boundary, NULL, 0, NULL));
+    MISALIGNED(leafless_boundary_regions, regions,
+               leafless_boundary_regions(boundary, (leafless_boundary_region *)WRONG(out), 1, &number));
+    MISALIGNED(leafless_boundary_regions, count, leafless_boundary_regions(boundary, NULL, 0, (uint64_t *)WRONG(out)));
+    NULL_POINTER(leafless_boundary_triangle_regions, boundary, leafless_boundary_triangle_regions(NULL, NULL, 0, &number));
+    NULL_POINTER(leafless_boundary_triangle_regions, regions,
+                 leafless_boundary_triangle_regions(boundary, NULL, 1, &number));
+    NULL_POINTER(leafless_boundary_triangle_regions, count,
+                 leafless_boundary_triangle_regions(boundary, NULL, 0, NULL));
+    MISALIGNED(leafless_boundary_triangle_regions, regions,
+               leafless_boundary_triangle_regions(boundary, (uint32_t *)WRONG(out), 1, &number));
+    MISALIGNED(leafless_boundary_triangle_regions, count,
+               leafless_boundary_triangle_regions(boundary, NULL, 0, (uint64_t *)WRONG(out)));
+    NULL_POINTER(leafless_boundary_peek_faces, boundary, leafless_boundary_peek_faces(NULL, arrays));
+    NULL_POINTER(leafless_boundary_peek_faces, arrays, leafless_boundary_peek_faces(boundary, NULL));
+    MISALIGNED(leafless_boundary_peek_faces, arrays,
+               leafless_boundary_peek_faces(boundary, (leafless_polyhedron_arrays *)WRONG(out)));
+    untouched();
+    CHECK(never == UNTOUCHED && number == 77);
+    MAY_BE_NULL(leafless_boundary_surfaces, surfaces, leafless_boundary_surfaces(boundary, NULL, 0, &number));
+    MAY_BE_NULL(leafless_boundary_regions, regions, leafless_boundary_regions(boundary, NULL, 0, &number));
+    MAY_BE_NULL(leafless_boundary_triangle_regions, regions,
+                leafless_boundary_triangle_regions(boundary, NULL, 0, &number));
+    leafless_boundary_free(boundary);
+    leafless_boundary_free(NULL);
+    (void)fresh();
+}
+
 static void null_pointers(void) {
     void *out = fresh();
     void *never = UNTOUCHED;
@@ -185,6 +247,29 @@ static void null_pointers(void) {
         NULL_POINTER(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, NULL, 12, total));
         MISALIGNED(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, (uint32_t *)WRONG(out), 12, total));
         MAY_BE_NULL(leafless_mesh_bodies, bodies, leafless_mesh_bodies(mesh, NULL, 0, &number));
+        {
+            const double one = 1;
+            leafless_attribute *constant = NULL;
+            leafless_mesh *bearing = NULL;
+            OK(leafless_attribute_new_constant(&one, 1, &constant));
+            NULL_POINTER(leafless_mesh_with_values, mesh,
+                         leafless_mesh_with_values(NULL, constant, "a", 1, 0, NULL, mesh_result));
+            NULL_POINTER(leafless_mesh_with_values, attribute,
+                         leafless_mesh_with_values(mesh, NULL, "a", 1, 0, NULL, mesh_result));
+            NULL_POINTER(leafless_mesh_with_values, name,
+                         leafless_mesh_with_values(mesh, constant, NULL, 1, 0, NULL, mesh_result));
+            NULL_POINTER(leafless_mesh_with_values, bearing,
+                         leafless_mesh_with_values(mesh, constant, "a", 1, 0, NULL, NULL));
+            MISALIGNED(leafless_mesh_with_values, options,
+                       leafless_mesh_with_values(mesh, constant, "a", 1, 0, (const leafless_options *)WRONG(&options),
+                                                 mesh_result));
+            MISALIGNED(leafless_mesh_with_values, bearing,
+                       leafless_mesh_with_values(mesh, constant, "a", 1, 0, NULL, (leafless_mesh **)WRONG(out)));
+            MAY_BE_NULL(leafless_mesh_with_values, options,
+                        leafless_mesh_with_values(mesh, constant, "a", 1, 0, NULL, &bearing));
+            leafless_mesh_free(bearing);
+            leafless_attribute_free(constant);
+        }
         NULL_POINTER(leafless_attribute_from_mesh, mesh, leafless_attribute_from_mesh(NULL, "a", 1, made));
         NULL_POINTER(leafless_attribute_from_mesh, name, leafless_attribute_from_mesh(mesh, NULL, 1, made));
         NULL_POINTER(leafless_attribute_from_mesh, attribute, leafless_attribute_from_mesh(mesh, "a", 1, NULL));
@@ -1262,15 +1347,27 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_solid_surface, solid, leafless_solid_surface(NULL, &frame, &surface, NULL, mesh_result));
     NULL_POINTER(leafless_solid_surface, frame, leafless_solid_surface(solid, NULL, &surface, NULL, mesh_result));
     NULL_POINTER(leafless_solid_surface, mesh, leafless_solid_surface(solid, &frame, &surface, NULL, NULL));
-    NULL_POINTER(leafless_solid_boundary, solid, leafless_solid_boundary(NULL, &frame, 1, NULL, NULL, mesh_result));
-    NULL_POINTER(leafless_solid_boundary, frame, leafless_solid_boundary(solid, NULL, 1, NULL, NULL, mesh_result));
-    NULL_POINTER(leafless_solid_boundary, mesh, leafless_solid_boundary(solid, &frame, 1, NULL, NULL, NULL));
+    NULL_POINTER(leafless_solid_boundary, solid,
+                 leafless_solid_boundary(NULL, &frame, 1, NULL, (leafless_boundary **)mesh_result));
+    NULL_POINTER(leafless_solid_boundary, frame,
+                 leafless_solid_boundary(solid, NULL, 1, NULL, (leafless_boundary **)mesh_result));
+    NULL_POINTER(leafless_solid_boundary, boundary, leafless_solid_boundary(solid, &frame, 1, NULL, NULL));
     NULL_POINTER(leafless_mesh_normals, mesh, leafless_mesh_normals(NULL, NULL, 0, count));
     NULL_POINTER(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 8, count));
     NULL_POINTER(leafless_mesh_normals, count, leafless_mesh_normals(mesh, NULL, 0, NULL));
     MISALIGNED(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, (double *)WRONG(out), 8, count));
     NULL_POINTER(leafless_mesh_area, mesh, leafless_mesh_area(NULL, (double *)out));
     NULL_POINTER(leafless_mesh_area, area_model, leafless_mesh_area(mesh, NULL));
+    NULL_POINTER(leafless_mesh_in_single_precision, mesh,
+                 leafless_mesh_in_single_precision(NULL, 0, NULL, NULL, mesh_result));
+    NULL_POINTER(leafless_mesh_in_single_precision, single,
+                 leafless_mesh_in_single_precision(mesh, 0, NULL, NULL, NULL));
+    MISALIGNED(leafless_mesh_in_single_precision, options,
+               leafless_mesh_in_single_precision(mesh, 0, (const leafless_options *)WRONG(&options), NULL, mesh_result));
+    MISALIGNED(leafless_mesh_in_single_precision, report,
+               leafless_mesh_in_single_precision(mesh, 0, NULL, (leafless_single_precision *)WRONG(out), mesh_result));
+    MISALIGNED(leafless_mesh_in_single_precision, single,
+               leafless_mesh_in_single_precision(mesh, 0, NULL, NULL, (leafless_mesh **)WRONG(out)));
     NULL_POINTER(leafless_mesh_written_form, mesh, leafless_mesh_written_form(NULL, &write, mesh_result));
     NULL_POINTER(leafless_mesh_written_form, options, leafless_mesh_written_form(mesh, NULL, mesh_result));
     NULL_POINTER(leafless_mesh_written_form, kept, leafless_mesh_written_form(mesh, &write, NULL));
@@ -1320,11 +1417,14 @@ static void volumes_and_surfaces(void) {
     MISALIGNED(leafless_solid_surface, mesh,
                leafless_solid_surface(solid, &frame, NULL, NULL, (leafless_mesh **)WRONG(out)));
     MISALIGNED(leafless_solid_boundary, frame,
-               leafless_solid_boundary(solid, (leafless_frame *)WRONG(&frame), 1, NULL, NULL, mesh_result));
-    MISALIGNED(leafless_solid_boundary, report,
-               leafless_solid_boundary(solid, &frame, 1, NULL, (leafless_boundary_report *)WRONG(out), mesh_result));
-    MISALIGNED(leafless_solid_boundary, mesh,
-               leafless_solid_boundary(solid, &frame, 1, NULL, NULL, (leafless_mesh **)WRONG(out)));
+               leafless_solid_boundary(solid, (leafless_frame *)WRONG(&frame), 1, NULL,
+                                       (leafless_boundary **)mesh_result));
+    MISALIGNED(leafless_solid_boundary, options,
+               leafless_solid_boundary(solid, &frame, 1, (const leafless_options *)WRONG(&options),
+                                       (leafless_boundary **)mesh_result));
+    MISALIGNED(leafless_solid_boundary, boundary,
+               leafless_solid_boundary(solid, &frame, 1, NULL, (leafless_boundary **)WRONG(out)));
+    boundaries();
     surface.resolve = LEAFLESS_RESOLVE_SOURCE;
     NULL_POINTER(leafless_octree_surface, surface.source, leafless_octree_surface(octree, &surface, NULL, mesh_result));
     surface.source = (leafless_solid *)WRONG(solid);
@@ -1384,13 +1484,22 @@ static void volumes_and_surfaces(void) {
                                   frame.origin[2] + 0.5 * frame.edge};
         leafless_solid *round = NULL;
         OK(leafless_solid_new_ball(middle, 0.25 * frame.edge, &round));
-        MAY_BE_NULL(leafless_solid_boundary, options,
-                    leafless_solid_boundary(round, &frame, frame.edge, NULL, NULL, mesh_result));
-        leafless_mesh_free(*mesh_result);
-        MAY_BE_NULL(leafless_solid_boundary, report,
-                    leafless_solid_boundary(round, &frame, frame.edge, &options, NULL, mesh_result));
-        leafless_mesh_free(*mesh_result);
+        {
+            leafless_boundary *boundary = NULL;
+            MAY_BE_NULL(leafless_solid_boundary, options,
+                        leafless_solid_boundary(round, &frame, frame.edge, NULL, &boundary));
+            leafless_boundary_free(boundary);
+        }
         leafless_solid_free(round);
+    }
+    {
+        leafless_single_precision told = LEAFLESS_INIT(leafless_single_precision);
+        MAY_BE_NULL(leafless_mesh_in_single_precision, options,
+                    leafless_mesh_in_single_precision(mesh, 0, NULL, &told, mesh_result));
+        leafless_mesh_free(*mesh_result);
+        MAY_BE_NULL(leafless_mesh_in_single_precision, report,
+                    leafless_mesh_in_single_precision(mesh, 0, &options, NULL, mesh_result));
+        leafless_mesh_free(*mesh_result);
     }
     MAY_BE_NULL(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 0, &number));
     CHECK(number == 8);

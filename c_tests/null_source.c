@@ -95,6 +95,27 @@ static leafless_status writes_mesh(const leafless_sink *sink) {
     return leafless_mesh_write(mesh, &options, sink);
 }
 
+/* A tetrahedron. */
+static leafless_polyhedron_arrays tetrahedron(void) {
+    static const double CORNERS[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const uint32_t FACES[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3}, LOOPS[5] = {0, 3, 6, 9, 12};
+    leafless_polyhedron_arrays arrays = LEAFLESS_INIT(leafless_polyhedron_arrays);
+    arrays.vertices = CORNERS;
+    arrays.vertex_count = 4;
+    arrays.corners = FACES;
+    arrays.corner_count = 12;
+    arrays.loops = LOOPS;
+    arrays.loop_count = 4;
+    return arrays;
+}
+
+static leafless_status writes_polygons(const leafless_sink *sink) {
+    const leafless_polyhedron_arrays arrays = tetrahedron();
+    leafless_mesh_write_options options = LEAFLESS_INIT(leafless_mesh_write_options);
+    options.format = LEAFLESS_MESH_FORMAT_OBJ;
+    return leafless_mesh_write_polygons(&arrays, &options, sink);
+}
+
 static leafless_status writes_volume(const leafless_sink *sink) {
     return leafless_volume_write(volume, LEAFLESS_VOLUME_FORMAT_NRRD, sink);
 }
@@ -114,6 +135,7 @@ static const struct {
     {"leafless_mesh_write", writes_mesh},
     {"leafless_volume_write", writes_volume},
     {"leafless_picture_write", writes_picture},
+    {"leafless_mesh_write_polygons", writes_polygons},
 };
 
 /* What a function was given, one piece after the other. */
@@ -427,6 +449,7 @@ static void parameters(void) {
     leafless_mesh_write_options write = LEAFLESS_INIT(leafless_mesh_write_options);
     leafless_scene_options options = LEAFLESS_INIT(leafless_scene_options);
     leafless_mesh_file_info found = LEAFLESS_INIT(leafless_mesh_file_info);
+    const leafless_polyhedron_arrays arrays = tetrahedron();
     write.format = LEAFLESS_MESH_FORMAT_OFF;
 
     NULL_POINTER(leafless_octree_read, source, leafless_octree_read(NULL, octree_result));
@@ -457,7 +480,15 @@ static void parameters(void) {
     MISALIGNED(leafless_mesh_write, mesh, leafless_mesh_write((const leafless_mesh *)WRONG(mesh), &write, &sink));
     MISALIGNED(leafless_mesh_write, options,
                leafless_mesh_write(mesh, (const leafless_mesh_write_options *)WRONG(&write), &sink));
+    NULL_POINTER(leafless_mesh_write_polygons, arrays, leafless_mesh_write_polygons(NULL, &write, &sink));
+    NULL_POINTER(leafless_mesh_write_polygons, sink, leafless_mesh_write_polygons(&arrays, &write, NULL));
+    MISALIGNED(leafless_mesh_write_polygons, arrays,
+               leafless_mesh_write_polygons((const leafless_polyhedron_arrays *)WRONG(&arrays), &write, &sink));
+    MISALIGNED(leafless_mesh_write_polygons, options,
+               leafless_mesh_write_polygons(&arrays, (const leafless_mesh_write_options *)WRONG(&write), &sink));
     /* Without a path the format must be given. */
+    refused(LEAFLESS_E_ARGUMENT, "leafless_mesh_write_polygons", "options.format",
+            leafless_mesh_write_polygons(&arrays, NULL, &sink));
     refused(LEAFLESS_E_ARGUMENT, "leafless_mesh_write", "options.format", leafless_mesh_write(mesh, NULL, &sink));
 
     NULL_POINTER(leafless_volume_read, source, leafless_volume_read(NULL, NULL, volume_result));
@@ -501,6 +532,7 @@ static void parameters(void) {
     MAY_BE_NULL(leafless_mesh_read, found, leafless_mesh_read(&ply, &read, NULL, mesh_result));
     leafless_mesh_free(*mesh_result);
     MAY_BE_NULL(leafless_mesh_write, options, leafless_mesh_write(mesh, NULL, &path));
+    MAY_BE_NULL(leafless_mesh_write_polygons, options, leafless_mesh_write_polygons(&arrays, NULL, &path));
     MAY_BE_NULL(leafless_volume_read, data, leafless_volume_read(&nrrd, NULL, volume_result));
     leafless_volume_free(*volume_result);
     MAY_BE_NULL(leafless_scene_read, options, leafless_scene_read(&csg, NULL, scene_result));
@@ -614,7 +646,7 @@ int main(void) {
     memset(&probe, 0x5a, sizeof probe);
     probe.struct_size = sizeof probe;
 
-    for (i = 0; i + 1 < COUNT(WRITERS); i++) {
+    for (i = 0; i + 2 < COUNT(WRITERS); i++) {
         READERS[i].bytes = written(WRITERS[i].write, READERS[i].path, &READERS[i].length);
     }
     free(written(writes_picture, "source.png", &picture_length));

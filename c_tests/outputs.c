@@ -14,6 +14,7 @@ static leafless_channel *channel;
 static leafless_attribute *attribute;
 static leafless_tridexel *tridexel;
 static leafless_tridexel_editor *editor;
+static leafless_boundary *boundary;
 static uint8_t *file;
 static uint64_t file_length;
 static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
@@ -35,7 +36,9 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_measures, leafless_solid_measure(solid, &frame, 0.1, 0, NULL, out))                                 \
     FILLS(leafless_surface_area, leafless_solid_surface_area(solid, &frame, 0.1, 0, NULL, out))                        \
     FILLS(leafless_section_area, leafless_solid_section_area(solid, &frame, zero, up, 0.1, 0, NULL, out))              \
-    FILLS(leafless_boundary_report, leafless_solid_boundary(solid, &frame, frame.edge, NULL, out, &made))              \
+    FILLS(leafless_boundary_report, leafless_boundary_describe(boundary, out))                                         \
+    FILLS(leafless_single_precision, leafless_mesh_in_single_precision(mesh, 0.1, NULL, out, &made))                   \
+    FILLS(leafless_polyhedron_arrays, leafless_boundary_peek_faces(boundary, out))                                     \
     FILLS(leafless_extent, leafless_solid_bounding_box(solid, &frame, 0.1, NULL, out))                                 \
     FILLS(leafless_clearance, leafless_solid_clearance(solid, other, &frame, 0.1, NULL, out))                          \
     FILLS(leafless_deviation, leafless_solid_deviation(solid, other, &frame, 0.1, 1, NULL, out))                       \
@@ -168,6 +171,7 @@ int main(void) {
     OK(leafless_channel_fill(attribute, &frame, NULL, NULL, &channel));
     OK(leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &tridexel));
     OK(leafless_tridexel_editor_new(tridexel, &editor));
+    OK(leafless_solid_boundary(solid, &frame, frame.edge, NULL, &boundary));
     for (which = 0;; which++) {
         (void)call(which, NULL, &name, &size);
         if (name == NULL) break;
@@ -177,6 +181,7 @@ int main(void) {
     values();
     leafless_octree_free(extended);
     leafless_tridexel_editor_free(editor);
+    leafless_boundary_free(boundary);
     leafless_tridexel_free(tridexel);
     leafless_channel_free(channel);
     leafless_attribute_free(attribute);

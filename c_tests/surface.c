@@ -536,6 +536,147 @@ static void refusals(void) {
     leafless_octree_free(octree);
 }
 
+/* What is known of a boundary, and its mesh. */
+static leafless_mesh *mesh_of(const leafless_boundary *boundary, leafless_boundary_report *report) {
+    leafless_mesh *mesh = NULL;
+    OK(leafless_init(report, sizeof *report));
+    OK(leafless_boundary_describe(boundary, report));
+    OK(leafless_boundary_mesh(boundary, &mesh));
+    return mesh;
+}
+
+/* The faces of a plate of 80 x 60 x 10 with a bore of radius 5 upwards through (40, 30, 0). */
+static void faces(const leafless_boundary *boundary, const leafless_boundary_report *report, double volume) {
+    leafless_boundary_surface surfaces[9];
+    leafless_boundary_region regions[7];
+    leafless_polyhedron_arrays arrays = LEAFLESS_INIT(leafless_polyhedron_arrays);
+    leafless_mesh_write_options options = LEAFLESS_INIT(leafless_mesh_write_options);
+    leafless_mesh *mesh = NULL;
+    const uint32_t *face_offsets;
+    uint32_t *of_triangles;
+    uint8_t *bytes;
+    uint64_t count = 0, length = 0, holes = 0, triangles = 0, planes = 0, i;
+    double deviation;
+    leafless_sink sink = leafless_to_buffer(NULL, 0, &length);
+    leafless_source source;
+
+    /* The two ends of the bore bound nothing. */
+    CHECK(report->surfaces == 9 && report->regions == 7);
+    OK(leafless_boundary_surfaces(boundary, NULL, 0, &count));
+    CHECK(count == 9);
+    FAILS(LEAFLESS_E_BUFFER, leafless_boundary_surfaces(boundary, surfaces, 8, &count));
+    OK(leafless_boundary_surfaces(boundary, surfaces, 9, &count));
+    FAILS(LEAFLESS_E_BUFFER, leafless_boundary_regions(boundary, regions, 6, &count));
+    OK(leafless_boundary_regions(boundary, regions, 7, &count));
+    CHECK(count == 7);
+    OK(leafless_boundary_peek_faces(boundary, &arrays));
+    CHECK(arrays.face_count == report->faces && arrays.shell_count == 1 && arrays.solid_count == 1);
+    face_offsets = (const uint32_t *)arrays.faces;
+    for (i = 0; i < 7; i++) {
+        const leafless_boundary_region *region = &regions[i];
+        const leafless_boundary_surface *surface = &surfaces[region->surface];
+        const double *n = surface->direction;
+        CHECK(region->first_face == (i == 0 ? 0 : regions[i - 1].first_face + regions[i - 1].face_count));
+        triangles += region->triangle_count;
+        if (surface->kind == LEAFLESS_SURFACE_KIND_PLANE) {
+            const double size = (n[0] != 0 ? 80 : 0) + (n[1] != 0 ? 60 : 0) + (n[2] != 0 ? 10 : 0);
+            CHECK(region->face_count == 1 && !region->is_turned);
+            CHECK(fabs(n[0]) + fabs(n[1]) + fabs(n[2]) == 1);
+            CHECK(surface->offset_model == (n[0] + n[1] + n[2] < 0 ? 0 : size));
+            holes += face_offsets[region->first_face + 1] - face_offsets[region->first_face] - 1;
+            planes++;
+        } else {
+            CHECK(surface->kind == LEAFLESS_SURFACE_KIND_CYLINDER && region->is_turned);
+            CHECK(fabs(surface->radius_model - 5) < 1e-14 && fabs(n[2]) == 1);
+            CHECK(fabs(surface->point_model[0] - 40) < 1e-12 && fabs(surface->point_model[1] - 30) < 1e-12);
+            CHECK(region->face_count == region->triangle_count);
+            CHECK(fabs(region->area_model - 100 * 3.14159265358979323846) < 0.5);
+        }
+    }
+    CHECK(planes == 6 && holes == 2);
+    OK(leafless_boundary_triangle_regions(boundary, NULL, 0, &count));
+    CHECK(count == triangles);
+    of_triangles = (uint32_t *)malloc((size_t)count * sizeof *of_triangles);
+    CHECK(of_triangles != NULL);
+    FAILS(LEAFLESS_E_BUFFER, leafless_boundary_triangle_regions(boundary, of_triangles, count - 1, &count));
+    OK(leafless_boundary_triangle_regions(boundary, of_triangles, count, &count));
+    for (i = 0; i < count; i++) {
+        CHECK(of_triangles[i] < 7 && regions[of_triangles[i]].triangle_count-- > 0);
+    }
+    free(of_triangles);
+
+    /* The faces are a polyhedron, and a file of polygons. */
+    OK(leafless_mesh_from_polyhedron(&arrays, &deviation, &mesh));
+    CHECK(fabs(volume_of(mesh) - volume) < 1e-8);
+    leafless_mesh_free(mesh);
+    options.format = LEAFLESS_MESH_FORMAT_OBJ;
+    OK(leafless_mesh_write_polygons(&arrays, &options, &sink));
+    bytes = (uint8_t *)malloc((size_t)length);
+    CHECK(bytes != NULL && length > 0);
+    sink = leafless_to_buffer(bytes, length, &length);
+    OK(leafless_mesh_write_polygons(&arrays, &options, &sink));
+    source = leafless_from_bytes(bytes, length, LEAFLESS_ACCESS_COPY);
+    OK(leafless_mesh_read(&source, NULL, NULL, &mesh));
+    CHECK(fabs(volume_of(mesh) - volume) < 1e-8 && told(mesh).is_closed);
+    leafless_mesh_free(mesh);
+    free(bytes);
+    options.format = LEAFLESS_MESH_FORMAT_STL;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_write_polygons(&arrays, &options, &sink));
+    options.format = LEAFLESS_MESH_FORMAT_ANY;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_write_polygons(&arrays, &options, &sink));
+    options.format = LEAFLESS_MESH_FORMAT_OFF;
+    arrays.tolerance_model = 1;
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_mesh_write_polygons(&arrays, &options, &sink));
+    arrays.tolerance_model = 0;
+    arrays.face_count--;
+    FAILS(LEAFLESS_E_MESH, leafless_mesh_write_polygons(&arrays, &options, &sink));
+}
+
+/* Every kind of surface, with its numbers. */
+static void kinds(void) {
+    const leafless_frame frame = {{-50, -50, -50}, 128, 12};
+    const double at[3] = {1, 2, 3}, to[3] = {1, 2, 7}, up[3] = {0, 0, 2}, radii[3] = {3, 4, 5};
+    const uint32_t expected[4] = {LEAFLESS_SURFACE_KIND_BALL, LEAFLESS_SURFACE_KIND_CONE, LEAFLESS_SURFACE_KIND_TORUS,
+                                  LEAFLESS_SURFACE_KIND_QUADRIC};
+    leafless_solid *shapes[4] = {NULL, NULL, NULL, NULL};
+    size_t i;
+    OK(leafless_solid_new_ball(at, 4, &shapes[0]));
+    OK(leafless_solid_new_frustum(at, to, 3, 1, &shapes[1]));
+    OK(leafless_solid_new_torus(at, up, 5, 1, &shapes[2]));
+    OK(leafless_solid_new_ellipsoid(at, radii, NULL, &shapes[3]));
+    for (i = 0; i < 4; i++) {
+        leafless_boundary *boundary = NULL;
+        leafless_boundary_surface surfaces[8], found;
+        uint64_t count = 0, k;
+        OK(leafless_solid_boundary(shapes[i], &frame, 0.5, NULL, &boundary));
+        OK(leafless_boundary_surfaces(boundary, surfaces, 8, &count));
+        memset(&found, 0, sizeof found);
+        for (k = 0; k < count; k++) {
+            if (surfaces[k].kind != LEAFLESS_SURFACE_KIND_PLANE) {
+                CHECK((uint32_t)surfaces[k].kind == expected[i]);
+                found = surfaces[k];
+            }
+        }
+        CHECK(found.kind != LEAFLESS_SURFACE_KIND_OTHER);
+        if (i < 3) {
+            CHECK(fabs(found.point_model[0] - 1) < 1e-12 && fabs(found.point_model[1] - 2) < 1e-12);
+            CHECK(fabs(found.point_model[2] - (i == 1 ? 9 : 3)) < 1e-12);
+        }
+        CHECK(i == 0 || i == 3 || fabs(found.direction[2]) == 1);
+        CHECK(fabs(found.radius_model - (i == 0 ? 4 : i == 2 ? 5 : 0)) < 1e-12);
+        CHECK(fabs(found.minor_model - (i == 2 ? 1 : 0)) < 1e-12);
+        CHECK(i != 1 || fabs(tan(found.half_angle_radians) - 0.5) < 1e-12);
+        /* (x - 1)² / 9 + (y - 2)² / 16 + (z - 3)² / 25 = 1. */
+        if (i == 3) {
+            const double *c = found.coefficients;
+            CHECK(fabs(c[0] / c[1] - 16.0 / 9) < 1e-12 && fabs(c[0] / c[2] - 25.0 / 9) < 1e-12 && c[0] < 0);
+            CHECK(c[3] == 0 && c[4] == 0 && c[5] == 0 && fabs(c[6] / c[0] + 2) < 1e-12);
+        }
+        leafless_boundary_free(boundary);
+        leafless_solid_free(shapes[i]);
+    }
+}
+
 /* A block with a hole: plane faces between their corners, a wall in chords. */
 static void boundaries(void) {
     const double low[3] = {0, 0, 0}, high[3] = {80, 60, 10};
@@ -543,13 +684,21 @@ static void boundaries(void) {
     const leafless_frame frame = {{-10, -20, -45}, 100, 14};
     const double pi = 3.14159265358979323846;
     leafless_solid *block = NULL, *bore = NULL, *plate = NULL;
+    leafless_boundary *boundary = NULL, *reference = NULL;
     leafless_mesh *mesh = NULL;
-    leafless_boundary_report report = LEAFLESS_INIT(leafless_boundary_report);
+    leafless_boundary_report report;
     OK(leafless_solid_new_box(low, high, &block));
-    OK(leafless_solid_boundary(block, &frame, 1, NULL, &report, &mesh));
+    OK(leafless_solid_boundary(block, &frame, 1, NULL, &boundary));
+    mesh = mesh_of(boundary, &report);
     CHECK(report.intersecting_pairs == 0 && report.cells >= 8 && report.splits > 0);
     CHECK(report.deviation_model >= 0 && report.deviation_model < 1e-9);
-    CHECK( told(mesh).triangles == 12 && told(mesh).vertices == 8);
+    CHECK(report.faces == 6 && report.regions == 6 && report.surfaces == 6);
+    OK(leafless_boundary_ref(boundary, &reference));
+    CHECK(reference == boundary);
+    leafless_boundary_free(boundary);
+    leafless_boundary_free(reference);
+    leafless_boundary_free(NULL);
+    CHECK(told(mesh).triangles == 12 && told(mesh).vertices == 8);
     CHECK(fabs(volume_of(mesh) - 48000) < 1e-9);
     leafless_mesh_free(mesh);
     OK(leafless_solid_new_cylinder(from, to, 5, &bore));
@@ -559,16 +708,19 @@ static void boundaries(void) {
         both[1] = bore;
         OK(leafless_solid_combine(LEAFLESS_OPERATION_DIFFERENCE, both, 2, &plate));
     }
-    OK(leafless_solid_boundary(plate, &frame, 0.008, NULL, &report, &mesh));
+    OK(leafless_solid_boundary(plate, &frame, 0.008, NULL, &boundary));
+    mesh = mesh_of(boundary, &report);
     CHECK(report.deviation_model > 0.001 && report.deviation_model <= 0.008);
     CHECK(report.intersecting_pairs == 0 && told(mesh).is_manifold && told(mesh).euler_characteristic == 0);
     CHECK(told(mesh).triangles < 1500 && fabs(volume_of(mesh) - (48000 - 250 * pi)) < 1);
+    faces(boundary, &report, volume_of(mesh));
     leafless_mesh_free(mesh);
-    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &frame, 0, NULL, &report, &mesh));
+    leafless_boundary_free(boundary);
+    FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &frame, 0, NULL, &boundary));
     {
         leafless_frame small = frame;
         small.edge = 50;
-        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &small, 1, NULL, &report, &mesh));
+        FAILS(LEAFLESS_E_ARGUMENT, leafless_solid_boundary(plate, &small, 1, NULL, &boundary));
     }
     leafless_solid_free(plate);
     leafless_solid_free(bore);
@@ -577,6 +729,7 @@ static void boundaries(void) {
 
 int main(void) {
     boundaries();
+    kinds();
     octrees();
     solids();
     shrink();

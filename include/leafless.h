@@ -283,6 +283,17 @@ typedef struct leafless_attribute leafless_attribute;
 /// needs the reference that it gives back for itself.
 typedef struct leafless_channel leafless_channel;
 
+/// The boundary of a solid: a mesh whose triangles know their surfaces, and its faces.
+///
+/// A region is what hangs together on one surface, over edges of the mesh. On a plane it is one face: an
+/// outer loop, which runs counter-clockwise as seen from outside of the solid, and a loop around each hole,
+/// which runs the other way. On a curved surface its triangles are the faces. Two faces that meet in an edge
+/// have the same vertices there.
+///
+/// Immutable: all its functions may be called at once from any number of threads, but leafless_boundary_free
+/// needs the reference that it gives back for itself.
+typedef struct leafless_boundary leafless_boundary;
+
 /// A solid as intervals along the rays of a lattice, in one to three directions: a tri-dexel model.
 ///
 /// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in
@@ -1289,7 +1300,8 @@ typedef struct leafless_mesh_write_options {
 /// Vertices and triangles keep their order. PLY (little-endian, of type double), OBJ and OFF hold the
 /// coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that
 /// have a vertex twice. STL rounds coordinates to 32 bits without a word: what is small and far away loses
-/// triangles, up to all of them. leafless_mesh_written_form tells before. O(n) time and memory.
+/// triangles, up to all of them. leafless_mesh_written_form tells before, and
+/// leafless_mesh_in_single_precision mends what can be mended. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, or NULL, with a format unless the sink has a path; `sink`, one struct.
 /// - Errors: LEAFLESS_E_ARGUMENT if the format or the unit is none, if the format is LEAFLESS_MESH_FORMAT_ANY
@@ -1299,6 +1311,59 @@ typedef struct leafless_mesh_write_options {
 /// - Untrusted input: any mesh.
 leafless_status leafless_mesh_write(const leafless_mesh *mesh, const leafless_mesh_write_options *options,
     const leafless_sink *sink);
+
+/// What became of a mesh in single precision.
+typedef struct leafless_single_precision {
+    uint32_t struct_size;  ///< sizeof(leafless_single_precision).
+    uint32_t reserved;  ///< 0.
+    double rounding_model;  ///< The farthest that rounding moves a vertex along an axis.
+    /// No point of the given mesh is further from the other one, and none of that further from the given one:
+    /// proven.
+    double deviation_model;
+    uint64_t collapsed;  ///< Triangles of which rounding made an edge or a point, and which are gone.
+    /// Triangles of which rounding made a line, and which were joined to their neighbours.
+    uint64_t flipped;
+    uint64_t moved;  ///< Vertices that were moved, to places next to their nearest ones.
+    uint64_t degenerate;  ///< Triangles without area that are left, and vertices that lie where others do.
+    uint64_t intersecting_pairs;  ///< Pairs of triangles that intersect each other and are left.
+} leafless_single_precision;
+
+/// The mesh with coordinates that are 32-bit numbers, as an STL has them, without triangles that rounding
+/// makes degenerate and without pairs that it makes intersect, as far as that can be had: leafless_mesh_write
+/// then loses nothing. Edges whose ends meet are collapsed, triangles that become lines are joined to their
+/// neighbours, and vertices of what is degenerate or intersects after that go to places next to theirs, if
+/// these are no further than `tolerance_model` from where they were given. A closed mesh stays closed. A mesh
+/// whose coordinates are 32-bit numbers already is given back as it is, and of it nothing is counted.
+///
+/// Time is that of leafless_mesh_intersecting_pairs, a few times.
+///
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `single`, one
+///   pointer.
+/// - Result: `*single`, without attributes; `*report`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the tolerance is negative or not a number, or for coordinates beyond the
+///   range of float; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*single` back with leafless_mesh_free.
+/// - Untrusted input: any mesh; the work is bounded.
+leafless_status leafless_mesh_in_single_precision(const leafless_mesh *mesh, double tolerance_model,
+    const leafless_options *options, leafless_single_precision *report, leafless_mesh **single);
+
+/// Writes solids of plane faces as a file of polygons: OBJ or OFF. A face with holes, which these formats do
+/// not have, is cut into a few polygons without; all other faces are as they are given. No vertex is added,
+/// and vertices keep their order.
+///
+/// The faces are checked as leafless_mesh_from_polyhedron does, whose default tolerance is the only one here.
+/// O(n log n) time.
+///
+/// - Buffers: `arrays`, one struct, whose `tolerance_model` is 0; what its pointers lead to must not change
+///   during the call. `options`, one struct, or NULL, of which the format and the deviation count, with a
+///   format unless the sink has a path; `sink`, one struct.
+/// - Errors: those of leafless_mesh_from_polyhedron; LEAFLESS_E_ARGUMENT if the format is neither OBJ nor
+///   OFF, or is LEAFLESS_MESH_FORMAT_ANY and there is no path or it has none of the extensions;
+///   LEAFLESS_E_IO; LEAFLESS_E_CALLBACK; LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the arrays are only read during the call, and may be freed after it.
+/// - Untrusted input: any values in the arrays.
+leafless_status leafless_mesh_write_polygons(const leafless_polyhedron_arrays *arrays,
+    const leafless_mesh_write_options *options, const leafless_sink *sink);
 
 /// The mesh that a reader gets back from the file that leafless_mesh_write writes. An STL has 32-bit
 /// coordinates: vertices move, vertices that meet are one, and triangles of which two corners meet are
@@ -4217,6 +4282,25 @@ leafless_status leafless_mesh_attribute_values(const leafless_mesh *mesh, uint64
 leafless_status leafless_mesh_bodies(const leafless_mesh *mesh, uint32_t *bodies, uint64_t capacity,
     uint64_t *count);
 
+/// The same mesh, whose triangles bear the values of an attribute under a name: that of a triangle is the
+/// value just inside of it, `depth_model` behind its centroid. If there is none, it is that at a quarter of
+/// the depth, at twice the depth, or at the centroid itself, and otherwise the triangle has no value. So a
+/// surface bears what channels of its solid say: half the edge of a channel's cells is a good depth.
+/// leafless_mesh_write writes colours as `colour`, and materials as `material`.
+///
+/// O(t) questions. An attribute that the mesh bears under the name is replaced.
+///
+/// - Buffers: `name`, `name_length` bytes of UTF-8; `options`, one struct or NULL; `bearing`, one pointer.
+/// - Result: `*bearing`, the same for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT unless the depth is finite and not negative; LEAFLESS_E_UTF8;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` and `attribute` stay as they are; give `*bearing` back with leafless_mesh_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any mesh, any attribute, any text.
+leafless_status leafless_mesh_with_values(const leafless_mesh *mesh, const leafless_attribute *attribute,
+    const char *name, size_t name_length, double depth_model, const leafless_options *options,
+    leafless_mesh **bearing);
+
 /// The attribute that has at each point what a mesh bears at the point of its surface that is nearest: the
 /// value of the nearest triangle, or, with values for corners, what lies between them. Of triangles that are
 /// equally near the first one counts. Its ranges are proven.
@@ -4920,48 +5004,6 @@ leafless_status leafless_octree_surface(const leafless_octree *octree,
 leafless_status leafless_solid_surface(const leafless_solid *solid, const leafless_frame *frame,
     const leafless_surface_options *surface, const leafless_options *options, leafless_mesh **mesh);
 
-/// What is known of the boundary of a solid as a mesh.
-typedef struct leafless_boundary_report {
-    uint32_t struct_size;  ///< sizeof(leafless_boundary_report).
-    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary
-    /// from the mesh (model units). That is proven; infinite if nothing is.
-    double deviation_model;
-    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell
-    /// surfaces apart.
-    uint64_t intersecting_pairs;
-    uint64_t cells;  ///< Cells that the boundary passes through.
-    uint64_t splits;  ///< Cells that were split.
-} leafless_boundary_report;
-
-/// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep
-/// theirs: its plane faces as they are, with triangles between their corners alone, and curved ones in chords
-/// that are no further from them than about `tolerance_model`. Edges are sharp, and corners are exact to
-/// rounding. The solid must end inside of the universe of the frame.
-///
-/// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices
-/// lie at one place. Cells are split until at most three surfaces in each have a simple arrangement. Where
-/// more meet in a point, and where surfaces touch, they are split as far as the depth of the frame, which
-/// costs little: 12 to 16 is good for parts.
-///
-/// How far the mesh and the boundary are from each other is proven by the surfaces. Where that is more than
-/// the tolerance, cells are split, as far as the depth of the frame.
-///
-/// About 50 microseconds and 500 bytes a cell; one thread does it all.
-///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `report`, one struct or NULL; `mesh`, one
-///   pointer.
-/// - Result: `*mesh`; `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of
-///   something else than surfaces, as a mesh or a host program's function does, or `tolerance_model` is not
-///   between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles;
-///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*mesh` back with leafless_mesh_free.
-/// - Threads: any.
-/// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
-leafless_status leafless_solid_boundary(const leafless_solid *solid, const leafless_frame *frame,
-    double tolerance_model, const leafless_options *options, leafless_boundary_report *report,
-    leafless_mesh **mesh);
-
 /// The surface of a volume by marching cubes: its samples are the centres of voxels, which need not be cubes,
 /// and its vertices lie where the samples, interpolated between two voxels, leave the band. For samples of a
 /// smooth function that is on the surface to second order in the spacing. Between bits, and beside a sample
@@ -4981,6 +5023,170 @@ leafless_status leafless_solid_boundary(const leafless_solid *solid, const leafl
 /// - Untrusted input: any volume.
 leafless_status leafless_volume_surface(const leafless_volume *volume, const leafless_interval *band,
     const leafless_options *options, leafless_mesh **mesh);
+
+/// What a surface is.
+LEAFLESS_ENUM(leafless_surface_kind, uint32_t) {
+    /// Anything without numbers of its own: a sum of powers, a torus that is stretched.
+    LEAFLESS_SURFACE_KIND_OTHER = 0,
+    LEAFLESS_SURFACE_KIND_PLANE = 1,  ///< A plane: the points p with `direction` · p = `offset_model`.
+    LEAFLESS_SURFACE_KIND_BALL = 2,  ///< The points that are `radius_model` away from `point_model`.
+    /// The points that are `radius_model` away from the line through `point_model` along `direction`.
+    LEAFLESS_SURFACE_KIND_CYLINDER = 3,
+    /// The lines through `point_model` at an angle of `half_angle_radians` to `direction`.
+    LEAFLESS_SURFACE_KIND_CONE = 4,
+    /// The points that are `minor_model` away from the circle of radius `radius_model` around `point_model`,
+    /// across `direction`.
+    LEAFLESS_SURFACE_KIND_TORUS = 5,
+    LEAFLESS_SURFACE_KIND_QUADRIC = 6,  ///< Any other surface of degree two.
+};
+
+/// A surface in model space. Fields that the kind does not use are 0.
+///
+/// The numbers are those of the exact surface, rounded. A surface of degree two has the name of a ball, a
+/// cylinder or a cone if its coefficients are those of one to 10^-9 of their size.
+typedef struct leafless_boundary_surface {
+    leafless_surface_kind kind;  ///< A leafless_surface_kind.
+    uint32_t reserved;  ///< 0.
+    /// Of a ball and a torus the centre, of a cylinder the point of the axis that is nearest to the origin,
+    /// of a cone the apex.
+    double point_model[3];
+    /// Of a plane the normal, which points out of the half-space that it bounds; of a cylinder, a cone and a
+    /// torus the axis. Of length 1.
+    double direction[3];
+    double offset_model;  ///< Of a plane: its distance from the origin, along the normal.
+    double radius_model;  ///< Of a ball and a cylinder, and of the circle of a torus.
+    double minor_model;  ///< Of a torus.
+    double half_angle_radians;  ///< Of a cone: the angle between axis and surface, between 0 and π/2.
+    /// Of a quadric: the factors of x², y², z², xy, yz, zx, x, y, z and 1, as leafless_solid_new_quadric
+    /// takes them. The largest one is between 1/2 and 1.
+    double coefficients[10];
+} leafless_boundary_surface;
+
+/// A part of a boundary that hangs together on one surface.
+typedef struct leafless_boundary_region {
+    /// The number of its surface among those of leafless_boundary_surfaces; UINT32_MAX where the boundary is
+    /// known to a cell only.
+    uint32_t surface;
+    uint32_t first_face;  ///< Its first face. The others follow.
+    uint32_t face_count;  ///< How many faces it has.
+    uint32_t triangle_count;  ///< How many triangles of the mesh.
+    double area_model;  ///< The area of these triangles.
+    /// Whether the normal of the surface points into the solid: that of a plane as `direction` says, that of
+    /// a ball, a cylinder, a cone and a torus away from its centre, axis or circle. So a bore is turned, and
+    /// a pin is not.
+    bool is_turned;
+} leafless_boundary_region;
+
+/// What is known of the boundary of a solid.
+typedef struct leafless_boundary_report {
+    uint32_t struct_size;  ///< sizeof(leafless_boundary_report).
+    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary
+    /// from the mesh (model units). That is proven; infinite if nothing is.
+    double deviation_model;
+    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell
+    /// surfaces apart.
+    uint64_t intersecting_pairs;
+    uint64_t cells;  ///< Cells that the boundary passes through.
+    uint64_t splits;  ///< Cells that were split.
+    uint64_t surfaces;  ///< Surfaces that the solid is made of.
+    uint64_t regions;  ///< Regions.
+    uint64_t faces;  ///< Faces.
+} leafless_boundary_report;
+
+/// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep
+/// theirs: its plane faces as they are, with triangles between their corners alone, and curved ones in chords
+/// that are no further from them than about `tolerance_model`. Edges are sharp, and corners are exact to
+/// rounding. The solid must end inside of the universe of the frame.
+///
+/// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices
+/// lie at one place. Cells are split until at most three surfaces in each have a simple arrangement. Where
+/// more meet in a point, and where surfaces touch, they are split as far as the depth of the frame, which
+/// costs little: 12 to 16 is good for parts.
+///
+/// How far the mesh and the boundary are from each other is proven by the surfaces. Where that is more than
+/// the tolerance, cells are split, as far as the depth of the frame.
+///
+/// About 50 microseconds and 500 bytes a cell; one thread does it all.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `boundary`, one pointer.
+/// - Result: `*boundary`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of
+///   something else than surfaces, as a mesh or a host program's function does, or `tolerance_model` is not
+///   between 2^-256 and 2^256; LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices, triangles or
+///   corners; LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `solid` stays as it is; give `*boundary` back with leafless_boundary_free.
+/// - Threads: any.
+/// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
+leafless_status leafless_solid_boundary(const leafless_solid *solid, const leafless_frame *frame,
+    double tolerance_model, const leafless_options *options, leafless_boundary **boundary);
+
+/// One more reference to a boundary.
+///
+/// - Buffers: `boundary`, a handle; `reference`, one pointer.
+/// - Result: `*reference`, equal to `boundary`.
+/// - Ownership: give each reference back with leafless_boundary_free.
+leafless_status leafless_boundary_ref(const leafless_boundary *boundary, leafless_boundary **reference);
+
+/// Gives back a reference to a boundary; with the last one the boundary is gone. Its mesh stays if it was
+/// asked for.
+///
+/// - Buffers: `boundary`, a handle or NULL, which does nothing.
+/// - Ownership: the reference is gone.
+/// - Threads: any; no other call may use this reference.
+void leafless_boundary_free(leafless_boundary *boundary);
+
+/// What is known of a boundary. O(1).
+///
+/// - Buffers: `report`, one struct.
+/// - Result: `*report`.
+leafless_status leafless_boundary_describe(const leafless_boundary *boundary,
+    leafless_boundary_report *report);
+
+/// The mesh of a boundary. O(1).
+///
+/// - Buffers: `mesh`, one pointer.
+/// - Result: `*mesh`.
+/// - Ownership: the mesh is shared, and `boundary` may be freed; give `*mesh` back with leafless_mesh_free.
+leafless_status leafless_boundary_mesh(const leafless_boundary *boundary, leafless_mesh **mesh);
+
+/// The surfaces that a solid is made of, by their kinds and numbers. Some may bound nothing.
+///
+/// - Buffers: `surfaces`, room for `capacity` structs, or NULL to ask for the count only; `count`, one
+///   number.
+/// - Result: `*count`; the surfaces.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+leafless_status leafless_boundary_surfaces(const leafless_boundary *boundary,
+    leafless_boundary_surface *surfaces, uint64_t capacity, uint64_t *count);
+
+/// The regions of a boundary, in the order of their faces.
+///
+/// - Buffers: `regions`, room for `capacity` structs, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`; the regions.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+leafless_status leafless_boundary_regions(const leafless_boundary *boundary,
+    leafless_boundary_region *regions, uint64_t capacity, uint64_t *count);
+
+/// The region of each triangle of the mesh of a boundary.
+///
+/// - Buffers: `regions`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Result: `*count`, the number of triangles; in `regions` the number of the region of each.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small.
+leafless_status leafless_boundary_triangle_regions(const leafless_boundary *boundary, uint32_t *regions,
+    uint64_t capacity, uint64_t *count);
+
+/// The faces of a boundary where they lie, without a copy, as leafless_mesh_write_polygons and
+/// leafless_mesh_from_polyhedron take them: vertices of type double, which are those of the mesh, and indices
+/// of 32 bits.
+///
+/// A plane region is triangles, too, if its loops touch each other along edges, as they do where the solid
+/// touches itself, or if its corners lie further beside one plane than 10^-9 of the solid's extent. A shell
+/// around a void belongs to the smallest solid in which it lies.
+///
+/// - Buffers: `arrays`, one struct.
+/// - Result: `*arrays`.
+/// - Ownership: the arrays belong to the boundary and live as long as the reference `boundary`.
+leafless_status leafless_boundary_peek_faces(const leafless_boundary *boundary,
+    leafless_polyhedron_arrays *arrays);
 
 /* ---- 25. Tri-dexel models ----------------------------------------------------------------------------- */
 

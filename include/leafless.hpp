@@ -340,6 +340,7 @@ class columns;
 class lazy;
 class attribute;
 class channel;
+class boundary;
 class tridexel;
 class tridexel_editor;
 class layer;
@@ -383,6 +384,11 @@ public:
         leafless::mesh>> read(const leafless_source &source, const leafless_mesh_options &options);
     [[nodiscard]] returns<std::tuple<uint64_t, std::string_view>> peek_warning_at(uint64_t index) const;
     returns<void> write(const leafless_mesh_write_options &options, const leafless_sink &sink) const;
+    [[nodiscard]] returns<std::tuple<leafless_single_precision,
+        leafless::mesh>> in_single_precision(double tolerance_model,
+        const leafless_options *options = nullptr) const;
+    static returns<void> write_polygons(const leafless_polyhedron_arrays &arrays,
+        const leafless_mesh_write_options &options, const leafless_sink &sink);
     [[nodiscard]] returns<leafless::mesh> written_form(const leafless_mesh_write_options &options) const;
     [[nodiscard]] returns<std::tuple<uint64_t, std::string_view, uint32_t,
         bool>> peek_attribute_at(uint64_t index) const;
@@ -390,6 +396,8 @@ public:
         uint64_t value) const;
     [[nodiscard]] returns<std::vector<double>> attribute_values(uint64_t index) const;
     [[nodiscard]] returns<std::vector<uint32_t>> bodies() const;
+    [[nodiscard]] returns<leafless::mesh> with_values(const leafless::attribute &attribute,
+        std::string_view name, double depth_model, const leafless_options *options = nullptr) const;
 };
 
 /// A leafless_solid.
@@ -490,8 +498,7 @@ public:
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::mesh> surface(const leafless_frame &frame,
         const leafless_surface_options *surface = nullptr, const leafless_options *options = nullptr) const;
-    [[nodiscard]] returns<std::tuple<leafless_boundary_report,
-        leafless::mesh>> boundary(const leafless_frame &frame, double tolerance_model,
+    [[nodiscard]] returns<leafless::boundary> boundary(const leafless_frame &frame, double tolerance_model,
         const leafless_options *options = nullptr) const;
     [[nodiscard]] static returns<leafless::solid> from_tridexel(const leafless::tridexel &tridexel,
         bool is_truth, const leafless_options *options = nullptr);
@@ -748,6 +755,19 @@ public:
         const point &min_model, const point &max_model, const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::octree> region(const double *low, const double *high,
         const leafless_options *options = nullptr) const;
+};
+
+/// A leafless_boundary.
+class boundary : public detail::owner<leafless_boundary, leafless_boundary_free> {
+public:
+    using owner::owner;
+    [[nodiscard]] returns<leafless::boundary> share() const;
+    [[nodiscard]] returns<leafless_boundary_report> describe() const;
+    [[nodiscard]] returns<leafless::mesh> mesh() const;
+    [[nodiscard]] returns<std::vector<leafless_boundary_surface>> surfaces() const;
+    [[nodiscard]] returns<std::vector<leafless_boundary_region>> regions() const;
+    [[nodiscard]] returns<std::vector<uint32_t>> triangle_regions() const;
+    [[nodiscard]] returns<leafless_polyhedron_arrays> peek_faces() const;
 };
 
 /// A leafless_tridexel.
@@ -1072,6 +1092,23 @@ inline returns<void> mesh::write(const leafless_mesh_write_options &options,
     return detail::finish(status);
 }
 
+inline returns<std::tuple<leafless_single_precision,
+    leafless::mesh>> mesh::in_single_precision(double tolerance_model,
+    const leafless_options *options) const {
+    leafless_single_precision report = LEAFLESS_INIT(leafless_single_precision);
+    leafless_mesh *single_handle = nullptr;
+    const leafless_status status = leafless_mesh_in_single_precision(get(), tolerance_model, options, &report,
+        &single_handle);
+    return detail::finish(status, std::tuple<leafless_single_precision, leafless::mesh>(report,
+        leafless::mesh(single_handle)));
+}
+
+inline returns<void> mesh::write_polygons(const leafless_polyhedron_arrays &arrays,
+    const leafless_mesh_write_options &options, const leafless_sink &sink) {
+    const leafless_status status = leafless_mesh_write_polygons(&arrays, &options, &sink);
+    return detail::finish(status);
+}
+
 inline returns<leafless::mesh> mesh::written_form(const leafless_mesh_write_options &options) const {
     leafless_mesh *kept_handle = nullptr;
     const leafless_status status = leafless_mesh_written_form(get(), &options, &kept_handle);
@@ -1122,6 +1159,14 @@ inline returns<std::vector<uint32_t>> mesh::bodies() const {
         status = leafless_mesh_bodies(get(), bodies.data(), bodies.size(), &count);
     }
     return detail::finish(status, std::move(bodies));
+}
+
+inline returns<leafless::mesh> mesh::with_values(const leafless::attribute &attribute, std::string_view name,
+    double depth_model, const leafless_options *options) const {
+    leafless_mesh *bearing_handle = nullptr;
+    const leafless_status status = leafless_mesh_with_values(get(), attribute.get(), name.data(), name.size(),
+        depth_model, options, &bearing_handle);
+    return detail::finish(status, leafless::mesh(bearing_handle));
 }
 
 inline returns<leafless::solid> solid::from_mesh(const leafless::mesh &mesh, leafless_fill fill) {
@@ -1529,15 +1574,12 @@ inline returns<leafless::mesh> solid::surface(const leafless_frame &frame,
     return detail::finish(status, leafless::mesh(mesh_handle));
 }
 
-inline returns<std::tuple<leafless_boundary_report,
-    leafless::mesh>> solid::boundary(const leafless_frame &frame, double tolerance_model,
+inline returns<leafless::boundary> solid::boundary(const leafless_frame &frame, double tolerance_model,
     const leafless_options *options) const {
-    leafless_boundary_report report = LEAFLESS_INIT(leafless_boundary_report);
-    leafless_mesh *mesh_handle = nullptr;
-    const leafless_status status = leafless_solid_boundary(get(), &frame, tolerance_model, options, &report,
-        &mesh_handle);
-    return detail::finish(status, std::tuple<leafless_boundary_report, leafless::mesh>(report,
-        leafless::mesh(mesh_handle)));
+    leafless_boundary *boundary_handle = nullptr;
+    const leafless_status status = leafless_solid_boundary(get(), &frame, tolerance_model, options,
+        &boundary_handle);
+    return detail::finish(status, leafless::boundary(boundary_handle));
 }
 
 inline returns<leafless::solid> solid::from_tridexel(const leafless::tridexel &tridexel, bool is_truth,
@@ -2463,6 +2505,63 @@ inline returns<leafless::octree> channel::region(const double *low, const double
     leafless_octree *octree_handle = nullptr;
     const leafless_status status = leafless_channel_region(get(), low, high, options, &octree_handle);
     return detail::finish(status, leafless::octree(octree_handle));
+}
+
+inline returns<leafless::boundary> boundary::share() const {
+    leafless_boundary *reference_handle = nullptr;
+    const leafless_status status = leafless_boundary_ref(get(), &reference_handle);
+    return detail::finish(status, leafless::boundary(reference_handle));
+}
+
+inline returns<leafless_boundary_report> boundary::describe() const {
+    leafless_boundary_report report = LEAFLESS_INIT(leafless_boundary_report);
+    const leafless_status status = leafless_boundary_describe(get(), &report);
+    return detail::finish(status, report);
+}
+
+inline returns<leafless::mesh> boundary::mesh() const {
+    leafless_mesh *mesh_handle = nullptr;
+    const leafless_status status = leafless_boundary_mesh(get(), &mesh_handle);
+    return detail::finish(status, leafless::mesh(mesh_handle));
+}
+
+inline returns<std::vector<leafless_boundary_surface>> boundary::surfaces() const {
+    std::uint64_t count = 0;
+    std::vector<leafless_boundary_surface> surfaces;
+    leafless_status status = leafless_boundary_surfaces(get(), nullptr, 0, &count);
+    if (status == LEAFLESS_OK) {
+        surfaces.resize(static_cast<std::size_t>(count));
+        status = leafless_boundary_surfaces(get(), surfaces.data(), surfaces.size(), &count);
+    }
+    return detail::finish(status, std::move(surfaces));
+}
+
+inline returns<std::vector<leafless_boundary_region>> boundary::regions() const {
+    std::uint64_t count = 0;
+    std::vector<leafless_boundary_region> regions;
+    leafless_status status = leafless_boundary_regions(get(), nullptr, 0, &count);
+    if (status == LEAFLESS_OK) {
+        regions.resize(static_cast<std::size_t>(count));
+        status = leafless_boundary_regions(get(), regions.data(), regions.size(), &count);
+    }
+    return detail::finish(status, std::move(regions));
+}
+
+inline returns<std::vector<uint32_t>> boundary::triangle_regions() const {
+    std::uint64_t count = 0;
+    std::vector<uint32_t> regions;
+    leafless_status status = leafless_boundary_triangle_regions(get(), nullptr, 0, &count);
+    if (status == LEAFLESS_OK) {
+        regions.resize(static_cast<std::size_t>(count));
+        status = leafless_boundary_triangle_regions(get(), regions.data(), regions.size(), &count);
+    }
+    return detail::finish(status, std::move(regions));
+}
+
+inline returns<leafless_polyhedron_arrays> boundary::peek_faces() const {
+    leafless_polyhedron_arrays arrays = LEAFLESS_INIT(leafless_polyhedron_arrays);
+    const leafless_status status = leafless_boundary_peek_faces(get(), &arrays);
+    return detail::finish(status, arrays);
 }
 
 inline returns<leafless::tridexel> tridexel::build(const leafless::solid &solid, const leafless_frame &frame,

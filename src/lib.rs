@@ -79,6 +79,8 @@
 //! | … where a ray meets a solid, how high it is? | `query/ray/`, `query/columns/` |
 //! | … a ray of a mesh, of a half-space? | `solid/mesh/chords.rs`, `solid/half_space/lines.rs` |
 //! | … a closed triangle mesh of a solid? | `surface/cubes.rs`, `simple.rs`, `shrink.rs`, `solid.rs`, `volume.rs`, `dexel.rs` |
+//! | … plane faces as polygons, the kind of a surface and its radius? | `surface/boundary/regions.rs`, `solid/half_space/shape.rs` |
+//! | … a mesh that an STL keeps? | `mesh/single.rs` |
 //! | … a picture taken, a triangle drawn, a plane section, a volume, a legend? | `render/tile.rs`, `coverage.rs`, `slice.rs`, `volume/`, `legend.rs` |
 //! | … the normal of a surface of which only cells are known? | `render/normals.rs` |
 //! | … the list of voxels, their depth order? | `voxel/walk.rs`, `records.rs`, `order.rs` |

@@ -153,7 +153,17 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             measured, has_centroid, is_clipped, is_exact
         }
         leafless_surface_area { struct_size, area_model, splits, level, measured, is_clipped }
-        leafless_boundary_report { struct_size, deviation_model, intersecting_pairs, cells, splits }
+        leafless_boundary_report {
+            struct_size, deviation_model, intersecting_pairs, cells, splits, surfaces, regions, faces
+        }
+        leafless_single_precision { struct_size, reserved,
+            rounding_model, deviation_model, collapsed, flipped, moved, degenerate, intersecting_pairs
+        }
+        leafless_boundary_surface {
+            kind, reserved, point_model, direction, offset_model, radius_model, minor_model, half_angle_radians,
+            coefficients
+        }
+        leafless_boundary_region { surface, first_face, face_count, triangle_count, area_model, is_turned }
         leafless_section_area { struct_size, area_model, proof, splits, measured, is_clipped }
         leafless_extent { struct_size,
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped
@@ -286,6 +296,11 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_operation {
             LEAFLESS_OPERATION_UNION, LEAFLESS_OPERATION_INTERSECTION, LEAFLESS_OPERATION_DIFFERENCE, LEAFLESS_OPERATION_XOR
+        }
+        leafless_surface_kind {
+            LEAFLESS_SURFACE_KIND_OTHER, LEAFLESS_SURFACE_KIND_PLANE, LEAFLESS_SURFACE_KIND_BALL,
+            LEAFLESS_SURFACE_KIND_CYLINDER, LEAFLESS_SURFACE_KIND_CONE, LEAFLESS_SURFACE_KIND_TORUS,
+            LEAFLESS_SURFACE_KIND_QUADRIC
         }
         leafless_facets { LEAFLESS_FACETS_AUTO, LEAFLESS_FACETS_EXACT, LEAFLESS_FACETS_POLYGON }
         leafless_range_kind { LEAFLESS_RANGE_KIND_UNKNOWN, LEAFLESS_RANGE_KIND_NOWHERE, LEAFLESS_RANGE_KIND_WITHIN }

@@ -60,6 +60,7 @@
 //! | `cells` | neighbours of cells, cells and boundary faces one after another |
 //! | `bitmap` | the cells of a box as bits |
 //! | `surface` | surfaces: closed meshes of octrees and solids |
+//! | `solid_boundary` | boundaries of solids that know their surfaces: faces as polygons, kinds and numbers of surfaces |
 //! | `camera` | cameras |
 //! | `layer` | what pictures are made of; what values look like |
 //! | `layer_surface` | surfaces of octrees, solids and meshes in pictures, lines |
@@ -132,6 +133,7 @@ mod polyhedron;
 mod rays;
 mod scene;
 mod solid;
+mod solid_boundary;
 mod source;
 mod status;
 mod surface;
@@ -195,6 +197,7 @@ pub use polyhedron::*;
 pub use rays::*;
 pub use scene::*;
 pub use solid::*;
+pub use solid_boundary::*;
 pub use source::*;
 pub use status::*;
 pub use surface::*;

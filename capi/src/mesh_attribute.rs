@@ -2,11 +2,12 @@
 
 use super::attribute::{components, give, leafless_attribute};
 use super::boundary::{Failure, buffer, guard, out, shared, slice, text};
-use super::mesh::leafless_mesh;
+use super::control::{controlled, leafless_options};
+use super::mesh::{give as give_mesh, leafless_mesh};
 use super::status::leafless_status;
 use core::ffi::c_char;
 use leafless::TriangleMesh;
-use leafless::attribute::SurfaceAttribute;
+use leafless::attribute::{SurfaceAttribute, sample_triangles};
 use leafless::mesh::{AttributeDomain, MeshAttribute};
 
 /// The attribute of a mesh with a place among all.
@@ -144,6 +145,48 @@ pub unsafe extern "C" fn leafless_mesh_bodies(
             bodies.fill(&mesh.bodies()?)?;
         }
         count.write(mesh.triangles().len() as u64)
+    })
+}
+
+/// The same mesh, whose triangles bear the values of an attribute under a name: that of a triangle is the value just inside of it,
+/// `depth_model` behind its centroid. If there is none, it is that at a quarter of the depth, at twice the depth, or at the centroid
+/// itself, and otherwise the triangle has no value. So a surface bears what channels of its solid say: half the edge of a
+/// channel's cells is a good depth. leafless_mesh_write writes colours as `colour`, and materials as `material`.
+///
+/// O(t) questions. An attribute that the mesh bears under the name is replaced.
+///
+/// - Buffers: `name`, `name_length` bytes of UTF-8; `options`, one struct or NULL; `bearing`, one pointer.
+/// - Result: `*bearing`, the same for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT unless the depth is finite and not negative; LEAFLESS_E_UTF8; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` and `attribute` stay as they are; give `*bearing` back with leafless_mesh_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any mesh, any attribute, any text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_with_values(
+    mesh: *const leafless_mesh,
+    attribute: *const leafless_attribute,
+    name: *const c_char,
+    name_length: usize,
+    depth_model: f64,
+    options: *const leafless_options,
+    bearing: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let attribute = &shared(attribute, "attribute")?.attribute;
+        let name = text(name, name_length, "name")?;
+        let bearing = out(bearing, "bearing")?;
+        let values =
+            controlled(options, |control| sample_triangles(mesh, attribute, name, depth_model, control))?;
+        let mut found = mesh.try_clone()?;
+        let mut kept = found.take_attributes();
+        kept.retain(|own| own.name() != name);
+        for own in kept {
+            found.add_attribute(own)?;
+        }
+        found.add_attribute(values)?;
+        bearing.write(give_mesh(found))
     })
 }
 

@@ -1,12 +1,14 @@
 //! Mesh files, written.
 
-use super::boundary::{Failure, Sized32, guard, out, shared, sized};
+use super::boundary::{Failure, Sized32, filled, guard, out, output, shared, sized};
+use super::control::{controlled, leafless_options};
 use super::mesh::{give, leafless_mesh};
 use super::mesh_file::{leafless_mesh_format, leafless_unit};
 use super::number::Number;
+use super::polyhedron::leafless_polyhedron_arrays;
 use super::source::{leafless_sink, sink};
 use super::status::leafless_status;
-use leafless::exchange::{MeshFormat, WriteOptions, write_mesh, written_form};
+use leafless::exchange::{MeshFormat, WriteOptions, write_mesh, write_polygons, written_form};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -70,12 +72,20 @@ fn format_given(format: Option<MeshFormat>) -> Result<MeshFormat, Failure> {
     format.ok_or(Failure::Argument { name: "options.format", problem })
 }
 
+/// The format that is given, or else that of the path.
+fn chosen(format: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat, Failure> {
+    match (format, path) {
+        (None, Some(path)) => format_of(path),
+        (format, _) => format_given(format),
+    }
+}
+
 /// Writes a mesh file: STL, PLY, OBJ, OFF or 3MF.
 ///
 /// Vertices and triangles keep their order. PLY (little-endian, of type double), OBJ and OFF hold the
 /// coordinates exactly; a 3MF has one object, which is the build's one item, and leaves out triangles that have a
 /// vertex twice. STL rounds coordinates to 32 bits without a word: what is small and far away loses triangles, up
-/// to all of them. leafless_mesh_written_form tells before. O(n) time and memory.
+/// to all of them. leafless_mesh_written_form tells before, and leafless_mesh_in_single_precision mends what can be mended. O(n) time and memory.
 ///
 /// - Buffers: `options`, one struct, or NULL, with a format unless the sink has a path; `sink`, one struct.
 /// - Errors: LEAFLESS_E_ARGUMENT if the format or the unit is none, if the format is LEAFLESS_MESH_FORMAT_ANY
@@ -93,11 +103,113 @@ pub unsafe extern "C" fn leafless_mesh_write(
         let mesh = &shared(mesh, "mesh")?.mesh;
         let (format, options) = self::options(options)?;
         let sink = self::sink(sink)?;
-        let format = match (format, sink.path()) {
-            (None, Some(path)) => format_of(path)?,
-            (format, _) => format_given(format)?,
-        };
+        let format = chosen(format, sink.path())?;
         sink.put_whole(&write_mesh(mesh, format, &options)?)
+    })
+}
+
+/// What became of a mesh in single precision.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_single_precision {
+    /// sizeof(leafless_single_precision).
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: u32,
+    /// The farthest that rounding moves a vertex along an axis.
+    pub rounding_model: f64,
+    /// No point of the given mesh is further from the other one, and none of that further from the given one: proven.
+    pub deviation_model: f64,
+    /// Triangles of which rounding made an edge or a point, and which are gone.
+    pub collapsed: u64,
+    /// Triangles of which rounding made a line, and which were joined to their neighbours.
+    pub flipped: u64,
+    /// Vertices that were moved, to places next to their nearest ones.
+    pub moved: u64,
+    /// Triangles without area that are left, and vertices that lie where others do.
+    pub degenerate: u64,
+    /// Pairs of triangles that intersect each other and are left.
+    pub intersecting_pairs: u64,
+}
+
+output!(leafless_single_precision);
+
+/// The mesh with coordinates that are 32-bit numbers, as an STL has them, without triangles that rounding makes degenerate and without pairs
+/// that it makes intersect, as far as that can be had: leafless_mesh_write then loses nothing. Edges whose ends meet are collapsed,
+/// triangles that become lines are joined to their neighbours, and vertices of what is degenerate or intersects after that go to places next to
+/// theirs, if these are no further than `tolerance_model` from where they were given. A closed mesh stays closed. A mesh whose coordinates
+/// are 32-bit numbers already is given back as it is, and of it nothing is counted.
+///
+/// Time is that of leafless_mesh_intersecting_pairs, a few times.
+///
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `single`, one pointer.
+/// - Result: `*single`, without attributes; `*report`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the tolerance is negative or not a number, or for coordinates beyond the range of float;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*single` back with leafless_mesh_free.
+/// - Untrusted input: any mesh; the work is bounded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_in_single_precision(
+    mesh: *const leafless_mesh,
+    tolerance_model: f64,
+    options: *const leafless_options,
+    report: *mut leafless_single_precision,
+    single: *mut *mut leafless_mesh,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mesh = &shared(mesh, "mesh")?.mesh;
+        let report = if report.is_null() { None } else { Some(filled(report, "report")?) };
+        let single = out(single, "single")?;
+        let found = controlled(options, |control| mesh.in_single_precision(tolerance_model, control))?;
+        if let Some(report) = report {
+            report.write(leafless_single_precision {
+                struct_size: size_of::<leafless_single_precision>() as u32,
+                reserved: 0,
+                rounding_model: found.rounding,
+                deviation_model: found.deviation,
+                collapsed: found.collapsed,
+                flipped: found.flipped,
+                moved: found.moved,
+                degenerate: found.degenerate,
+                intersecting_pairs: found.intersecting_pairs,
+            })?;
+        }
+        single.write(give(found.mesh))
+    })
+}
+
+/// Writes solids of plane faces as a file of polygons: OBJ or OFF. A face with holes, which these formats do not have, is cut into a
+/// few polygons without; all other faces are as they are given. No vertex is added, and vertices keep their order.
+///
+/// The faces are checked as leafless_mesh_from_polyhedron does, whose default tolerance is the only one here. O(n log n) time.
+///
+/// - Buffers: `arrays`, one struct, whose `tolerance_model` is 0; what its pointers lead to must not change during the call.
+///   `options`, one struct, or NULL, of which the format and the deviation count, with a format unless the sink has a path; `sink`,
+///   one struct.
+/// - Errors: those of leafless_mesh_from_polyhedron; LEAFLESS_E_ARGUMENT if the format is neither OBJ nor OFF, or is
+///   LEAFLESS_MESH_FORMAT_ANY and there is no path or it has none of the extensions; LEAFLESS_E_IO; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_BUFFER; LEAFLESS_E_UTF8; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the arrays are only read during the call, and may be freed after it.
+/// - Untrusted input: any values in the arrays.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mesh_write_polygons(
+    arrays: *const leafless_polyhedron_arrays,
+    options: *const leafless_mesh_write_options,
+    sink: *const leafless_sink,
+) -> leafless_status {
+    guard(|| unsafe {
+        if arrays.is_null() {
+            return Err(Failure::Null { name: "arrays" });
+        }
+        let arrays = sized(arrays, "arrays")?;
+        if arrays.tolerance_model != 0.0 {
+            return Err(Failure::Argument { name: "arrays.tolerance_model", problem: "must be 0" });
+        }
+        let (format, options) = self::options(options)?;
+        let sink = self::sink(sink)?;
+        let format = chosen(format, sink.path())?;
+        let bytes = arrays.taken(|arrays| Ok(write_polygons(arrays, format, &options)?))?;
+        sink.put_whole(&bytes)
     })
 }
 

@@ -29,6 +29,11 @@ pub trait Enumeration {
     fn known(number: u32) -> Option<Self::Known>;
 }
 
+impl<E> Number<E> {
+    /// The member that is zero, which every enumeration has.
+    pub(super) const ZERO: Number<E> = Number(0, PhantomData);
+}
+
 impl<E: Enumeration> Number<E> {
     /// What the library has for the member. `name` is the parameter that the number was given for.
     pub(super) fn known(self, name: &'static str) -> Result<E::Known, Failure> {

@@ -1,6 +1,6 @@
 //! Triangle meshes from the faces of boundary representations.
 
-use super::boundary::{Failure, Out, Sized32, guard, out, sized};
+use super::boundary::{Failure, Out, Sized32, guard, out, output, sized};
 use super::mesh::{give, leafless_mesh};
 use super::mesh_arrays::{GivenVertices, Indices, Vertices, leafless_index_type, leafless_vertex_type};
 use super::number::Number;
@@ -67,6 +67,8 @@ pub struct leafless_polyhedron_arrays {
 // SAFETY: numbers and pointers.
 unsafe impl Sized32 for leafless_polyhedron_arrays {}
 
+output!(leafless_polyhedron_arrays);
+
 /// Indices as the library has them: the host's own if they are so, or a copy. `refused` says what is wrong
 /// with the one of the given index and value, if 32 bits cannot hold it.
 fn narrow<'a>(
@@ -123,9 +125,14 @@ fn whole(count: usize) -> Cow<'static, [u32]> {
 }
 
 impl leafless_polyhedron_arrays {
+    /// What `take` makes of the arrays as the library has them.
+    ///
     /// # Safety
     /// The arrays are what the fields say, and do not change during the call.
-    unsafe fn polyhedron(&self) -> Result<Polyhedron, Failure> {
+    pub(super) unsafe fn taken<R>(
+        &self,
+        take: impl FnOnce(&PolyhedronArrays<'_>) -> Result<R, Failure>,
+    ) -> Result<R, Failure> {
         let given = GivenVertices {
             start: self.vertices,
             count: self.vertex_count,
@@ -165,22 +172,32 @@ impl leafless_polyhedron_arrays {
         let shells = part(shells, &faces)?;
         let solids = part(solids, &shells)?;
         let vertices = vertices.get()?;
-        let arrays = PolyhedronArrays {
+        take(&PolyhedronArrays {
             vertices: &vertices,
             corners: &corners,
             loops: &loops,
             faces: &faces,
             shells: &shells,
             solids: &solids,
-        };
-        Ok(match self.tolerance_model {
-            0.0 => Polyhedron::new(&arrays)?,
-            tolerance if tolerance > 0.0 => Polyhedron::with_tolerance(&arrays, tolerance)?,
-            _ => {
-                let problem = "must be a number, and not negative";
-                return Err(Failure::Argument { name: "arrays.tolerance_model", problem });
-            }
         })
+    }
+
+    /// The polyhedron of the arrays.
+    ///
+    /// # Safety
+    /// As `taken`.
+    unsafe fn polyhedron(&self) -> Result<Polyhedron, Failure> {
+        // SAFETY: the caller's promise.
+        unsafe {
+            self.taken(|arrays| match self.tolerance_model {
+                0.0 => Ok(Polyhedron::new(arrays)?),
+                tolerance if tolerance > 0.0 => Ok(Polyhedron::with_tolerance(arrays, tolerance)?),
+                _ => {
+                    let problem = "must be a number, and not negative";
+                    Err(Failure::Argument { name: "arrays.tolerance_model", problem })
+                }
+            })
+        }
     }
 }
 

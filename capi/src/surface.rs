@@ -1,6 +1,6 @@
 //! Surfaces: closed triangle meshes of octrees and of solids.
 
-use super::boundary::{Failure, Sized32, filled, guard, out, output, shared, sized};
+use super::boundary::{Failure, Sized32, guard, out, shared, sized};
 use super::control::{controlled, leafless_options};
 use super::frame::{frame, leafless_frame, leafless_interval};
 use super::mesh::{give, leafless_mesh};
@@ -11,9 +11,9 @@ use super::status::leafless_status;
 use super::volume::leafless_volume;
 use leafless::marching_cubes;
 use leafless::surface::{
-    BoundaryReport, Resolve, Snap, VertexPlacement, boundary, coplanar_shrink, coplanar_shrink_solid,
-    dual_contouring_solid, marching_cubes_solid, marching_cubes_volume, published_shrink,
-    published_shrink_solid, simple_marching_cubes, simple_marching_cubes_solid,
+    Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, dual_contouring_solid,
+    marching_cubes_solid, marching_cubes_volume, published_shrink, published_shrink_solid,
+    simple_marching_cubes, simple_marching_cubes_solid,
 };
 use leafless_resolve::*;
 use leafless_surface_method::*;
@@ -300,80 +300,6 @@ pub unsafe extern "C" fn leafless_solid_surface(
             Method::PublishedShrink(snap) => published_shrink_solid(solid, &frame, snap, control),
             Method::DualContouring => Ok(dual_contouring_solid(solid, &frame, control)?.0),
         })?))
-    })
-}
-
-/// What is known of the boundary of a solid as a mesh.
-#[derive(Clone, Copy)]
-#[repr(C)]
-pub struct leafless_boundary_report {
-    /// sizeof(leafless_boundary_report).
-    pub struct_size: u32,
-    /// No point of the mesh is further from the boundary of the solid than that, and no point of the boundary from the mesh
-    /// (model units). That is proven; infinite if nothing is.
-    pub deviation_model: f64,
-    /// Pairs of triangles that intersect each other: 0 but where cells of the frame's depth do not tell surfaces apart.
-    pub intersecting_pairs: u64,
-    /// Cells that the boundary passes through.
-    pub cells: u64,
-    /// Cells that were split.
-    pub splits: u64,
-}
-
-output!(leafless_boundary_report);
-
-/// The boundary of a solid that knows its surfaces, as solids of half-spaces do, and octrees that keep theirs: its plane faces as they
-/// are, with triangles between their corners alone, and curved ones in chords that are no further from them than about
-/// `tolerance_model`. Edges are sharp, and corners are exact to rounding. The solid must end inside of the universe of the frame.
-///
-/// The mesh is closed, and exactly two triangles meet in each edge; where the solid touches itself, vertices lie at one place. Cells are
-/// split until at most three surfaces in each have a simple arrangement. Where more meet in a point, and where surfaces touch, they are
-/// split as far as the depth of the frame, which costs little: 12 to 16 is good for parts.
-///
-/// How far the mesh and the boundary are from each other is proven by the surfaces. Where that is more than the tolerance, cells are
-/// split, as far as the depth of the frame.
-///
-/// About 50 microseconds and 500 bytes a cell; one thread does it all.
-///
-/// - Buffers: `frame`, one struct; `options`, one struct or NULL; `report`, one struct or NULL; `mesh`, one pointer.
-/// - Result: `*mesh`; `*report`.
-/// - Errors: LEAFLESS_E_ARGUMENT if the solid is not known to end inside of the universe, or consists of something else than
-///   surfaces, as a mesh or a host program's function does, or `tolerance_model` is not between 2^-256 and 2^256;
-///   LEAFLESS_E_MESH if there would be more than 2^32 - 1 vertices or triangles; LEAFLESS_E_DAMAGED;
-///   LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
-/// - Ownership: give `*mesh` back with leafless_mesh_free.
-/// - Threads: any.
-/// - Untrusted input: any solid; set `max_nodes` where the depth or the solid is not your own choice.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn leafless_solid_boundary(
-    solid: *const leafless_solid,
-    frame: *const leafless_frame,
-    tolerance_model: f64,
-    options: *const leafless_options,
-    report: *mut leafless_boundary_report,
-    mesh: *mut *mut leafless_mesh,
-) -> leafless_status {
-    guard(|| unsafe {
-        // The cells lie on a lattice of their own, for which nothing is kept.
-        let solid = shared(solid, "solid")?.solid.solid();
-        let frame = self::frame(frame)?;
-        let report = match report.is_null() {
-            true => None,
-            false => Some(filled(report, "report")?),
-        };
-        let mesh = out(mesh, "mesh")?;
-        let found = controlled(options, |control| boundary(solid, &frame, tolerance_model, control))?;
-        if let Some(report) = report {
-            let &BoundaryReport { intersecting_pairs, cells, splits, deviation } = found.report();
-            report.write(leafless_boundary_report {
-                struct_size: size_of::<leafless_boundary_report>() as u32,
-                deviation_model: deviation,
-                intersecting_pairs,
-                cells,
-                splits,
-            })?;
-        }
-        mesh.write(give(found.into_mesh()))
     })
 }
 

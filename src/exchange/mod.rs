@@ -108,9 +108,9 @@ pub use volume::{
 pub use warning::MeshWarning;
 #[cfg(feature = "png")]
 pub use write::write_png;
-#[cfg(feature = "std")]
-pub use write::write_polygons;
 pub use write::{WriteOptions, WrittenForm, write_mesh, write_stl, written_form};
+#[cfg(feature = "std")]
+pub use write::{write_grouped_polygons, write_polygons};
 
 /// Refuses text in UTF-16. Of the formats that are one text, none can be read in it.
 fn refuse_utf16(bytes: &[u8]) -> Result<(), Error> {

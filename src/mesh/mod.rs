@@ -6,8 +6,8 @@
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `attributes`
 //! (data on triangles), `topology` (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
 //! mesh `normals`, `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles), `nearest`,
-//! `self_pairs` (whose boxes meet), `intersections`, `triangle_pair`, `discs` and `apart` (how far two meshes are apart), `planes` (in which triangles lie), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle) and `moments`
-//! (volume and inertia); `polygon` (triangulation), `polyhedron` and its `faces`.
+//! `self_pairs` (whose boxes meet), `intersections`, `triangle_pair`, `discs` and `apart` (how far two meshes are apart), `planes` (in which triangles lie), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle), `moments`
+//! (volume and inertia), `links` (edges collapsed and flipped) and `single` (single precision); `polygon` (triangulation), `shells` (which lie within others), `polyhedron` and its `faces`.
 
 mod apart;
 mod attributes;
@@ -19,6 +19,7 @@ mod discs;
 mod faces;
 mod in_box;
 mod intersections;
+mod links;
 mod moments;
 mod nearest;
 mod normals;
@@ -35,8 +36,11 @@ mod report;
 mod self_pairs;
 mod sew;
 mod sheets;
+#[cfg(feature = "std")]
+mod shells;
 mod sides;
 mod signs;
+mod single;
 mod topology;
 mod tree;
 mod triangle_mesh;
@@ -61,9 +65,16 @@ pub(crate) use polygon::flatness;
 #[cfg(feature = "std")]
 pub(crate) use polygon::triangulate_facet;
 #[cfg(feature = "std")]
+pub(crate) use polyhedron::PLANE;
+#[cfg(feature = "std")]
 pub use polyhedron::{Polyhedron, PolyhedronArrays};
 pub use report::MeshReport;
+#[cfg(feature = "std")]
+pub(crate) use shells::{Extent, outside, volume};
 pub(crate) use sides::Sides;
+pub use single::SinglePrecision;
+#[cfg(feature = "std")]
+pub(crate) use topology::DisjointSets;
 #[cfg(feature = "render")]
 pub(crate) use topology::{Edge, for_each_edge};
 #[cfg(feature = "std")]

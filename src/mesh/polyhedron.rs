@@ -4,24 +4,19 @@
 //! edge, and that voids lie within their solids; faces that cut through each other, shells that overlap and
 //! solids that do are let through, because a mesh has a meaning for them.
 
-use crate::lattice::axes;
 use alloc::vec::Vec;
-
-use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::attributes::MeshAttribute;
 use super::polygon::{PolygonDefect, flatness, triangulate};
 use super::positions::normalised;
+use super::shells::{Extent, outside, volume};
 use super::triangle_mesh::{Faces, TriangleMesh};
 use crate::error::{Error, MeshError, PolyhedronError};
 use crate::lattice::valid;
 use crate::memory;
 
 /// How far corners may lie beside the plane of their face by default, as a fraction of the longest extent.
-const PLANE: f64 = 1e-9;
-
-/// How many vertices of a void are tried to find one that does not lie on its solid's surface.
-const SAMPLES: usize = 16;
+pub(crate) const PLANE: f64 = 1e-9;
 
 /// Solids of shells of faces of loops of corners, as plain arrays.
 ///
@@ -142,8 +137,7 @@ impl Polyhedron {
         parts.check_edges()?;
 
         let tolerance = tolerance.unwrap_or_else(|| {
-            let bounds = Bounds::of(parts.corners.iter().map(|&v| vertices[v as usize]));
-            PLANE * (0..3).fold(0.0, |most: f64, axis| most.max(bounds.high[axis] - bounds.low[axis]))
+            PLANE * Extent::of(parts.corners.iter().map(|&v| vertices[v as usize])).longest()
         });
         let mut triangles = Vec::new();
         // A loop of n corners has n - 2 triangles, and each hole adds two more.
@@ -379,12 +373,12 @@ impl<'a> Parts<'a> {
         for solid in 0..self.solids.count() {
             let mut shells = self.solids.range(solid);
             let Some(first) = shells.next() else { continue };
-            let bounds = Bounds::of(of(first).iter().flatten().map(|&v| vertices[v as usize]));
+            let bounds = Extent::of(of(first).iter().flatten().map(|&v| vertices[v as usize]));
             if volume(vertices, of(first), &bounds) <= 0.0 {
                 return Err(PolyhedronError::InsideOut { shell: first as u64 }.into());
             }
             for shell in shells.clone() {
-                let inner = Bounds::of(of(shell).iter().flatten().map(|&v| vertices[v as usize]));
+                let inner = Extent::of(of(shell).iter().flatten().map(|&v| vertices[v as usize]));
                 if volume(vertices, of(shell), &inner) >= 0.0 {
                     return Err(PolyhedronError::VoidOutward { shell: shell as u64 }.into());
                 }
@@ -392,151 +386,11 @@ impl<'a> Parts<'a> {
                     return Err(PolyhedronError::VoidOutside { shell: shell as u64 }.into());
                 }
             }
-            let outside = first_outside(vertices, of(first), shells.map(|shell| (shell, of(shell))))?;
-            if let Some(shell) = outside {
+            let outside = outside(vertices, of(first), shells.map(|shell| (shell, of(shell))))?;
+            if let Some(&shell) = outside.first() {
                 return Err(PolyhedronError::VoidOutside { shell: shell as u64 }.into());
             }
         }
         Ok(())
-    }
-}
-
-/// The first of `shells` of which a vertex lies outside of `surface`. Only one vertex of each is looked at,
-/// the first one that does not lie on the surface.
-///
-/// The winding numbers of all vertices looked at are counted at once: each triangle finds those beside it in
-/// a sorted list, so that many voids cost little more than one.
-fn first_outside<'a>(
-    vertices: &[[f64; 3]],
-    surface: &[[u32; 3]],
-    shells: impl Iterator<Item = (usize, &'a [[u32; 3]])>,
-) -> Result<Option<usize>, Error> {
-    struct Sample<'a> {
-        place: [f64; 3],
-        winding: i32,
-        on_surface: bool,
-        shell: usize,
-        triangles: &'a [[u32; 3]],
-    }
-    let mut samples: Vec<Sample> = Vec::new();
-    for (shell, triangles) in shells {
-        memory::push(
-            &mut samples,
-            Sample { place: [0.0; 3], winding: 0, on_surface: false, shell, triangles },
-        )?;
-    }
-    let mut outside = None;
-    for attempt in 0..SAMPLES {
-        samples.retain(|sample| attempt < sample.triangles.len());
-        if samples.is_empty() {
-            break;
-        }
-        for sample in &mut samples {
-            // Triangles of a fan share their first corner.
-            sample.place = vertices[sample.triangles[attempt][attempt % 3] as usize];
-            (sample.winding, sample.on_surface) = (0, false);
-        }
-        samples.sort_unstable_by(|a, b| a.place[2].total_cmp(&b.place[2]).then(a.shell.cmp(&b.shell)));
-        for triangle in surface {
-            let corners = triangle.map(|v| vertices[v as usize]);
-            let low = corners.iter().fold(f64::INFINITY, |low, p| low.min(p[2]));
-            let high = corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[2]));
-            let start = samples.partition_point(|sample| sample.place[2] < low);
-            for sample in samples[start..].iter_mut().take_while(|sample| sample.place[2] <= high) {
-                match crossing(corners, sample.place) {
-                    Some(sense) => sample.winding += sense,
-                    None => sample.on_surface = true,
-                }
-            }
-        }
-        for sample in samples.iter().filter(|sample| !sample.on_surface && sample.winding < 1) {
-            outside = Some(outside.map_or(sample.shell, |shell: usize| shell.min(sample.shell)));
-        }
-        samples.retain(|sample| sample.on_surface);
-    }
-    Ok(outside)
-}
-
-/// What a triangle adds to the winding number at `p`, by the ray from there along the first axis: 1 where the
-/// ray leaves through it, -1 where it enters, 0 where it passes by. `None` if `p` lies on the triangle.
-///
-/// Rays through edges and corners count as slightly shifted along the other two axes, for all triangles
-/// alike.
-fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
-    let flat = |p: [f64; 3]| Coord { x: p[1], y: p[2] };
-    let mut around = 0;
-    let mut touched = false;
-    for k in 0..3 {
-        let (a, b) = (corners[k], corners[(k + 1) % 3]);
-        let side = orient2d(flat(a), flat(b), flat(p));
-        if side == 0.0 {
-            // On the line through the edge; whether between its ends does not matter off the plane.
-            touched = true;
-        }
-        if a[2] <= p[2] && b[2] > p[2] && side > 0.0 {
-            around += 1;
-        } else if b[2] <= p[2] && a[2] > p[2] && side < 0.0 {
-            around -= 1;
-        }
-    }
-    if around == 0 && !touched {
-        return Some(0);
-    }
-    let solid = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
-    // Positive where p lies below the triangle, seen with its corners counter-clockwise.
-    let below = orient3d(solid(corners[0]), solid(corners[1]), solid(corners[2]), solid(p));
-    if below == 0.0 && holds(corners, p) {
-        return None;
-    }
-    let ahead = if around > 0 { below > 0.0 } else { below < 0.0 };
-    Some(if ahead { around } else { 0 })
-}
-
-/// Whether a point of a triangle's plane lies within its bounds; beside it, perhaps.
-fn holds(corners: [[f64; 3]; 3], p: [f64; 3]) -> bool {
-    Bounds::of(corners.into_iter()).hold(&Bounds { low: p, high: p })
-}
-
-/// The volume that triangles enclose, as differences to the centre of their bounds.
-fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> f64 {
-    let centre = axes(|axis| bounds.low[axis].midpoint(bounds.high[axis]));
-    let six_fold: f64 = (triangles.iter())
-        .map(|triangle| {
-            let [a, b, c] = triangle.map(|v| {
-                let p = vertices[v as usize];
-                [p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]]
-            });
-            (0..3)
-                .map(|axis| {
-                    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-                    a[axis] * (b[u] * c[v] - b[v] * c[u])
-                })
-                .sum::<f64>()
-        })
-        .sum();
-    six_fold / 6.0
-}
-
-/// The least and the greatest coordinates of points.
-#[derive(Debug, Clone, Copy)]
-struct Bounds {
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
-impl Bounds {
-    fn of(points: impl Iterator<Item = [f64; 3]>) -> Bounds {
-        let mut bounds = Bounds { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
-        for p in points {
-            for axis in 0..3 {
-                bounds.low[axis] = bounds.low[axis].min(p[axis]);
-                bounds.high[axis] = bounds.high[axis].max(p[axis]);
-            }
-        }
-        bounds
-    }
-
-    fn hold(&self, other: &Bounds) -> bool {
-        (0..3).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
     }
 }

@@ -213,9 +213,13 @@ impl TriangleMesh {
 
     /// Whether the corners of a triangle lie on a line: exactly.
     pub(super) fn is_flat(&self, triangle: &[u32; 3]) -> bool {
-        let [a, b, c] = triangle.map(|v| self.vertices()[v as usize]);
-        (0..3).all(|axis| is_straight([a, b, c].map(|p| [p[axis], p[(axis + 1) % 3]])))
+        are_on_a_line(triangle.map(|v| self.vertices()[v as usize]))
     }
+}
+
+/// Whether three points lie on a line: exactly.
+pub(super) fn are_on_a_line(points: [[f64; 3]; 3]) -> bool {
+    (0..3).all(|axis| is_straight(points.map(|p| [p[axis], p[(axis + 1) % 3]])))
 }
 
 /// The edges of a boundary that an odd number of triangles use: those that occur an odd number of times.

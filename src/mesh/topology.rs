@@ -251,7 +251,7 @@ fn is_forward([a, b, c]: [u32; 3], from: u32, to: u32) -> bool {
 }
 
 /// Union-find. The root of a set is its least member, so that every link leads downwards.
-pub(super) struct DisjointSets(Vec<u32>);
+pub(crate) struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {
     /// `len` sets of one member each; `len` is at most 2^32 - 1.

@@ -76,7 +76,7 @@ pub(crate) use csg::{Fan, Figure, cos_degrees, sin_degrees, wedge};
 pub use erased::{AnyClassifier, AnySolid, AnyWorker, Erasable};
 pub use fingerprint::{Fingerprint, Fingerprinter};
 pub(crate) use half_space::{Form, Round};
-pub use half_space::{HalfSpace, OpenSurfaces, PlacedHalfSpace};
+pub use half_space::{HalfSpace, OpenSurfaces, PlacedHalfSpace, SurfaceShape};
 pub use mesh::MeshSolid;
 pub use motion::Motion;
 pub use parts::{FreeParts, Parts};

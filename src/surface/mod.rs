@@ -63,7 +63,7 @@ mod volume;
 mod weld;
 
 #[cfg(feature = "std")]
-pub use boundary::{Boundary, BoundaryReport, boundary};
+pub use boundary::{Boundary, BoundaryFaces, BoundaryRegion, BoundaryReport, boundary};
 #[cfg(feature = "std")]
 pub use contour::{Contour, ContourReport, contour};
 pub use cubes::{marching_cubes, marching_cubes_reusing};

@@ -266,7 +266,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let (ball, frame) = (Csg::ball([15.0; 3], 9.0)?, frame().with_depth(4)?);
         marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &CONTROL)?;
         let half = Csg::cuboid([14.0; 3], [28.0; 3])?;
-        boundary(&ball.difference(&half)?, &frame, 1.0, &CONTROL)?;
+        boundary(&ball.difference(&half)?, &frame, 1.0, &CONTROL)?.faces()?;
         contour(&ball.difference(&half)?, &frame, 2.0, &CONTROL)?;
         simple_marching_cubes_solid(&ball, &frame, Snap::Thin, &CONTROL)
     });
@@ -482,6 +482,9 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
             exchange::read_mesh(&bytes, &Default::default())?;
         }
         Ok(())
+    });
+    operation!("single precision", [closed], {
+        closed.translated([3e5; 3])?.in_single_precision(0.1, &CONTROL).map(|single| single.mesh)
     });
     operation!("what STL keeps", [closed], {
         let options = exchange::WriteOptions { text: true, ..Default::default() };

@@ -83,6 +83,7 @@ const SEARCHES: &[&str] = &[
     "gaps",
     "interference",
     "section area",
+    "single precision",
 ];
 
 /// Operations that are one step of which only the end is told, or nothing.
@@ -284,6 +285,7 @@ fn all_operations(depth: u8) -> Vec<Told> {
         marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &Control::threads(1)).unwrap();
     heard.of("triangles sampled", |control| sample_triangles(&surface, &steps, "steps", 0.01, control));
     let view = channel.view().unwrap();
+    heard.of("single precision", |control| surface.in_single_precision(1e-3, control));
     heard.of("summary", |control| view.summary(Some(of_part.view()), None, control));
     heard.of("channel changed", |control| view.with_value_in(&views[0], Some([1.0, 0.0, 0.0, 0.0]), control));
     heard.of("region of values", |control| view.region([0.0; 4], [1.0; 4], control));

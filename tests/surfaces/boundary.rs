@@ -10,7 +10,7 @@ use leafless::{
 };
 use std::collections::BTreeMap;
 
-fn of<S: Solid>(solid: &S, depth: u8, tolerance: f64) -> Boundary {
+pub fn of<S: Solid>(solid: &S, depth: u8, tolerance: f64) -> Boundary {
     let bounds = solid.bounds().unwrap();
     let frame = Frame::around(bounds.min, bounds.max, depth).unwrap();
     boundary(solid, &frame, tolerance, &alone()).unwrap()
@@ -29,11 +29,11 @@ fn assert_manifold(mesh: &TriangleMesh, text: &str) {
     }
 }
 
-fn turn() -> Affine {
+pub fn turn() -> Affine {
     Affine::new([[0.36, 0.48, -0.8, 1.0], [-0.8, 0.6, 0.0, 2.0], [0.48, 0.64, 0.6, 3.0]]).unwrap()
 }
 
-fn plate() -> Csg {
+pub fn plate() -> Csg {
     let bore = Csg::cylinder_between([40.0, 30.0, -1.0], [40.0, 30.0, 11.0], 5.0).unwrap();
     Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap().difference(&bore).unwrap()
 }
@@ -93,7 +93,7 @@ fn away_from_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
     least
 }
 
-fn away_from_mesh(p: [f64; 3], mesh: &TriangleMesh) -> f64 {
+pub fn away_from_mesh(p: [f64; 3], mesh: &TriangleMesh) -> f64 {
     let corners = |triangle: &[u32; 3]| triangle.map(|v| mesh.vertices()[v as usize]);
     mesh.triangles()
         .iter()
@@ -283,6 +283,20 @@ fn primitive(random: &mut Random) -> Csg {
     shape.unwrap().placed(&Affine::new(rows).unwrap()).unwrap()
 }
 
+/// Two to five primitives.
+pub fn random_scene(random: &mut Random) -> Csg {
+    let mut solid = primitive(random);
+    for _ in 0..1 + random.below(4) {
+        let other = primitive(random);
+        solid = match random.below(3) {
+            0 => Csg::intersection_of([solid, other]).unwrap(),
+            1 => solid.difference(&other).unwrap(),
+            _ => Csg::union_of([solid, other]).unwrap(),
+        };
+    }
+    solid
+}
+
 /// Sixty scenes of two to five primitives: closed, manifold, no intersecting pair, and the volume.
 #[test]
 fn random_scenes() {
@@ -300,15 +314,7 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
     let mut random = Random(39);
     let mut beyond = 0;
     for scene in scenes.clone() {
-        let mut solid = primitive(&mut random);
-        for _ in 0..1 + random.below(4) {
-            let other = primitive(&mut random);
-            solid = match random.below(3) {
-                0 => Csg::intersection_of([solid, other]).unwrap(),
-                1 => solid.difference(&other).unwrap(),
-                _ => Csg::union_of([solid, other]).unwrap(),
-            };
-        }
+        let solid = random_scene(&mut random);
         let frame = Frame::new([-20.0; 3], 40.0, 13).unwrap();
         let tolerance = [0.3, 0.1, 0.03][scene % 3];
         let found = boundary(&solid, &frame, tolerance, &alone()).unwrap();
@@ -318,8 +324,7 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
         let proven = found.report().deviation;
         // (Where surfaces nearly touch, more cells would be needed than are split for the proof.)
         beyond += usize::from(proven > tolerance);
-        if proven > tolerance {
-        }
+        if proven > tolerance {}
         let is_empty = mesh.triangles().is_empty();
         assert!(proven <= 10.0 * tolerance || is_empty, "scene {scene}: {proven} of {tolerance}");
         assert_deviation(&solid, &found, &mut random, &format!("scene {scene}"));

@@ -7,10 +7,12 @@ mod common;
 
 mod boundary;
 mod contour;
+mod faces;
 mod marching_cubes;
 mod methods;
 mod shrink;
 mod simple;
 mod simplify;
+mod single;
 mod solid;
 mod volume;

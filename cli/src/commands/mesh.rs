@@ -38,8 +38,8 @@ pub struct Arguments {
     /// Write normals at vertices, in PLY and OBJ
     #[arg(long)]
     normals: bool,
-    /// Write the file also if rounding to its coordinates breaks the surface: STL has 32-bit ones. Without it such a file
-    /// is refused
+    /// Write the file also if rounding to its coordinates breaks the surface: STL has 32-bit ones. What rounding breaks is mended first, by moving
+    /// vertices to places next to theirs. Without --lossy a file is refused that is broken after that
     #[arg(long)]
     lossy: bool,
     /// How the surface is made
@@ -55,6 +55,15 @@ pub struct Arguments {
     /// extent
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
+    /// Write plane faces as polygons, into OBJ and OFF, with --method faces. In an OBJ each face is a group, and all faces of one surface
+    /// are another. (--json tells the kind and the numbers of the surfaces, with polygons or without)
+    #[arg(long)]
+    polygons: bool,
+    /// Put the values of a channel, or of the colours or materials of a mesh, on the triangles: PLY has a place for any,
+    /// 3MF for colours and materials, OBJ for materials. Three or four numbers are a colour, one is the number of a material in OBJ and
+    /// 3MF. The channel of a tri-dexel model is "material"
+    #[arg(long, value_name = "NAME")]
+    channel: Option<String>,
     /// What undecided cells count as. Given for a mesh or scene, its cells are the samples, made as `leafless voxelize`
     /// makes them, and not the corners
     #[arg(long, value_enum)]
@@ -94,6 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         normals,
         lossy,
         intersections,
+        polygons,
         write: format,
         ..
     } = *arguments;
@@ -109,6 +119,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         lossy,
         intersections,
         copy: false,
+        polygons,
+        channel: arguments.channel.clone(),
     };
     make(&job, &arguments.taking, &wanted)
 }

@@ -68,7 +68,8 @@ pub fn make(
     let mesh = watched(name, combining.threads, |control| {
         of_solid(&AnySolid::new(combined(combining.operation, solids)?), &frame, &wanted, control)
     });
-    let made = Made { mesh: mesh.of(first)?, unit, method: name_of(wanted.method), followed: None };
+    let made =
+        Made { mesh: mesh.of(first)?, unit, method: name_of(wanted.method), followed: None, faces: None };
     let (input, output, threads) = (first.clone(), output.clone(), combining.threads);
     let job =
         Job { input, output, start, depth: Some(depth), bounds: combining.bounds, threads, json: false };

@@ -4,11 +4,13 @@
 //! arguments of a subcommand, so that several can ask for the same.
 
 pub mod askew;
+pub mod bearing;
 pub mod boolean;
 pub mod clipped;
 pub mod combined_surface;
 pub mod dexel_surface;
 pub mod dexels;
+pub mod faces;
 pub mod job;
 pub mod like;
 pub mod moved;

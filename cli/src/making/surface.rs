@@ -2,12 +2,14 @@
 
 use crate::failure::{Failure, Of, complain};
 use crate::making::askew;
+use crate::making::bearing::Bearing;
 use crate::making::dexel_surface::{self, Followed};
+use crate::making::faces::{Faces, Region};
 use crate::making::job::Job;
 use crate::options::{UNDECIDED, name_of};
 use crate::progress::watched;
 use crate::report::octree::Info;
-use crate::sink::written::{self, Losses};
+use crate::sink::written::{self, Losses, Writing};
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::mesh::format_name;
@@ -16,7 +18,7 @@ use crate::source::volume::Voxels;
 use crate::words::{counted, number, short};
 use clap::ValueEnum;
 use leafless::dexel::{DexelFormat, DexelNormals};
-use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, write_mesh};
+use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, read_mesh, write_mesh};
 use leafless::mesh::MeshReport;
 use leafless::op::DexelOptions;
 use leafless::surface::{
@@ -29,6 +31,7 @@ use leafless::{
     marching_cubes,
 };
 use serde::Serialize;
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -61,6 +64,10 @@ pub struct Wanted {
     pub intersections: bool,
     /// Whether a mesh is written as it is.
     pub copy: bool,
+    /// Whether plane faces are written as polygons.
+    pub polygons: bool,
+    /// The values that triangles are to bear.
+    pub channel: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default, ValueEnum)]
@@ -138,8 +145,18 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
             "--normals is for PLY and OBJ: {name} has no normals at vertices"
         )));
     }
+    if wanted.polygons {
+        polygons_of(wanted, format)?;
+    }
     let shape = Shape::before_moving(input, taking)?.0;
     let is_stored = shape.is_stored();
+    if wanted.polygons && is_stored {
+        taking.placing.refuse(input, "--polygons tells its faces where they are stored")?;
+    }
+    let bearing = wanted.channel.as_deref().map(|name| Bearing::of(&shape, input, name, job.threads));
+    let bearing = bearing.transpose()?;
+    bearing.as_ref().map(|bearing| bearing.called(format)).transpose()?;
+    let mut faces = None;
     let certain = match &shape {
         // Vertices that are samples lie beside the surface; those of the other methods lie on it.
         Shape::Source(source)
@@ -161,7 +178,11 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
             (unit, mesh, None)
         }
         Shape::Source(source) if wanted.method == Method::Faces => {
-            (source.unit(), by_surfaces(source, job, wanted)?, None)
+            let unit = source.unit();
+            let (mesh, found) = by_surfaces(source, job, wanted)?;
+            // (Of what is moved after that, they would lie elsewhere.)
+            faces = Some(found).filter(|_| !is_stored || taking.placing.map().is_none());
+            (unit, mesh, None)
         }
         Shape::Source(source) if wanted.method == Method::Adaptive => {
             (source.unit(), by_contour(source, job, wanted)?, None)
@@ -181,10 +202,14 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
         );
         complain(&format!("{input}: warning: {problem}: --method mc, and smaller cells, come nearer"));
     }
+    let mesh = match &bearing {
+        Some(bearing) => bearing.on(mesh, format, input, job.threads)?,
+        None => mesh,
+    };
     // The surface of a stored solid is sharper than that of what would be made of the solid in another place.
     let mesh = if is_stored { taking.placing.mesh(mesh).of(input)? } else { mesh };
     let method = if is_copy { "copy".into() } else { name_of(wanted.method) };
-    write(job, format, wanted, Made { mesh, unit, method, followed })
+    write(job, format, wanted, Made { mesh, unit, method, followed, faces })
 }
 
 /// A surface that was made.
@@ -195,24 +220,50 @@ pub struct Made {
     pub method: String,
     /// How exactly it follows rays, if it does.
     pub followed: Option<Followed>,
+    /// Its faces, if these are known.
+    pub faces: Option<Faces>,
+}
+
+/// Refuses what does not go with polygons.
+fn polygons_of(wanted: &Wanted, format: MeshFormat) -> Result<(), Failure> {
+    let problem = if wanted.method != Method::Faces {
+        "is for --method faces, which knows plane faces"
+    } else if !matches!(format, MeshFormat::Obj | MeshFormat::Off) {
+        "is for OBJ and OFF: other formats have triangles alone"
+    } else if wanted.normals {
+        "does not go with --normals"
+    } else if wanted.channel.is_some() {
+        "does not go with --channel, whose values are on triangles"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Usage(format!("--polygons {problem}")))
 }
 
 /// Writes a surface, and says what it is.
 pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Result<(), Failure> {
     let Job { input, output, start, .. } = job;
-    let Made { mesh, unit, method, followed } = made;
+    let Made { mesh, unit, method, followed, faces } = made;
     let options = WriteOptions {
         text: wanted.text,
         unit,
         normals: wanted.normals,
         deviation: Some(mesh.deviation()).filter(|&deviation| deviation > 0.0),
     };
-    let (kept, losses) = written::kept(&mesh, format, &options, wanted.lossy, output)?;
-    // A vertex that is rounded is moved along each axis.
-    let deviation = options.deviation.map(|deviation| deviation + 1.7321 * losses.rounding);
-    let bytes = write_mesh(&mesh, format, &options).of(output)?;
-    // What is told is what a reader gets.
-    let mesh = kept.mesh;
+    let (is_lossy, tolerance, threads) = (wanted.lossy, wanted.tolerance, job.threads);
+    let writing = Writing { is_lossy, tolerance, threads };
+    let kept = written::kept(&mesh, format, &options, writing, output)?;
+    let deviation = options.deviation.map(|deviation| deviation + kept.deviation);
+    let bytes = match &faces {
+        Some(faces) if wanted.polygons => faces.file(format, &options).of(output)?,
+        _ => write_mesh(&kept.written, format, &options).of(output)?,
+    };
+    // What is told is what a reader gets, who makes triangles of polygons.
+    let mesh = match wanted.polygons {
+        true => Cow::Owned(read_mesh(&bytes, &Default::default()).of(output)?.mesh),
+        false => kept.read,
+    };
+    let losses = kept.losses;
     output.write(&bytes)?;
     let report = mesh.report().of(input)?;
     let intersecting = if wanted.intersections {
@@ -243,6 +294,7 @@ pub fn write(job: &Job, format: MeshFormat, wanted: &Wanted, made: Made) -> Resu
         intersecting: intersecting.as_ref().map(|pairs| pairs.count),
         all_intersecting_pairs: intersecting.as_ref().map(|pairs| pairs.is_complete),
         followed,
+        regions: faces.as_ref().map(Faces::regions),
         seconds: start.elapsed().as_secs_f64(),
     };
     output.tell(job.json, &told, |told| told.summary(&report))
@@ -334,7 +386,7 @@ fn by_rays(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, 
 }
 
 /// The surface of a solid that knows its surfaces.
-fn by_surfaces(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, Failure> {
+fn by_surfaces(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Faces), Failure> {
     let input = &job.input;
     let is_known = match &source {
         Source::Scene(_) => true,
@@ -363,8 +415,10 @@ fn by_surfaces(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMes
             format!("{input}: warning: how far the mesh is from the solid is not proven")
         });
     }
+    let faces = Faces::of(&found).of(input)?;
     let mesh = found.into_mesh();
-    if deviation.is_finite() { mesh.with_deviation(deviation).of(input) } else { Ok(mesh) }
+    let mesh = if deviation.is_finite() { mesh.with_deviation(deviation).of(input)? } else { mesh };
+    Ok((mesh, faces))
 }
 
 /// How far a surface may be from the solid: a part of the longest extent, if nothing is said.
@@ -564,6 +618,9 @@ struct Report {
     /// How exactly the surface follows rays, if it does.
     #[serde(flatten)]
     followed: Option<Followed>,
+    /// What lies on one surface each, if that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    regions: Option<Vec<Region>>,
     seconds: f64,
 }
 

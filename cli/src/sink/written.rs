@@ -1,19 +1,30 @@
 //! What a mesh file keeps of a mesh, and whether that is still a surface.
 
 use crate::failure::{Failure, Of, complain};
+use crate::progress::watched;
 use crate::sink::Output;
 use crate::source::mesh::format_name;
 use crate::words::{count, counted, number};
-use leafless::TriangleMesh;
 use leafless::exchange::{MeshFormat, WriteOptions, WrittenForm, written_form};
 use leafless::mesh::MeshReport;
+use leafless::{Control, TriangleMesh};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// What rounding to the coordinates of a format costs.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 pub struct Losses {
     /// The farthest that a vertex is moved along an axis.
     pub rounding: f64,
+    /// Triangles that were taken away, because rounding puts two of their corners at one place, with the surface left closed.
+    #[serde(skip_serializing_if = "is_zero")]
+    collapsed: u64,
+    /// Triangles that became lines, and were joined to their neighbours.
+    #[serde(skip_serializing_if = "is_zero")]
+    flipped: u64,
+    /// Vertices that were moved to places next to their nearest ones, so that triangles have an area and do not intersect.
+    #[serde(skip_serializing_if = "is_zero")]
+    moved: u64,
     /// Vertices that are put where others are.
     merged: u64,
     /// Triangles of which two corners are put at one place.
@@ -24,10 +35,18 @@ pub struct Losses {
     broken: bool,
 }
 
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
 impl Losses {
+    fn take(&mut self, form: &WrittenForm<'_>) {
+        (self.rounding, self.merged, self.degenerate) = (form.rounding, form.merged, form.degenerate);
+    }
+
     /// Whether triangles are lost; of an empty mesh these are all.
     pub fn has_lost(&self) -> bool {
-        self.degenerate > 0
+        self.degenerate + self.collapsed > 0
     }
 
     /// The same for people; `None` if nothing is rounded.
@@ -36,6 +55,12 @@ impl Losses {
             return None;
         }
         let mut text = format!("rounded to 32 bits, by up to {}", number(self.rounding));
+        if self.collapsed + self.flipped + self.moved > 0 {
+            let [collapsed, flipped] =
+                [self.collapsed, self.flipped].map(|n| counted(n, "triangle", "triangles"));
+            let moved = counted(self.moved, "vertex", "vertices");
+            text += &format!("; {collapsed} collapsed, {flipped} turned and {moved} moved to mend that");
+        }
         if (self.merged, self.degenerate) != (0, 0) {
             let vertices = counted(self.merged, "vertex", "vertices");
             let triangles = counted(self.degenerate, "degenerate triangle", "degenerate triangles");
@@ -48,7 +73,37 @@ impl Losses {
     }
 }
 
-/// The mesh that is read back from the file, and what was lost. Warns of lost triangles.
+/// How far vertices may move where rounding breaks a surface, as a part of the longest extent.
+const SHARE: f64 = 1e-3;
+
+/// How a mesh is written.
+#[derive(Clone, Copy)]
+pub struct Writing {
+    /// Whether a surface is written also if rounding breaks it.
+    pub is_lossy: bool,
+    /// How far vertices may move where rounding breaks it (model units).
+    pub tolerance: Option<f64>,
+    pub threads: usize,
+}
+
+fn longest(mesh: &TriangleMesh) -> f64 {
+    let (low, high) = mesh.bounds();
+    (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max)
+}
+
+/// A mesh on its way into a file.
+pub struct Kept<'a> {
+    /// What is to be written.
+    pub written: Cow<'a, TriangleMesh>,
+    /// What is read back.
+    pub read: Cow<'a, TriangleMesh>,
+    /// How far it is from the given mesh at most.
+    pub deviation: f64,
+    pub losses: Losses,
+}
+
+/// What is to be written of a mesh, what is read back from the file, and what was lost. For an STL, what rounding breaks is mended
+/// first. Warns of lost triangles.
 ///
 /// Refuses a file of which a reader gets another kind of surface, unless it is wanted all the same: one that is open or
 /// has edges at which more than two triangles meet, has more or fewer components, or encloses nothing, where the mesh is
@@ -57,30 +112,57 @@ pub fn kept<'a>(
     mesh: &'a TriangleMesh,
     format: MeshFormat,
     options: &WriteOptions,
-    is_lossy: bool,
+    writing: Writing,
     output: &Output,
-) -> Result<(WrittenForm<'a>, Losses), Failure> {
-    let kept = written_form(mesh, format, options).of(output)?;
-    let WrittenForm { rounding, merged, degenerate, .. } = kept;
-    let flat = kept.mesh.report().of(output)?.flat;
-    let mut losses = Losses { rounding, merged, degenerate, flat, broken: false };
+) -> Result<Kept<'a>, Failure> {
+    let single = match format {
+        MeshFormat::Stl => {
+            let tolerance = writing.tolerance.unwrap_or_else(|| SHARE * longest(mesh));
+            let mend = |control: &Control<'_>| mesh.in_single_precision(tolerance, control);
+            Some(watched("rounding", writing.threads, mend).of(output)?)
+        }
+        _ => None,
+    };
+    let mut losses = Losses::default();
+    let (written, read, deviation) = match single {
+        Some(single) => {
+            let form = written_form(&single.mesh, format, options).of(output)?;
+            losses.take(&form);
+            let read = Cow::Owned(form.mesh.into_owned());
+            // (Of an STL as text the decimal numbers are rounded, too, along each axis.)
+            let added = single.deviation + 1.7321 * losses.rounding;
+            losses.rounding += single.rounding;
+            (losses.collapsed, losses.flipped, losses.moved) =
+                (single.collapsed, single.flipped, single.moved);
+            (Cow::Owned(single.mesh), read, added)
+        }
+        None => {
+            let form = written_form(mesh, format, options).of(output)?;
+            losses.take(&form);
+            (Cow::Borrowed(mesh), form.mesh, 0.0)
+        }
+    };
+    losses.flat = read.report().of(output)?.flat;
+    let Losses { rounding, degenerate, .. } = losses;
     if rounding == 0.0 {
-        return Ok((kept, losses));
+        return Ok(Kept { written, read, deviation, losses });
     }
-    let problem = problem(mesh, &kept.mesh).of(output)?;
+    let problem = problem(mesh, &read).of(output)?;
     losses.broken = problem.is_some();
     let name = format_name(format).to_uppercase();
     let how = format!("rounding to the 32-bit coordinates of {name}, by up to {},", number(rounding));
+    let gone = |before: usize, after: usize| count(before.saturating_sub(after) as u64);
+    let (vertices, triangles) = (mesh.vertices().len(), mesh.triangles().len());
     let lost = format!(
         "{} of {} and {} of {}",
-        count(merged),
-        counted(mesh.vertices().len() as u64, "vertex", "vertices"),
-        count(degenerate),
-        counted(mesh.triangles().len() as u64, "triangle", "triangles"),
+        gone(vertices, read.vertices().len()),
+        counted(vertices as u64, "vertex", "vertices"),
+        gone(triangles, read.triangles().len()),
+        counted(triangles as u64, "triangle", "triangles"),
     );
     let others = "PLY, OBJ, OFF and 3MF keep doubles";
     match problem {
-        Some(problem) if !is_lossy => {
+        Some(problem) if !writing.is_lossy => {
             let problem = format!("was not written: {how} loses {lost}, and {problem}");
             return Err(Failure::of(
                 output,
@@ -95,7 +177,7 @@ pub fn kept<'a>(
         }
         None => {}
     }
-    Ok((kept, losses))
+    Ok(Kept { written, read, deviation, losses })
 }
 
 /// What is wrong with a surface after rounding that was not so before.

@@ -29,7 +29,8 @@ pub struct WrittenForm<'a> {
 /// PLY, OBJ, OFF and 3MF keep every bit of the coordinates, and nothing is lost. STL has 32-bit coordinates: vertices
 /// move, vertices that meet are one vertex for a reader, and triangles of which two corners meet are dropped. A closed
 /// mesh stays closed, but it may be flat, pinched, or have no triangle at all: a cube of edge 3 around x = 10⁹ becomes a
-/// square. Its [`report`](TriangleMesh::report) tells. An STL has no vertices that no triangle uses, and has the others in
+/// square. Its [`report`](TriangleMesh::report) tells, and
+/// [`TriangleMesh::in_single_precision`] mends what can be mended before. An STL has no vertices that no triangle uses, and has the others in
 /// the order in which triangles first use them. What is kept of [attributes](TriangleMesh::attributes) stands at
 /// [`write_mesh`](super::write_mesh); those of the mesh that is told are none, or all.
 ///

@@ -22,7 +22,7 @@ pub use form::{WrittenForm, written_form};
 #[cfg(feature = "png")]
 pub use png::write_png;
 #[cfg(feature = "std")]
-pub use polygons::write_polygons;
+pub use polygons::{write_grouped_polygons, write_polygons};
 pub use stl::write_stl;
 
 use super::{LengthUnit, MeshFormat, stated};

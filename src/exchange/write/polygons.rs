@@ -4,6 +4,7 @@
 //! triangle and takes neighbours across its edges, each with a corner that is new to it, as long as there are any. So it stays a
 //! disc without corners that meet, and all corners of the face stay corners.
 
+use super::attributes::line_of;
 use super::lines::{Lines, Point};
 use super::{WriteOptions, stated};
 use crate::error::{Error, PolyhedronError};
@@ -51,13 +52,30 @@ pub fn write_polygons(
     format: MeshFormat,
     options: &WriteOptions,
 ) -> Result<Vec<u8>, Error> {
+    write_grouped_polygons(arrays, &[], format, options)
+}
+
+/// As [`write_polygons`], in groups of an OBJ: the faces from a number on, up to those of the next group, belong to all groups whose
+/// names, between blanks, are told. The numbers ascend. An OFF has no groups.
+///
+/// # Errors
+/// As [`write_polygons`].
+pub fn write_grouped_polygons(
+    arrays: &PolyhedronArrays<'_>,
+    groups: &[(u32, &str)],
+    format: MeshFormat,
+    options: &WriteOptions,
+) -> Result<Vec<u8>, Error> {
     stated::check(options.deviation)?;
     if !matches!(format, MeshFormat::Obj | MeshFormat::Off) {
         return Err(Error::Argument { name: "format", problem: "must be OBJ or OFF, which have polygons" });
     }
     Polyhedron::new(arrays)?;
     let mut polygons = Polygons::default();
+    // How many polygons there are before each face.
+    let mut starts = memory::with_capacity(arrays.faces.len())?;
     for (face, loops) in arrays.faces.windows(2).enumerate() {
+        starts.push(polygons.ends.len());
         // (The offsets were found to be right.)
         let loops = &arrays.loops[loops[0] as usize..=loops[1] as usize];
         let corners = &arrays.corners[loops[0] as usize..loops[loops.len() - 1] as usize];
@@ -84,8 +102,17 @@ pub fn write_polygons(
     for &vertex in arrays.vertices {
         lines.add(format_args!("{}{}\n", if is_obj { "v " } else { "" }, Point(vertex)))?;
     }
-    let mut start = 0;
-    for &end in &polygons.ends {
+    let (mut start, mut group) = (0, groups.iter());
+    let mut next = group.next();
+    for (number, &end) in polygons.ends.iter().enumerate() {
+        while let Some((face, name)) = next
+            && starts.get(*face as usize).is_none_or(|&first| first <= number)
+        {
+            if is_obj {
+                lines.add(format_args!("g {}\n", line_of(name, *face as usize)?))?;
+            }
+            next = group.next();
+        }
         match is_obj {
             true => lines.add(format_args!("f"))?,
             false => lines.add(format_args!("{}", end - start))?,

@@ -9,7 +9,7 @@
 //!
 //! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `leaves` (the cells), `walk` (their
 //! minimal faces and edges), `edges`, `curve` (curves as chords), `faces`, `cells`, `patches` (triangles), `held` (where these stay),
-//! `proof`.
+//! `mates`, `proof`, `regions` (triangles on one surface as faces).
 
 mod cells;
 mod curve;
@@ -18,8 +18,10 @@ mod faces;
 mod figures;
 mod held;
 mod leaves;
+mod mates;
 mod patches;
 mod proof;
+mod regions;
 mod strips;
 mod walk;
 
@@ -41,6 +43,7 @@ use held::Held;
 use leaves::{Leaves, Refused, Wanted};
 use patches::Patches;
 use proof::prove;
+pub use regions::{BoundaryFaces, BoundaryRegion};
 
 /// The boundary of a solid: a mesh whose triangles know their surfaces.
 pub struct Boundary {
@@ -88,6 +91,37 @@ impl Boundary {
     /// The number of the surface that a triangle lies on, but for chords; `None` where the boundary is known to a cell only.
     pub fn surface_of(&self, triangle: usize) -> Option<u32> {
         self.of_triangles.get(triangle).copied().filter(|&surface| surface != NONE)
+    }
+
+    /// The faces: plane ones as polygons, curved ones as triangles, each with its surface.
+    ///
+    /// ```
+    /// use leafless::{Control, Csg, Frame, mesh::Polyhedron, surface::boundary};
+    /// let bore = Csg::cylinder_between([4.0, 3.0, -1.0], [4.0, 3.0, 2.0], 1.0)?;
+    /// let plate = Csg::cuboid([0.0; 3], [8.0, 6.0, 1.0])?.difference(&bore)?;
+    /// let frame = Frame::around([0.0; 3], [8.0, 6.0, 1.0], 14)?;
+    /// let found = boundary(&plate, &frame, 0.01, &Control::default())?;
+    /// let faces = found.faces()?;
+    /// let arrays = faces.arrays();
+    /// // Six plane faces, of which two have a hole, and the wall of the bore.
+    /// assert_eq!(faces.regions().len(), 7);
+    /// let plane = faces.regions().iter().filter(|region| region.faces.len() == 1);
+    /// let loops = plane.map(|region| {
+    ///     let face = region.faces.start as usize;
+    ///     arrays.faces[face + 1] - arrays.faces[face]
+    /// });
+    /// assert_eq!(loops.sum::<u32>(), 6 + 2);
+    /// assert!((Polyhedron::new(&arrays)?.mesh().volume() - found.mesh().volume()).abs() < 1e-12);
+    /// # Ok::<(), leafless::Error>(())
+    /// ```
+    ///
+    /// O(n log n) expected.
+    ///
+    /// # Errors
+    /// [`MeshError::TooMany`](crate::error::MeshError::TooMany) beyond 2^32 - 1 corners; [`Error::OutOfMemory`]; [`Error::Limit`] as
+    /// [`PlacedHalfSpace::shape`].
+    pub fn faces(&self) -> Result<BoundaryFaces, Error> {
+        BoundaryFaces::find(&self.mesh, &self.surfaces, &self.of_triangles)
     }
 }
 

@@ -185,7 +185,7 @@ fn merge(
 }
 
 /// Twice the area of a loop, along its normal.
-fn area(corners: &[u32], vertices: &[[f64; 3]]) -> [f64; 3] {
+pub(super) fn area(corners: &[u32], vertices: &[[f64; 3]]) -> [f64; 3] {
     let origin = vertices[corners[0] as usize];
     let mut sum = [0.0; 3];
     for pair in corners.windows(2) {

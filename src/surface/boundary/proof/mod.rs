@@ -12,6 +12,7 @@ mod witness;
 
 use super::figures::{Figures, length, minus};
 use super::leaves::{Leaf, Leaves, OpenLeaf};
+use super::mates::mates;
 use crate::control::Job;
 use crate::error::Error;
 use crate::lattice::{Cell, Frame, axes};
@@ -19,7 +20,7 @@ use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 use local::Local;
-use sheets::{Sheet, Subject, mates};
+use sheets::{Sheet, Subject};
 use truth::{Around, Truth, cube};
 use witness::Witnesses;
 
@@ -81,7 +82,7 @@ pub(super) fn prove(
         proof.add(cell, ways.fold(f64::INFINITY, f64::min), tolerance)?;
     }
     job.check()?;
-    let Some(mates) = mates(mesh)? else {
+    let Some(mates) = mates(triangles)? else {
         proof.most = f64::INFINITY;
         return Ok(proof);
     };

@@ -13,7 +13,7 @@ use super::truth::{Around, LEAST, cube};
 use crate::error::Error;
 use crate::lattice::{Bounds, Cell, axes};
 use crate::memory;
-use crate::mesh::{TriangleMesh, TriangleTree};
+use crate::mesh::TriangleTree;
 use crate::solid::OpenSurfaces;
 use alloc::vec::Vec;
 
@@ -65,30 +65,6 @@ impl Subject<'_> {
         let Some((_, away)) = self.tree.nearest_of(&point, |_| true) else { return f64::INFINITY };
         away.upper / self.edge * (1.0 + ROUNDING) + length(minus(around.high, centre)) + ROUNDING
     }
-}
-
-/// The triangles on the other side of the sides of each; `None` if a side has not exactly one.
-pub(super) fn mates(mesh: &TriangleMesh) -> Result<Option<Vec<[u32; 3]>>, Error> {
-    let triangles = mesh.triangles();
-    let mut sides = memory::with_capacity(3 * triangles.len())?;
-    for (number, triangle) in (0u32..).zip(triangles) {
-        for k in 0..3 {
-            let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
-            sides.push((from.min(to), from.max(to), from < to, number, k as u8));
-        }
-    }
-    sides.sort_unstable();
-    let mut mates = memory::filled(triangles.len(), [0; 3])?;
-    let mut pairs = sides.chunks_exact(2);
-    for pair in &mut pairs {
-        let [one, other] = [pair[0], pair[1]];
-        if (one.0, one.1) != (other.0, other.1) || one.2 == other.2 {
-            return Ok(None);
-        }
-        mates[one.3 as usize][usize::from(one.4)] = other.3;
-        mates[other.3 as usize][usize::from(other.4)] = one.3;
-    }
-    Ok(pairs.remainder().is_empty().then_some(mates))
 }
 
 /// What is found out about a box.
