@@ -237,6 +237,7 @@ fn channels() {
 #[test]
 fn surfaces() {
     run("surface", C99, Link::Static, &[]);
+    run("contour", C99, Link::Static, &[]);
     run("extract", CPP17, Link::Static, &[]);
 }
 

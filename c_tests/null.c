@@ -1352,6 +1352,9 @@ static void volumes_and_surfaces(void) {
     NULL_POINTER(leafless_solid_boundary, frame,
                  leafless_solid_boundary(solid, NULL, 1, NULL, (leafless_boundary **)mesh_result));
     NULL_POINTER(leafless_solid_boundary, boundary, leafless_solid_boundary(solid, &frame, 1, NULL, NULL));
+    NULL_POINTER(leafless_solid_contour, solid, leafless_solid_contour(NULL, &frame, 1, NULL, NULL, mesh_result));
+    NULL_POINTER(leafless_solid_contour, frame, leafless_solid_contour(solid, NULL, 1, NULL, NULL, mesh_result));
+    NULL_POINTER(leafless_solid_contour, mesh, leafless_solid_contour(solid, &frame, 1, NULL, NULL, NULL));
     NULL_POINTER(leafless_mesh_normals, mesh, leafless_mesh_normals(NULL, NULL, 0, count));
     NULL_POINTER(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 8, count));
     NULL_POINTER(leafless_mesh_normals, count, leafless_mesh_normals(mesh, NULL, 0, NULL));
@@ -1425,6 +1428,12 @@ static void volumes_and_surfaces(void) {
     MISALIGNED(leafless_solid_boundary, boundary,
                leafless_solid_boundary(solid, &frame, 1, NULL, (leafless_boundary **)WRONG(out)));
     boundaries();
+    MISALIGNED(leafless_solid_contour, frame,
+               leafless_solid_contour(solid, (leafless_frame *)WRONG(&frame), 1, NULL, NULL, mesh_result));
+    MISALIGNED(leafless_solid_contour, report,
+               leafless_solid_contour(solid, &frame, 1, NULL, (leafless_contour_report *)WRONG(out), mesh_result));
+    MISALIGNED(leafless_solid_contour, mesh,
+               leafless_solid_contour(solid, &frame, 1, NULL, NULL, (leafless_mesh **)WRONG(out)));
     surface.resolve = LEAFLESS_RESOLVE_SOURCE;
     NULL_POINTER(leafless_octree_surface, surface.source, leafless_octree_surface(octree, &surface, NULL, mesh_result));
     surface.source = (leafless_solid *)WRONG(solid);
@@ -1490,6 +1499,12 @@ static void volumes_and_surfaces(void) {
                         leafless_solid_boundary(round, &frame, frame.edge, NULL, &boundary));
             leafless_boundary_free(boundary);
         }
+        MAY_BE_NULL(leafless_solid_contour, options,
+                    leafless_solid_contour(round, &frame, frame.edge, NULL, NULL, mesh_result));
+        leafless_mesh_free(*mesh_result);
+        MAY_BE_NULL(leafless_solid_contour, report,
+                    leafless_solid_contour(round, &frame, frame.edge, &options, NULL, mesh_result));
+        leafless_mesh_free(*mesh_result);
         leafless_solid_free(round);
     }
     {

@@ -500,6 +500,9 @@ public:
         const leafless_surface_options *surface = nullptr, const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless::boundary> boundary(const leafless_frame &frame, double tolerance_model,
         const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<std::tuple<leafless_contour_report,
+        leafless::mesh>> contour(const leafless_frame &frame, double tolerance_model,
+        const leafless_options *options = nullptr) const;
     [[nodiscard]] static returns<leafless::solid> from_tridexel(const leafless::tridexel &tridexel,
         bool is_truth, const leafless_options *options = nullptr);
 };
@@ -1580,6 +1583,17 @@ inline returns<leafless::boundary> solid::boundary(const leafless_frame &frame, 
     const leafless_status status = leafless_solid_boundary(get(), &frame, tolerance_model, options,
         &boundary_handle);
     return detail::finish(status, leafless::boundary(boundary_handle));
+}
+
+inline returns<std::tuple<leafless_contour_report,
+    leafless::mesh>> solid::contour(const leafless_frame &frame, double tolerance_model,
+    const leafless_options *options) const {
+    leafless_contour_report report = LEAFLESS_INIT(leafless_contour_report);
+    leafless_mesh *mesh_handle = nullptr;
+    const leafless_status status = leafless_solid_contour(get(), &frame, tolerance_model, options, &report,
+        &mesh_handle);
+    return detail::finish(status, std::tuple<leafless_contour_report, leafless::mesh>(report,
+        leafless::mesh(mesh_handle)));
 }
 
 inline returns<leafless::solid> solid::from_tridexel(const leafless::tridexel &tridexel, bool is_truth,

@@ -164,6 +164,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             coefficients
         }
         leafless_boundary_region { surface, first_face, face_count, triangle_count, area_model, is_turned }
+        leafless_contour_report { struct_size, deviation_model, intersecting_pairs, cells, splits, undecided }
         leafless_section_area { struct_size, area_model, proof, splits, measured, is_clipped }
         leafless_extent { struct_size,
             min_model, max_model, proof, splits, measured, is_empty, is_occupied, is_clipped

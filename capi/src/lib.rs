@@ -61,6 +61,7 @@
 //! | `bitmap` | the cells of a box as bits |
 //! | `surface` | surfaces: closed meshes of octrees and solids |
 //! | `solid_boundary` | boundaries of solids that know their surfaces: faces as polygons, kinds and numbers of surfaces |
+//! | `contour` | contours: the same of any solid, with cells of several sizes |
 //! | `camera` | cameras |
 //! | `layer` | what pictures are made of; what values look like |
 //! | `layer_surface` | surfaces of octrees, solids and meshes in pictures, lines |
@@ -98,6 +99,7 @@ mod clearance;
 mod columns;
 mod contains;
 mod content;
+mod contour;
 mod control;
 mod csg;
 mod cursor;
@@ -164,6 +166,7 @@ pub use clearance::*;
 pub use columns::*;
 pub use contains::*;
 pub use content::*;
+pub use contour::*;
 pub use control::*;
 pub use csg::*;
 pub use cursor::*;

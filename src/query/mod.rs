@@ -65,7 +65,7 @@ pub use columns::{ColumnCells, ColumnRuns, Columns, Heights, Run, Side, columns,
 pub use contains::contains;
 pub use content::{CellsIn, cells_in, volume_in};
 #[cfg(feature = "std")]
-pub(crate) use deviation::meshes_apart;
+pub(crate) use deviation::{Comparison, Reference, meshes_apart};
 pub use deviation::{DEVIATION_SPLITS, Deviation, OneWay, Within, Witness, deviation};
 pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, NearPoint, PointDistance, distances};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};

@@ -3,7 +3,7 @@
 use super::blocks::{Blocks, FINDING};
 use super::chunks;
 use super::cubes::triangles;
-use super::dual;
+use super::dual::{self, Crossings};
 use super::hermite::{Hermite, Said, said};
 use super::lattice::Lattice;
 use super::samples::Samples;
@@ -196,10 +196,28 @@ pub fn dual_contouring_dexels(
         rays.for_each(&mut crossings, (WHOLE - FINDING) / 4, job, parallel, |_, hermite, crossing| {
             *crossing = hermite;
         })?;
-        let (mesh, counts) = dual::extract(model, blocks, lattice, &crossings, job, parallel)?;
+        let told = Told { model, crossings };
+        let (mesh, counts) = dual::extract(&told, blocks, lattice, job, parallel)?;
         let dual::DualCounts { means, clamped, vanished } = counts;
         Ok((mesh, DexelSurfaceReport { means, clamped, vanished, ..rays.counts.report(model, blocks) }))
     })
+}
+
+/// What the rays of a model told of cut edges.
+struct Told<'a> {
+    model: &'a TriDexelRef<'a>,
+    crossings: Vec<Hermite>,
+}
+
+impl Crossings for Told<'_> {
+    #[inline(always)]
+    fn at(&self, edge: u32) -> Hermite {
+        self.crossings[edge as usize]
+    }
+
+    fn vanished(&self, blocks: &Blocks, covered: &[bool]) -> Result<u64, Error> {
+        vanished(self.model, blocks, |crossing| covered[crossing])
+    }
 }
 
 /// What `extract` makes of the blocks of a model's samples.

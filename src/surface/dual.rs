@@ -20,10 +20,9 @@ use super::loops::LOOPS;
 use super::masks::{CORNER_AT, bits, configuration, rank};
 use super::qef::Qef;
 use super::table::{ENDS, OTHERS};
-use super::vanished::{is_kept, vanished};
+use super::vanished::is_kept;
 use super::weld::weld;
 use crate::control::{Job, WHOLE};
-use crate::dexel::TriDexelRef;
 use crate::error::{Error, MeshError};
 use crate::lattice::axes;
 use crate::lattice::morton;
@@ -46,15 +45,22 @@ pub(super) struct DualCounts {
 /// Diagonals whose distances from the crossing differ by less than this part of a cell are alike.
 const ALIKE: f64 = 1.0 / (1 << 20) as f64;
 
-/// The mesh of crossings of a model, which come in the order of the cut edges of `blocks`.
+/// Where cut edges are crossed. Edges have the numbers of the vertices of marching cubes.
+pub(super) trait Crossings: Sync {
+    fn at(&self, edge: u32) -> Hermite;
+
+    /// How many bodies have no triangle, if `covered` says of each edge whether it has one.
+    fn vanished(&self, blocks: &Blocks, covered: &[bool]) -> Result<u64, Error>;
+}
+
+/// The mesh of crossings.
 ///
 /// # Errors
 /// [`MeshError::TooMany`], [`Error::OutOfMemory`], [`Error::Cancelled`].
 pub(super) fn extract(
-    model: &TriDexelRef<'_>,
+    crossings: &impl Crossings,
     blocks: &Blocks,
     lattice: &Lattice,
-    crossings: &[Hermite],
     job: &Job<'_>,
     parallel: bool,
 ) -> Result<(TriangleMesh, DualCounts), Error> {
@@ -105,14 +111,14 @@ pub(super) fn extract(
     let mesh = if is_welded.into_inner() {
         TriangleMesh::from_welded(vertices, triangles, 0, 0)
     } else {
-        let mut covered = memory::filled(crossings.len(), false)?;
+        let mut covered = memory::filled(blocks.vertices, false)?;
         for i in 0..blocks.list.len() {
             job.check()?;
             dual.quads(i, crossings, &vertices, |crossing, triangle| {
                 covered[crossing as usize] |= is_kept(&vertices, triangle);
             });
         }
-        bodies = vanished(model, blocks, |crossing| covered[crossing])?;
+        bodies = crossings.vanished(blocks, &covered)?;
         weld(vertices, triangles)?
     };
     let [means, clamped] = [means, clamped].map(|count| count.into_inner() as u64);
@@ -345,7 +351,7 @@ impl Dual<'_> {
     fn vertices<'p>(
         &self,
         i: usize,
-        crossings: &[Hermite],
+        crossings: &impl Crossings,
         places: &mut impl Iterator<Item = &'p mut [f64; 3]>,
     ) -> Found {
         let block = &self.blocks.list[i];
@@ -356,7 +362,7 @@ impl Dual<'_> {
             let mut qefs = [Qef::default(); 4];
             for (edge, &of) in (0u8..).zip(&loops.of_edge) {
                 if let Some(qef) = qefs.get_mut(of as usize) {
-                    let hermite = &crossings[around.vertex(c, edge) as usize];
+                    let hermite = crossings.at(around.vertex(c, edge));
                     let lower = ENDS[edge as usize][0];
                     let mut point = axes(|axis| f64::from(lower >> axis & 1));
                     point[edge as usize / 4] = hermite.t;
@@ -392,7 +398,7 @@ impl Dual<'_> {
     fn joints<'p>(
         &self,
         i: usize,
-        crossings: &[Hermite],
+        crossings: &impl Crossings,
         places: &mut impl Iterator<Item = &'p mut [f64; 3]>,
     ) -> bool {
         let (block, own) = (&self.blocks.list[i], &self.cubes.list[i]);
@@ -418,7 +424,7 @@ impl Dual<'_> {
                         let ends = [corner & !(1 << along), corner | 1 << along];
                         let edge = ENDS.iter().position(|&edge| edge == ends);
                         let edge = edge.unwrap_or(0) as u8;
-                        let crossing = crossings[around.vertex(c, edge) as usize].t;
+                        let crossing = crossings.at(around.vertex(c, edge)).t;
                         let off = if corner >> along & 1 == 0 { crossing } else { crossing - 1.0 };
                         point[along] += f64::from(corner >> along & 1) + 0.5 * off;
                     }
@@ -442,7 +448,7 @@ impl Dual<'_> {
     fn quads(
         &self,
         i: usize,
-        crossings: &[Hermite],
+        crossings: &impl Crossings,
         vertices: &[[f64; 3]],
         mut each: impl FnMut(u32, [u32; 3]),
     ) {
@@ -471,7 +477,7 @@ impl Dual<'_> {
                     f64::from(lower) + 0.5
                 });
                 let number = around.vertex(c, edge);
-                crossing[axis] += crossings[number as usize].t;
+                crossing[axis] += crossings.at(number).t;
                 let crossing = axes(|axis| self.lattice.position(axis, crossing[axis]));
                 if self.turns(axis, crossing, quad.map(|vertex| vertices[vertex as usize])) {
                     quad.rotate_left(1);

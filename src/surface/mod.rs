@@ -16,7 +16,7 @@
 //! (coplanar shrink), `weld` (vertices at one place), `solid` (any
 //! solid), `volume` (samples of a field), `loops` (the sheets in a cube), `qef` (the point that fits planes best),
 //! `hermite` (crossings with normals, and how rays tell them), `vanished` (bodies without triangles), `dual` (dual contouring),
-//! `dexel` (tri-dexel models), `dexel_solid` (these as solids).
+//! `nets` (surface nets), `dexel` (tri-dexel models), `dexel_solid` (these as solids).
 //!
 //! `boundary` goes another way: where a solid knows its surfaces, these are cut to the pieces that bound it, and nothing is sampled.
 //! `contour` is dual contouring with cells of several sizes, of any solid. `simplify` takes vertices out of meshes.
@@ -40,6 +40,7 @@ mod key;
 mod lattice;
 mod loops;
 mod masks;
+mod nets;
 mod outline;
 mod plane;
 mod points;
@@ -69,6 +70,7 @@ pub use contour::{Contour, ContourReport, contour};
 pub use cubes::{marching_cubes, marching_cubes_reusing};
 pub use dexel::{DexelSurfaceReport, dual_contouring_dexels, dual_contouring_solid, marching_cubes_dexels};
 pub use dexel_solid::DexelSolid;
+pub use nets::surface_nets;
 pub use resolve::Resolve;
 pub use shrink::{coplanar_shrink, published_shrink};
 pub use simple::{Snap, simple_marching_cubes};

@@ -17,6 +17,8 @@ impl Least {
     /// Marching cubes: a vertex for each edge. A closed surface around one sample has six vertices and eight triangles,
     /// and no closed surface has fewer triangles for its vertices.
     pub const CUBES: Least = Least { bytes: 24 + 4 * 12 / 3, edges_a_vertex: 1 };
+    /// Surface nets: two triangles for each edge, and a vertex for twelve edges at most, each of which is one in four cubes.
+    pub const NETS: Least = Least { bytes: 24 + 24 / 3, edges_a_vertex: 3 };
     /// Vertices at samples, of which each is the end of six edges at most.
     pub const SAMPLES: Least = Least { bytes: 4, edges_a_vertex: 6 };
     /// Few triangles for many edges: only blocks count.
@@ -125,6 +127,7 @@ mod tests {
         let limited = Control { max_bytes: Some(1 << 30), ..Control::default() };
         for (least, needed) in [
             (Least::CUBES, edges * 40 + edges / 192 * 56),
+            (Least::NETS, edges * 32 + edges / 192 * 56),
             (Least::SAMPLES, edges * 4 + edges / 192 * 56),
             (Least::REGIONS, edges / 192 * 56),
         ] {

@@ -1,6 +1,6 @@
 //! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense arrays.
 
-use crate::{attributes, contacts, direct, measures, records};
+use crate::{attributes, contacts, direct, measures, records, surfaces};
 use leafless::attribute::{
     Attribute, Criterion, Detail, FillOptions, MovedAttribute, ScalarType, ValueRange, ValueType,
     fill_channel,
@@ -148,6 +148,24 @@ fn what_the_fuzzer_found_interesting() {
 #[test]
 fn solids_in_contact() {
     any_bytes(contacts::contacts, 0..200, 40);
+}
+
+#[test]
+#[ignore = "input 11, a stored octree of depth 6, has an edge with more than two triangles"]
+fn surfaces_of_expressions_are_closed_and_as_near_as_is_said() {
+    any_bytes(surfaces::boundaries, 0..30, 40);
+}
+
+#[test]
+fn contours_of_anything_are_closed_and_as_near_as_is_said() {
+    any_bytes(surfaces::contours, 0..30, 40);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn more_surfaces_are_closed_and_as_near_as_is_said() {
+    any_bytes(surfaces::boundaries, 30..4000, 40);
+    any_bytes(surfaces::contours, 30..4000, 40);
 }
 
 #[test]

@@ -26,6 +26,8 @@ mod records;
 #[cfg(feature = "scene")]
 #[path = "../../fuzz/bodies/scenes.rs"]
 mod scenes;
+#[path = "../../fuzz/bodies/surfaces.rs"]
+mod surfaces;
 
 mod attacks;
 mod dexels;

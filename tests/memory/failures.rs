@@ -28,6 +28,7 @@ use leafless::solid::{Band, HalfSpace, Transform, VoxelGrid};
 use leafless::surface::{
     Resolve, Snap, VertexPlacement, boundary, contour, dual_contouring_dexels, marching_cubes_dexels,
     marching_cubes_solid, marching_cubes_volume, simple_marching_cubes, simple_marching_cubes_solid,
+    surface_nets,
 };
 use leafless::voxel::{VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
@@ -260,6 +261,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     });
     operation!("surfaces of an octree", [binary, a], {
         marching_cubes(binary.view(), None, &CONTROL)?;
+        surface_nets(binary.view(), None, &CONTROL)?;
         simple_marching_cubes(a.view(), Snap::Fat, Some(Resolve::Outer), &CONTROL)
     });
     operation!("surfaces of a ball", [], {

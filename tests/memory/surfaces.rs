@@ -2,7 +2,7 @@
 
 use crate::allocator::most_held;
 use crate::common::alone;
-use leafless::surface::{Snap, simple_marching_cubes};
+use leafless::surface::{Snap, simple_marching_cubes, surface_nets};
 use leafless::{Csg, Frame, Rule, TriangleMesh, build, marching_cubes};
 #[test]
 fn a_fifth_of_the_mesh_at_the_most() {
@@ -16,5 +16,6 @@ fn a_fifth_of_the_mesh_at_the_most() {
         part
     };
     assert!(measured(&|| marching_cubes(tree.view(), None, &alone()).unwrap()) < 1.2);
+    assert!(measured(&|| surface_nets(tree.view(), None, &alone()).unwrap()) < 1.4);
     assert!(measured(&|| simple_marching_cubes(tree.view(), Snap::Fat, None, &alone()).unwrap()) < 1.5);
 }

@@ -18,7 +18,7 @@ use leafless::solid::{Band, VoxelGrid};
 use leafless::surface::{
     DexelSolid, Snap, VertexPlacement, boundary, contour, coplanar_shrink, coplanar_shrink_solid,
     dual_contouring_dexels, marching_cubes_dexels, marching_cubes_solid, marching_cubes_volume,
-    published_shrink, simple_marching_cubes,
+    published_shrink, simple_marching_cubes, surface_nets,
 };
 use leafless::voxel::{Symmetry, Viewpoint, VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
@@ -147,6 +147,7 @@ fn all_operations(depth: u8) -> Vec<Told> {
     heard.of("simple marching cubes", |control| {
         simple_marching_cubes(sampled.view(), Snap::Fat, None, control)
     });
+    heard.of("surface nets", |control| surface_nets(sampled.view(), None, control));
     heard.of("coplanar shrink", |control| coplanar_shrink(sampled.view(), Snap::Fat, None, control));
     heard.of("published shrink", |control| published_shrink(sampled.view(), Snap::Fat, None, control));
     heard.of("marching cubes of a solid", |control| {

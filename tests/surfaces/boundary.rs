@@ -324,7 +324,6 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
         let proven = found.report().deviation;
         // (Where surfaces nearly touch, more cells would be needed than are split for the proof.)
         beyond += usize::from(proven > tolerance);
-        if proven > tolerance {}
         let is_empty = mesh.triangles().is_empty();
         assert!(proven <= 10.0 * tolerance || is_empty, "scene {scene}: {proven} of {tolerance}");
         assert_deviation(&solid, &found, &mut random, &format!("scene {scene}"));

@@ -7,9 +7,10 @@ use leafless::exchange::{MeshOptions, read_mesh};
 use leafless::solid::{Band, VoxelGrid};
 use leafless::surface::{boundary, contour};
 use leafless::{
-    Affine, AnySolid, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, Solid, TriangleMesh, Volume,
-    build, deviation,
+    Affine, AnySolid, Callback, Control, Csg, Error, FillRule, Frame, MeshSolid, Rule, Solid, Tag,
+    TriangleMesh, Verdict, Volume, build, deviation,
 };
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 fn turn() -> Affine {
     Affine::new([[0.36, 0.48, -0.8, 1.0], [-0.8, 0.6, 0.0, 2.0], [0.48, 0.64, 0.6, 3.0]]).unwrap()
@@ -45,9 +46,126 @@ fn sharp_edges_of_meshes_stay() {
         let least = found.mesh().vertices().iter().map(away).fold(f64::INFINITY, f64::min);
         assert!(least < 2.0 * tolerance, "{corner:?} {least:e}");
     }
+    // What is proven is what the search by itself finds, to a sixteenth of the tolerance, and no more than was asked for.
+    let proven = found.report().deviation;
     let other = MeshSolid::new(found.into_mesh(), FillRule::NonZero).unwrap();
-    let found = deviation(&solid, &other, &frame, 0.2 * tolerance, &alone()).unwrap();
-    assert!(found.distance().upper <= 4.0 * tolerance, "{found:?}");
+    let found = deviation(&solid, &other, &frame, 1e-3 * tolerance, &alone()).unwrap().distance();
+    assert!(found.lower <= proven && proven <= found.upper + 0.07 * tolerance, "{found:?} {proven}");
+    assert!(proven <= tolerance, "{proven}");
+}
+
+/// Of balls, of all kinds of solids, the true deviation is known at each vertex and each middle of a triangle: never more than is proven.
+#[test]
+fn what_is_proven_is_not_contradicted() {
+    let (centre, radius, tolerance) = ([0.5, 0.25, 0.0], 4.0, 0.1);
+    let ball = Csg::ball(centre, radius).unwrap();
+    let frame = Frame::new([-8.0; 3], 16.0, 8).unwrap();
+    let away = move |p: [f64; 3]| (0..3).map(|k| (p[k] - centre[k]).powi(2)).sum::<f64>().sqrt() - radius;
+    let host = Callback::new(move |min: [f64; 3], max: [f64; 3]| {
+        let middle = [0, 1, 2].map(|k| 0.5 * (min[k] + max[k]));
+        let reach = (0..3).map(|k| (max[k] - middle[k]).powi(2)).sum::<f64>().sqrt() * (1.0 + 1e-9) + 1e-9;
+        let height = away(middle);
+        Ok(match height.abs() > reach {
+            true if height > 0.0 => Verdict::Empty,
+            true => Verdict::Full,
+            false => Verdict::Partial(()),
+        })
+    });
+    let host = host.with_contains(move |point| Ok(away(point) < 0.0)).with_exterior(Tag::Empty);
+    let tree = build(&ball, &frame.with_depth(6).unwrap(), Rule::Certified, &alone()).unwrap();
+    // What is known of each: slabs tell an expression well, cells of a size tell others about as well as they are large.
+    let solids: [(&str, AnySolid, f64); 4] = [
+        ("expression", AnySolid::new(ball.clone()), 1.5 * tolerance),
+        (
+            "expression with a mesh",
+            AnySolid::new(Csg::solid(AnySolid::new(meshed(&ball, 1e-3)))),
+            1.5 * tolerance,
+        ),
+        ("host", AnySolid::new(host), 3.0),
+        ("octree", AnySolid::new(tree), 3.0),
+    ];
+    for (name, solid, most) in solids {
+        let found = contour(&solid, &frame, tolerance, &alone()).unwrap();
+        let (mesh, proven) = (found.mesh(), found.report().deviation);
+        assert!(proven <= most, "{name}: {proven}");
+        let points = mesh.triangles().iter().flat_map(|triangle| {
+            let [a, b, c] = triangle.map(|v| mesh.vertices()[v as usize]);
+            [a, [0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0)]
+        });
+        let true_one = points.map(|point| away(point).abs()).fold(0.0, f64::max);
+        // (The mesh in the expression is a thousandth beside the ball.)
+        assert!(true_one <= proven + 2e-3, "{name}: {true_one} {proven}");
+    }
+    // An octree of samples proves nothing.
+    let tree = build(&ball, &frame.with_depth(6).unwrap(), Rule::Sampled, &alone()).unwrap();
+    let found = contour(&tree, &frame, tolerance, &alone()).unwrap();
+    assert_eq!(found.report().deviation, f64::INFINITY);
+}
+
+/// Hosts whose functions are no numbers, say different things of one place, or end in the middle: closed manifolds, or their own error.
+#[test]
+fn hosts_that_contradict_themselves() {
+    let frame = Frame::new([-8.0; 3], 16.0, 5).unwrap();
+    let control = Control { max_nodes: Some(300), ..alone() };
+    let hash = |seed: u64, point: [f64; 3]| {
+        Random(point.iter().fold(seed, |sum, c| (sum ^ c.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15)))
+            .next()
+    };
+    for seed in 0..4u64 {
+        let host = Callback::new(move |min: [f64; 3], max: [f64; 3]| {
+            Ok(match hash(seed, min) ^ hash(seed + 1, max) {
+                // Cells within a full one may be empty.
+                die if die % 256 < 8 * (seed % 4) => [Verdict::Full, Verdict::Empty][die as usize >> 9 & 1],
+                _ => Verdict::Partial(()),
+            })
+        });
+        let share = [1, 64, 128, 255][seed as usize % 4];
+        let host = host.with_contains(move |point| Ok(hash(seed + 2, point) % 256 < share));
+        let host = host.with_distance(move |points, found| {
+            for (point, found) in points.iter().zip(found) {
+                *found = match hash(seed + 3, *point) % 8 {
+                    0 => f64::NAN,
+                    1 => f64::INFINITY,
+                    2 => f64::NEG_INFINITY,
+                    3 => -0.5,
+                    4 => 0.5,
+                    _ => 0.0,
+                };
+            }
+            Ok(())
+        });
+        match contour(&host.with_exterior(Tag::Empty), &frame, 0.2, &control) {
+            Ok(found) => _ = euler_of_manifold(found.mesh()),
+            Err(error) => assert!(matches!(error, Error::Limit { .. }), "{seed}: {error}"),
+        }
+    }
+    // All is full up to the faces of the universe, which have no other side; and all is empty.
+    for verdict in [Verdict::Full, Verdict::Empty] {
+        let host = Callback::new(move |_, _| Ok(verdict)).with_exterior(Tag::Empty);
+        let found = contour(&host, &frame, 0.2, &control).unwrap();
+        assert!(found.mesh().triangles().is_empty());
+        let is_empty = matches!(verdict, Verdict::Empty);
+        assert_eq!(found.report().deviation, if is_empty { 0.0 } else { f64::INFINITY });
+    }
+    // Nobody decides points: all that is undecided counts as outside.
+    let host = Callback::new(|_, _| Ok(Verdict::Partial(()))).with_exterior(Tag::Empty);
+    let found = contour(&host, &frame, 0.2, &control);
+    assert!(
+        matches!(found, Err(Error::Limit { .. })) || found.is_ok_and(|found| found.report().undecided > 0)
+    );
+    // An error in the middle, and a panic of nobody.
+    let count = AtomicU64::new(0);
+    let host = Callback::new(|_, _| match count.fetch_add(1, Relaxed) {
+        500.. => Err(Error::Callback { code: 7 }),
+        _ => Ok(Verdict::Partial(())),
+    });
+    let refused = contour(&host.with_exterior(Tag::Empty), &frame, 0.2, &control);
+    assert!(matches!(refused, Err(Error::Callback { code: 7 })));
+    // Somebody cancels.
+    let cancel = AtomicBool::new(true);
+    let control = Control { cancel: Some(&cancel), ..alone() };
+    let cube = Csg::cuboid([0.0; 3], [1.0; 3]).unwrap();
+    assert!(matches!(contour(&cube, &frame, 0.1, &control), Err(Error::Cancelled)));
 }
 
 /// Expressions, expressions with meshes in them, volumes and stored octrees: closed manifolds of about the right volume.

@@ -10,6 +10,7 @@ mod contour;
 mod faces;
 mod marching_cubes;
 mod methods;
+mod nets;
 mod shrink;
 mod simple;
 mod simplify;

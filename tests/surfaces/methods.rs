@@ -4,7 +4,9 @@ use crate::aligned::Aligned;
 use crate::common::surfaces::{assert_balanced, euler_of_manifold, outlines};
 use crate::common::{Random, alone, lattice_frame, model};
 use leafless::solid::{Band, Samples, VoxelGrid};
-use leafless::surface::{Resolve, Snap, coplanar_shrink, published_shrink, simple_marching_cubes};
+use leafless::surface::{
+    Resolve, Snap, coplanar_shrink, published_shrink, simple_marching_cubes, surface_nets,
+};
 use leafless::{
     Affine, Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, OctreeRef, Rule, Solid, Volume, build,
     exchange, file, marching_cubes,
@@ -212,8 +214,9 @@ fn progress_ends_with_all() {
     let seen = std::sync::Mutex::new(vec![]);
     let progress = |done: f64| seen.lock().unwrap().push(done);
     let control = Control { progress: Some(&progress), ..alone() };
-    let methods: [&dyn Fn() -> Result<leafless::TriangleMesh, Error>; 4] = [
+    let methods: [&dyn Fn() -> Result<leafless::TriangleMesh, Error>; 5] = [
         &|| marching_cubes(tree, None, &control),
+        &|| surface_nets(tree, None, &control),
         &|| simple_marching_cubes(tree, Snap::Fat, None, &control),
         &|| coplanar_shrink(tree, Snap::Fat, None, &control),
         &|| published_shrink(tree, Snap::Fat, None, &control),

@@ -5,7 +5,7 @@ use crate::making::dexels::{self, Storing};
 use crate::making::job::Job;
 use crate::making::octree_of_mesh::{self, Voxelizing};
 use crate::making::octree_of_scene::{self, Splitting, TouchName};
-use crate::making::surface::{self, Wanted};
+use crate::making::surface::{self, Method, Wanted};
 use crate::making::surfaces::Surfaces;
 use crate::making::{octree_from_dexels, plain};
 use crate::options::{ResolveName, bounds, resolution, threads};
@@ -103,7 +103,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 ResolveName::Outer => surface::ResolveName::Outer,
             });
             let copy = job.depth.is_none() && bounds.is_none() && resolve.is_none();
-            surface::make(&job, taking, &Wanted { resolve, lossy, copy, ..Default::default() })
+            // Cells of one size are asked for.
+            let is_sampled = job.depth.is_some() || bounds.is_some();
+            let method = if is_sampled { Some(Method::Mc) } else { resolve.map(|_| Method::Nets) };
+            surface::make(&job, taking, &Wanted { method, resolve, lossy, copy, ..Default::default() })
         }
         KindName::Dexels => {
             let rule = resolve.map_or(Rule::Sampled, Rule::from);

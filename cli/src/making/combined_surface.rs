@@ -5,7 +5,7 @@ use crate::making::askew;
 use crate::making::job::Job;
 use crate::making::operand::{Common, reach};
 use crate::making::operands::{Combining, Operation};
-use crate::making::surface::{Made, Wanted, of_solid, write};
+use crate::making::surface::{Made, Method, Wanted, of_solid, write};
 use crate::options::name_of;
 use crate::progress::watched;
 use crate::sink::Output;
@@ -66,10 +66,10 @@ pub fn make(
     let (name, first) = (combining.operation.name(), &files[0].0);
     let wanted = Wanted::default();
     let mesh = watched(name, combining.threads, |control| {
-        of_solid(&AnySolid::new(combined(combining.operation, solids)?), &frame, &wanted, control)
+        let solid = AnySolid::new(combined(combining.operation, solids)?);
+        of_solid(&solid, &frame, &wanted, Method::Mc, control)
     });
-    let made =
-        Made { mesh: mesh.of(first)?, unit, method: name_of(wanted.method), followed: None, faces: None };
+    let made = Made { mesh: mesh.of(first)?, unit, method: name_of(Method::Mc), followed: None, faces: None };
     let (input, output, threads) = (first.clone(), output.clone(), combining.threads);
     let job =
         Job { input, output, start, depth: Some(depth), bounds: combining.bounds, threads, json: false };

@@ -22,9 +22,9 @@ use leafless::exchange::{LengthUnit, MeshFormat, WriteOptions, read_mesh, write_
 use leafless::mesh::MeshReport;
 use leafless::op::DexelOptions;
 use leafless::surface::{
-    BoundaryReport, Resolve, Snap, VertexPlacement, boundary, contour, coplanar_shrink,
+    BoundaryReport, ContourReport, Resolve, Snap, VertexPlacement, boundary, contour, coplanar_shrink,
     coplanar_shrink_solid, marching_cubes_solid, marching_cubes_volume, published_shrink,
-    published_shrink_solid, simple_marching_cubes, simple_marching_cubes_solid,
+    published_shrink_solid, simple_marching_cubes, simple_marching_cubes_solid, surface_nets,
 };
 use leafless::{
     Affine, AnySolid, Control, Error, Frame, Interval, Octree, Rule, TriDexel, TriangleMesh, build, dexelize,
@@ -50,10 +50,11 @@ const FACES: f64 = 1e-3;
 /// How a surface is made and written.
 #[derive(Default)]
 pub struct Wanted {
-    pub method: Method,
-    pub snap: SnapName,
-    pub vertices: At,
-    /// How far chords may be from curved surfaces (model units), where these are known.
+    /// Without it: as sharp as what is known of the shape allows.
+    pub method: Option<Method>,
+    pub snap: Option<SnapName>,
+    pub vertices: Option<At>,
+    /// How far the surface may be from the solid (model units), by the methods that know.
     pub tolerance: Option<f64>,
     pub resolve: Option<ResolveName>,
     /// The format to write. Without it the name of the output tells.
@@ -70,16 +71,25 @@ pub struct Wanted {
     pub channel: Option<String>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default, ValueEnum)]
+impl Wanted {
+    /// Whether vertices lie where edges cross the surface.
+    fn is_crossed(&self, method: Method) -> bool {
+        method == Method::Mc && self.vertices != Some(At::Midpoint) && self.resolve.is_none()
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
 pub enum Method {
-    /// Marching cubes
-    #[default]
+    /// Marching cubes: between samples of one distance
     Mc,
+    /// Surface nets: the same samples, with a vertex in each cube between them. Smoother; of a mesh, a scene or a volume an octree is
+    /// made first
+    Nets,
     /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene or a volume
     /// one is made first
     Dual,
     /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces as they are, with sharp edges, and
-    /// curved ones in chords (--tolerance). Few triangles
+    /// curved ones in chords (--tolerance). Of a closed mesh its triangles, merged. Few triangles
     Faces,
     /// Adaptive dual contouring: few triangles where the surface is flat, about as near as --tolerance says, with sharp edges. Of
     /// whatever has a shape
@@ -133,11 +143,6 @@ pub enum ResolveName {
 pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> {
     let Job { input, output, .. } = job;
     output.check()?;
-    if wanted.tolerance.is_some() && !matches!(wanted.method, Method::Faces | Method::Adaptive) {
-        return Err(Failure::Usage(
-            "--tolerance is for --method faces and adaptive: others have the cells of --depth".into(),
-        ));
-    }
     let format = format(wanted.format, output.path())?;
     if wanted.normals && !matches!(format, MeshFormat::Ply | MeshFormat::Obj) {
         let name = format_name(format).to_uppercase();
@@ -145,11 +150,20 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
             "--normals is for PLY and OBJ: {name} has no normals at vertices"
         )));
     }
-    if wanted.polygons {
-        polygons_of(wanted, format)?;
-    }
     let shape = Shape::before_moving(input, taking)?.0;
     let is_stored = shape.is_stored();
+    let mut method = match wanted.method {
+        Some(method) => method,
+        None => usual(&shape, input, wanted),
+    };
+    if wanted.tolerance.is_some() && !matches!(method, Method::Faces | Method::Adaptive) {
+        let name = name_of(method);
+        let problem = "is for --method faces and adaptive: others have the cells of --depth";
+        return Err(Failure::Usage(format!("--tolerance {problem} (this is --method {name})")));
+    }
+    if wanted.polygons {
+        polygons_of(wanted, method, format)?;
+    }
     if wanted.polygons && is_stored {
         taking.placing.refuse(input, "--polygons tells its faces where they are stored")?;
     }
@@ -158,44 +172,38 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     bearing.as_ref().map(|bearing| bearing.called(format)).transpose()?;
     let mut faces = None;
     let certain = match &shape {
-        // Vertices that are samples lie beside the surface; those of the other methods lie on it.
-        Shape::Source(source)
-            if !matches!(wanted.method, Method::Mc | Method::Dual | Method::Faces | Method::Adaptive) =>
-        {
-            certain_volume(source).of(input)?
-        }
+        // Vertices that are samples lie beside the surface; those of the other methods lie on it, or between samples.
+        Shape::Source(source) if method.moves_to_samples() => certain_volume(source).of(input)?,
         _ => None,
     };
     let mut is_copy = false;
     let (unit, mesh, followed) = match shape {
         Shape::Dexels(model) => {
             let unit = model.metadata().get("units").and_then(|unit| unit.parse().ok());
-            let (mesh, followed) = of_dexels(&model, job, wanted)?;
+            let (mesh, followed) = of_dexels(&model, job, wanted, method)?;
             (unit, mesh, Some(followed))
         }
         Shape::Source(Source::Mesh(mesh, _, unit)) if wanted.copy => {
             is_copy = true;
             (unit, mesh, None)
         }
-        Shape::Source(source) if wanted.method == Method::Faces => {
+        Shape::Source(source) if matches!(method, Method::Faces | Method::Adaptive) => {
             let unit = source.unit();
-            let (mesh, found) = by_surfaces(source, job, wanted)?;
+            let (mesh, by, found) = to_tolerance(source, job, wanted, method)?;
+            method = by;
             // (Of what is moved after that, they would lie elsewhere.)
-            faces = Some(found).filter(|_| !is_stored || taking.placing.map().is_none());
+            faces = found.filter(|_| !is_stored || taking.placing.map().is_none());
             (unit, mesh, None)
         }
-        Shape::Source(source) if wanted.method == Method::Adaptive => {
-            (source.unit(), by_contour(source, job, wanted)?, None)
-        }
-        Shape::Source(source) if asks_rays(&source, wanted) => {
+        Shape::Source(source) if asks_rays(&source, wanted, method) => {
             let unit = source.unit();
-            let (mesh, followed) = by_rays(source, job, wanted)?;
+            let (mesh, followed) = by_rays(source, job, wanted, method)?;
             (unit, mesh, Some(followed))
         }
-        Shape::Source(source) => (source.unit(), extract(source, job, wanted)?, None),
+        Shape::Source(source) => (source.unit(), extract(source, job, wanted, method)?, None),
     };
     if let Some(certain) = certain.filter(|certain| !certain.contains(mesh.volume())) {
-        let (volume, name) = (short(mesh.volume()), name_of(wanted.method));
+        let (volume, name) = (short(mesh.volume()), name_of(method));
         let [least, greatest] = [certain.lower, certain.upper].map(short);
         let problem = format!(
             "the surface by --method {name} has a volume of {volume}, and the solid one from {least} to {greatest}"
@@ -208,8 +216,42 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     };
     // The surface of a stored solid is sharper than that of what would be made of the solid in another place.
     let mesh = if is_stored { taking.placing.mesh(mesh).of(input)? } else { mesh };
-    let method = if is_copy { "copy".into() } else { name_of(wanted.method) };
+    let method = if is_copy { "copy".into() } else { name_of(method) };
     write(job, format, wanted, Made { mesh, unit, method, followed, faces })
+}
+
+impl Method {
+    fn moves_to_samples(self) -> bool {
+        matches!(self, Method::Smc | Method::Shrink | Method::ShrinkPublished)
+    }
+}
+
+/// The method where none is named: what knows most of the shape, or what an option belongs to.
+fn usual(shape: &Shape, input: &Input, wanted: &Wanted) -> Method {
+    let (method, option) = match shape {
+        // (It refuses these options.)
+        Shape::Dexels(model) if model.view().format().normals == DexelNormals::None => (Method::Mc, None),
+        Shape::Dexels(_) => (Method::Dual, None),
+        _ if wanted.snap.is_some() => (Method::Smc, Some("--snap")),
+        _ if wanted.vertices.is_some() => (Method::Mc, Some("--vertices")),
+        Shape::Source(source) if source.is_of_cells() => (Method::Nets, None),
+        Shape::Source(_) if wanted.resolve.is_some() => (Method::Nets, Some("--resolve")),
+        Shape::Source(Source::Scene(scene)) if scene.report().meshes.is_empty() => (Method::Faces, None),
+        // (Its rays are as sharp, and surfaces in planes of its own lattice are cut to many cells.)
+        Shape::Source(Source::Octree(_)) => (Method::Mc, None),
+        Shape::Source(Source::Scene(_) | Source::Volume(_)) if wanted.tolerance.is_some() => {
+            (Method::Adaptive, Some("--tolerance"))
+        }
+        // (Contours take minutes where several meshes are cut with each other: rays are as sharp.)
+        Shape::Source(Source::Scene(_)) => (Method::Dual, None),
+        // (As a solid a volume consists of boxes; marching cubes interpolates between its samples.)
+        Shape::Source(Source::Volume(_)) => (Method::Mc, None),
+        Shape::Source(Source::Mesh(..)) => (Method::Faces, None),
+    };
+    if let Some(option) = option {
+        complain(&format!("{input}: note: {option} makes it --method {}", name_of(method)));
+    }
+    method
 }
 
 /// A surface that was made.
@@ -225,8 +267,8 @@ pub struct Made {
 }
 
 /// Refuses what does not go with polygons.
-fn polygons_of(wanted: &Wanted, format: MeshFormat) -> Result<(), Failure> {
-    let problem = if wanted.method != Method::Faces {
+fn polygons_of(wanted: &Wanted, method: Method, format: MeshFormat) -> Result<(), Failure> {
+    let problem = if method != Method::Faces {
         "is for --method faces, which knows plane faces"
     } else if !matches!(format, MeshFormat::Obj | MeshFormat::Off) {
         "is for OBJ and OFF: other formats have triangles alone"
@@ -332,19 +374,25 @@ fn certain_volume(source: &Source) -> Result<Option<Interval>, Error> {
 }
 
 /// The surface of a tri-dexel model.
-fn of_dexels(model: &TriDexel, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Followed), Failure> {
+fn of_dexels(
+    model: &TriDexel,
+    job: &Job,
+    wanted: &Wanted,
+    method: Method,
+) -> Result<(TriangleMesh, Followed), Failure> {
     let input = &job.input;
     let given = [
         ("--depth", job.depth.is_some()),
         ("--bounds", job.bounds.is_some()),
         ("--resolve", wanted.resolve.is_some()),
-        ("--vertices", wanted.vertices != At::Crossing),
+        ("--vertices", wanted.vertices == Some(At::Midpoint)),
+        ("--snap", wanted.snap.is_some() && !method.moves_to_samples()),
     ];
     if let Some((option, _)) = given.into_iter().find(|option| option.1) {
         let problem = "is a tri-dexel model, whose rays leave nothing to choose";
         return Err(Failure::Usage(format!("{option} is not for {input}: it {problem}")));
     }
-    match wanted.method {
+    match method {
         Method::Mc => dexel_surface::cubes(model, input, job.threads),
         Method::Dual => dexel_surface::dual(model, input, job.threads),
         method => {
@@ -356,14 +404,18 @@ fn of_dexels(model: &TriDexel, job: &Job, wanted: &Wanted) -> Result<(TriangleMe
 }
 
 /// Whether the surface follows rays: by dual contouring, and of octrees whose cells keep surfaces, whose lattice is their own.
-fn asks_rays(source: &Source, wanted: &Wanted) -> bool {
+fn asks_rays(source: &Source, wanted: &Wanted, method: Method) -> bool {
     let keeps_surfaces = matches!(source, Source::Octree(_)) && !source.is_of_cells();
-    let is_sharp = wanted.method == Method::Mc && wanted.vertices == At::Crossing && wanted.resolve.is_none();
-    wanted.method == Method::Dual || keeps_surfaces && is_sharp
+    method == Method::Dual || keeps_surfaces && wanted.is_crossed(method)
 }
 
 /// The surface of anything else that follows rays: of a tri-dexel model that is made for it.
-fn by_rays(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Followed), Failure> {
+fn by_rays(
+    source: Source,
+    job: &Job,
+    wanted: &Wanted,
+    method: Method,
+) -> Result<(TriangleMesh, Followed), Failure> {
     let input = &job.input;
     if source.is_of_cells() {
         let problem = "is an octree, whose cells know no normals, which dual contouring needs: make a tri-dexel model \
@@ -379,34 +431,93 @@ fn by_rays(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, 
     let options = DexelOptions { format, ..Default::default() };
     let model = watched("dexelize", job.threads, |control| dexelize(&solid, &frame, &options, control));
     let model = model.of(input)?;
-    match wanted.method {
+    match method {
         Method::Dual => dexel_surface::dual(&model, input, job.threads),
         _ => dexel_surface::cubes(&model, input, job.threads),
     }
 }
 
-/// The surface of a solid that knows its surfaces.
-fn by_surfaces(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMesh, Faces), Failure> {
-    let input = &job.input;
-    let is_known = match &source {
-        Source::Scene(_) => true,
+/// The surface within a tolerance, and the method that made it: where none is named, another one makes what the first cannot.
+fn to_tolerance(
+    source: Source,
+    job: &Job,
+    wanted: &Wanted,
+    method: Method,
+) -> Result<(TriangleMesh, Method, Option<Faces>), Failure> {
+    let (input, is_named) = (&job.input, wanted.method.is_some());
+    if wanted.resolve.is_some() {
+        let name = name_of(method);
+        return Err(Failure::Usage(format!(
+            "--resolve does not go with --method {name}: it is for samples of cells"
+        )));
+    }
+    let knows_surfaces = match &source {
+        Source::Scene(_) | Source::Mesh(..) => true,
         Source::Octree(_) => !source.is_of_cells(),
         _ => false,
     };
-    if !is_known {
-        let problem = "is neither a scene nor a solid whose cells keep surfaces, which --method faces is for";
+    if method == Method::Faces && !knows_surfaces {
+        let problem =
+            "is neither a scene, a mesh, nor a solid whose cells keep surfaces, which --method faces is for";
         return Err(Failure::of(input, problem));
     }
-    if wanted.resolve.is_some() {
-        return Err(Failure::Usage("--resolve does not go with --method faces, which cuts surfaces".into()));
-    }
     let tolerance = tolerance(&source, job, wanted)?;
-    let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEEP)?;
+    let bounds = source.bounds(input)?;
+    let deepest = if method == Method::Faces { DEEP } else { FINE };
+    let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, deepest)?;
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
-    let found =
-        watched("mesh", job.threads, |control| boundary(&solid, &frame, tolerance, control)).of(input)?;
+    if method == Method::Faces
+        && let Some((mesh, faces)) = by_surfaces(&solid, &frame, tolerance, job, is_named)?
+    {
+        return Ok((mesh, Method::Faces, faces));
+    }
+    let frame =
+        if job.depth.is_none() && frame.depth() > FINE { frame.with_depth(FINE).of(input)? } else { frame };
+    if let Some(mesh) = by_contour(&solid, &frame, tolerance, job, is_named)? {
+        return Ok((mesh, Method::Adaptive, None));
+    }
+    let problem = "its surface does not end in the cube that is looked at";
+    complain(&format!("{input}: note: {problem}, and is cut off there by --method mc"));
+    let depth = job.depth.unwrap_or(DEPTH);
+    let frame = match job.bounds {
+        Some(_) => frame.with_depth(depth),
+        None => askew::cube(bounds.0, bounds.1, depth),
+    };
+    let frame = frame.of(input)?;
+    let mesh = watched("mesh", job.threads, |control| of_solid(&solid, &frame, wanted, Method::Mc, control));
+    Ok((mesh.of(input)?, Method::Mc, None))
+}
+
+/// The surface of a solid that knows its surfaces. Nothing if it does not, and the method is not named.
+fn by_surfaces(
+    solid: &AnySolid,
+    frame: &Frame,
+    tolerance: f64,
+    job: &Job,
+    is_named: bool,
+) -> Result<Option<(TriangleMesh, Option<Faces>)>, Failure> {
+    let input = &job.input;
+    let found = watched("mesh", job.threads, |control| match boundary(solid, frame, tolerance, control) {
+        Err(Error::Argument { name: "solid" | "frame", .. }) if !is_named => Ok(None),
+        found => found.map(Some),
+    });
+    let Some(found) = found.of(input)? else { return Ok(None) };
     let &BoundaryReport { intersecting_pairs, deviation, .. } = found.report();
     warn_of_pairs(input, intersecting_pairs);
+    // (Of a mesh no surfaces are known.)
+    let is_known = !found.surfaces().is_empty();
+    let faces = is_known.then(|| Faces::of(&found)).transpose().of(input)?;
+    let mesh = with_deviation(found.into_mesh(), deviation, tolerance, input)?;
+    Ok(Some((mesh, faces)))
+}
+
+/// The mesh, which says how far it is from the solid, if that is proven.
+fn with_deviation(
+    mesh: TriangleMesh,
+    deviation: f64,
+    tolerance: f64,
+    input: &Input,
+) -> Result<TriangleMesh, Failure> {
     if deviation > tolerance {
         let (proven, wanted) = (short(deviation), short(tolerance));
         complain(&if deviation.is_finite() {
@@ -415,10 +526,7 @@ fn by_surfaces(source: Source, job: &Job, wanted: &Wanted) -> Result<(TriangleMe
             format!("{input}: warning: how far the mesh is from the solid is not proven")
         });
     }
-    let faces = Faces::of(&found).of(input)?;
-    let mesh = found.into_mesh();
-    let mesh = if deviation.is_finite() { mesh.with_deviation(deviation).of(input)? } else { mesh };
-    Ok((mesh, faces))
+    if deviation.is_finite() { mesh.with_deviation(deviation).of(input) } else { Ok(mesh) }
 }
 
 /// How far a surface may be from the solid: a part of the longest extent, if nothing is said.
@@ -437,22 +545,26 @@ fn warn_of_pairs(input: &Input, pairs: u64) {
     }
 }
 
-/// The surface in cells that end where one vertex will do.
-fn by_contour(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, Failure> {
+/// The surface in cells that end where one vertex will do. Nothing if the solid does not end in the cube, and the method is not named.
+fn by_contour(
+    solid: &AnySolid,
+    frame: &Frame,
+    tolerance: f64,
+    job: &Job,
+    is_named: bool,
+) -> Result<Option<TriangleMesh>, Failure> {
     let input = &job.input;
-    if wanted.resolve.is_some() {
-        return Err(Failure::Usage("--resolve does not go with --method adaptive".into()));
-    }
-    let tolerance = tolerance(&source, job, wanted)?;
-    let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, FINE)?;
-    let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
-    let found =
-        watched("mesh", job.threads, |control| contour(&solid, &frame, tolerance, control)).of(input)?;
-    warn_of_pairs(input, found.report().intersecting_pairs);
-    Ok(found.into_mesh())
+    let found = watched("mesh", job.threads, |control| match contour(solid, frame, tolerance, control) {
+        Err(Error::Argument { name: "frame", .. }) if !is_named => Ok(None),
+        found => found.map(Some),
+    });
+    let Some(found) = found.of(input)? else { return Ok(None) };
+    let &ContourReport { intersecting_pairs, deviation, .. } = found.report();
+    warn_of_pairs(input, intersecting_pairs);
+    with_deviation(found.into_mesh(), deviation, tolerance, input).map(Some)
 }
 
-fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, Failure> {
+fn extract(source: Source, job: &Job, wanted: &Wanted, method: Method) -> Result<TriangleMesh, Failure> {
     let input = &job.input;
     let resolve = match (wanted.resolve, &source) {
         (None, _) => None,
@@ -477,23 +589,21 @@ fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, F
             complain(&format!("{input}: {UNDECIDED}"));
         }
         let resolve = if is_open { Some(Resolve::Outer) } else { resolve };
-        return watched("mesh", job.threads, |control| of_cells(&octree, resolve, wanted, control)).of(input);
+        return watched("mesh", job.threads, |control| of_cells(&octree, resolve, wanted, method, control))
+            .of(input);
     }
     let is_plain = job.depth.is_none() && job.bounds.is_none() && wanted.resolve.is_none();
     if let Source::Volume(voxels) = &source
         && is_plain
-        && wanted.method == Method::Mc
-        && wanted.vertices == At::Crossing
+        && wanted.is_crossed(method)
     {
         return of_volume(voxels, job);
     }
     // A volume has its own samples, if its voxels are cubes; an octree has those of its lattice at any depth.
     let has_own =
         source.own_frame().is_some() && (job.depth.is_none() || matches!(source, Source::Octree(_)));
-    let is_crossed =
-        wanted.method == Method::Mc && wanted.vertices == At::Crossing && wanted.resolve.is_none();
     let frame = match &source {
-        Source::Mesh(..) | Source::Scene(_) if is_crossed && job.bounds.is_none() => {
+        Source::Mesh(..) | Source::Scene(_) if wanted.is_crossed(method) && job.bounds.is_none() => {
             let (low, high) = source.bounds(input)?;
             askew::cube(low, high, job.depth.unwrap_or(DEPTH)).of(input)?
         }
@@ -501,11 +611,11 @@ fn extract(source: Source, job: &Job, wanted: &Wanted) -> Result<TriangleMesh, F
     };
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
     watched("mesh", job.threads, |control| match wanted.resolve {
-        None if !has_own => of_solid(&solid, &frame, wanted, control),
+        None if !has_own && method != Method::Nets => of_solid(&solid, &frame, wanted, method, control),
         _ => {
             let rule = if resolve.is_some() { Rule::Certified } else { Rule::Sampled };
             let octree = build(&solid, &frame, rule, control)?;
-            of_cells(&octree, resolve, wanted, control)
+            of_cells(&octree, resolve, wanted, method, control)
         }
     })
     .of(input)
@@ -543,14 +653,16 @@ fn of_cells(
     octree: &Octree,
     resolve: Option<Resolve<'_>>,
     wanted: &Wanted,
+    method: Method,
     control: &Control<'_>,
 ) -> Result<TriangleMesh, Error> {
-    let snap = wanted.snap.into();
-    match wanted.method {
+    let snap = wanted.snap.unwrap_or_default().into();
+    match method {
         Method::Dual | Method::Faces | Method::Adaptive => {
             unreachable!("rays, surfaces and cells of several sizes are asked elsewhere")
         }
         Method::Mc => marching_cubes(octree.view(), resolve, control),
+        Method::Nets => surface_nets(octree.view(), resolve, control),
         Method::Smc => simple_marching_cubes(octree.view(), snap, resolve, control),
         Method::Shrink => coplanar_shrink(octree.view(), snap, resolve, control),
         Method::ShrinkPublished => published_shrink(octree.view(), snap, resolve, control),
@@ -562,16 +674,17 @@ pub fn of_solid(
     solid: &AnySolid,
     frame: &Frame,
     wanted: &Wanted,
+    method: Method,
     control: &Control<'_>,
 ) -> Result<TriangleMesh, Error> {
-    let placement = match wanted.vertices {
+    let placement = match wanted.vertices.unwrap_or_default() {
         At::Midpoint => VertexPlacement::Midpoint,
         At::Crossing => VertexPlacement::Crossing,
     };
-    let snap = wanted.snap.into();
-    match wanted.method {
-        Method::Dual | Method::Faces | Method::Adaptive => {
-            unreachable!("rays, surfaces and cells of several sizes are asked elsewhere")
+    let snap = wanted.snap.unwrap_or_default().into();
+    match method {
+        Method::Dual | Method::Faces | Method::Adaptive | Method::Nets => {
+            unreachable!("rays, surfaces, and cells of octrees are asked elsewhere")
         }
         Method::Mc => marching_cubes_solid(solid, frame, placement, control),
         Method::Smc => simple_marching_cubes_solid(solid, frame, snap, control),

@@ -433,7 +433,7 @@ fn each_kind_becomes_each_other() {
     place.run("csg ball.csg -o direct.lfl --depth 4").good();
     assert_eq!(place.bytes("out.lfl"), place.bytes("direct.lfl"));
     place.run("convert ball.csg -o out.ply --resolution 16").good();
-    place.run("mesh ball.csg -o direct.ply --depth 4").good();
+    place.run("mesh ball.csg -o direct.ply --method mc --depth 4").good();
     assert_eq!(place.bytes("out.ply"), place.bytes("direct.ply"));
     // The unit has another name here.
     place.run("convert cube.stl -o out.lfl --to dexels --unit in --to-unit mm --resolution 16").good();

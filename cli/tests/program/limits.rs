@@ -174,7 +174,7 @@ fn what_is_too_large_is_said_with_its_size_and_the_option() {
     let trees = trees(&place);
     let full = trees.iter().find(|path| path.ends_with("universe-full-20.lfl")).unwrap().display();
     for (line, what) in [
-        (format!("mesh {full} -o out.ply"), "the surface would take 241.8 TB"),
+        (format!("mesh {full} -o out.ply"), "the surface would take 193.8 TB"),
         (format!("dexelize {full} -o out.lfl"), "the rays would take 12 TB"),
         (format!("voxels {full} -o out.npz"), "the records would take 10 TB"),
     ] {

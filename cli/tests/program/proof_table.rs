@@ -111,7 +111,11 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
     ),
     (&["convert ball.csg -o out.lfl --to octree --bounds 0,0,0,16 --resolution 16"], ball, ITSELF),
     // Solids of their own: what was proven of what they were made from is not told.
-    (&["mesh ball.csg -o out.stl --depth 4", "voxelize out.stl -o out.lfl FRAME --rule RULE"], itself, SAME),
+    (
+        &["mesh ball.csg -o out.stl --method mc --depth 4", "voxelize out.stl -o out.lfl FRAME --rule RULE"],
+        itself,
+        SAME,
+    ),
     (&["mesh in.lfl -o out.stl --resolve outer", "voxelize out.stl -o out.lfl FRAME"], itself, ITSELF),
     (&["bitmap in.lfl -o out.nrrd --resolve outer", "voxelize out.nrrd -o out.lfl FRAME"], itself, ITSELF),
     // Records, and back.

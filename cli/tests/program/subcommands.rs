@@ -415,12 +415,14 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     let number = |report: &Value, name: &str| report[name].as_f64().unwrap();
     // Surfaces: that of marching cubes and of dual contouring are closed, and near; of cells they have steps.
     for (line, share) in [
-        ("", 0.01),
+        ("", 0.002),
+        ("--method mc", 0.01),
         ("--method dual", 0.002),
         ("--method dual --depth 6", 0.01),
-        ("--vertices midpoint", 0.02),
+        ("--method mc --vertices midpoint", 0.02),
         ("--method shrink --depth 7", 0.1),
-        ("--resolve outer --depth 8", 0.1),
+        ("--method mc --resolve outer --depth 8", 0.1),
+        ("--method nets --resolve outer --depth 8", 0.1),
     ] {
         let run = place.run(&format!("mesh part.lfl -o part.stl --lossy {line} --json"));
         let report = if line.contains("shrink") { run.noted(&["has a volume"]) } else { run.good() }.json();
@@ -1297,7 +1299,7 @@ fn set_operations_keep_surfaces() {
     let hit: f64 = hits.text().split_whitespace().find_map(|word| word.parse().ok()).unwrap();
     assert!((hit - 4.0).abs() < 1e-6, "{hits:?}");
     // Meshes and pictures.
-    let mesh = place.run("mesh part.lfl -o part.stl --lossy --json").good().json();
+    let mesh = place.run("mesh part.lfl -o part.stl --method mc --lossy --json").good().json();
     assert!(
         (mesh["volume"].as_f64().unwrap() / truth - 1.0).abs() < 0.01 && mesh["closed"] == true,
         "{mesh}"

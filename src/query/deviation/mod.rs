@@ -3,6 +3,8 @@
 mod cells;
 mod piece;
 mod polygon;
+#[cfg(feature = "std")]
+mod reference;
 mod search;
 mod slabs;
 mod surface;
@@ -17,6 +19,8 @@ use crate::octree::{Proof, Tag};
 use crate::solid::{AskWhole, Classifier, Solid};
 use crate::walk::Proven;
 use alloc::vec::Vec;
+#[cfg(feature = "std")]
+pub(crate) use reference::{Comparison, Reference};
 use search::Search;
 use surface::{Seen, Surface};
 
@@ -100,6 +104,9 @@ pub const DEVIATION_SPLITS: u64 = 1 << 18;
 /// How exactly a limit is looked at, as a part of it.
 const EXACT: f64 = 1.0 / 128.0;
 
+/// Cells tell the boundary to this part of the tolerance.
+const CELLS: f64 = 12.0;
+
 /// Pieces are cut that much more often than cells are split.
 const CUTS: u64 = 64;
 
@@ -163,9 +170,11 @@ pub fn deviation<A: Solid, B: Solid>(
         clipped: [a.exterior() != Tag::Empty, b.exterior() != Tag::Empty],
     };
     if !is_same {
-        let surfaces = [surface(&a, tolerance, &job)?, surface(&b, tolerance, &job)?];
+        let budget = control.max_splits.unwrap_or(DEVIATION_SPLITS);
+        let surfaces =
+            [surface(&a, tolerance / CELLS, budget, &job)?, surface(&b, tolerance / CELLS, budget, &job)?];
         let seen = [surfaces[0].seen(control)?, surfaces[1].seen(control)?];
-        let budget = control.max_splits.unwrap_or(DEVIATION_SPLITS).saturating_mul(CUTS);
+        let budget = budget.saturating_mul(CUTS);
         let mut reasons = [StopReason::Tolerance; 2];
         for (k, reason) in reasons.iter_mut().enumerate() {
             let search = Search { from: &seen[k], to: &seen[1 - k], tolerance, budget };
@@ -225,11 +234,10 @@ pub(crate) fn meshes_apart(
     Ok((most, beyond))
 }
 
-/// The boundary of a solid, to a part of the tolerance.
-fn surface<C: Classifier>(solid: &C, tolerance: f64, job: &Job<'_>) -> Result<Surface, Error> {
-    if let Some(facets) = solid.facets(job.control())? {
-        return Surface::of_facets(facets);
+/// The boundary of a solid: exactly, or by no more than `budget` cells to a tolerance.
+fn surface<C: Classifier>(solid: &C, tolerance: f64, budget: u64, job: &Job<'_>) -> Result<Surface, Error> {
+    match solid.facets(job.control())? {
+        Some(facets) => Surface::of_facets(facets),
+        None => cells::surface(solid, tolerance, budget, job),
     }
-    let budget = job.control().max_splits.unwrap_or(DEVIATION_SPLITS);
-    cells::surface(solid, tolerance / 12.0, budget, job)
 }

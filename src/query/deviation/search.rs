@@ -63,6 +63,10 @@ struct Refined {
     cuts: u64,
 }
 
+/// A triangle that is not proven to be within a limit, and the triangle of the other surface that is nearest to where it is farthest,
+/// if that is known.
+pub(super) type Beyond = (u32, Option<u32>);
+
 /// Two surfaces.
 pub(super) struct Search<'s> {
     pub(super) from: &'s Seen<'s>,
@@ -125,15 +129,14 @@ impl Search<'_> {
         Ok((OneWay { distance, at: self.witness(&best) }, cuts, stop_reason))
     }
 
-    /// How far the first surface is from the second one at the most, found no more exactly than `limit` asks, and for each triangle of
-    /// the first that is not proven to be within the limit: its number, and which triangle of the second is nearest to where it is
-    /// farthest, if that is known.
+    /// How far the first surface is from the second one at the most, found no more exactly than `limit` asks, and the triangles of the
+    /// first that are not proven to be within the limit.
     pub(super) fn beyond(
         &self,
         limit: f64,
         parallel: bool,
         job: &Job<'_>,
-    ) -> Result<(f64, Vec<(u32, Option<u32>)>), Error> {
+    ) -> Result<(f64, Vec<Beyond>), Error> {
         let none = Best { lower: limit, at: None };
         let nears = self.vertices(parallel, &mut none.clone(), job)?;
         let (mut most, mut beyond) = (0.0, Vec::new());
@@ -169,6 +172,58 @@ impl Search<'_> {
             }
         }
         Ok((most, beyond))
+    }
+
+    /// Points of the first surface that are further than `limit` from the second one, or nearly so: one for each triangle in which that is
+    /// found out soon.
+    #[cfg(feature = "std")]
+    pub(super) fn points_beyond(
+        &self,
+        limit: f64,
+        parallel: bool,
+        job: &Job<'_>,
+    ) -> Result<Vec<[f64; 3]>, Error> {
+        let nears = self.vertices(parallel, &mut Best { lower: f64::INFINITY, at: None }, job)?;
+        let mut points = Vec::new();
+        for (number, layer) in self.from.covers.iter().enumerate() {
+            let count = layer.mesh.triangles().len();
+            let found = each(parallel, 0..count.div_ceil(CHUNK), |task| {
+                let (mut points, first) = (Vec::new(), task * CHUNK);
+                for triangle in first..count.min(first + CHUNK) {
+                    if layer.is_chosen(triangle as u32)
+                        && let Some(point) =
+                            self.point_beyond(limit, &nears, (number, triangle as u32), job)?
+                    {
+                        memory::push(&mut points, point)?;
+                    }
+                }
+                Ok(points)
+            })?;
+            points.try_reserve(found.iter().map(Vec::len).sum())?;
+            points.extend(found.into_iter().flatten());
+        }
+        Ok(points)
+    }
+
+    /// The same of a triangle of a layer.
+    #[cfg(feature = "std")]
+    fn point_beyond(
+        &self,
+        limit: f64,
+        nears: &[Vec<Near>],
+        (layer, triangle): (usize, u32),
+        job: &Job<'_>,
+    ) -> Result<Option<[f64; 3]>, Error> {
+        let mut best = Best { lower: limit - self.tolerance, at: None };
+        let mut piece = self.triangle(nears, layer, triangle);
+        for corner in piece.corners() {
+            self.consider(&mut best, corner.at, corner.near, piece.radius);
+        }
+        self.bound(&mut piece, limit, &mut best);
+        if best.at.is_none() && piece.upper > limit {
+            best = self.refine(piece, best, CUTS, job)?.best;
+        }
+        Ok(best.at.map(|(point, ..)| point))
     }
 
     fn witness(&self, best: &Best) -> Option<Witness> {

@@ -40,7 +40,8 @@ impl Surface {
         let BoundaryFacets { mesh, chosen } = facets;
         let radius = mesh.radius();
         let mut covers = memory::with_capacity(1)?;
-        if chosen.is_empty() || chosen.contains(&true) {
+        let is_any = if chosen.is_empty() { !mesh.triangles().is_empty() } else { chosen.contains(&true) };
+        if is_any {
             covers.push(Layer { mesh, chosen, radius });
         }
         Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
@@ -53,6 +54,12 @@ impl Surface {
             covers.push(Layer { mesh: Arc::new(mesh.try_clone()?), chosen: Vec::new(), radius: 0.0 });
         }
         Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
+    }
+
+    /// All triangles of a mesh, whatever they bound.
+    #[cfg(feature = "std")]
+    pub(super) fn of_mesh(mesh: &Arc<TriangleMesh>) -> Result<Surface, Error> {
+        Surface::of_facets(BoundaryFacets { mesh: mesh.clone(), chosen: Vec::new() })
     }
 
     /// The same with the trees of the triangles.
@@ -151,10 +158,15 @@ impl<'s> Seen<'s> {
         self.covers.is_empty()
     }
 
+    /// How many triangles there are.
+    pub(super) fn count(&self) -> usize {
+        self.covers.iter().map(|layer| layer.mesh.triangles().len()).sum()
+    }
+
     /// Whether there are so many triangles that threads are worth their while.
     pub(super) fn is_large(&self) -> bool {
         const MANY: usize = 1 << 12;
-        self.covers.iter().map(|layer| layer.mesh.triangles().len()).sum::<usize>() > MANY
+        self.count() > MANY
     }
 
     /// How far a point is from the boundary; a facet that may be near saves time.

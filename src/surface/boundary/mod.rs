@@ -23,6 +23,8 @@ mod patches;
 mod proof;
 mod regions;
 mod strips;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 use crate::control::{Control, Job, WHOLE};

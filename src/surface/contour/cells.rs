@@ -52,6 +52,11 @@ impl Cells {
         Ok(cells)
     }
 
+    /// How many leaves the surface passes through.
+    pub(super) fn open(&self) -> u64 {
+        self.leaves.iter().filter(|leaf| leaf.kind == Kind::Open && !leaf.is_gone).count() as u64
+    }
+
     fn add(&mut self, cell: Cell, kind: Kind) -> Result<u32, Error> {
         memory::push(&mut self.leaves, Leaf { cell, kind, vertex: None, is_checked: false, is_gone: false })?;
         Ok(self.leaves.len() as u32 - 1)

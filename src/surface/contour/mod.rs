@@ -26,11 +26,15 @@ use crate::lattice::{Affine, Frame, MAX_DEPTH, axes, valid};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::Tag;
+use crate::query::{Comparison, Reference};
 use crate::solid::{Classifier, Solid, Transform, Worker};
+use crate::walk::Proven;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use cells::{Cells, Kind};
 use fit::{Space, best};
 use grow::Grower;
+use hashbrown::HashSet;
 use probe::Probe;
 use sheets::{NONE, Sheets};
 use triangles::{Place, Triangles, dot};
@@ -42,7 +46,7 @@ pub struct Contour {
 }
 
 /// How a contour was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContourReport {
     /// Pairs of triangles that intersect each other, as [`TriangleMesh::intersecting_pairs`] counts them.
     pub intersecting_pairs: u64,
@@ -52,6 +56,9 @@ pub struct ContourReport {
     pub splits: u64,
     /// Points of which the solid did not tell whether they lie inside; they counted as outside.
     pub undecided: u64,
+    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the mesh (model units): proven.
+    /// Infinite if nothing is known.
+    pub deviation: f64,
 }
 
 impl Contour {
@@ -77,6 +84,16 @@ const ROUNDS: usize = 24;
 /// Intersecting pairs that are looked at in one round.
 const PAIRS: usize = 1 << 16;
 
+/// How often cells are split because the mesh is proven to be too far from the boundary next to them.
+const PROOFS: usize = 6;
+
+/// Cells that are split to know where the boundary is, for each cell of the contour, and those of any contour.
+const SPLITS: u64 = 16;
+const ANYWAY: u64 = 4096;
+
+/// How well they tell it, as a part of the tolerance.
+const KNOWN: f64 = 0.25;
+
 /// How many levels below a cell its surface is compared with the mesh.
 const AHEAD: u8 = 2;
 
@@ -95,8 +112,13 @@ const LARGER: f64 = 1.031_77;
 /// that sharp edges and corners of flat faces are exact to rounding in such cells. Cells that are proven empty or full are never split.
 /// Slabs of the solid in a cell and in the cells below it tell whether a vertex will do, and lines through the cell do where there are
 /// none. Where the solid tells nearest points, as meshes do, the mesh is compared with it at many points, and cells are split where the
-/// two are further from each other than `tolerance` (model units), as far as the depth of the frame. That is no proof: between these
-/// points the mesh may be further away, by about as much again as a rule. How far it is, [`deviation`](crate::deviation) proves.
+/// two are further from each other than `tolerance` (model units), as far as the depth of the frame.
+///
+/// [`ContourReport::deviation`] is proven, as [`deviation`](crate::deviation) proves it: of a closed mesh whose triangles do not intersect
+/// exactly, and of anything else by slabs of cells, of which up to sixteen are split for each cell of the contour. Where the mesh is proven
+/// to be further from the boundary than `tolerance`, cells are split, too. What is left beyond it is told as it is: where cells of the
+/// frame's depth are too coarse, and where slabs are. A solid without any is known to about the size of these cells, and of an octree
+/// that proves nothing of its solid nothing is known.
 ///
 /// The mesh is closed, exactly two triangles meet in each edge, and the triangles around each vertex are one fan, whatever the solid is.
 /// It is decided by signs at corners of cells, and of a solid thinner than a finest cell nothing may be left. Triangles may intersect each
@@ -105,7 +127,7 @@ const LARGER: f64 = 1.031_77;
 /// PARTIAL cells of a stored octree, count as outside. The lattice is not that of the frame but lies a little beside it, so that
 /// faces may lie in planes of the frame's lattice.
 ///
-/// Some 100 µs a cell of a mesh, and more for solids that answer no rays; one thread does it all. The result depends on the solid, the
+/// Some 100 µs a cell of a mesh, and more for solids that answer no rays; threads share only the proof. The result depends on the solid, the
 /// frame and the tolerance alone. The memory is that of the cells and of the triangles. `control.max_nodes` bounds the splits; with
 /// `control.max_splits` spent cells stay as they are, and the mesh is coarser.
 ///
@@ -141,11 +163,11 @@ pub fn contour<S: Solid>(
     let quiet = Control { progress: None, ..*control };
     let wanted = Wanted { depth: frame.depth(), tolerance: tolerance / edge, quiet: &quiet };
     let found = match solid.home() {
-        None => wanted.find(&solid.on(&lattice, &quiet)?, &job)?,
+        None => wanted.find(solid.on(&lattice, &quiet)?, &job)?,
         Some(home) => {
             // A stored octree is known on its own lattice alone.
             let moved = Transform::new(solid, &home, &Affine::IDENTITY);
-            wanted.find(&moved.on(&lattice, &quiet)?, &job)?
+            wanted.find(moved.on(&lattice, &quiet)?, &job)?
         }
     };
     job.finish();
@@ -161,12 +183,15 @@ struct Wanted<'w> {
 }
 
 impl Wanted<'_> {
-    fn find<C: Classifier>(&self, classifier: &C, job: &Job<'_>) -> Result<Contour, Error> {
+    fn find<C: Classifier>(&self, classifier: C, job: &Job<'_>) -> Result<Contour, Error> {
         if classifier.exterior() != Tag::Empty {
             return Err(Error::Argument { name: "frame", problem: "must hold all of the solid" });
         }
-        let frame = classifier.frame();
-        let mut probe = Probe::new(classifier, self.depth, self.quiet)?;
+        let frame = *classifier.frame();
+        let mut probe = Probe::new(&classifier, self.depth, self.quiet)?;
+        let classifier = Proven(classifier);
+        let mut proof = Proof { reference: None, count: 0 };
+        let mut near = HashSet::new();
         let mut grower = Grower::new(&mut probe, self.depth, self.tolerance, job)?;
         grower.grow(0, WHOLE / 2)?;
         let mut round = 0;
@@ -188,10 +213,11 @@ impl Wanted<'_> {
             }
             let vertices = vertices(&grower.cells, &sheets, &places)?;
             let made = Triangles::of(&sheets, vertices, &places, |_| false)?;
-            let mesh = assemble(&made, frame)?;
+            let mesh = Arc::new(assemble(&made, &frame)?);
             if round < ROUNDS {
                 let refused = Compared { made: &made, sheets: &sheets, mesh: &mesh }.refused(
                     &mut grower,
+                    &mut near,
                     self.tolerance,
                     self.quiet,
                 )?;
@@ -217,17 +243,65 @@ impl Wanted<'_> {
                     }
                 }
             }
+            if is_changed {
+                continue;
+            }
+            let cells = grower.cells.open();
+            let most = job.control().max_splits.map_or(u64::MAX, |most| most - grower.splits);
+            let compared = proof.compare(&classifier, &mesh, self, (SPLITS * cells + ANYWAY).min(most))?;
+            if !compared.beyond.is_empty() && round < ROUNDS && proof.count <= PROOFS {
+                let tree = mesh.triangle_tree(self.quiet)?;
+                for point in &compared.beyond {
+                    let Some(near) = tree.nearest(point, None) else { continue };
+                    let crossing = made.crossings[near.triangle as usize];
+                    for leaf in sheets.crossings[crossing as usize].around {
+                        if !grower.cells.leaves[leaf as usize].is_gone {
+                            is_changed |= grower.split(leaf, 0)?;
+                        }
+                    }
+                }
+            }
             if !is_changed {
-                let is_open = |leaf: &&cells::Leaf| leaf.kind == Kind::Open && !leaf.is_gone;
                 let report = ContourReport {
                     intersecting_pairs: pairs.count,
-                    cells: grower.cells.leaves.iter().filter(is_open).count() as u64,
+                    cells,
                     splits: grower.splits,
                     undecided: grower.probe.undecided,
+                    deviation: compared.most,
                 };
-                return Ok(Contour { mesh, report });
+                return Ok(Contour { mesh: Arc::unwrap_or_clone(mesh), report });
             }
         }
+    }
+}
+
+/// How far meshes are from a solid.
+struct Proof {
+    /// Where the boundary is, once somebody has asked.
+    reference: Option<Reference>,
+    /// How many meshes were compared with it.
+    count: usize,
+}
+
+impl Proof {
+    fn compare<C: Classifier>(
+        &mut self,
+        classifier: &C,
+        mesh: &Arc<TriangleMesh>,
+        wanted: &Wanted<'_>,
+        budget: u64,
+    ) -> Result<Comparison, Error> {
+        let job = Job::new(wanted.quiet);
+        let tolerance = wanted.tolerance * classifier.frame().edge();
+        let reference = match &mut self.reference {
+            Some(reference) => reference,
+            None => {
+                let known = Reference::new(classifier, KNOWN * tolerance, budget, &job)?;
+                self.reference.insert(known)
+            }
+        };
+        self.count += 1;
+        reference.compare(mesh, tolerance, &job)
     }
 }
 
@@ -239,10 +313,11 @@ struct Compared<'c> {
 }
 
 impl Compared<'_> {
-    /// The leaves next to which the mesh is too far from the surface.
+    /// The leaves next to which the mesh is too far from the surface. `known` are points of meshes that are near to it.
     fn refused<W: Worker>(
         &self,
         grower: &mut Grower<'_, '_, W>,
+        known: &mut HashSet<[u64; 3]>,
         tolerance: f64,
         control: &Control<'_>,
     ) -> Result<Vec<u32>, Error> {
@@ -289,6 +364,10 @@ impl Compared<'_> {
                 if side > 0 && triangle[side - 1] > triangle[side % 3] {
                     continue;
                 }
+                let bits = point.map(f64::to_bits);
+                if known.contains(&bits) {
+                    continue;
+                }
                 let Some(nearest) = grower.probe.nearest(point)? else { break };
                 let off = axes(|k| nearest[k] - point[k]);
                 if dot(off, off) > NEAR * NEAR * tolerance * tolerance {
@@ -296,6 +375,8 @@ impl Compared<'_> {
                     refused.extend(self.sheets.crossings[crossing as usize].around);
                     break;
                 }
+                known.try_reserve(1)?;
+                known.insert(bits);
             }
         }
         Ok(refused)

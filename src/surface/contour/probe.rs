@@ -22,6 +22,9 @@ const FINER: u8 = 10;
 /// How far beside a crossing others are looked for, as a part of its edge, where nothing else tells the normal.
 const BESIDE: f64 = 1.0 / 64.0;
 
+/// An edge that is crossed: its axis, its lower end, its length, and whether it starts inside.
+type Segment = (u8, [u32; 3], u32, bool);
+
 /// Whoever asks.
 pub(super) struct Probe<'c, W: Worker> {
     /// Asks about points and rays.
@@ -38,6 +41,7 @@ pub(super) struct Probe<'c, W: Worker> {
     /// The edge of half a finest cell of the contour, in unit coordinates.
     half: f64,
     known: HashMap<[u32; 3], bool>,
+    crossings: HashMap<Segment, Place>,
     /// Points of which the solid does not tell whether they lie inside.
     pub(super) undecided: u64,
 }
@@ -69,6 +73,7 @@ impl<'c, W: Worker> Probe<'c, W> {
             control,
             half: 0.5 / f64::from(1u32 << depth),
             known: HashMap::new(),
+            crossings: HashMap::new(),
             undecided: 0,
         })
     }
@@ -237,8 +242,26 @@ impl<'c, W: Worker> Probe<'c, W> {
         Ok(true)
     }
 
-    /// Where an edge with an inside end and an outside one is crossed.
+    /// Where an edge with an inside end and an outside one is crossed. The answer is remembered.
     pub(super) fn crossing(
+        &mut self,
+        axis: usize,
+        from: [u32; 3],
+        length: u32,
+        starts_inside: bool,
+        spare: &mut Vec<Place>,
+    ) -> Result<Place, Error> {
+        let segment = (axis as u8, from, length, starts_inside);
+        if let Some(&known) = self.crossings.get(&segment) {
+            return Ok(known);
+        }
+        let place = self.found_crossing(axis, from, length, starts_inside, spare)?;
+        self.crossings.try_reserve(1)?;
+        self.crossings.insert(segment, place);
+        Ok(place)
+    }
+
+    fn found_crossing(
         &mut self,
         axis: usize,
         from: [u32; 3],

@@ -87,7 +87,7 @@ impl<'c> Collapse<'c> {
     /// Takes vertices out until no more can go.
     pub(super) fn run(&mut self, job: &Job<'_>) -> Result<(), Error> {
         for vertex in 0..self.vertices.len() as u32 {
-            if vertex as usize % CHECKED == 0 {
+            if (vertex as usize).is_multiple_of(CHECKED) {
                 job.check()?;
             }
             self.enter(vertex)?;
@@ -101,7 +101,7 @@ impl<'c> Collapse<'c> {
                 continue;
             }
             taken += 1;
-            if taken % CHECKED == 0 {
+            if usize::is_multiple_of(taken, CHECKED) {
                 job.check()?;
             }
             self.links.ring(vertex, MOST, &mut self.ring)?;

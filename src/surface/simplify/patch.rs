@@ -81,7 +81,7 @@ impl Patch {
             }
         }
         let length = dot(direction, direction).sqrt();
-        if !(length > 0.0) {
+        if length == 0.0 || length.is_nan() {
             return Ok(false);
         }
         let up = scaled(direction, 1.0 / length);
@@ -108,7 +108,8 @@ impl Patch {
             let area = cross2(flat[k], flat[next]);
             let whole = dot(normal, normal).sqrt();
             // (Triangles without area say nothing, if they are seen from no side.)
-            if !(area > STEEP * whole) {
+            let is_seen = area > STEEP * whole;
+            if !is_seen {
                 return Ok(false);
             }
             *steepest = steepest.min(area / whole);

@@ -1,6 +1,6 @@
 //! What the leaves say of polygons.
 
-use super::super::figures::Figures;
+use super::super::figures::{Figures, dot, minus};
 use super::super::leaves::{Leaf, Leaves, OpenLeaf};
 use super::local::Local;
 use crate::error::Error;
@@ -62,22 +62,44 @@ impl Truth<'_> {
         if (0..3).any(|k| around.low[k] < 0.0 || around.high[k] > 1.0) {
             memory::push(found, (Cell::ROOT, Leaf::Outside))?;
         }
-        self.descend(Cell::ROOT, self.leaves.root, around, found)
+        self.descend((Cell::ROOT, self.leaves.root), &|cube| cube.meets(around), found)
+    }
+
+    /// The leaves that a triangle meets, and some beside it.
+    pub(super) fn met_by(
+        &self,
+        triangle: &[[f64; 3]; 3],
+        found: &mut Vec<(Cell, Leaf)>,
+    ) -> Result<(), Error> {
+        let around = Around::of(triangle);
+        found.clear();
+        if (0..3).any(|k| around.low[k] < 0.0 || around.high[k] > 1.0) {
+            memory::push(found, (Cell::ROOT, Leaf::Outside))?;
+        }
+        let [a, b, c] = *triangle;
+        let (u, v) = (minus(b, a), minus(c, a));
+        let normal: [f64; 3] = axes(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+        let width: f64 = normal.iter().map(|c| c.abs()).sum();
+        // (All numbers are at most about 1, and the cubes are a little larger than they need be.)
+        let meets = |cube: &Around| {
+            let (off, half) = (dot(normal, minus(cube.centre(), a)).abs(), cube.half());
+            cube.meets(&around) && off <= (half + LEAST) * width + LEAST * LEAST
+        };
+        self.descend((Cell::ROOT, self.leaves.root), &meets, found)
     }
 
     fn descend(
         &self,
-        cell: Cell,
-        leaf: Leaf,
-        around: &Around,
+        (cell, leaf): (Cell, Leaf),
+        meets: &impl Fn(&Around) -> bool,
         found: &mut Vec<(Cell, Leaf)>,
     ) -> Result<(), Error> {
-        if !cube(cell).meets(around) {
+        if !meets(&cube(cell)) {
             return Ok(());
         }
         let Leaf::Branch(node) = leaf else { return memory::push(found, (cell, leaf)) };
         for (octant, &child) in (0u8..).zip(&self.leaves.nodes[node as usize]) {
-            self.descend(cell.child(octant), child, around, found)?;
+            self.descend((cell.child(octant), child), meets, found)?;
         }
         Ok(())
     }

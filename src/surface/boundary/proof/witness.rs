@@ -54,7 +54,7 @@ impl<'t> Witnesses<'t> {
         told: &mut impl FnMut(Cell, f64) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let mut leaves = Vec::new();
-        self.truth.meeting(&Around::of(&triangle), &mut leaves)?;
+        self.truth.met_by(&triangle, &mut leaves)?;
         for (cell, leaf) in leaves {
             let mut part = memory::copied(&triangle)?;
             if !matches!(leaf, Leaf::Outside) {
