@@ -13,11 +13,14 @@ use super::StopReason;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Frame, Interval, valid};
+#[cfg(feature = "std")]
 use crate::memory;
+#[cfg(feature = "std")]
 use crate::mesh::TriangleMesh;
 use crate::octree::{Proof, Tag};
 use crate::solid::{AskWhole, Classifier, Solid};
 use crate::walk::Proven;
+#[cfg(feature = "std")]
 use alloc::vec::Vec;
 #[cfg(feature = "std")]
 pub(crate) use reference::{Comparison, Reference};
@@ -102,6 +105,7 @@ impl Deviation {
 pub const DEVIATION_SPLITS: u64 = 1 << 18;
 
 /// How exactly a limit is looked at, as a part of it.
+#[cfg(feature = "std")]
 const EXACT: f64 = 1.0 / 128.0;
 
 /// Cells tell the boundary to this part of the tolerance.
@@ -203,6 +207,7 @@ pub fn deviation<A: Solid, B: Solid>(
 /// How far the triangles of two meshes are from each other at the most, in both directions, found no more exactly than `limit` asks, and
 /// the triangles of the second mesh next to which it is not proven to be within the limit (model units; in no order, some more than
 /// once). Unlike [`deviation`] of closed meshes it looks at all triangles, whatever they enclose.
+#[cfg(feature = "std")]
 pub(crate) fn meshes_apart(
     a: &TriangleMesh,
     b: &TriangleMesh,

@@ -31,6 +31,7 @@ const BATCH: usize = 128;
 const CUTS: u64 = 64;
 
 /// How often a triangle is cut to find out whether it is within a limit.
+#[cfg(feature = "std")]
 const BEYOND: u64 = 1 << 10;
 
 /// Facets that are tried for the upper bound of a piece.
@@ -65,6 +66,7 @@ struct Refined {
 
 /// A triangle that is not proven to be within a limit, and the triangle of the other surface that is nearest to where it is farthest,
 /// if that is known.
+#[cfg(feature = "std")]
 pub(super) type Beyond = (u32, Option<u32>);
 
 /// Two surfaces.
@@ -131,6 +133,7 @@ impl Search<'_> {
 
     /// How far the first surface is from the second one at the most, found no more exactly than `limit` asks, and the triangles of the
     /// first that are not proven to be within the limit.
+    #[cfg(feature = "std")]
     pub(super) fn beyond(
         &self,
         limit: f64,

@@ -48,6 +48,7 @@ impl Surface {
     }
 
     /// The triangles of a mesh, wherever the boundary that it stands for may lie.
+    #[cfg(feature = "std")]
     pub(super) fn of_triangles(mesh: &TriangleMesh) -> Result<Surface, Error> {
         let mut covers = memory::with_capacity(1)?;
         if !mesh.triangles().is_empty() {
@@ -93,6 +94,7 @@ impl Facet {
     pub(super) const NONE: Facet = Facet { layer: u32::MAX, triangle: u32::MAX };
 
     /// Its number in its layer, if it is one.
+    #[cfg(feature = "std")]
     pub(super) fn triangle(self) -> Option<u32> {
         (self != Facet::NONE).then_some(self.triangle)
     }
