@@ -41,7 +41,7 @@ const SECTIONS: &[Section] = &[
     Section { title: "Attributes", files: &["attribute", "attribute_host", "mesh_attribute"] },
     Section { title: "Channels", files: &["channel", "channel_fill", "channel_summary", "octree_channels"] },
     Section { title: "Voxel records", files: &["voxel"] },
-    Section { title: "Surfaces", files: &["surface", "solid_boundary", "contour"] },
+    Section { title: "Surfaces", files: &["surface", "solid_boundary", "contour", "mesh_simplify"] },
     Section {
         title: "Tri-dexel models",
         files: &[

@@ -238,6 +238,7 @@ fn channels() {
 fn surfaces() {
     run("surface", C99, Link::Static, &[]);
     run("contour", C99, Link::Static, &[]);
+    run("simplify", C99, Link::Static, &[]);
     run("extract", CPP17, Link::Static, &[]);
 }
 

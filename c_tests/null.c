@@ -1371,6 +1371,14 @@ static void volumes_and_surfaces(void) {
                leafless_mesh_in_single_precision(mesh, 0, NULL, (leafless_single_precision *)WRONG(out), mesh_result));
     MISALIGNED(leafless_mesh_in_single_precision, single,
                leafless_mesh_in_single_precision(mesh, 0, NULL, NULL, (leafless_mesh **)WRONG(out)));
+    NULL_POINTER(leafless_mesh_simplify, mesh, leafless_mesh_simplify(NULL, 1, NULL, NULL, mesh_result));
+    NULL_POINTER(leafless_mesh_simplify, simple, leafless_mesh_simplify(mesh, 1, NULL, NULL, NULL));
+    MISALIGNED(leafless_mesh_simplify, options,
+               leafless_mesh_simplify(mesh, 1, (const leafless_options *)WRONG(&options), NULL, mesh_result));
+    MISALIGNED(leafless_mesh_simplify, report,
+               leafless_mesh_simplify(mesh, 1, NULL, (leafless_simplified *)WRONG(out), mesh_result));
+    MISALIGNED(leafless_mesh_simplify, simple,
+               leafless_mesh_simplify(mesh, 1, NULL, NULL, (leafless_mesh **)WRONG(out)));
     NULL_POINTER(leafless_mesh_written_form, mesh, leafless_mesh_written_form(NULL, &write, mesh_result));
     NULL_POINTER(leafless_mesh_written_form, options, leafless_mesh_written_form(mesh, NULL, mesh_result));
     NULL_POINTER(leafless_mesh_written_form, kept, leafless_mesh_written_form(mesh, &write, NULL));
@@ -1514,6 +1522,10 @@ static void volumes_and_surfaces(void) {
         leafless_mesh_free(*mesh_result);
         MAY_BE_NULL(leafless_mesh_in_single_precision, report,
                     leafless_mesh_in_single_precision(mesh, 0, &options, NULL, mesh_result));
+        leafless_mesh_free(*mesh_result);
+        MAY_BE_NULL(leafless_mesh_simplify, options, leafless_mesh_simplify(mesh, 1, NULL, NULL, mesh_result));
+        leafless_mesh_free(*mesh_result);
+        MAY_BE_NULL(leafless_mesh_simplify, report, leafless_mesh_simplify(mesh, 1, &options, NULL, mesh_result));
         leafless_mesh_free(*mesh_result);
     }
     MAY_BE_NULL(leafless_mesh_normals, normals, leafless_mesh_normals(mesh, NULL, 0, &number));

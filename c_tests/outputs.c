@@ -38,6 +38,7 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_section_area, leafless_solid_section_area(solid, &frame, zero, up, 0.1, 0, NULL, out))              \
     FILLS(leafless_boundary_report, leafless_boundary_describe(boundary, out))                                         \
     FILLS(leafless_single_precision, leafless_mesh_in_single_precision(mesh, 0.1, NULL, out, &made))                   \
+    FILLS(leafless_simplified, leafless_mesh_simplify(mesh, 0.1, NULL, out, &made))                                    \
     FILLS(leafless_polyhedron_arrays, leafless_boundary_peek_faces(boundary, out))                                     \
     FILLS(leafless_contour_report, leafless_solid_contour(solid, &frame, frame.edge, NULL, out, &made))                \
     FILLS(leafless_extent, leafless_solid_bounding_box(solid, &frame, 0.1, NULL, out))                                 \

@@ -162,7 +162,7 @@ static void octrees(void) {
     leafless_mesh_report report = LEAFLESS_INIT(leafless_mesh_report);
     leafless_options options;
     char message[512];
-    double area;
+    double area, smooth;
     uint32_t snap;
     OK(leafless_octree_surface(sampled, NULL, NULL, &mesh));
     report = told(mesh);
@@ -198,6 +198,21 @@ static void octrees(void) {
     surface.source = solid;
     OK(leafless_octree_surface(certified, &surface, NULL, &other));
     CHECK(same(mesh, other));
+    leafless_mesh_free(other);
+
+    /* Surface nets: smoother, hence nearer to the ball in area. Vertices are no place of the lattice. */
+    surface = defaults();
+    surface.method = LEAFLESS_SURFACE_METHOD_SURFACE_NETS;
+    OK(leafless_octree_surface(sampled, &surface, NULL, &other));
+    report = told(other);
+    CHECK(report.is_manifold && report.bodies == 1 && report.euler_characteristic == 2 && report.degenerate == 0);
+    CHECK(fabs(volume_of(other) - ball) < 0.01 * ball);
+    OK(leafless_mesh_area(other, &smooth));
+    CHECK(smooth > 4 * PI * 0.5625 && smooth < area);
+    leafless_mesh_free(other);
+    surface.resolve = LEAFLESS_RESOLVE_OUTER;
+    OK(leafless_octree_surface(certified, &surface, NULL, &other));
+    CHECK(told(other).is_manifold && volume_of(other) > ball);
     leafless_mesh_free(other);
 
     /* Simple marching cubes: all vertices are centres of cells, all normals have one of 13 directions. */
@@ -483,7 +498,8 @@ static void refusals(void) {
     surface_refused(octree, solid, &frame, &surface, "surface." #field, of_octree, of_solid);                    \
     surface = defaults()
     surface = defaults();
-    REFUSED(method, 5, true, true);
+    REFUSED(method, 6, true, true);
+    REFUSED(method, LEAFLESS_SURFACE_METHOD_SURFACE_NETS, false, true);
     REFUSED(method, LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING, true, false);
     REFUSED(method, UINT32_MAX, true, true);
     REFUSED(snap, 2, true, true);
@@ -498,6 +514,8 @@ static void refusals(void) {
     REFUSED(placement, LEAFLESS_VERTEX_PLACEMENT_CROSSING, true, true);
     surface.method = LEAFLESS_SURFACE_METHOD_SHRINK;
     REFUSED(placement, LEAFLESS_VERTEX_PLACEMENT_CROSSING, true, true);
+    surface.method = LEAFLESS_SURFACE_METHOD_SURFACE_NETS;
+    REFUSED(snap, LEAFLESS_SNAP_THIN, true, true);
     surface.method = LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES;
     REFUSED(snap, 7, true, true);
     /* Older programs have shorter structs. */

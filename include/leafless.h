@@ -4900,6 +4900,10 @@ LEAFLESS_ENUM(leafless_surface_method, uint32_t) {
     /// is leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that
     /// function also reports what the mesh does not show.
     LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING = 4,
+    /// Surface nets, of octrees alone: a vertex in each cube between samples that do not all lie on one side,
+    /// in the middle of where the surface crosses it. Steps of the cells are smoothed; exactly two triangles
+    /// meet on every edge.
+    LEAFLESS_SURFACE_METHOD_SURFACE_NETS = 5,
 };
 
 /// To which end of an edge between an inside and an outside sample simple marching cubes and coplanar shrink
@@ -5230,6 +5234,40 @@ typedef struct leafless_contour_report {
 leafless_status leafless_solid_contour(const leafless_solid *solid, const leafless_frame *frame,
     double tolerance_model, const leafless_options *options, leafless_contour_report *report,
     leafless_mesh **mesh);
+
+/// How a mesh was simplified.
+typedef struct leafless_simplified {
+    uint32_t struct_size;  ///< sizeof(leafless_simplified).
+    /// No point of either mesh is further from the other one than that (model units). That is proven.
+    double deviation_model;
+    uint64_t removed;  ///< Triangles that were taken away.
+    /// Pairs of triangles of the result that intersect each other. All of them did before.
+    uint64_t intersecting_pairs;
+} leafless_simplified;
+
+/// The same mesh with fewer triangles, no point of which is further than `tolerance_model` from the mesh, and
+/// none of the mesh further from it: proven in both directions by the triangles of both.
+///
+/// Vertices are taken out, and none is moved. Edges between triangles whose normals differ by more than 30
+/// degrees stay edges, and so do those between triangles that bear different values; along an edge vertices
+/// go as far as the tolerance allows, and corners stay. A mesh that is closed and a manifold stays so, with
+/// as many bodies and holes. Vertices on open edges, and those where more than two triangles meet in an edge,
+/// stay. No triangles intersect each other that did not before.
+///
+/// O(n log n) time for n triangles whose vertices have few: some 20 microseconds a triangle, and some 300
+/// bytes. One thread takes vertices out, and all prove.
+///
+/// - Buffers: `options`, one struct or NULL; `report`, one struct, or NULL if it is not wanted; `simple`, one
+///   pointer.
+/// - Result: `*simple`, with the values of triangles that are left and without those of corners, whose stated
+///   deviation is that of `mesh` with what is proven here; `*report`. The same for any number of threads.
+/// - Errors: LEAFLESS_E_ARGUMENT if `tolerance_model` is not between 2^-256 and 2^256; LEAFLESS_E_CANCELLED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `mesh` stays as it is; give `*simple` back with leafless_mesh_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any mesh.
+leafless_status leafless_mesh_simplify(const leafless_mesh *mesh, double tolerance_model,
+    const leafless_options *options, leafless_simplified *report, leafless_mesh **simple);
 
 /* ---- 25. Tri-dexel models ----------------------------------------------------------------------------- */
 

@@ -398,6 +398,8 @@ public:
     [[nodiscard]] returns<std::vector<uint32_t>> bodies() const;
     [[nodiscard]] returns<leafless::mesh> with_values(const leafless::attribute &attribute,
         std::string_view name, double depth_model, const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<std::tuple<leafless_simplified, leafless::mesh>> simplify(double tolerance_model,
+        const leafless_options *options = nullptr) const;
 };
 
 /// A leafless_solid.
@@ -1170,6 +1172,16 @@ inline returns<leafless::mesh> mesh::with_values(const leafless::attribute &attr
     const leafless_status status = leafless_mesh_with_values(get(), attribute.get(), name.data(), name.size(),
         depth_model, options, &bearing_handle);
     return detail::finish(status, leafless::mesh(bearing_handle));
+}
+
+inline returns<std::tuple<leafless_simplified, leafless::mesh>> mesh::simplify(double tolerance_model,
+    const leafless_options *options) const {
+    leafless_simplified report = LEAFLESS_INIT(leafless_simplified);
+    leafless_mesh *simple_handle = nullptr;
+    const leafless_status status = leafless_mesh_simplify(get(), tolerance_model, options, &report,
+        &simple_handle);
+    return detail::finish(status, std::tuple<leafless_simplified, leafless::mesh>(report,
+        leafless::mesh(simple_handle)));
 }
 
 inline returns<leafless::solid> solid::from_mesh(const leafless::mesh &mesh, leafless_fill fill) {

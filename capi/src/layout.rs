@@ -159,6 +159,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_single_precision { struct_size, reserved,
             rounding_model, deviation_model, collapsed, flipped, moved, degenerate, intersecting_pairs
         }
+        leafless_simplified { struct_size, deviation_model, removed, intersecting_pairs }
         leafless_boundary_surface {
             kind, reserved, point_model, direction, offset_model, radius_model, minor_model, half_angle_radians,
             coefficients
@@ -270,7 +271,8 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         }
         leafless_surface_method {
             LEAFLESS_SURFACE_METHOD_MARCHING_CUBES, LEAFLESS_SURFACE_METHOD_SIMPLE_MARCHING_CUBES, LEAFLESS_SURFACE_METHOD_SHRINK,
-            LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED, LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING
+            LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED, LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING,
+            LEAFLESS_SURFACE_METHOD_SURFACE_NETS
         }
         leafless_snap { LEAFLESS_SNAP_FAT, LEAFLESS_SNAP_THIN }
         leafless_resolve {

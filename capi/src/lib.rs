@@ -27,6 +27,7 @@
 //! | `mesh` | triangle meshes |
 //! | `mesh_arrays` | triangle meshes from the host's arrays |
 //! | `mesh_file` | mesh files, units |
+//! | `mesh_simplify` | meshes with fewer triangles |
 //! | `mesh_write` | mesh files, written |
 //! | `polyhedron` | triangle meshes from faces with holes, shells and voids |
 //! | `mesh_moments` | volume and moments of meshes, triangles that intersect |
@@ -122,6 +123,7 @@ mod mesh_arrays;
 mod mesh_attribute;
 mod mesh_file;
 mod mesh_moments;
+mod mesh_simplify;
 mod mesh_write;
 mod metadata;
 mod number;
@@ -189,6 +191,7 @@ pub use mesh_arrays::*;
 pub use mesh_attribute::*;
 pub use mesh_file::*;
 pub use mesh_moments::*;
+pub use mesh_simplify::*;
 pub use mesh_write::*;
 pub use octree::*;
 pub use octree_channels::*;

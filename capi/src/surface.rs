@@ -13,7 +13,7 @@ use leafless::marching_cubes;
 use leafless::surface::{
     Resolve, Snap, VertexPlacement, coplanar_shrink, coplanar_shrink_solid, dual_contouring_solid,
     marching_cubes_solid, marching_cubes_volume, published_shrink, published_shrink_solid,
-    simple_marching_cubes, simple_marching_cubes_solid,
+    simple_marching_cubes, simple_marching_cubes_solid, surface_nets,
 };
 use leafless_resolve::*;
 use leafless_surface_method::*;
@@ -39,6 +39,9 @@ pub enum leafless_surface_method {
     /// leafless_tridexel_surface of a tri-dexel model with normals, which is made and dropped; that function also reports
     /// what the mesh does not show.
     LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING = 4,
+    /// Surface nets, of octrees alone: a vertex in each cube between samples that do not all lie on one side, in the middle of
+    /// where the surface crosses it. Steps of the cells are smoothed; exactly two triangles meet on every edge.
+    LEAFLESS_SURFACE_METHOD_SURFACE_NETS = 5,
 }
 
 enumeration! {
@@ -48,6 +51,7 @@ enumeration! {
         LEAFLESS_SURFACE_METHOD_SHRINK => LEAFLESS_SURFACE_METHOD_SHRINK,
         LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED => LEAFLESS_SURFACE_METHOD_SHRINK_PUBLISHED,
         LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING => LEAFLESS_SURFACE_METHOD_DUAL_CONTOURING,
+        LEAFLESS_SURFACE_METHOD_SURFACE_NETS => LEAFLESS_SURFACE_METHOD_SURFACE_NETS,
     }
 }
 
@@ -145,6 +149,7 @@ enum Method {
     Shrink(Snap),
     PublishedShrink(Snap),
     DualContouring,
+    SurfaceNets,
 }
 
 /// Refuses a field that should be zero, and is not.
@@ -169,6 +174,11 @@ impl leafless_surface_options {
                 let problem = "is not for dual contouring, whose vertices lie between samples";
                 zero(snap == Snap::Fat, "surface.snap", problem)?;
                 Ok(Method::DualContouring)
+            }
+            LEAFLESS_SURFACE_METHOD_SURFACE_NETS => {
+                let problem = "is not for surface nets, whose vertices lie between samples";
+                zero(snap == Snap::Fat, "surface.snap", problem)?;
+                Ok(Method::SurfaceNets)
             }
         }
     }
@@ -240,6 +250,7 @@ pub unsafe extern "C" fn leafless_octree_surface(
         let mesh = out(mesh, "mesh")?;
         mesh.write(give(controlled(options, |control| match method {
             Method::MarchingCubes | Method::DualContouring => marching_cubes(octree, resolve, control),
+            Method::SurfaceNets => surface_nets(octree, resolve, control),
             Method::Smc(snap) => simple_marching_cubes(octree, snap, resolve, control),
             Method::Shrink(snap) => coplanar_shrink(octree, snap, resolve, control),
             Method::PublishedShrink(snap) => published_shrink(octree, snap, resolve, control),
@@ -293,8 +304,10 @@ pub unsafe extern "C" fn leafless_solid_surface(
             let problem = "is for marching cubes only: other methods place vertices themselves";
             zero(is_midpoint, "surface.placement", problem)?;
         }
+        let problem = "is surface nets, which are of octrees: build one, or extract by dual contouring";
+        zero(!matches!(method, Method::SurfaceNets), "surface.method", problem)?;
         mesh.write(give(controlled(options, |control| match method {
-            Method::MarchingCubes => marching_cubes_solid(solid, &frame, placement, control),
+            Method::MarchingCubes | Method::SurfaceNets => marching_cubes_solid(solid, &frame, placement, control),
             Method::Smc(snap) => simple_marching_cubes_solid(solid, &frame, snap, control),
             Method::Shrink(snap) => coplanar_shrink_solid(solid, &frame, snap, control),
             Method::PublishedShrink(snap) => published_shrink_solid(solid, &frame, snap, control),

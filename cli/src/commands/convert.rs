@@ -8,7 +8,7 @@ use crate::making::octree_of_scene::{self, Splitting, TouchName};
 use crate::making::surface::{self, Method, Wanted};
 use crate::making::surfaces::Surfaces;
 use crate::making::{octree_from_dexels, plain};
-use crate::options::{ResolveName, bounds, resolution, threads};
+use crate::options::{ResolveName, bounds, resolution, threads, tolerance};
 use crate::sink::Output;
 use crate::source::content::Content;
 use crate::source::file::{Found, Stored, Taking};
@@ -62,6 +62,10 @@ pub struct Arguments {
     bounds: Option<Frame>,
     #[command(flatten)]
     taking: Taking,
+    /// Take triangles out of a mesh, and move its surface by this at the most, in model units. Edges of the shape and values of
+    /// triangles stay, and how far the surface moved is proven
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    simplify: Option<f64>,
     /// Write an STL also if rounding to its 32-bit coordinates breaks the surface
     #[arg(long)]
     lossy: bool,
@@ -87,11 +91,15 @@ enum KindName {
 const DEPTH: u8 = 8;
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { resolution: depth, resolve, bounds, lossy, threads, json, .. } = *arguments;
+    let Arguments { resolution: depth, resolve, bounds, simplify, lossy, threads, json, .. } = *arguments;
     let (input, output) = (Input::from(&*arguments.input), Output::from(&*arguments.output));
     let job = Job { input, output, start: Instant::now(), depth, bounds, threads, json };
     let taking = &arguments.taking;
-    let Some(kind) = kind(arguments, &job)? else { return moved(&job, taking, resolve) };
+    let kind = kind(arguments, &job)?;
+    if simplify.is_some() && kind != Some(KindName::Mesh) {
+        return Err(Failure::Usage("--simplify is for --to mesh: it takes out triangles".into()));
+    }
+    let Some(kind) = kind else { return moved(&job, taking, resolve) };
     let by_ends = arguments.by_ends;
     if by_ends && kind != KindName::Octree {
         return Err(Failure::Usage("--by-ends is for --to octree".into()));
@@ -106,7 +114,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             // Cells of one size are asked for.
             let is_sampled = job.depth.is_some() || bounds.is_some();
             let method = if is_sampled { Some(Method::Mc) } else { resolve.map(|_| Method::Nets) };
-            surface::make(&job, taking, &Wanted { method, resolve, lossy, copy, ..Default::default() })
+            let wanted = Wanted { method, resolve, simplify, lossy, copy, ..Default::default() };
+            surface::make(&job, taking, &wanted)
         }
         KindName::Dexels => {
             let rule = resolve.map_or(Rule::Sampled, Rule::from);

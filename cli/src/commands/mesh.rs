@@ -59,6 +59,10 @@ pub struct Arguments {
     /// longest extent. How far it is, the report says
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
+    /// Take triangles out of the surface once it is made, whatever made it, and move it by this at the most, in model units. Edges of
+    /// the shape and values of triangles stay
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    simplify: Option<f64>,
     /// Write plane faces as polygons, into OBJ and OFF, with --method faces. In an OBJ each face is a group, and all faces of one surface
     /// are another. (--json tells the kind and the numbers of the surfaces, with polygons or without)
     #[arg(long)]
@@ -109,6 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         lossy,
         intersections,
         polygons,
+        simplify,
         write: format,
         ..
     } = *arguments;
@@ -125,6 +130,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         intersections,
         copy: false,
         polygons,
+        simplify,
         channel: arguments.channel.clone(),
     };
     make(&job, &arguments.taking, &wanted)

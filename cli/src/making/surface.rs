@@ -24,7 +24,7 @@ use leafless::op::DexelOptions;
 use leafless::surface::{
     BoundaryReport, ContourReport, Resolve, Snap, VertexPlacement, boundary, contour, coplanar_shrink,
     coplanar_shrink_solid, marching_cubes_solid, marching_cubes_volume, published_shrink,
-    published_shrink_solid, simple_marching_cubes, simple_marching_cubes_solid, surface_nets,
+    published_shrink_solid, simple_marching_cubes, simple_marching_cubes_solid, simplify, surface_nets,
 };
 use leafless::{
     Affine, AnySolid, Control, Error, Frame, Interval, Octree, Rule, TriDexel, TriangleMesh, build, dexelize,
@@ -69,6 +69,8 @@ pub struct Wanted {
     pub polygons: bool,
     /// The values that triangles are to bear.
     pub channel: Option<String>,
+    /// How far the surface may move where triangles are taken out of it once it is made (model units).
+    pub simplify: Option<f64>,
 }
 
 impl Wanted {
@@ -216,8 +218,23 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     };
     // The surface of a stored solid is sharper than that of what would be made of the solid in another place.
     let mesh = if is_stored { taking.placing.mesh(mesh).of(input)? } else { mesh };
+    let mut mesh = mesh;
+    if let Some(most) = wanted.simplify {
+        mesh = simplified(mesh, is_copy, most, job)?;
+        // (They have other triangles now.)
+        faces = None;
+    }
     let method = if is_copy { "copy".into() } else { name_of(method) };
     write(job, format, wanted, Made { mesh, unit, method, followed, faces })
+}
+
+/// The mesh with fewer triangles. How far it is from the solid is known if it was known before, or if the mesh is the solid.
+fn simplified(mesh: TriangleMesh, is_solid: bool, most: f64, job: &Job) -> Result<TriangleMesh, Failure> {
+    let input = &job.input;
+    let is_known = is_solid || mesh.deviation() > 0.0;
+    let found = watched("simplify", job.threads, |control| simplify(&mesh, most, control)).of(input)?;
+    let simple = found.into_mesh();
+    if is_known { Ok(simple) } else { simple.with_deviation(0.0).of(input) }
 }
 
 impl Method {
@@ -276,6 +293,8 @@ fn polygons_of(wanted: &Wanted, method: Method, format: MeshFormat) -> Result<()
         "does not go with --normals"
     } else if wanted.channel.is_some() {
         "does not go with --channel, whose values are on triangles"
+    } else if wanted.simplify.is_some() {
+        "does not go with --simplify, which knows triangles alone: --tolerance makes fewer of them"
     } else {
         return Ok(());
     };

@@ -588,3 +588,36 @@ fn what_is_known_of_the_shape_decides() {
         .run("mesh plate.csg -o out.ply --bounds -1,-1,-1,6 --method faces")
         .bad(1, &["hold all of the solid"]);
 }
+
+/// Triangles are taken out of any surface; what is told of the distance from the solid stays true.
+#[test]
+fn triangles_are_taken_out() {
+    let place = ball();
+    let cubes = format!("mesh ball.csg --method mc --depth 5 {BOUNDS} --json");
+    let full = json(&place, &format!("{cubes} -o full.ply"));
+    let few = json(&place, &format!("{cubes} -o few.ply --simplify 0.05"));
+    let count = |report: &Value| report["triangles"].as_u64().unwrap();
+    assert!(4 * count(&few) < count(&full) && few["manifold"] == true, "{few} {full}");
+    // Nobody knows how far marching cubes was from the ball.
+    assert!(few.get("deviation").is_none(), "{few}");
+
+    // A mesh that is copied is the solid.
+    let copy = json(&place, "convert full.ply -o simple.ply --simplify 0.05 --json");
+    assert_eq!((count(&copy), &copy["method"]), (count(&few), &"copy".into()));
+    let proven = copy["deviation"].as_f64().unwrap();
+    assert!(proven > 0.0 && proven <= 0.05, "{copy}");
+    let within = format!("deviation full.ply simple.ply --within {proven} --json");
+    assert_ne!(place.run(&within).json()["verdict"], "beyond");
+
+    // What was proven before is added.
+    let faces = "mesh ball.csg --method faces --tolerance 0.02 --json";
+    let near = json(&place, &format!("{faces} -o near.ply"))["deviation"].as_f64().unwrap();
+    let both = json(&place, &format!("{faces} -o both.ply --simplify 0.05"));
+    let sum = both["deviation"].as_f64().unwrap();
+    assert!(sum > near && sum <= near + 0.05 && both.get("regions").is_none(), "{both}");
+
+    place.run("convert full.ply -o same.lfl --to octree --simplify 0.05").bad(2, &["--simplify is for --to mesh"]);
+    place.run("convert full.ply -o same.ply --simplify 0").bad(1, &["tolerance"]);
+    let polygons = "mesh ball.csg -o p.off --method faces --polygons --simplify 0.05";
+    place.run(polygons).bad(2, &["does not go with --simplify"]);
+}
