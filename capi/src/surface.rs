@@ -307,7 +307,9 @@ pub unsafe extern "C" fn leafless_solid_surface(
         let problem = "is surface nets, which are of octrees: build one, or extract by dual contouring";
         zero(!matches!(method, Method::SurfaceNets), "surface.method", problem)?;
         mesh.write(give(controlled(options, |control| match method {
-            Method::MarchingCubes | Method::SurfaceNets => marching_cubes_solid(solid, &frame, placement, control),
+            Method::MarchingCubes | Method::SurfaceNets => {
+                marching_cubes_solid(solid, &frame, placement, control)
+            }
             Method::Smc(snap) => simple_marching_cubes_solid(solid, &frame, snap, control),
             Method::Shrink(snap) => coplanar_shrink_solid(solid, &frame, snap, control),
             Method::PublishedShrink(snap) => published_shrink_solid(solid, &frame, snap, control),

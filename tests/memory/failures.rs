@@ -28,7 +28,7 @@ use leafless::solid::{Band, HalfSpace, Transform, VoxelGrid};
 use leafless::surface::{
     Resolve, Snap, VertexPlacement, boundary, contour, dual_contouring_dexels, marching_cubes_dexels,
     marching_cubes_solid, marching_cubes_volume, simple_marching_cubes, simple_marching_cubes_solid,
-    surface_nets,
+    simplify, surface_nets,
 };
 use leafless::voxel::{VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
@@ -154,6 +154,11 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     let coded = compact(a.view()).unwrap().with_metadata(facts());
     let bytes = file::to_bytes(&coded).unwrap();
     let (closed, cracked) = (Arc::new(TriangleMesh::from_facets(facets()).unwrap()), Arc::new(cracked()));
+    let tetrahedron = TriangleMesh::new(
+        vec![[5.0; 3], [25.0, 5.0, 5.0], [5.0, 25.0, 5.0], [5.0, 5.0, 25.0]],
+        vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+    );
+    let tetrahedron = Arc::new(tetrahedron.unwrap());
     let facets = facets();
     let stl = exchange::write_stl(&closed).unwrap();
     let path = directory.join("tree.lfl");
@@ -267,11 +272,24 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("surfaces of a ball", [], {
         let (ball, frame) = (Csg::ball([15.0; 3], 9.0)?, frame().with_depth(4)?);
         marching_cubes_solid(&ball, &frame, VertexPlacement::Crossing, &CONTROL)?;
-        let half = Csg::cuboid([14.0; 3], [28.0; 3])?;
-        boundary(&ball.difference(&half)?, &frame, 1.0, &CONTROL)?.faces()?;
-        contour(&ball.difference(&half)?, &frame, 2.0, &CONTROL)?;
         simple_marching_cubes_solid(&ball, &frame, Snap::Thin, &CONTROL)
     });
+    operation!("boundary", [], {
+        let (block, ball) = (Csg::cuboid([5.0; 3], [25.0; 3])?, Csg::ball([25.0; 3], 9.0)?);
+        boundary(&block.difference(&ball)?, &frame().with_depth(3)?, 4.0, &CONTROL)?.faces()
+    });
+    operation!("boundary of a mesh", [tetrahedron], {
+        boundary(&MeshSolid::new(tetrahedron.clone(), FillRule::NonZero)?, &frame(), 1.0, &CONTROL)
+    });
+    operation!("contour", [], {
+        let block = Csg::cuboid([5.0, 6.0, 7.0], [25.0, 24.0, 23.0])?;
+        contour(&block, &frame().with_depth(2)?, 8.0, &Control { max_splits: Some(30), ..CONTROL })
+    });
+    operation!("contour of a mesh", [tetrahedron], {
+        let solid = MeshSolid::new(tetrahedron.clone(), FillRule::NonZero)?;
+        contour(&solid, &frame().with_depth(2)?, 8.0, &Control { max_splits: Some(30), ..CONTROL })
+    });
+    operation!("simplify", [closed], simplify(&closed, 0.25, &CONTROL));
     #[cfg(feature = "volumes")]
     {
         let samples: leafless::solid::Samples<'static> = waves.into();
@@ -309,7 +327,7 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     });
     operation!("clearance", [a], {
         let moved = Transform::new(&a, &frame(), &Affine::translation([7.0, 9.0, 0.1])?);
-        clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(300), ..CONTROL })
+        clearance(&a, &moved, &frame(), 0.0, &Control { max_splits: Some(60), ..CONTROL })
     });
     operation!("clearance of meshes", [closed], {
         let solid = || MeshSolid::new(closed.clone(), FillRule::NonZero);

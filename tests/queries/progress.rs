@@ -18,7 +18,7 @@ use leafless::solid::{Band, VoxelGrid};
 use leafless::surface::{
     DexelSolid, Snap, VertexPlacement, boundary, contour, coplanar_shrink, coplanar_shrink_solid,
     dual_contouring_dexels, marching_cubes_dexels, marching_cubes_solid, marching_cubes_volume,
-    published_shrink, simple_marching_cubes, surface_nets,
+    published_shrink, simple_marching_cubes, simplify, surface_nets,
 };
 use leafless::voxel::{Symmetry, Viewpoint, VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
@@ -159,6 +159,8 @@ fn all_operations(depth: u8) -> Vec<Told> {
     let mesh = Arc::new(mesh);
     let solid = MeshSolid::new(mesh.clone(), FillRule::NonZero).unwrap();
     heard.of("build of a mesh", |control| build(&solid, &frame, Rule::Certified, control));
+    heard.of("simplify", |control| simplify(&mesh, 0.01, control));
+    heard.of("boundary of a mesh", |control| boundary(&solid, &frame, 0.01, control));
     heard.of("contour of a mesh", |control| contour(&solid, &frame, 0.02, control));
     heard.of("rays of a mesh", |control| solid.odd_rays(&frame, control));
 

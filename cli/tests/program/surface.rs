@@ -616,7 +616,9 @@ fn triangles_are_taken_out() {
     let sum = both["deviation"].as_f64().unwrap();
     assert!(sum > near && sum <= near + 0.05 && both.get("regions").is_none(), "{both}");
 
-    place.run("convert full.ply -o same.lfl --to octree --simplify 0.05").bad(2, &["--simplify is for --to mesh"]);
+    place
+        .run("convert full.ply -o same.lfl --to octree --simplify 0.05")
+        .bad(2, &["--simplify is for --to mesh"]);
     place.run("convert full.ply -o same.ply --simplify 0").bad(1, &["tolerance"]);
     let polygons = "mesh ball.csg -o p.off --method faces --polygons --simplify 0.05";
     place.run(polygons).bad(2, &["does not go with --simplify"]);

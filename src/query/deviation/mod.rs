@@ -228,6 +228,7 @@ pub(crate) fn meshes_apart(
         let search = Search { from, to, tolerance: limit * EXACT, budget: DEVIATION_SPLITS };
         let (own, list) =
             control.run(worth, |parallel| search.beyond((1.0 - EXACT) * limit, parallel, &job))?;
+        job.advance(WHOLE / 2);
         most = f64::max(most, own);
         for (triangle, other) in list {
             let of_second = if k == 0 { other } else { Some(triangle) };

@@ -275,7 +275,7 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
             // At last all vertices stay.
             reduction.keep(&memory::filled(mesh.vertices().len(), true)?);
         }
-        let (mesh, kept, pairs) = reduction.run(job)?;
+        let (mesh, kept, pairs) = reduction.run(job, 0)?;
         let of_kept = kept.iter().map(|&triangle| patches.surfaces[triangle as usize]);
         let of_triangles = memory::collected(of_kept)?;
         let proof = prove(&leaves, &figures, &mesh, &of_triangles, lattice, job)?;
@@ -301,7 +301,7 @@ fn of_facets(facets: BoundaryFacets, tolerance: f64, control: &Control<'_>) -> R
         triangles.retain(|_| chosen.next().is_some_and(|&own| own));
     }
     let outer = TriangleMesh::from_welded(memory::copied(mesh.vertices())?, triangles, 0, 0);
-    let found = simplify(&outer, tolerance, &quiet(control))?;
+    let found = simplify(&outer, tolerance, control)?;
     let report = BoundaryReport {
         intersecting_pairs: found.report().intersecting_pairs,
         cells: 0,

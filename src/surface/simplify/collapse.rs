@@ -84,14 +84,15 @@ impl<'c> Collapse<'c> {
         })
     }
 
-    /// Takes vertices out until no more can go.
-    pub(super) fn run(&mut self, job: &Job<'_>) -> Result<(), Error> {
+    /// Takes vertices out until no more can go. Progress advances by `parts`.
+    pub(super) fn run(&mut self, job: &Job<'_>, parts: usize) -> Result<(), Error> {
         for vertex in 0..self.vertices.len() as u32 {
             if (vertex as usize).is_multiple_of(CHECKED) {
                 job.check()?;
             }
             self.enter(vertex)?;
         }
+        job.advance(parts / 2);
         let mut taken = 0;
         while let Some(entry) = self.queue.peek() {
             let Reverse((_, vertex)) = entry.key;
@@ -121,6 +122,7 @@ impl<'c> Collapse<'c> {
             }
             self.ring.vertices = around;
         }
+        job.advance(parts - parts / 2);
         Ok(())
     }
 

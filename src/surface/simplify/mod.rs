@@ -11,7 +11,7 @@ mod links;
 mod patch;
 mod sharp;
 
-use crate::control::{Control, Job};
+use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::valid;
 use crate::memory;
@@ -111,9 +111,16 @@ pub fn simplify(mesh: &TriangleMesh, tolerance: f64, control: &Control<'_>) -> R
     }
     let regions = Regions::Alike(&attributes);
     let mut reduction = Reduction::new(mesh, regions, tolerance)?;
+    let mut is_first = true;
     let (mut simple, kept, deviation, intersecting_pairs) = loop {
-        let (simple, kept, pairs) = reduction.run(&job)?;
-        let (most, beyond) = meshes_apart(mesh, &simple, tolerance, &quiet)?;
+        // (How many rounds there will be is not known: the first one is taken for all.)
+        let parts = if is_first { WHOLE / 2 } else { 0 };
+        let (simple, kept, pairs) = reduction.run(&job, parts)?;
+        let (most, beyond) = match is_first {
+            true => control.share([0.5, 1.0], |control| meshes_apart(mesh, &simple, tolerance, control))?,
+            false => meshes_apart(mesh, &simple, tolerance, &quiet)?,
+        };
+        is_first = false;
         if most <= tolerance || !reduction.hold(beyond.into_iter().map(|triangle| kept[triangle as usize]))? {
             break (simple, kept, most, pairs);
         }
@@ -164,18 +171,24 @@ impl<'r> Reduction<'r> {
         }
     }
 
-    /// The mesh with fewer triangles, which of them are left, and how many pairs of these intersect.
-    pub(super) fn run(&mut self, job: &Job<'_>) -> Result<(TriangleMesh, Vec<u32>, u64), Error> {
+    /// The mesh with fewer triangles, which of them are left, and how many pairs of these intersect. Progress advances by `parts`.
+    pub(super) fn run(
+        &mut self,
+        job: &Job<'_>,
+        mut parts: usize,
+    ) -> Result<(TriangleMesh, Vec<u32>, u64), Error> {
         let (mesh, vertices) = (self.mesh, self.mesh.vertices());
         let quiet = Control { progress: None, ..*job.control() };
         loop {
             let mut links = Links::new(vertices.len(), memory::copied(mesh.triangles())?)?;
             sharp::mark(&mut links, vertices, self.regions)?;
             let mut collapse = Collapse::new(links, vertices, &self.limits)?;
-            collapse.run(job)?;
+            collapse.run(job, parts / 2)?;
             let (simple, kept) = self.assemble(&collapse.links)?;
             (self.went, self.left) = (collapse.went, Some(collapse.links));
             let found = simple.intersecting_pairs(PAIRS, &quiet)?;
+            job.advance(parts - parts / 2);
+            parts = 0;
             let meet = found.pairs.iter().flat_map(|pair| pair.triangles).map(|own| kept[own as usize]);
             if !self.change(meet, |_| 0.0)? {
                 return Ok((simple, kept, found.count));
