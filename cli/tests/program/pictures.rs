@@ -84,6 +84,23 @@ fn the_part_of_the_demo() {
     }
 }
 
+/// A plate with a bore by marching cubes and by its faces; and what the documentation says of both.
+#[test]
+fn a_plate_with_a_bore() {
+    let place = Place::new();
+    let bore = "translate([40, 30, -1]) cylinder(r = 5, h = 12, $fn = 0);";
+    place.write("plate.csg", format!("difference() {{ cube([80, 60, 10]); {bore} }}"));
+    let page = std::fs::read_to_string(folder().join("../../README.md")).unwrap();
+    for (name, options, triangles) in [("cubes", "--method mc --depth 6", "15,184"), ("faces", "", "152")] {
+        let told = place.run(&format!("mesh plate.csg -o {name}.ply {options}")).good();
+        assert!(told.text().contains(&format!(" {triangles} triangles")), "{told:?}");
+        assert!(page.contains(&format!("{triangles} triangles")), "{triangles}");
+        let view = "--edges all --size 420x300 --from 30,50 --fov 26";
+        place.run(&format!("render {name}.ply -o {name}.png {view}")).good();
+        check(&format!("plate-{name}.png"), &place.bytes(&format!("{name}.png")));
+    }
+}
+
 /// A plate with twenty bores by its cells, and by the cells of which some keep surfaces; and what the documentation says of both.
 #[test]
 fn a_plate_with_twenty_bores() {
