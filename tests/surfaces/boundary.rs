@@ -9,6 +9,7 @@ use leafless::{
     SurfaceOptions, TriangleMesh, build, build_extended, cast_rays, contains, deviation, measure,
 };
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 pub fn of<S: Solid>(solid: &S, depth: u8, tolerance: f64) -> Boundary {
     let bounds = solid.bounds().unwrap();
@@ -417,4 +418,97 @@ fn meshes() {
     let found = boundary(&both, &frame, 0.01, &alone()).unwrap();
     assert_eq!((found.mesh().triangles().len(), euler_of_manifold(found.mesh())), (12, 2));
     assert!((0.001..0.0011).contains(&found.report().deviation), "{:?}", found.report());
+}
+
+/// A turned part whose surfaces meet three at a time in circles: a chamfer on a round, a countersink in a bore, a counterbore, on a
+/// flange with four holes.
+fn turned_part() -> Csg {
+    let about = |x: f64, y: f64, radii: [f64; 2], low: f64, high: f64| {
+        Csg::frustum_between([x, y, low], [x, y, high], radii).unwrap()
+    };
+    let cylinder = |x: f64, y: f64, radius: f64, low: f64, high: f64| {
+        Csg::cylinder_between([x, y, low], [x, y, high], radius).unwrap()
+    };
+    let flange = Csg::cuboid([-30.0, -30.0, 0.0], [30.0, 30.0, 10.0]).unwrap();
+    let body = [flange, cylinder(0.0, 0.0, 20.0, 0.0, 38.0), about(0.0, 0.0, [20.0, 18.0], 38.0, 40.0)];
+    let mut tools = vec![
+        cylinder(0.0, 0.0, 8.0, -1.0, 59.0),
+        cylinder(0.0, 0.0, 12.0, 34.0, 44.0),
+        about(0.0, 0.0, [13.0, 8.0], -1.0, 4.0),
+    ];
+    tools.extend(
+        [[24.0, 24.0], [-24.0, 24.0], [24.0, -24.0], [-24.0, -24.0]]
+            .map(|[x, y]| cylinder(x, y, 3.0, -1.0, 19.0)),
+    );
+    Csg::union_of(body).unwrap().difference(&Csg::union_of(tools).unwrap()).unwrap()
+}
+
+/// How far a point is from each of its surfaces.
+fn away_from_turned_part([x, y, z]: [f64; 3]) -> Vec<f64> {
+    let (r, slope) = (x.hypot(y), 0.5f64.sqrt());
+    let hole = (x.abs() - 24.0).hypot(y.abs() - 24.0) - 3.0;
+    let mut all = vec![z, z - 10.0, z - 34.0, z - 40.0, x.abs() - 30.0, y.abs() - 30.0];
+    all.extend([r - 8.0, r - 12.0, r - 20.0, hole, slope * (r + z - 12.0), slope * (r + z - 58.0)]);
+    all.into_iter().map(f64::abs).collect()
+}
+
+#[test]
+fn sharp_edges_of_a_turned_part() {
+    let (part, length) = (turned_part(), 60.0);
+    for (placement, part_of_length) in [(Affine::IDENTITY, 1e-3), (turn(), 1e-3), (Affine::IDENTITY, 1e-4)] {
+        let found = of(&part.placed(&placement).unwrap(), 14, part_of_length * length);
+        let (mesh, report) = (found.mesh(), found.report());
+        let back = placement.inverse().unwrap();
+        let vertices: Vec<_> = mesh.vertices().iter().map(|&vertex| back.apply(vertex)).collect();
+        assert_manifold(mesh, "turned part");
+        // Five through holes, the middle one with steps.
+        assert_eq!(euler_of_manifold(mesh), 2 - 2 * 5);
+        assert!(report.intersecting_pairs == 0 && report.deviation <= part_of_length * length, "{report:?}");
+        let round = 400.0 * 28.0 + 2.0 / 3.0 * (400.0 + 360.0 + 324.0);
+        let holes = 64.0 * 30.0 + 144.0 * 6.0 + 4.0 / 3.0 * (144.0 + 96.0 + 64.0) + 4.0 * 9.0 * 10.0;
+        let volume = 36_000.0 + PI * (round - holes);
+        assert!((mesh.volume() - volume).abs() <= 1.1 * mesh.area() * report.deviation);
+
+        // Edges between triangles whose normals differ by more than 35 degrees.
+        let mut sides: BTreeMap<(u32, u32), [f64; 3]> = BTreeMap::new();
+        for &[a, b, c] in mesh.triangles() {
+            let [p, q, r] = [a, b, c].map(|k| vertices[k as usize]);
+            let (u, v) = ([0, 1, 2].map(|k| q[k] - p[k]), [0, 1, 2].map(|k| r[k] - p[k]));
+            let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            let size = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
+            for edge in [(a, b), (b, c), (c, a)] {
+                sides.insert(edge, normal.map(|c| c / size));
+            }
+        }
+        let sharp: Vec<_> = sides
+            .iter()
+            .filter(|((a, b), normal)| {
+                let other = sides[&(*b, *a)];
+                (0..3).map(|k| normal[k] * other[k]).sum::<f64>() < 35f64.to_radians().cos()
+            })
+            .map(|(&(a, _), _)| vertices[a as usize])
+            .collect();
+        for &vertex in &sharp {
+            let mut away = away_from_turned_part(vertex);
+            away.sort_by(f64::total_cmp);
+            assert!(away[1] <= 1e-9 * length, "{vertex:?}: {away:?}");
+        }
+        // Each circle is there.
+        for (radius, z) in [
+            (8.0, 34.0),
+            (12.0, 34.0),
+            (12.0, 40.0),
+            (18.0, 40.0),
+            (20.0, 38.0),
+            (20.0, 10.0),
+            (8.0, 4.0),
+            (12.0, 0.0),
+        ] {
+            let on = |v: &&[f64; 3]| (v[0].hypot(v[1]) - radius).abs() < 1e-9 && (v[2] - z).abs() < 1e-9;
+            let count = sharp.iter().filter(on).count();
+            assert!(count >= 12, "{count} vertices at radius {radius}, z = {z}");
+        }
+        println!("{} triangles, {} of {}", mesh.triangles().len(), report.deviation, part_of_length * length);
+        assert!(mesh.triangles().len() < 20_000);
+    }
 }

@@ -1,6 +1,7 @@
 //! The cells of a boundary evaluation: where the surfaces in them have a simple arrangement.
 
 use super::figures::{Figures, Shape, dot};
+use super::redundant::{Known, without_redundant};
 use crate::control::Job;
 use crate::cut::Quadratic;
 use crate::error::Error;
@@ -40,6 +41,8 @@ pub(super) struct Leaves {
     pub(super) root: Leaf,
     pub(super) depth: u8,
     pub(super) splits: u64,
+    /// By how much the boundary may be elsewhere where surfaces were left out (edges of the universe).
+    pub(super) slack: f64,
 }
 
 /// Most surfaces of a simple cell.
@@ -94,7 +97,8 @@ impl Leaves {
         job: &Job<'_>,
     ) -> Result<Leaves, Error> {
         let depth = classifier.frame().depth();
-        let mut leaves = Leaves { nodes: Vec::new(), open: Vec::new(), root: Leaf::Empty, depth, splits: 0 };
+        let (nodes, open, root) = (Vec::new(), Vec::new(), Leaf::Empty);
+        let mut leaves = Leaves { nodes, open, root, depth, splits: 0, slack: 0.0 };
         let mut worker = classifier.worker()?;
         let root = worker.root()?;
         leaves.root = leaves.add(Cell::ROOT, root, &mut worker, wanted, job)?;
@@ -122,6 +126,11 @@ impl Leaves {
             }
         };
         let open = worker.surfaces(cell, &part)?.map(|open| open.shortened());
+        let fewer = open.and_then(|open| without_redundant(wanted.figures, cell, &open));
+        if let Some((_, slack)) = fewer {
+            self.slack = self.slack.max(slack);
+        }
+        let open = fewer.map(|(open, _)| open).or(open);
         if let Some(inside) = open.and_then(|open| open.settled()) {
             wanted.report(cell, job);
             return Ok(if inside { Leaf::Full } else { Leaf::Empty });
@@ -181,28 +190,30 @@ impl Wanted<'_> {
         }
     }
 
-    /// Whether all surfaces in a cell lie within the tolerance of each other, as where two touch.
+    /// Whether the boundary in a cell lies within the tolerance of one nearly flat surface: if those surfaces count as one that are so near
+    /// to each other, as where a ball ends a round bar, it depends on that one alone.
     fn is_merged(&self, cell: Cell, open: &OpenSurfaces) -> bool {
-        let half = 0.5 / f64::from(1u32 << cell.level);
-        let mut first: Option<([f64; 3], f64)> = None;
-        let mut most: f64 = 0.0;
-        for &surface in open.indices() {
-            let Some(taylor) = self.figures.taylor(surface, cell) else { return false };
-            let steep = sqrt(dot(taylor.f.gradient, taylor.f.gradient));
-            let [xx, yy, zz, xy, xz, yz] = taylor.f.squares.map(f64::abs);
-            let rise = (xx + yy + zz + 2.0 * (xy + xz + yz) + taylor.f.error) / steep;
-            let (normal, value) = (taylor.f.gradient.map(|c| c / steep), taylor.f.value / steep);
-            let (n, v) = *first.get_or_insert((normal, value));
-            let sign = if dot(n, normal) < 0.0 { -1.0 } else { 1.0 };
-            let apart =
-                (v - sign * value).abs() + (0..3).map(|k| (n[k] - sign * normal[k]).abs()).sum::<f64>();
-            let away = apart + rise;
-            if away.is_nan() || away >= 1.0 {
-                return false;
+        let most = 0.4 * self.tolerance / (0.5 / f64::from(1u32 << cell.level));
+        let mut known = [Known::default(); OpenSurfaces::MOST];
+        for (place, &surface) in known.iter_mut().zip(open.indices()) {
+            match Known::of(self.figures, surface, cell) {
+                Some(own) => *place = own,
+                None => return false,
             }
-            most = most.max(away);
         }
-        most * half <= 0.4 * self.tolerance
+        let mut table = open.table();
+        for k in 1..open.indices().len() {
+            let other = (0..k).find(|&i| table.depends_on(i) && known[i].apart(&known[k]).0 <= most);
+            if let Some(i) = other {
+                table = table.renamed(k, i, known[i].apart(&known[k]).1);
+            }
+        }
+        let mut left = (0..open.indices().len()).filter(|&k| table.depends_on(k));
+        match (left.next(), left.next()) {
+            (None, _) => true,
+            (Some(k), None) => known[k].rise() <= most,
+            _ => false,
+        }
     }
 
     /// Whether the surfaces in a cell are nearly flat, and cross each other at angles.

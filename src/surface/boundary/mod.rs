@@ -7,7 +7,7 @@
 //! different signs at the ends, faces have arcs between such crossings, and cells have polygons between such arcs. All of that is
 //! decided by signs at corners of the lattice, which neighbours share, so that the result is closed. Places are found last.
 //!
-//! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `leaves` (the cells), `walk` (their
+//! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `redundant` (which of them need not be known), `leaves` (the cells), `walk` (their
 //! minimal faces and edges), `edges`, `curve` (curves as chords), `faces`, `cells`, `patches` (triangles), `held` (where these stay),
 //! `mates`, `proof`, `regions` (triangles on one surface as faces).
 
@@ -21,6 +21,7 @@ mod leaves;
 mod mates;
 mod patches;
 mod proof;
+mod redundant;
 mod regions;
 mod strips;
 #[cfg(test)]
@@ -285,7 +286,7 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
         beyond.clone().try_for_each(|&cell| refused.add(cell))?;
         if proofs >= PROOFS || !refused.settle() || round >= ROUNDS {
             let (cells, splits) = (leaves.open.len() as u64, leaves.splits);
-            let deviation = rounded_up(proof.most, &frame);
+            let deviation = rounded_up(proof.most + leaves.slack, &frame);
             let report = BoundaryReport { intersecting_pairs: pairs, cells, splits, deviation };
             return Ok(Boundary { mesh, surfaces, of_triangles, report });
         }

@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let shape = BoundShape::try_from(fidget::jit::JitShape::from(block.max(-bore)))?;
     let start = Instant::now();
     let settings = fidget::mesh::Settings { depth, threads: None, ..Default::default() };
-    let mut mesh = fidget::mesh::Octree::build(&shape, &settings).walk_dual();
+    let mut mesh = fidget::mesh::Octree::build(&shape, &settings).ok_or("cancelled")?.walk_dual();
     let seconds = start.elapsed().as_secs_f64();
     let middle = [40.0, 30.0, 5.0];
     for vertex in &mut mesh.vertices {
