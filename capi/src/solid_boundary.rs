@@ -202,7 +202,7 @@ output!(leafless_boundary_report);
 /// How far the mesh and the boundary are from each other is proven by the surfaces. Where that is more than the tolerance, cells are
 /// split, as far as the depth of the frame.
 ///
-/// About 50 microseconds and 500 bytes a cell; one thread does it all.
+/// About 50 microseconds and 500 bytes a cell; threads share the proof.
 ///
 /// - Buffers: `frame`, one struct; `options`, one struct or NULL; `boundary`, one pointer.
 /// - Result: `*boundary`.

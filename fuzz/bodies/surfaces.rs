@@ -89,7 +89,9 @@ fn check_closed(mesh: &TriangleMesh, has_fans: bool) {
     let mut fans: HashMap<u32, (u32, u32)> = HashMap::new();
     for &[a, b, c] in mesh.triangles() {
         for (from, to, third) in [(a, b, c), (b, c, a), (c, a, b)] {
-            assert!(from != to && next.insert((from, to), third).is_none(), "{from} {to}");
+            let is_new = from != to && next.insert((from, to), third).is_none();
+            let ends = [from, to].map(|v| mesh.vertices()[v as usize]);
+            assert!(is_new, "the edge {from} {to} once more: {ends:?}");
             fans.entry(from).or_insert((to, 0)).1 += 1;
         }
     }

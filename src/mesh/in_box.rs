@@ -19,6 +19,16 @@ const SINGLE: f64 = 1.0 / (1 << 22) as f64;
 impl TriangleTree<'_> {
     /// Calls `visit` with every triangle that meets a closed box (model units), and perhaps with some that come very near.
     pub(crate) fn in_box(&self, bounds: &Bounds, visit: &mut impl FnMut(u32)) {
+        self.in_box_of(bounds, |_| true, visit);
+    }
+
+    /// The same of triangles that are wanted.
+    pub(crate) fn in_box_of(
+        &self,
+        bounds: &Bounds,
+        wanted: impl Fn(u32) -> bool,
+        visit: &mut impl FnMut(u32),
+    ) {
         let displacement = self.mesh.displacement();
         let centre: Point = array(|axis| 0.5 * bounds.min[axis] + 0.5 * bounds.max[axis]);
         let half: Point = array(|axis| {
@@ -33,6 +43,9 @@ impl TriangleTree<'_> {
             array(|axis| (at[axis] + sign * (half[axis] * scale * (1.0 + SINGLE) + slack)) as f32)
         });
         self.tree.within(low, high, &mut |triangle| {
+            if !wanted(triangle) {
+                return;
+            }
             let seen = corners(self.mesh, triangle).map(|corner| array(|axis| corner[axis] - centre[axis]));
             if !is_separated(&seen, &half) {
                 visit(triangle);

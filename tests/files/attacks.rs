@@ -151,7 +151,6 @@ fn solids_in_contact() {
 }
 
 #[test]
-#[ignore = "input 11, a stored octree of depth 6, has an edge with more than two triangles"]
 fn surfaces_of_expressions_are_closed_and_as_near_as_is_said() {
     any_bytes(surfaces::boundaries, 0..30, 40);
 }

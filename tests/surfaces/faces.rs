@@ -242,12 +242,23 @@ fn solids_that_touch_themselves() {
     }
 }
 
-/// Sixty scenes of two to five primitives: loops closed and paired, areas those of the triangles.
+/// Scenes of two to five primitives: loops closed and paired, areas those of the triangles.
 #[test]
 fn random_scenes_have_faces() {
+    check_scenes(16);
+}
+
+/// `cargo test --release --test surfaces faces -- --ignored`
+#[test]
+#[ignore = "minutes"]
+fn sixty_random_scenes_have_faces() {
+    check_scenes(60);
+}
+
+fn check_scenes(scenes: usize) {
     let mut random = Random(40);
     let mut refused = 0;
-    for scene in 0..60 {
+    for scene in 0..scenes {
         let solid = random_scene(&mut random);
         let frame = Frame::new([-20.0; 3], 40.0, 11).unwrap();
         let found = boundary(&solid, &frame, [1.0, 0.4][scene % 2], &alone()).unwrap();

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(100);
 
 /// The commands that take a solid, `F`, with what they read behind `<`; those that write, to `out`.
-pub const COMMANDS: [&str; 51] = [
+pub const COMMANDS: [&str; 52] = [
     "info F",
     "verify F",
     "dexelize F -o out.lfl --rule outer",
@@ -42,6 +42,7 @@ pub const COMMANDS: [&str; 51] = [
     "heights F --axis x --from below",
     "mesh F -o out.ply --resolve outer",
     "mesh F -o out.ply --resolve inner",
+    "mesh F -o out.ply --resolve outer --method mc",
     "mesh F -o out.off --resolve outer --method smc",
     "mesh F -o out.ply --resolve outer --method shrink",
     "mesh F -o out.ply --resolve outer --method shrink-published",

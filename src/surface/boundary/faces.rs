@@ -6,6 +6,7 @@
 
 use super::curve::refine;
 use super::edges::{Crossing, Edges, NONE, best};
+use super::figures::middle;
 use super::leaves::{Leaf, Leaves, MOST, OpenLeaf, Refused};
 use super::walk::{At, Edge, Face, Visitor};
 use crate::error::Error;
@@ -457,7 +458,15 @@ impl Finder<'_, '_, '_> {
         for k in (begins..ends.len() + begins).step_by(2) {
             let (enters, leaves) = (ends[k % ends.len()], ends[(k + 1) % ends.len()]);
             let surface = if enters.surface == leaves.surface { enters.surface } else { NONE };
+            let before = self.faces.between.len();
             self.add(face, surface, [leaves.vertex, enters.vertex], [leaves.at, enters.at], true)?;
+            // Other faces beside an edge may have an arc between the same two places of it: each gets a vertex of its own.
+            let is_on_side = (0..3).filter(|&k| leaves.at[k] == enters.at[k]).count() >= 2;
+            if is_on_side && self.faces.between.len() == before {
+                let vertex = self.vertex(middle(leaves.at, enters.at))?;
+                memory::push(&mut self.faces.between, vertex)?;
+                self.faces.arcs.last_mut().into_iter().for_each(|arc| arc.count = 1);
+            }
         }
         Ok(())
     }

@@ -1,12 +1,9 @@
-//! Cells in which no vertex is taken out, because the mesh was too far from the boundary there.
+//! Cells in which no vertex is taken out, nor in those beside them, because the mesh was too far from the boundary there.
 
 use crate::error::Error;
 use crate::lattice::{Cell, axes};
 use crate::memory;
 use alloc::vec::Vec;
-
-/// How far beside a cell its vertices may lie by rounding, as a part of the universe's edge.
-const BESIDE: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Cells of any levels, in ascending order.
 #[derive(Default)]
@@ -24,7 +21,8 @@ impl Held {
         Ok(())
     }
 
-    /// Which points (unit coordinates) lie in a cell, or on its sides.
+    /// Which points (unit coordinates) lie in a cell or in one of the 26 of its size around it. (Triangles that reach into the cell from
+    /// there would go on changing.)
     pub(super) fn chosen(&self, points: impl ExactSizeIterator<Item = [f64; 3]>) -> Result<Vec<bool>, Error> {
         let mut levels = [false; 32];
         self.cells.iter().for_each(|cell| levels[usize::from(cell.0 & 31)] = true);
@@ -35,10 +33,9 @@ impl Held {
 
     fn holds(&self, point: [f64; 3], level: u8) -> bool {
         let side = f64::from(1u32 << level);
-        let places = [-BESIDE, BESIDE]
-            .map(|beside| -> [u32; 3] { axes(|k| ((point[k] + beside) * side).max(0.0) as u32) });
-        (0..8usize).any(|k| {
-            let at = axes(|axis| places[k >> axis & 1][axis]);
+        let place = point.map(|c| (c * side).max(0.0) as u32);
+        (0..27u32).any(|k| {
+            let at = axes(|axis| (place[axis] + [k, k / 3, k / 9][axis] % 3).wrapping_sub(1));
             self.cells.binary_search(&(level, at)).is_ok()
         })
     }

@@ -43,7 +43,18 @@ pub(super) struct Leaves {
     pub(super) splits: u64,
     /// By how much the boundary may be elsewhere where surfaces were left out (edges of the universe).
     pub(super) slack: f64,
+    /// Finest cells in which no surface is known.
+    unknown: u32,
 }
+
+/// So many finest cells without a known surface are no points or lines in which surfaces meet, but a boundary that is none of surfaces.
+const UNKNOWN_CELLS: u32 = 1 << 16;
+
+/// A mesh or a host program's function bounds a part of the solid.
+const MIXED: Error = Error::Argument {
+    name: "solid",
+    problem: "is bounded by more than surfaces that are known; a contour or dual contouring takes any solid",
+};
 
 /// Most surfaces of a simple cell.
 pub(super) const MOST: usize = 3;
@@ -98,7 +109,7 @@ impl Leaves {
     ) -> Result<Leaves, Error> {
         let depth = classifier.frame().depth();
         let (nodes, open, root) = (Vec::new(), Vec::new(), Leaf::Empty);
-        let mut leaves = Leaves { nodes, open, root, depth, splits: 0, slack: 0.0 };
+        let mut leaves = Leaves { nodes, open, root, depth, splits: 0, slack: 0.0, unknown: 0 };
         let mut worker = classifier.worker()?;
         let root = worker.root()?;
         leaves.root = leaves.add(Cell::ROOT, root, &mut worker, wanted, job)?;
@@ -161,6 +172,12 @@ impl Leaves {
     }
 
     fn end(&mut self, leaf: OpenLeaf) -> Result<Leaf, Error> {
+        if leaf.open.is_none() && leaf.cell.level == self.depth {
+            self.unknown += 1;
+            if self.unknown > UNKNOWN_CELLS {
+                return Err(MIXED);
+            }
+        }
         memory::push(&mut self.open, leaf)?;
         Ok(Leaf::Open(self.open.len() as u32 - 1))
     }

@@ -45,7 +45,7 @@ use figures::{Figures, UNKNOWN};
 use held::Held;
 use leaves::{Leaves, Refused, Wanted};
 use patches::Patches;
-use proof::prove;
+use proof::{Known, prove};
 pub use regions::{BoundaryFaces, BoundaryRegion};
 
 /// The boundary of a solid: a mesh whose triangles know their surfaces.
@@ -166,6 +166,9 @@ const LARGER: f64 = 1.031_77;
 /// lie at one place. [`BoundaryReport::intersecting_pairs`] tells whether triangles intersect each other; cells are split until none do,
 /// or there are no finer ones.
 ///
+/// Where no triangle is left of a solid that is thinner than a finest cell, [`BoundaryReport::deviation`] is infinite, unless the solid is
+/// proven to be empty: it may be somewhere in the cells.
+///
 /// [`BoundaryReport::deviation`] is proven, by the surfaces and not by how the mesh was made. From the mesh to the boundary: all of a
 /// triangle comes to lie inside by one short step, and outside by another one, so that the boundary lies between. From the
 /// boundary to the mesh: the triangles of a surface, seen along its normal, cover what bounds the solid on it, up to sides of which the
@@ -177,7 +180,7 @@ const LARGER: f64 = 1.031_77;
 /// 12 to 16 is good for parts, and costs little, because only such places are cut that far. What is thinner than such a cell may vanish
 /// there. The lattice is not that of the frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
 ///
-/// Some 50 µs a cell, most of it for the proof; one thread does it all. The result depends on the solid, the frame and the tolerance
+/// Some 50 µs a cell, most of it for the proof, which several threads share. The result depends on the solid, the frame and the tolerance
 /// alone. The memory is that of the cells and of the triangles, some 500 bytes a cell; `control.max_nodes` bounds the splits.
 ///
 /// ```
@@ -192,9 +195,10 @@ const LARGER: f64 = 1.031_77;
 /// ```
 ///
 /// # Errors
-/// [`Error::Argument`] if the solid is not known to end inside of the universe, consists of something else than surfaces, as a mesh
-/// or a host program's function does, or `tolerance` is not between 2^-256 and 2^256; the solid's own; [`Error::Limit`],
-/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if the solid is not known to end inside of the universe, if something else than surfaces bounds it in more than 65,536
+/// finest cells, as in an expression of meshes and half-spaces or with a host program's function (a
+/// [`contour`](crate::surface::contour()) takes any solid), or if `tolerance` is not between 2^-256 and 2^256; the solid's own;
+/// [`Error::Limit`], [`Error::OutOfMemory`], and [`Error::Cancelled`].
 pub fn boundary<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -232,7 +236,7 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
     let whole = tolerance / frame.edge();
     let (bent, tolerance) = (CELLS * whole, CHORDS * whole);
     let (mut refused, mut held) = (Refused::default(), Held::default());
-    let (mut round, mut proofs) = (0, 0);
+    let (mut round, mut proofs, mut known) = (0, 0, Known::default());
     loop {
         // (How many rounds there will be is not known: the first one is taken for all.)
         let parts = if round == 0 { WHOLE / 8 } else { 0 };
@@ -279,7 +283,7 @@ fn evaluate<C: Classifier>(classifier: &C, tolerance: f64, job: &Job<'_>) -> Res
         let (mesh, kept, pairs) = reduction.run(job, 0)?;
         let of_kept = kept.iter().map(|&triangle| patches.surfaces[triangle as usize]);
         let of_triangles = memory::collected(of_kept)?;
-        let proof = prove(&leaves, &figures, &mesh, &of_triangles, lattice, job)?;
+        let proof = prove(&leaves, &figures, (&mesh, &of_triangles), lattice, &mut known, job)?;
         held.add(&proof.beyond)?;
         proofs += 1;
         let beyond = proof.beyond.iter().filter(|cell| cell.level < frame.depth());

@@ -16,7 +16,8 @@ fn proven(solid: &Csg, mesh: &TriangleMesh, of_triangles: &[u32], tolerance: f64
     let refused = Refused::default();
     let wanted = Wanted { figures: &figures, tolerance: CELLS * whole, refused: &refused, parts: 0 };
     let leaves = Leaves::grow(&classifier, &wanted, &job).unwrap();
-    let proof = prove(&leaves, &figures, mesh, of_triangles, (&frame, whole), &job).unwrap();
+    let mut known = Known::default();
+    let proof = prove(&leaves, &figures, (mesh, of_triangles), (&frame, whole), &mut known, &job).unwrap();
     rounded_up(proof.most, &frame)
 }
 

@@ -5,9 +5,15 @@ use crate::lattice::axes;
 use crate::memory;
 use alloc::vec::Vec;
 
+/// Leaves of a polygon what lies in a box. `kept` is a list to work with.
+///
 /// A corner that is no number stays: nothing is lost by what is too large.
-pub(super) fn clip(polygon: &mut Vec<[f64; 3]>, low: [f64; 3], high: [f64; 3]) -> Result<(), Error> {
-    let mut kept = Vec::new();
+pub(super) fn clip(
+    polygon: &mut Vec<[f64; 3]>,
+    kept: &mut Vec<[f64; 3]>,
+    low: [f64; 3],
+    high: [f64; 3],
+) -> Result<(), Error> {
     for axis in 0..3 {
         for (bound, sign) in [(low[axis], 1.0), (high[axis], -1.0)] {
             let away = |p: &[f64; 3]| sign * (p[axis] - bound);
@@ -19,16 +25,16 @@ pub(super) fn clip(polygon: &mut Vec<[f64; 3]>, low: [f64; 3], high: [f64; 3]) -
                 let (p, q) = (polygon[k], polygon[(k + 1) % polygon.len()]);
                 let (a, b) = (away(&p), away(&q));
                 if a >= 0.0 {
-                    memory::push(&mut kept, p)?;
+                    memory::push(kept, p)?;
                 }
                 if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
                     let share = a / (a - b);
                     let mut cut = axes(|k| p[k] + share * (q[k] - p[k]));
                     cut[axis] = bound;
-                    memory::push(&mut kept, cut)?;
+                    memory::push(kept, cut)?;
                 }
             }
-            core::mem::swap(polygon, &mut kept);
+            core::mem::swap(polygon, kept);
         }
     }
     Ok(())

@@ -6,6 +6,9 @@ use crate::lattice::axes;
 /// A part of all terms that is for rounding.
 const ROUNDING: f64 = 1e-14;
 
+/// How far beside a triangle, as a part of its sides, a place counts as one within: rounding must not lose it between two triangles.
+const BESIDE: f64 = 1e-6;
+
 /// A function within a cube: value + gradient · x + xᵀ squares x, where x is measured from the centre in edges of the universe.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Local {
@@ -18,6 +21,8 @@ pub(super) struct Local {
     error: f64,
     /// Whether the terms are the function's own, so that gradients follow from them.
     is_polynomial: bool,
+    /// Whether there are no terms of second order.
+    is_flat: bool,
     /// No gradient in the cube differs from that at the centre by more.
     bend: f64,
 }
@@ -67,6 +72,7 @@ impl Local {
             squares: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]],
             error: f.error + width + ROUNDING * f.size(),
             is_polynomial,
+            is_flat: f.squares == [0.0; 6],
             bend: taylor.bend / reach,
         };
         (local.error.is_finite() && local.steepness() > 0.0).then_some(local)
@@ -81,6 +87,7 @@ impl Local {
             squares: axes(|i| axes(|k| sign * self.squares[i][k] - factor * other.squares[i][k])),
             error: self.error + factor.abs() * other.error,
             is_polynomial: self.is_polynomial && other.is_polynomial,
+            is_flat: self.is_flat && other.is_flat,
             bend: self.bend + factor.abs() * other.bend,
         }
     }
@@ -118,22 +125,28 @@ impl Local {
     /// The least and the greatest value on the hull of points in a plane that lie in order around it.
     pub(super) fn over(&self, corners: &[[f64; 3]]) -> [f64; 2] {
         let mut range = Range::NONE;
-        match *corners {
-            [a] => range.add(self.at(a)),
-            [a, b] => self.along_side(a, b, &mut range),
-            _ => {
-                for k in 1..corners.len().saturating_sub(1) {
-                    self.over_triangle([corners[0], corners[k], corners[k + 1]], &mut range);
-                }
+        if self.is_flat {
+            corners
+                .iter()
+                .for_each(|&corner| range.add(self.value + dot(self.gradient, minus(corner, self.centre))));
+        } else if let Some(&last) = corners.last() {
+            let mut from = (last, self.at(last));
+            for &corner in corners {
+                let to = (corner, self.at(corner));
+                range.add(to.1);
+                self.along_side(from, to, &mut range);
+                from = to;
+            }
+            for k in 1..corners.len().saturating_sub(1) {
+                self.inside_triangle([corners[0], corners[k], corners[k + 1]], &mut range);
             }
         }
         [range.0[0] - self.error, range.0[1] + self.error]
     }
 
-    fn along_side(&self, a: [f64; 3], b: [f64; 3], range: &mut Range) {
-        let (first, last, half) = (self.at(a), self.at(b), self.at(middle(a, b)));
-        range.add(first);
-        range.add(last);
+    /// Adds what lies between the ends of a side, of which the values are known.
+    fn along_side(&self, (a, first): ([f64; 3], f64), (b, last): ([f64; 3], f64), range: &mut Range) {
+        let half = self.at(middle(a, b));
         // The parabola through the three.
         let (slope, bent) = (4.0 * half - 3.0 * first - last, 2.0 * (first + last - 2.0 * half));
         let place = -slope / (2.0 * bent);
@@ -142,17 +155,14 @@ impl Local {
         }
     }
 
-    fn over_triangle(&self, [a, b, c]: [[f64; 3]; 3], range: &mut Range) {
-        for [p, q] in [[a, b], [b, c], [c, a]] {
-            self.along_side(p, q, range);
-        }
-        // Where the function is level within the triangle.
+    /// Adds the value where the function is level within a triangle or a little beside it.
+    fn inside_triangle(&self, [a, b, c]: [[f64; 3]; 3], range: &mut Range) {
         let (u, v, from) = (minus(b, a), minus(c, a), minus(a, self.centre));
         let slope = |d: [f64; 3]| dot(self.gradient, d) + 2.0 * self.second(from, d);
         let (uu, uv, vv) = (2.0 * self.second(u, u), 2.0 * self.second(u, v), 2.0 * self.second(v, v));
         let (su, sv, determinant) = (slope(u), slope(v), uu * vv - uv * uv);
         let (x, y) = ((uv * sv - vv * su) / determinant, (uv * su - uu * sv) / determinant);
-        if x > 0.0 && y > 0.0 && x + y < 1.0 {
+        if x > -BESIDE && y > -BESIDE && x + y < 1.0 + BESIDE {
             range.add(self.at(a) + 0.5 * (x * su + y * sv));
         }
     }

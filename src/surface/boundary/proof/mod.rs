@@ -2,9 +2,10 @@
 //! on how the mesh was made.
 //!
 //! From the bottom up: `local` (functions about a place), `clip`, `truth` (what the leaves say), `witness` (from the mesh to the
-//! boundary), `sheets` (from the boundary to the mesh).
+//! boundary), `sheets` (from the boundary to the mesh), `known` (what holds for several meshes).
 
 mod clip;
+mod known;
 mod local;
 mod sheets;
 mod truth;
@@ -18,17 +19,32 @@ use crate::error::Error;
 use crate::lattice::{Cell, Frame, axes};
 use crate::memory;
 use crate::mesh::TriangleMesh;
+use crate::parallel;
 use alloc::vec::Vec;
+pub(super) use known::Known;
 use local::Local;
-use sheets::{Sheet, Subject};
+use sheets::{Lists, Sheet, Subject};
 use truth::{Around, Truth, cube};
 use witness::Witnesses;
 
-/// Parts of a cell that are looked at where nothing but their extent is known.
-const PARTS: u32 = 64;
+/// Parts of cells that are looked at where nothing but their extent is known: of all together, and of one at most.
+const PARTS: usize = 1 << 18;
+const PARTS_OF_CELL: usize = 64;
 
-/// Boxes beyond those that any cell may take, and 64 for each cell.
+/// What each triangle may spend at first on pieces that are halved and on sizes of cubes around them, and each surface in a cell on boxes.
+const PIECES: u32 = 16;
+const BOXES: u32 = 64;
+
+/// What those that this is not enough for share with each other: so much, and as much again as all may spend at first; and what one of
+/// them gets at most.
 const MORE: u32 = 1 << 15;
+const MOST: u32 = 1024;
+
+/// Triangles, or cells, that are looked at by one task.
+const GROUP: usize = 32;
+
+/// So many triangles and cells are worth starting threads.
+const WORTH: usize = 256;
 
 /// What is proven.
 pub(super) struct Proof {
@@ -36,83 +52,243 @@ pub(super) struct Proof {
     pub(super) most: f64,
     /// The cells in which it is more than the tolerance.
     pub(super) beyond: Vec<Cell>,
+    tolerance: f64,
 }
 
-/// Proves how far a mesh is from the boundary of the solid that the leaves know. `vertices` and `triangles` are those of the mesh, in unit
-/// coordinates.
+impl Proof {
+    fn add(&mut self, cell: Cell, most: f64) -> Result<(), Error> {
+        self.most = self.most.max(most);
+        if most.is_nan() || most > self.tolerance {
+            memory::push(&mut self.beyond, cell)?;
+        }
+        Ok(())
+    }
+}
+
+/// Proves how far a mesh is from the boundary of the solid that the leaves know. `surfaces` are those of the triangles, and `known` is what
+/// proofs for other meshes and leaves of the same solid with the same tolerance found out.
+///
+/// The result does not depend on the number of threads.
 pub(super) fn prove(
     leaves: &Leaves,
     figures: &Figures,
-    mesh: &TriangleMesh,
-    surfaces: &[u32],
+    (mesh, surfaces): (&TriangleMesh, &[u32]),
     (frame, tolerance): (&Frame, f64),
+    known: &mut Known,
     job: &Job<'_>,
 ) -> Result<Proof, Error> {
-    let truth = Truth { leaves, figures };
     let origin = frame.origin();
     let edge = frame.edge();
     let vertices = memory::collected(
         mesh.vertices().iter().map(|v| -> [f64; 3] { axes(|k| (v[k] - origin[k]) / edge) }),
     )?;
     let triangles = mesh.triangles();
-    let mut proof = Proof { most: 0.0, beyond: Vec::new() };
-    let mut witnesses = Witnesses::new(&truth, tolerance);
-    // A corner of each triangle that is proven to be near, and how near.
-    let mut near = Vec::new();
-    let mut lost = Vec::new();
-    for (triangle, &surface) in triangles.iter().zip(surfaces) {
-        let corners = triangle.map(|v| vertices[v as usize]);
-        let mut all: f64 = 0.0;
-        witnesses.triangle(corners, surface, &mut |cell, most| {
-            all = all.max(most);
-            if most.is_finite() {
-                proof.add(cell, most, tolerance)
-            } else {
-                memory::push(&mut lost, (cell, corners))
-            }
-        })?;
-        if all.is_finite() {
-            memory::push(&mut near, (corners[0], all))?;
-        }
-    }
-    // The others are as near as the way to one of these.
-    for (cell, [a, b, c]) in lost {
-        let long = length(minus(b, a)).max(length(minus(c, a)));
-        let ways = near.iter().map(|&(corner, most)| length(minus(corner, a)) + long + most);
-        proof.add(cell, ways.fold(f64::INFINITY, f64::min), tolerance)?;
-    }
-    job.check()?;
-    let Some(mates) = mates(triangles)? else {
+    known.turn_to(&vertices, triangles, surfaces)?;
+    let tree = mesh.triangle_tree(job.control())?;
+    let is_closed = mates(triangles)?;
+    let mut proof = Proof { most: 0.0, beyond: Vec::new(), tolerance };
+    let Some(mates) = is_closed else {
         proof.most = f64::INFINITY;
         return Ok(proof);
     };
-    let tree = mesh.triangle_tree(job.control())?;
     let subject = Subject { vertices: &vertices, triangles, surfaces, mates, tree, origin, edge };
-    let mut more = MORE + 64 * leaves.open.len().min(1 << 20) as u32;
-    for leaf in &leaves.open {
-        let mut most: Option<f64> = Some(0.0);
-        if let Some(open) = leaf.open {
-            for place in 0..open.indices().len() {
-                for is_above in [false, true] {
-                    let which = (place, is_above);
-                    let own =
-                        Sheet::new(&subject, figures, &open, which, leaf.cell, tolerance).away(&mut more)?;
-                    most = most.zip(own).map(|(a, b)| a.max(b));
+    let truth = Truth { leaves, figures };
+    job.control().run(triangles.len() + leaves.open.len() >= WORTH, |parallel| {
+        let prover = Prover { truth: &truth, subject: &subject, tolerance, parallel, job };
+        prover.from_mesh(known, &mut proof)?;
+        prover.to_mesh(known, &mut proof)?;
+        contacts(&truth, &subject, (Cell::ROOT, leaves.root), &mut Vec::new(), &mut |cell, most| {
+            proof.add(cell, most)
+        })?;
+        Ok(proof)
+    })
+}
+
+/// What looks at all triangles and cells. Those that little effort proves near are done first; the others share a budget.
+struct Prover<'p> {
+    truth: &'p Truth<'p>,
+    subject: &'p Subject<'p>,
+    tolerance: f64,
+    parallel: bool,
+    job: &'p Job<'p>,
+}
+
+/// What is found out about a triangle.
+struct Triangle {
+    number: u32,
+    most: f64,
+    /// The cells in which it is further from the boundary than the tolerance, with how far.
+    beyond: Vec<(Cell, f64)>,
+    /// Whether more might be found out.
+    is_spent: bool,
+}
+
+/// What is found out about the boundary in a cell.
+struct Shown {
+    leaf: u32,
+    /// `None` if nothing is found out.
+    most: Option<f64>,
+    /// The triangles that it is near.
+    by: Vec<u32>,
+}
+
+impl Prover<'_> {
+    /// How far the triangles are from the boundary.
+    fn from_mesh(&self, known: &mut Known, proof: &mut Proof) -> Result<(), Error> {
+        let count = self.subject.triangles.len() as u32;
+        let mut left = Vec::new();
+        for number in 0..count {
+            match known.of_triangle(number) {
+                Some(most) => proof.most = proof.most.max(most),
+                None => memory::push(&mut left, number)?,
+            }
+        }
+        let mut found = self.triangles(&left, PIECES)?;
+        left.clear();
+        for triangle in found.extract_if(.., |triangle| triangle.is_spent && !triangle.beyond.is_empty()) {
+            memory::push(&mut left, triangle.number)?;
+        }
+        let again = self.triangles(&left, shared(count, PIECES, left.len()))?;
+        found.try_reserve(again.len())?;
+        found.extend(again);
+        let near = || found.iter().filter(|triangle| triangle.most.is_finite());
+        for triangle in near() {
+            if triangle.beyond.is_empty() {
+                known.keep_triangle(triangle.number, triangle.most);
+            }
+            proof.most = proof.most.max(triangle.most);
+            triangle.beyond.iter().try_for_each(|&(cell, most)| proof.add(cell, most))?;
+        }
+        // The others are as near as the way to one of which more is known.
+        for triangle in found.iter().filter(|triangle| !triangle.most.is_finite()) {
+            let [a, b, c] = self.subject.corners(triangle.number);
+            let long = length(minus(b, a)).max(length(minus(c, a)));
+            let some = (0..count).step_by(1 + count as usize / 256);
+            let some = some.filter_map(|number| Some((number, known.of_triangle(number)?)));
+            let others = near().take(256).map(|triangle| (triangle.number, triangle.most));
+            let ways = some.chain(others).map(|(number, most)| {
+                let [corner, ..] = self.subject.corners(number);
+                length(minus(corner, a)) + long + most
+            });
+            let most = ways.fold(f64::INFINITY, f64::min);
+            triangle.beyond.iter().try_for_each(|&(cell, own)| proof.add(cell, own.min(most)))?;
+        }
+        Ok(())
+    }
+
+    /// Looks at triangles, each of which may spend `budget`.
+    fn triangles(&self, numbers: &[u32], budget: u32) -> Result<Vec<Triangle>, Error> {
+        let start = || Witnesses::new(self.truth, self.tolerance);
+        let groups = parallel::each_with(self.parallel, numbers.chunks(GROUP), start, |witnesses, group| {
+            self.job.check()?;
+            let mut found = memory::with_capacity(group.len())?;
+            for &number in group {
+                let mut triangle = Triangle { number, most: 0.0, beyond: Vec::new(), is_spent: false };
+                let (corners, surface) =
+                    (self.subject.corners(number), self.subject.surfaces[number as usize]);
+                triangle.is_spent = witnesses.triangle(corners, surface, budget, &mut |cell, most| {
+                    triangle.most = triangle.most.max(most);
+                    match most <= self.tolerance {
+                        true => Ok(()),
+                        false => memory::push(&mut triangle.beyond, (cell, most)),
+                    }
+                })?;
+                found.push(triangle);
+            }
+            Ok(found)
+        })?;
+        joined(groups)
+    }
+
+    /// How far the boundary in open cells is from the triangles.
+    fn to_mesh(&self, known: &mut Known, proof: &mut Proof) -> Result<(), Error> {
+        let leaves = &self.truth.leaves.open;
+        let mut left = Vec::new();
+        for (number, leaf) in (0u32..).zip(leaves) {
+            match known.of_cell(leaf.cell) {
+                Some(most) => proof.most = proof.most.max(most),
+                None => memory::push(&mut left, number)?,
+            }
+        }
+        let mut first = self.cells(&left, BOXES)?;
+        left.clear();
+        for shown in first.extract_if(.., |shown| shown.most.is_none()) {
+            memory::push(&mut left, shown.leaf)?;
+        }
+        let boxes = BOXES + shared(leaves.len() as u32, BOXES, left.len());
+        let parts = PARTS_OF_CELL.min(PARTS / left.len().max(1)) as u32;
+        for Shown { leaf, most, by } in first.into_iter().chain(self.cells(&left, boxes)?) {
+            let leaf = &leaves[leaf as usize];
+            match most {
+                Some(most) => {
+                    proof.add(leaf.cell, most)?;
+                    if most <= self.tolerance {
+                        known.keep_cell(leaf.cell, most, by)?;
+                    }
+                }
+                None => {
+                    let around = cube(leaf.cell);
+                    let (subject, figures) = (self.subject, self.truth.figures);
+                    proof.add(
+                        leaf.cell,
+                        far(subject, figures, leaf, &around, self.tolerance, &mut { parts })?,
+                    )?;
                 }
             }
-        } else {
-            most = None;
         }
-        let most = match most {
-            Some(most) => most,
-            None => far(&subject, figures, leaf, &cube(leaf.cell), tolerance, &mut { PARTS })?,
-        };
-        proof.add(leaf.cell, most, tolerance)?;
+        Ok(())
     }
-    contacts(&truth, &subject, (Cell::ROOT, leaves.root), &mut Vec::new(), &mut |cell, most| {
-        proof.add(cell, most, tolerance)
-    })?;
-    Ok(proof)
+
+    /// Looks at cells, in which each surface may take some boxes.
+    fn cells(&self, numbers: &[u32], boxes: u32) -> Result<Vec<Shown>, Error> {
+        let groups =
+            parallel::each_with(self.parallel, numbers.chunks(GROUP), Lists::default, |lists, group| {
+                self.job.check()?;
+                let mut found = memory::with_capacity(group.len())?;
+                for &leaf in group {
+                    lists.used.clear();
+                    let most = self.cell(&self.truth.leaves.open[leaf as usize], boxes, lists)?;
+                    let mut by = Vec::new();
+                    if most.is_some() {
+                        lists.used.sort_unstable();
+                        lists.used.dedup();
+                        by = memory::copied(&lists.used)?;
+                    }
+                    found.push(Shown { leaf, most, by });
+                }
+                Ok(found)
+            })?;
+        joined(groups)
+    }
+
+    /// How far the boundary in a cell is from the mesh, surface by surface; `None` if that is not found out.
+    fn cell(&self, leaf: &OpenLeaf, boxes: u32, lists: &mut Lists) -> Result<Option<f64>, Error> {
+        let Some(open) = leaf.open else { return Ok(None) };
+        let mut most: f64 = 0.0;
+        for place in 0..open.indices().len() {
+            for is_above in [false, true] {
+                let (which, part) = ((place, is_above), (leaf.cell, self.tolerance));
+                let mut sheet = Sheet::new(self.subject, self.truth.figures, &open, which, part, lists);
+                match sheet.away(boxes)? {
+                    Some(own) => most = most.max(own),
+                    None => return Ok(None),
+                }
+            }
+        }
+        Ok(Some(most))
+    }
+}
+
+/// What each of some gets of what all did not need.
+fn shared(all: u32, each: u32, some: usize) -> u32 {
+    let whole = MORE.saturating_add(each.saturating_mul(all));
+    (whole / some.max(1) as u32).min(MOST)
+}
+
+fn joined<T>(groups: Vec<Vec<T>>) -> Result<Vec<T>, Error> {
+    let mut all = memory::with_capacity(groups.iter().map(Vec::len).sum())?;
+    all.extend(groups.into_iter().flatten());
+    Ok(all)
 }
 
 /// Calls `told` for the cells that are full next to an empty one, where the boundary lies in no cell between, with how far it is from the
@@ -151,20 +327,10 @@ fn contacts(
                 low: axes(|k| if k == axis { face } else { own.low[k].max(other.low[k]) }),
                 high: axes(|k| if k == axis { face } else { own.high[k].min(other.high[k]) }),
             };
-            told(cell, subject.away(&shared))?;
+            told(cell, subject.away(&shared).0)?;
         }
     }
     Ok(())
-}
-
-impl Proof {
-    fn add(&mut self, cell: Cell, most: f64, tolerance: f64) -> Result<(), Error> {
-        self.most = self.most.max(most);
-        if most.is_nan() || most > tolerance {
-            memory::push(&mut self.beyond, cell)?;
-        }
-        Ok(())
-    }
 }
 
 /// How far the boundary is from the mesh in a part of a cell, by the part's extent.
@@ -191,7 +357,7 @@ fn far(
             return Ok(0.0);
         }
     }
-    let most = subject.away(part);
+    let (most, _) = subject.away(part);
     if most <= tolerance || *parts < 8 || length(minus(part.high, centre)) <= 0.5 * tolerance {
         return Ok(most);
     }

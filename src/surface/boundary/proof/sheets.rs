@@ -17,9 +17,6 @@ use crate::mesh::TriangleTree;
 use crate::solid::OpenSurfaces;
 use alloc::vec::Vec;
 
-/// Boxes that a surface may take in any cell, and in one at most.
-const BOXES: [u32; 2] = [64, 1024];
-
 /// Places in the plane are off by less.
 const ROUNDING: f64 = 1e-14;
 
@@ -47,10 +44,9 @@ impl Subject<'_> {
         let model = |p: [f64; 3]| axes(|k| self.origin[k] + p[k] * self.edge);
         let bounds = Bounds { min: model(around.low), max: model(around.high) };
         let mut failed = None;
-        self.tree.in_box(&bounds, &mut |triangle| {
-            if self.surfaces[triangle as usize] == surface
-                && let Err(error) = memory::push(found, triangle)
-            {
+        let is_own = |triangle: u32| self.surfaces[triangle as usize] == surface;
+        self.tree.in_box_of(&bounds, is_own, &mut |triangle| {
+            if let Err(error) = memory::push(found, triangle) {
                 failed = Some(error);
             }
         });
@@ -58,12 +54,16 @@ impl Subject<'_> {
         failed.map_or(Ok(()), Err)
     }
 
-    /// More than the distance of the point that is furthest from the mesh in a box; infinite without a mesh.
-    pub(super) fn away(&self, around: &Around) -> f64 {
+    /// More than the distance of the point that is furthest from the mesh in a box, with the triangle that is as near; infinite without a
+    /// mesh.
+    pub(super) fn away(&self, around: &Around) -> (f64, Option<u32>) {
         let centre = around.centre();
         let point = axes(|k| self.origin[k] + centre[k] * self.edge);
-        let Some((_, away)) = self.tree.nearest_of(&point, |_| true) else { return f64::INFINITY };
-        away.upper / self.edge * (1.0 + ROUNDING) + length(minus(around.high, centre)) + ROUNDING
+        let Some((nearest, away)) = self.tree.nearest_of(&point, |_| true) else {
+            return (f64::INFINITY, None);
+        };
+        let most = away.upper / self.edge * (1.0 + ROUNDING) + length(minus(around.high, centre)) + ROUNDING;
+        (most, Some(nearest.triangle))
     }
 }
 
@@ -86,9 +86,29 @@ pub(super) struct Sheet<'s> {
     is_above: bool,
     pub(super) cell: Cell,
     pub(super) tolerance: f64,
+    lists: &'s mut Lists,
+    boxes: u32,
+}
+
+/// Lists to work with.
+#[derive(Default)]
+pub(super) struct Lists {
     /// Triangles of the surface next to a box.
     found: Vec<u32>,
-    boxes: u32,
+    /// The same as they are seen along the normal.
+    seen: Vec<Seen>,
+    /// All triangles that were looked at.
+    pub(super) used: Vec<u32>,
+    part: Vec<[f64; 3]>,
+    cut: Vec<[f64; 3]>,
+}
+
+/// A triangle seen along the normal.
+struct Seen {
+    number: u32,
+    places: [[f64; 3]; 3],
+    /// Positive if it faces the way that the boundary does.
+    area: f64,
 }
 
 /// Another surface beside which the solid begins on this one.
@@ -108,10 +128,10 @@ impl<'s> Sheet<'s> {
         figures: &'s Figures,
         open: &'s OpenSurfaces,
         (place, is_above): (usize, bool),
-        cell: Cell,
-        tolerance: f64,
+        (cell, tolerance): (Cell, f64),
+        lists: &'s mut Lists,
     ) -> Sheet<'s> {
-        Sheet { subject, figures, open, place, is_above, cell, tolerance, found: Vec::new(), boxes: 0 }
+        Sheet { subject, figures, open, place, is_above, cell, tolerance, lists, boxes: 0 }
     }
 
     fn surface(&self) -> u32 {
@@ -124,9 +144,8 @@ impl<'s> Sheet<'s> {
         [self.open.inside(signs | bit), self.open.inside(signs & !bit)] == [self.is_above, !self.is_above]
     }
 
-    /// How far the boundary on the surface is from the mesh at most; `None` if that is not found out. What boxes are taken beyond those of
-    /// any cell is taken off `more`.
-    pub(super) fn away(&mut self, more: &mut u32) -> Result<Option<f64>, Error> {
+    /// How far the boundary on the surface is from the mesh at most; `None` if so many boxes do not tell that.
+    pub(super) fn away(&mut self, boxes: u32) -> Result<Option<f64>, Error> {
         let all = (1u8 << self.open.indices().len()) - 1;
         if (0..=all).all(|signs| !self.is_active(signs)) {
             return Ok(Some(0.0));
@@ -139,11 +158,8 @@ impl<'s> Sheet<'s> {
         if low > 0.0 || high < 0.0 {
             return Ok(Some(0.0));
         }
-        let most = BOXES[1].min(BOXES[0] + *more);
-        self.boxes = most;
-        let found = self.box_of(&whole)?;
-        *more -= (most - self.boxes).saturating_sub(BOXES[0]);
-        Ok(found)
+        self.boxes = boxes;
+        self.box_of(&whole)
     }
 
     /// The part of the surface in a box, in which another box is laid along it.
@@ -187,7 +203,10 @@ impl<'s> Sheet<'s> {
             outcome => {
                 if wide <= 0.125 * self.tolerance {
                     // Nothing but its extent is known of the box.
-                    let most = self.subject.away(&around(&prism));
+                    let (most, nearest) = self.subject.away(&around(&prism));
+                    if let Some(triangle) = nearest {
+                        memory::push(&mut self.lists.used, triangle)?;
+                    }
                     return Ok(Some(if let Outcome::Within(known) = outcome {
                         known.min(most)
                     } else {
@@ -373,15 +392,26 @@ impl<'s> Sheet<'s> {
         kept: &[Kept],
         signs: u8,
     ) -> Result<Outcome, Error> {
-        let mut found = core::mem::take(&mut self.found);
         let near = around(long).grown(2.0 * self.tolerance);
-        self.subject.meeting(&near, self.surface(), &mut found)?;
-        self.found = found;
+        self.subject.meeting(&near, self.surface(), &mut self.lists.found)?;
+        let mut seen = core::mem::take(&mut self.lists.seen);
+        seen.clear();
+        seen.try_reserve(self.lists.found.len())?;
+        seen.extend(self.lists.found.iter().map(|&number| {
+            let places = self.subject.corners(number).map(|p| long.place(p));
+            Seen { number, places, area: self.area(&places) }
+        }));
         let direction = axes(|k| long.axes[0][k] * up[0] + long.axes[1][k] * up[1]);
-        let Some(high) = self.above(view, long)? else { return Ok(Outcome::Cut(direction)) };
-        let Some(most) = self.beside(view, long, up, kept, signs)? else {
-            return Ok(Outcome::Cut(direction));
+        let high = self.above(view, long, &seen)?;
+        let most = match high {
+            Some(_) => self.beside(view, long, up, (kept, signs), &seen)?,
+            None => None,
         };
+        self.lists.seen = seen;
+        let (Some(high), Some(most)) = (high, most) else { return Ok(Outcome::Cut(direction)) };
+        let Lists { found, used, .. } = &mut *self.lists;
+        used.try_reserve(found.len())?;
+        used.extend(&*found);
         Ok(Outcome::Within(high.max(most) + ROUNDING))
     }
 
@@ -399,20 +429,18 @@ impl<'s> Sheet<'s> {
     }
 
     /// How far the surface is from the triangles above the box at most; `None` if they do not cover the place that lines lead to.
-    fn above(&self, view: &View, long: &Prism) -> Result<Option<f64>, Error> {
+    fn above(&mut self, view: &View, long: &Prism, seen: &[Seen]) -> Result<Option<f64>, Error> {
         let [whole, first, _] = view.boxes;
         let (mut most, mut is_covered) = (0.0f64, false);
-        let mut part = Vec::new();
-        for &triangle in &self.found {
-            let places = self.subject.corners(triangle).map(|p| long.place(p));
-            let area = self.area(&places);
-            if area < 0.0 {
+        let Lists { part, cut, .. } = &mut *self.lists;
+        for Seen { places, area, .. } in seen {
+            if *area < 0.0 {
                 continue;
             }
             part.clear();
             part.try_reserve(3)?;
             part.extend(places);
-            clip(&mut part, corner(whole, -1.0), corner(whole, 1.0))?;
+            clip(part, cut, corner(whole, -1.0), corner(whole, 1.0))?;
             if part.len() < 3 {
                 continue;
             }
@@ -420,10 +448,10 @@ impl<'s> Sheet<'s> {
             if part.iter().any(|place| place[2].abs() > view.high) {
                 return Ok(None);
             }
-            is_covered |= area > 0.0 && holds(places.map(|[u, v, _]| [u, v]), view.covered);
-            clip(&mut part, corner(first, -1.0), corner(first, 1.0))?;
+            is_covered |= *area > 0.0 && holds(places.map(|[u, v, _]| [u, v]), view.covered);
+            clip(part, cut, corner(first, -1.0), corner(first, 1.0))?;
             if part.len() >= 3 {
-                let Some(high) = view.height_over(long, &part)? else { return Ok(None) };
+                let Some(high) = view.height_over(long, part, cut)? else { return Ok(None) };
                 most = most.max(high);
             }
         }
@@ -433,29 +461,31 @@ impl<'s> Sheet<'s> {
     /// How far the surface goes on at most beside the sides at which its triangles end; `None` if lines may leave the triangles there,
     /// or nothing is known. `up` is the direction of lines.
     fn beside(
-        &self,
+        &mut self,
         view: &View,
         long: &Prism,
         up: [f64; 2],
-        kept: &[Kept],
-        signs: u8,
+        (kept, signs): (&[Kept], u8),
+        seen: &[Seen],
     ) -> Result<Option<f64>, Error> {
         let [whole, _, last] = view.boxes;
         let (subject, surface) = (self.subject, self.surface());
         let mut most = 0.0f64;
-        for &triangle in &self.found {
-            let places = subject.corners(triangle).map(|p| long.place(p));
-            if self.area(&places) < 0.0 {
+        for Seen { number, places, area } in seen {
+            if *area < 0.0 {
                 continue;
             }
-            for (k, &mate) in subject.mates[triangle as usize].iter().enumerate() {
+            for (k, &mate) in subject.mates[*number as usize].iter().enumerate() {
                 let ends = [places[k], places[(k + 1) % 3]];
                 let Some(side) = within(ends, whole) else { continue };
-                let is_same = subject.surfaces[mate as usize] == surface
-                    && self.area(&subject.corners(mate).map(|p| long.place(p))) >= 0.0;
-                if is_same && self.found.binary_search(&mate).is_ok() {
-                    continue;
-                }
+                let is_same = match seen.binary_search_by_key(&mate, |seen| seen.number) {
+                    Ok(place) if seen[place].area >= 0.0 => continue,
+                    Ok(_) => false,
+                    Err(_) => {
+                        subject.surfaces[mate as usize] == surface
+                            && self.area(&subject.corners(mate).map(|p| long.place(p))) >= 0.0
+                    }
+                };
                 // Without limits, what lies outside of the cell does not matter: all that lies inside is convex, and is covered at one
                 // place.
                 if kept.is_empty() && !self.is_in_cell(long, &side)? {
@@ -470,7 +500,7 @@ impl<'s> Sheet<'s> {
                 if enters <= ROUNDING * way[0].hypot(way[1]) {
                     return Ok(None);
                 }
-                let Some(high) = view.height_over(long, &side)? else { return Ok(None) };
+                let Some(high) = view.height_over(long, &side, &mut self.lists.cut)? else { return Ok(None) };
                 let ahead = self.ahead(view, long, &side, high, kept, signs);
                 most = most.max(ahead.hypot(high + view.steep * ahead));
             }
@@ -479,24 +509,28 @@ impl<'s> Sheet<'s> {
     }
 
     /// The part of the plane through the middle of a box above or below which points of the box may lie in the cell: a convex polygon.
-    fn in_cell(&self, prism: &Prism) -> Result<Vec<[f64; 3]>, Error> {
+    fn in_cell(&mut self, prism: &Prism) -> Result<&[[f64; 3]], Error> {
         let corner = |u: f64, v: f64| prism.point([u * prism.half[0], v * prism.half[1], 0.0]);
-        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-        let mut part = memory::copied(&corners)?;
-        self.clip_to_cell(&mut part, prism)?;
+        self.clip_to_cell(
+            &[corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+            prism,
+        )
+    }
+
+    fn clip_to_cell(&mut self, polygon: &[[f64; 3]], prism: &Prism) -> Result<&[[f64; 3]], Error> {
+        let cube = cube(self.cell).grown(prism.half[2] + ROUNDING);
+        let Lists { part, cut, .. } = &mut *self.lists;
+        part.clear();
+        part.try_reserve(polygon.len())?;
+        part.extend(polygon);
+        clip(part, cut, cube.low, cube.high)?;
         Ok(part)
     }
 
-    fn clip_to_cell(&self, part: &mut Vec<[f64; 3]>, prism: &Prism) -> Result<(), Error> {
-        let cube = cube(self.cell).grown(prism.half[2] + ROUNDING);
-        clip(part, cube.low, cube.high)
-    }
-
     /// Whether points of a box above or below a side may lie in the cell.
-    fn is_in_cell(&self, long: &Prism, side: &[[f64; 3]; 2]) -> Result<bool, Error> {
-        let mut part = memory::copied(&side.map(|[u, v, _]| long.point([u, v, 0.0])))?;
-        self.clip_to_cell(&mut part, long)?;
-        Ok(!part.is_empty())
+    fn is_in_cell(&mut self, long: &Prism, side: &[[f64; 3]; 2]) -> Result<bool, Error> {
+        let side = side.map(|[u, v, _]| long.point([u, v, 0.0]));
+        Ok(!self.clip_to_cell(&side, long)?.is_empty())
     }
 
     /// How far before a side the boundary may begin, of whose limits none is further than on the side.
@@ -596,13 +630,20 @@ impl View {
         [u, v]
     }
 
-    /// How far the surface is from a polygon along the normal at most; `None` if that is not known.
-    fn height_over(&self, prism: &Prism, places: &[[f64; 3]]) -> Result<Option<f64>, Error> {
-        let points = memory::collected(places.iter().map(|&place| prism.point(place)))?;
+    /// How far the surface is from a polygon along the normal at most; `None` if that is not known. `points` is a list to work with.
+    fn height_over(
+        &self,
+        prism: &Prism,
+        places: &[[f64; 3]],
+        points: &mut Vec<[f64; 3]>,
+    ) -> Result<Option<f64>, Error> {
+        points.clear();
+        points.try_reserve(places.len())?;
+        points.extend(places.iter().map(|&place| prism.point(place)));
         if !points.iter().all(|&p| length(minus(p, prism.centre)) <= self.reach) {
             return Ok(None);
         }
-        let high = magnitude(self.local.over(&points)) / self.slope;
+        let high = magnitude(self.local.over(points)) / self.slope;
         // (The line from the polygon to the surface must lie where the slope is known.)
         let reaches = |place: &[f64; 3]| place[2].abs() <= self.high;
         Ok(places.iter().all(reaches).then_some(high))

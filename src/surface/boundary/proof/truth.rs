@@ -37,6 +37,15 @@ impl Around {
         (0..3).fold(0.0, |most: f64, k| most.max(0.5 * (self.high[k] - self.low[k])))
     }
 
+    fn holds(&self, other: &Around) -> bool {
+        (0..3).all(|k| self.low[k] <= other.low[k] && other.high[k] <= self.high[k])
+    }
+
+    /// Whether all of it lies in the universe.
+    fn is_in_universe(&self) -> bool {
+        Around { low: [0.0; 3], high: [1.0; 3] }.holds(self)
+    }
+
     pub(super) fn meets(&self, other: &Around) -> bool {
         (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
     }
@@ -59,7 +68,7 @@ impl Truth<'_> {
     /// The leaves that meet a box: what each is, with its cell. What lies around the universe is one of them.
     pub(super) fn meeting(&self, around: &Around, found: &mut Vec<(Cell, Leaf)>) -> Result<(), Error> {
         found.clear();
-        if (0..3).any(|k| around.low[k] < 0.0 || around.high[k] > 1.0) {
+        if !around.is_in_universe() {
             memory::push(found, (Cell::ROOT, Leaf::Outside))?;
         }
         self.descend((Cell::ROOT, self.leaves.root), &|cube| cube.meets(around), found)
@@ -73,7 +82,7 @@ impl Truth<'_> {
     ) -> Result<(), Error> {
         let around = Around::of(triangle);
         found.clear();
-        if (0..3).any(|k| around.low[k] < 0.0 || around.high[k] > 1.0) {
+        if !around.is_in_universe() {
             memory::push(found, (Cell::ROOT, Leaf::Outside))?;
         }
         let [a, b, c] = *triangle;
@@ -107,23 +116,63 @@ impl Truth<'_> {
     pub(super) fn open(&self, number: u32) -> &OpenLeaf {
         &self.leaves.open[number as usize]
     }
+}
 
-    /// Whether all points of a polygon lie inside, or all outside; `None` if neither is known.
-    pub(super) fn of(
-        &self,
-        polygon: &[[f64; 3]],
-        leaves: &mut Vec<(Cell, Leaf)>,
-    ) -> Result<Option<bool>, Error> {
+/// The solid near a place: the leaves there, and the functions of their surfaces, which many polygons are compared with.
+#[derive(Default)]
+pub(super) struct Near {
+    around: Option<Around>,
+    leaves: Vec<(Cell, Leaf)>,
+    functions: Vec<(u32, Option<Local>)>,
+}
+
+impl Near {
+    /// Moves to another place.
+    pub(super) fn place(&mut self, truth: &Truth<'_>, around: Around) -> Result<(), Error> {
+        self.functions.clear();
+        self.around = Some(around);
+        truth.meeting(&around, &mut self.leaves)
+    }
+
+    /// The leaves there: what each is, with its cell.
+    pub(super) fn leaves(&self) -> &[(Cell, Leaf)] {
+        &self.leaves
+    }
+
+    /// What is known of a surface's function there; `None` if that is nothing.
+    pub(super) fn function(&mut self, figures: &Figures, surface: u32) -> Result<Option<&Local>, Error> {
+        let place = match self.functions.iter().position(|(known, _)| *known == surface) {
+            Some(place) => place,
+            None => {
+                let around = self.around.as_ref();
+                let local = around
+                    .and_then(|near| Local::new(figures, surface, near.centre(), near.half().max(LEAST)));
+                memory::push(&mut self.functions, (surface, local))?;
+                self.functions.len() - 1
+            }
+        };
+        Ok(self.functions[place].1.as_ref())
+    }
+
+    /// Whether all points of a polygon that lies there are inside of the solid, or all outside; `None` if neither is known.
+    pub(super) fn of(&mut self, truth: &Truth<'_>, polygon: &[[f64; 3]]) -> Result<Option<bool>, Error> {
         let around = Around::of(polygon);
-        self.meeting(&around, leaves)?;
+        if !self.around.is_some_and(|own| own.holds(&around)) {
+            return Ok(None);
+        }
         let mut all = None;
-        for &(_, leaf) in &*leaves {
+        for k in 0..self.leaves.len() {
+            let (cell, leaf) = self.leaves[k];
             let own = match leaf {
-                Leaf::Empty | Leaf::Outside | Leaf::Branch(_) => Some(false),
+                Leaf::Outside if around.is_in_universe() => continue,
+                Leaf::Outside => Some(false),
+                _ if !cube(cell).meets(&around) => continue,
+                Leaf::Empty | Leaf::Branch(_) => Some(false),
                 Leaf::Full => Some(true),
-                Leaf::Open(number) => {
-                    self.open(number).open.and_then(|open| self.by_function(&open, polygon, &around))
-                }
+                Leaf::Open(number) => match truth.open(number).open {
+                    Some(open) => self.by_functions(truth.figures, &open, polygon)?,
+                    None => None,
+                },
             };
             match (own, all) {
                 (None, _) => return Ok(None),
@@ -134,17 +183,21 @@ impl Truth<'_> {
         Ok(all)
     }
 
-    fn by_function(&self, open: &OpenSurfaces, polygon: &[[f64; 3]], around: &Around) -> Option<bool> {
+    fn by_functions(
+        &mut self,
+        figures: &Figures,
+        open: &OpenSurfaces,
+        polygon: &[[f64; 3]],
+    ) -> Result<Option<bool>, Error> {
         let (mut signs, mut unknown) = (0u8, 0u8);
         for (k, &surface) in open.indices().iter().enumerate() {
-            let local = Local::new(self.figures, surface, around.centre(), around.half().max(LEAST));
-            match local.map(|local| local.over(polygon)) {
+            match self.function(figures, surface)?.map(|local| local.over(polygon)) {
                 Some([low, _]) if low > 0.0 => signs |= 1 << k,
                 Some([_, high]) if high < 0.0 => {}
                 _ => unknown |= 1 << k,
             }
         }
-        settled(open, signs, unknown)
+        Ok(settled(open, signs, unknown))
     }
 }
 

@@ -6,11 +6,12 @@ use super::super::figures::{dot, length, minus, shortest};
 use super::super::leaves::Leaf;
 use super::clip::clip;
 use super::local::Local;
-use super::truth::{Around, LEAST, Truth, cube};
+use super::truth::{Around, Near, Truth, cube};
 use crate::error::Error;
 use crate::lattice::{Cell, axes};
 use crate::memory;
 use alloc::vec::Vec;
+use hashbrown::HashMap;
 
 /// How often a piece of a triangle is halved at most.
 const HALVINGS: u32 = 6;
@@ -28,10 +29,20 @@ const SLACK: f64 = 1e-14;
 pub(super) struct Witnesses<'t> {
     truth: &'t Truth<'t>,
     tolerance: f64,
+    /// How much may still be spent where the first step proves nothing: one for each piece that is halved, and for each size of cube
+    /// around one.
+    budget: u32,
+    is_spent: bool,
+    near: Near,
+    /// Whether a surface may be next to the last piece.
+    is_near: bool,
+    /// The leaves that a triangle meets.
     leaves: Vec<(Cell, Leaf)>,
-    others: Vec<(Cell, Leaf)>,
     shifted: Vec<[f64; 3]>,
     steps: Vec<(f64, [f64; 3])>,
+    cut: Vec<[f64; 3]>,
+    /// How far all of a cell in which nothing is known is from the boundary.
+    of_cells: HashMap<u32, f64>,
 }
 
 impl<'t> Witnesses<'t> {
@@ -39,34 +50,63 @@ impl<'t> Witnesses<'t> {
         Witnesses {
             truth,
             tolerance,
+            budget: 0,
+            is_spent: false,
+            near: Near::default(),
+            is_near: false,
             leaves: Vec::new(),
-            others: Vec::new(),
             shifted: Vec::new(),
             steps: Vec::new(),
+            cut: Vec::new(),
+            of_cells: HashMap::new(),
         }
     }
 
-    /// Calls `told` for the parts of a triangle in all leaves, with what no point of the part is further from the boundary than.
+    /// Takes one off the budget. `false` if nothing is left.
+    fn spend(&mut self) -> bool {
+        let is_left = self.budget > 0;
+        self.is_spent |= !is_left;
+        self.budget = self.budget.saturating_sub(1);
+        is_left
+    }
+
+    /// Calls `told` for the parts of a triangle in all leaves, with what no point of the part is further from the boundary than. All of them
+    /// together may spend `budget`. The answer is whether that was not enough.
     pub(super) fn triangle(
         &mut self,
         triangle: [[f64; 3]; 3],
         surface: u32,
+        budget: u32,
         told: &mut impl FnMut(Cell, f64) -> Result<(), Error>,
-    ) -> Result<(), Error> {
-        let mut leaves = Vec::new();
+    ) -> Result<bool, Error> {
+        (self.budget, self.is_spent) = (budget, false);
+        let mut leaves = core::mem::take(&mut self.leaves);
         self.truth.met_by(&triangle, &mut leaves)?;
-        for (cell, leaf) in leaves {
-            let mut part = memory::copied(&triangle)?;
+        let mut part = Vec::new();
+        for &(cell, leaf) in &leaves {
+            part.clear();
+            part.try_reserve(3)?;
+            part.extend(triangle);
             if !matches!(leaf, Leaf::Outside) {
                 let cube = cube(cell);
-                clip(&mut part, cube.low, cube.high)?;
+                clip(&mut part, &mut self.cut, cube.low, cube.high)?;
             }
             if part.len() >= 3 {
-                let most = self.part(&part, surface, HALVINGS)?;
+                let most = match leaf {
+                    // No step leads out of such a cell.
+                    Leaf::Open(number)
+                        if self.truth.open(number).open.is_none()
+                            && 2.0 * cube(cell).half() > self.longest() =>
+                    {
+                        self.around_cell(number, cell)?
+                    }
+                    _ => self.part(&part, surface, HALVINGS)?,
+                };
                 told(cell, most)?;
             }
         }
-        Ok(())
+        self.leaves = leaves;
+        Ok(self.is_spent)
     }
 
     fn part(&mut self, part: &[[f64; 3]], surface: u32, halvings: u32) -> Result<f64, Error> {
@@ -74,7 +114,7 @@ impl<'t> Witnesses<'t> {
         if direct <= self.tolerance {
             return Ok(direct);
         }
-        if halvings == 0 {
+        if halvings == 0 || !self.is_near {
             return Ok(direct.min(self.around(part)?));
         }
         // The longest line between corners is halved.
@@ -87,7 +127,7 @@ impl<'t> Witnesses<'t> {
                 }
             }
         }
-        if best.0 <= 0.25 * self.tolerance {
+        if best.0 <= 0.25 * self.tolerance || !self.spend() {
             return Ok(direct.min(self.around(part)?));
         }
         let (from, to) = (part[best.1], part[best.2]);
@@ -115,6 +155,8 @@ impl<'t> Witnesses<'t> {
 
     /// The length of the longer of the two shortest steps that are found; infinite if there are none.
     fn direct(&mut self, part: &[[f64; 3]], surface: u32) -> Result<f64, Error> {
+        let around = Around::of(part);
+        self.near.place(self.truth, around.grown(self.longest() + 4.0 * SLACK))?;
         self.find_steps(part, surface)?;
         let mut known = [None; 2];
         for k in 0..self.steps.len() {
@@ -122,7 +164,7 @@ impl<'t> Witnesses<'t> {
             self.shifted.clear();
             self.shifted.try_reserve(part.len())?;
             self.shifted.extend(part.iter().map(|p| -> [f64; 3] { axes(|k| p[k] + step[k]) }));
-            if let Some(inside) = self.truth.of(&self.shifted, &mut self.others)? {
+            if let Some(inside) = self.near.of(self.truth, &self.shifted)? {
                 known[usize::from(inside)].get_or_insert(long);
                 if let [Some(outer), Some(inner)] = known {
                     return Ok(f64::max(outer, inner) + SLACK);
@@ -132,44 +174,52 @@ impl<'t> Witnesses<'t> {
         Ok(f64::INFINITY)
     }
 
+    /// No step is longer.
+    fn longest(&self) -> f64 {
+        2.0 * self.tolerance + 4.0 * SLACK
+    }
+
     /// The steps that lead a part to certain sides of the surfaces next to it, the shortest first.
     fn find_steps(&mut self, part: &[[f64; 3]], surface: u32) -> Result<(), Error> {
         self.steps.clear();
-        let around = Around::of(part);
-        let (centre, reach) = (around.centre(), around.half() + self.tolerance);
-        let mut near: Vec<(Local, [f64; 2])> = Vec::new();
-        let mut numbers: Vec<u32> = Vec::new();
-        let figures = self.truth.figures;
-        let mut take = |number: u32| -> Result<(), Error> {
-            if near.len() == MOST || numbers.contains(&number) {
+        let (truth, tolerance) = (self.truth, self.tolerance);
+        let around = Around::of(part).grown(tolerance);
+        // The surface of the triangle, and those of the leaves around.
+        let mut numbers = [surface; MOST];
+        let mut found: [Option<(Local, [f64; 2])>; MOST] = [None; MOST];
+        let (mut count, mut is_near) = (0, false);
+        let mut take = |near: &mut Near, number: u32| -> Result<(), Error> {
+            if count == MOST || number == NONE || numbers[..count].contains(&number) {
                 return Ok(());
             }
-            memory::push(&mut numbers, number)?;
-            if let Some(local) = Local::new(figures, number, centre, reach.max(LEAST)) {
-                let [low, high] = local.over(part);
-                let size = local.steepness() * self.tolerance;
-                if low <= size && high >= -size {
-                    memory::push(&mut near, (local, [low, high]))?;
-                }
+            let Some(local) = near.function(truth.figures, number)? else {
+                is_near = true;
+                return Ok(());
+            };
+            let range = local.over(part);
+            let size = local.steepness() * tolerance;
+            if range[0] <= size && range[1] >= -size {
+                (numbers[count], found[count], is_near) = (number, Some((*local, range)), true);
+                count += 1;
             }
             Ok(())
         };
-        if surface != NONE {
-            take(surface)?;
-        }
-        self.truth.meeting(&around.grown(self.tolerance), &mut self.leaves)?;
-        for &(_, leaf) in &self.leaves {
+        take(&mut self.near, surface)?;
+        for k in 0..self.near.leaves().len() {
+            let (cell, leaf) = self.near.leaves()[k];
             if let Leaf::Open(number) = leaf
-                && let Some(open) = self.truth.open(number).open
+                && let Some(open) = truth.open(number).open
+                && cube(cell).meets(&around)
             {
                 for &number in open.indices() {
-                    take(number)?;
+                    take(&mut self.near, number)?;
                 }
             }
         }
-        for choice in 1..3usize.pow(near.len() as u32) {
+        self.is_near = is_near;
+        for choice in 1..3usize.pow(count as u32) {
             let (mut rows, mut shares, mut count) = ([[0.0; 3]; MOST], [0.0; MOST], 0);
-            for (k, (local, [low, high])) in near.iter().enumerate() {
+            for (k, (local, [low, high])) in found.iter().flatten().enumerate() {
                 let sign = [0.0, 1.0, -1.0][choice / 3usize.pow(k as u32) % 3];
                 if sign != 0.0 {
                     let steep = local.steepness();
@@ -185,7 +235,7 @@ impl<'t> Witnesses<'t> {
             for longer in [LONGER, 1.25 * LONGER] {
                 let step = step.map(|c| c * longer);
                 let long = length(step);
-                if long <= 2.0 * self.tolerance + 4.0 * SLACK {
+                if long <= self.longest() {
                     memory::push(&mut self.steps, (long, step))?;
                 }
             }
@@ -194,26 +244,54 @@ impl<'t> Witnesses<'t> {
         Ok(())
     }
 
-    /// How far all of a part is from the boundary, by points around it: infinite if they are all on one side.
+    /// How far all of a part is from the boundary, by points around it: infinite if they are all on one side, or the budget is spent.
     fn around(&mut self, part: &[[f64; 3]]) -> Result<f64, Error> {
         let centre = Around::of(part).centre();
         let radius = part.iter().fold(0.0, |most: f64, &p| most.max(length(minus(p, centre))));
         let mut away = (0.25 * self.tolerance).max(SLACK);
-        while away < 2.0 {
-            let mut known = [false; 2];
-            for k in 0..27 {
-                let point: [f64; 3] =
-                    axes(|i| centre[i] + away * ([1, 3, 9].map(|p| k / p % 3)[i] as f64 - 1.0));
-                if let Some(inside) = self.truth.of(&[point], &mut self.others)? {
-                    known[usize::from(inside)] = true;
-                }
-            }
-            if known == [true; 2] {
+        while away < 2.0 && self.spend() {
+            if self.are_apart(centre, away)? {
                 // The diagonal of the cube of points, and the part's own extent.
                 return Ok(1.733 * away + radius);
             }
             away *= 2.0;
         }
         Ok(f64::INFINITY)
+    }
+
+    /// How far all points of a cell in which nothing is known are from the boundary, by points around it: infinite if they are all on one
+    /// side.
+    fn around_cell(&mut self, number: u32, cell: Cell) -> Result<f64, Error> {
+        if let Some(&known) = self.of_cells.get(&number) {
+            return Ok(known);
+        }
+        let around = cube(cell);
+        let (mut away, mut most) = (1.25 * around.half(), f64::INFINITY);
+        while away < 2.0 && most == f64::INFINITY {
+            if self.are_apart(around.centre(), away)? {
+                most = 1.733 * (away + around.half());
+            }
+            away *= 2.0;
+        }
+        self.of_cells.try_reserve(1)?;
+        self.of_cells.insert(number, most);
+        Ok(most)
+    }
+
+    /// Whether some of the corners, of the middles of edges and faces and the centre of a cube lie inside and others outside.
+    fn are_apart(&mut self, centre: [f64; 3], half: f64) -> Result<bool, Error> {
+        let mut known = [false; 2];
+        // (Points at opposite ends come one after the other.)
+        for k in (0..27).map(|k| if k % 2 == 0 { k / 2 } else { 26 - k / 2 }) {
+            let point: [f64; 3] = axes(|i| centre[i] + half * ([1, 3, 9].map(|p| k / p % 3)[i] as f64 - 1.0));
+            self.near.place(self.truth, Around::of(&[point]))?;
+            if let Some(inside) = self.near.of(self.truth, &[point])? {
+                known[usize::from(inside)] = true;
+            }
+            if known == [true; 2] {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 }

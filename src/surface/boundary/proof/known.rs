@@ -1,0 +1,82 @@
+//! What one proof found out that holds in the next: how near triangles are that both meshes have, and how near the boundary in a cell is to
+//! such triangles.
+
+use crate::error::Error;
+use crate::lattice::Cell;
+use crate::memory;
+use alloc::vec::Vec;
+use hashbrown::HashMap;
+
+/// A triangle by the bits of its corners, of which the least is the first, and its surface.
+type Key = ([[u64; 3]; 3], u32);
+
+/// What holds of triangles and cells, whatever the mesh.
+#[derive(Default)]
+pub(in super::super) struct Known {
+    /// A number for each triangle that any mesh had.
+    names: HashMap<Key, u32>,
+    /// How far no point of a triangle is from the boundary, by its name.
+    near: Vec<Option<f64>>,
+    /// Which of them the mesh has.
+    is_there: Vec<bool>,
+    /// The names of the mesh's triangles.
+    of_mesh: Vec<u32>,
+    cells: HashMap<Cell, Shown>,
+}
+
+/// How far no point of the boundary in a cell is from triangles, with their names.
+struct Shown {
+    most: f64,
+    by: Vec<u32>,
+}
+
+impl Known {
+    /// Turns to another mesh.
+    pub(super) fn turn_to(
+        &mut self,
+        vertices: &[[f64; 3]],
+        triangles: &[[u32; 3]],
+        surfaces: &[u32],
+    ) -> Result<(), Error> {
+        self.is_there.fill(false);
+        self.of_mesh.clear();
+        for (triangle, &surface) in triangles.iter().zip(surfaces) {
+            let mut corners = triangle.map(|v| vertices[v as usize].map(f64::to_bits));
+            let first = (0..3).fold(0, |best, k| if corners[k] < corners[best] { k } else { best });
+            corners.rotate_left(first);
+            self.names.try_reserve(1)?;
+            let next = self.near.len() as u32;
+            let name = *self.names.entry((corners, surface)).or_insert(next);
+            if name == next {
+                memory::push(&mut self.near, None)?;
+                memory::push(&mut self.is_there, false)?;
+            }
+            self.is_there[name as usize] = true;
+            memory::push(&mut self.of_mesh, name)?;
+        }
+        Ok(())
+    }
+
+    /// How far no point of a triangle of the mesh is from the boundary, if that is known.
+    pub(super) fn of_triangle(&self, number: u32) -> Option<f64> {
+        self.near[self.of_mesh[number as usize] as usize]
+    }
+
+    pub(super) fn keep_triangle(&mut self, number: u32, most: f64) {
+        self.near[self.of_mesh[number as usize] as usize] = Some(most);
+    }
+
+    /// How far no point of the boundary in a cell is from the mesh, if that is known.
+    pub(super) fn of_cell(&self, cell: Cell) -> Option<f64> {
+        let shown = self.cells.get(&cell)?;
+        shown.by.iter().all(|&name| self.is_there[name as usize]).then_some(shown.most)
+    }
+
+    /// Keeps how far no point of the boundary in a cell is from triangles of the mesh.
+    pub(super) fn keep_cell(&mut self, cell: Cell, most: f64, mut by: Vec<u32>) -> Result<(), Error> {
+        by.iter_mut().for_each(|number| *number = self.of_mesh[*number as usize]);
+        self.cells.try_reserve(1)?;
+        self.cells.insert(cell, Shown { most, by });
+        Ok(())
+    }
+}
