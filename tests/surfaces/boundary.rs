@@ -5,7 +5,7 @@ use crate::common::{Random, alone};
 use leafless::query::{DistanceTo, Obstacle, distances};
 use leafless::surface::{Boundary, boundary};
 use leafless::{
-    Affine, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree, Ray, Rule, Solid,
+    Affine, AnySolid, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree, Ray, Rule, Solid,
     SurfaceOptions, TriangleMesh, build, build_extended, cast_rays, contains, deviation, measure,
 };
 use std::collections::BTreeMap;
@@ -456,6 +456,17 @@ fn refusals() {
     let cancelled = std::sync::atomic::AtomicBool::new(true);
     let control = Control { cancel: Some(&cancelled), ..alone() };
     assert!(matches!(boundary(&ball, &frame, 1e-3, &control), Err(Error::Cancelled)));
+    // A mesh with a bore: most of the boundary is none of a surface.
+    let block = of(&Csg::cuboid([-0.4; 3], [0.4; 3]).unwrap(), 8, 0.01).into_mesh();
+    let mesh = AnySolid::new(MeshSolid::new(block, FillRule::NonZero).unwrap());
+    let mixed = Csg::solid(mesh).difference(&Csg::cylinder(0.1, -1.0, 1.0).unwrap()).unwrap();
+    let deep = frame.with_depth(12).unwrap();
+    let refused = boundary(&mixed, &deep, 0.01, &alone());
+    assert!(
+        matches!(refused, Err(Error::Argument { name: "solid", problem }) if problem.contains("contour")),
+        "{:?}",
+        refused.map(|found| *found.report())
+    );
     // Solids of which no surfaces are known.
     let tree: Octree = build(&ball, &frame, Rule::Certified, &alone()).unwrap();
     assert!(matches!(boundary(&tree, &frame, 0.1, &alone()), Err(Error::Argument { name: "solid", .. })));
