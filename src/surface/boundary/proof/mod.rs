@@ -95,8 +95,8 @@ pub(super) fn prove(
     let truth = Truth { leaves, figures };
     job.control().run(triangles.len() + leaves.open.len() >= WORTH, |parallel| {
         let prover = Prover { truth: &truth, subject: &subject, tolerance, parallel, job };
-        prover.from_mesh(known, &mut proof)?;
-        prover.to_mesh(known, &mut proof)?;
+        prover.triangles_to_boundary(known, &mut proof)?;
+        prover.boundary_to_triangles(known, &mut proof)?;
         contacts(&truth, &subject, (Cell::ROOT, leaves.root), &mut Vec::new(), &mut |cell, most| {
             proof.add(cell, most)
         })?;
@@ -134,7 +134,7 @@ struct Shown {
 
 impl Prover<'_> {
     /// How far the triangles are from the boundary.
-    fn from_mesh(&self, known: &mut Known, proof: &mut Proof) -> Result<(), Error> {
+    fn triangles_to_boundary(&self, known: &mut Known, proof: &mut Proof) -> Result<(), Error> {
         let count = self.subject.triangles.len() as u32;
         let mut left = Vec::new();
         for number in 0..count {
@@ -201,7 +201,7 @@ impl Prover<'_> {
     }
 
     /// How far the boundary in open cells is from the triangles.
-    fn to_mesh(&self, known: &mut Known, proof: &mut Proof) -> Result<(), Error> {
+    fn boundary_to_triangles(&self, known: &mut Known, proof: &mut Proof) -> Result<(), Error> {
         let leaves = &self.truth.leaves.open;
         let mut left = Vec::new();
         for (number, leaf) in (0u32..).zip(leaves) {
