@@ -217,9 +217,9 @@ fn any_solid(bytes: &mut Bytes<'_>) -> (AnySolid, bool) {
     match bytes.below(6) {
         0 => (AnySolid::new(expression(bytes)), true),
         // A mesh of a few triangles, as it is: closed, open, or with triangles that intersect.
-        1 => (AnySolid::new(facets(bytes)), true),
+        1 => (facets(bytes), true),
         2 => {
-            let mesh = Csg::solid(AnySolid::new(facets(bytes)));
+            let mesh = Csg::solid(facets(bytes));
             let solid = match bytes.below(3) {
                 0 => mesh.difference(&expression(bytes)),
                 1 => Csg::union_of([mesh, expression(bytes)]),
@@ -278,8 +278,8 @@ fn any_solid(bytes: &mut Bytes<'_>) -> (AnySolid, bool) {
     }
 }
 
-/// A mesh on a small lattice.
-fn facets(bytes: &mut Bytes<'_>) -> MeshSolid {
+/// A mesh on a small lattice; a ball if it has no triangle.
+fn facets(bytes: &mut Bytes<'_>) -> AnySolid {
     let count = 4 + bytes.below(4) as u32;
     let mut text = String::from("OFF\n");
     let vertices: Vec<[f64; 3]> = (0..count).map(|_| [0; 3].map(|_: i32| bytes.around(6))).collect();
@@ -296,7 +296,10 @@ fn facets(bytes: &mut Bytes<'_>) -> MeshSolid {
     vertices.iter().for_each(|[x, y, z]| text += &format!("{x} {y} {z}\n"));
     faces.iter().for_each(|[a, b, c]| text += &format!("3 {a} {b} {c}\n"));
     let mesh = read_mesh(text.as_bytes(), &MeshOptions::default()).expect("a good file").mesh;
-    MeshSolid::new(mesh, FillRule::NonZero).expect("a good mesh")
+    if mesh.triangles().is_empty() {
+        return AnySolid::new(Csg::ball([0.0; 3], 1.0).expect("a good ball"));
+    }
+    AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero).expect("a good mesh"))
 }
 
 /// What the fuzz target `contours` does.

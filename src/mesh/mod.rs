@@ -6,7 +6,7 @@
 //! From the bottom up, each file uses only files named before it: `positions` (equal vertices), `attributes`
 //! (data on triangles), `topology` (edges and bodies), `boundary` (loops of edges), `signs` (exact determinants), `surface` (the mesh); on the
 //! mesh `normals`, `weld`, `sew`, `placement`, `defects`, `overlap` and `report`; `tree` (boxes around triangles), `nearest`,
-//! `self_pairs` (whose boxes meet), `intersections`, `triangle_pair`, `discs` and `apart` (how far two meshes are apart), `planes` (in which triangles lie), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle), `moments`
+//! `self_pairs` (whose boxes meet), `intersections`, `triangle_pair`, `discs` and `apart` (how far two meshes are apart), `planes` (in which triangles lie), `sheets` (winding numbers on both sides), `sides` (the same, triangle by triangle), `pieces` (of triangles that intersect others), `moments`
 //! (volume and inertia), `links` (edges collapsed and flipped) and `single` (single precision); `polygon` (triangulation), `shells` (which lie within others), `polyhedron` and its `faces`.
 
 mod apart;
@@ -24,6 +24,7 @@ mod moments;
 mod nearest;
 mod normals;
 mod overlap;
+mod pieces;
 mod pierce;
 mod placement;
 mod planes;
@@ -58,6 +59,7 @@ pub use faces::PolyhedronPart;
 pub use intersections::{IntersectingPair, IntersectingPairs};
 pub use moments::MeshMoments;
 pub(crate) use nearest::{NearVisitor, NearestPoint, TriangleTree};
+pub(crate) use pieces::Pieces;
 pub(crate) use pierce::{Hit, Shift, Wanted};
 pub(crate) use planes::{FacetPlane, FacetPlanes};
 #[cfg(feature = "std")]

@@ -87,6 +87,20 @@ fn size([a, b, c]: &[Point; 3]) -> f64 {
 /// The winding number right in front of a triangle; for [`FillRule::EvenOdd`] the parity of triangles between there
 /// and infinity, 0 or 1. `None` if the triangle is too small for a point inside.
 fn in_front(mesh: &TriangleMesh, tree: &Tree, triangle: u32, rule: FillRule) -> Option<i32> {
+    let [a, b, c] = corners(mesh, triangle);
+    let p: Point = array(|k| a[k] + ((b[k] - a[k]) + (c[k] - a[k])) / 3.0);
+    in_front_at(mesh, tree, triangle, &p, rule)
+}
+
+/// The same in front of the point of a triangle that lies above or below another point, along the axis along which the triangle is seen
+/// best. `None` if there is no such point within its edges.
+pub(super) fn in_front_at(
+    mesh: &TriangleMesh,
+    tree: &Tree,
+    triangle: u32,
+    p: &Point,
+    rule: FillRule,
+) -> Option<i32> {
     let own = corners(mesh, triangle);
     let [a, b, c] = &own;
     let normal: Point = array(|k| {
@@ -94,24 +108,23 @@ fn in_front(mesh: &TriangleMesh, tree: &Tree, triangle: u32, rule: FillRule) -> 
         (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i])
     });
     let best = (1..3).fold(0, |best, axis| if normal[axis].abs() > normal[best].abs() { axis } else { best });
-    let axis = if cross_sign([a, b], [a, c], best) != 0 { best } else { axis_of(&own) };
     // Its coordinate along the axis does not matter.
-    let p: Point = array(|k| a[k] + ((b[k] - a[k]) + (c[k] - a[k])) / 3.0);
-    let turn = turn(&own, &p, axis);
+    let axis = if cross_sign([a, b], [a, c], best) != 0 { best } else { axis_of(&own) };
+    let turn = turn(&own, p, axis);
     // On an edge it would belong to two triangles.
     let is_inside =
-        [[a, b], [b, c], [c, a]].into_iter().all(|[s, t]| cross_sign([s, t], [s, &p], axis) == turn);
+        [[a, b], [b, c], [c, a]].into_iter().all(|[s, t]| cross_sign([s, t], [s, p], axis) == turn);
     if turn == 0 || !is_inside {
         return None;
     }
     let mut above = 0;
-    tree.on_line(&p, axis, &mut |other| {
+    tree.on_line(p, axis, &mut |other| {
         if other == triangle {
             return;
         }
         let other = corners(mesh, other);
-        let step = self::turn(&other, &p, axis);
-        if step != 0 && is_above(&other, &own, &p, axis) {
+        let step = self::turn(&other, p, axis);
+        if step != 0 && is_above(&other, &own, p, axis) {
             above += if rule == FillRule::EvenOdd { 1 } else { step };
         }
     });

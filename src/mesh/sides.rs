@@ -77,20 +77,49 @@ impl Sides {
         if rule == FillRule::Positive || mesh.displacement() > 0.0 {
             return Ok(None);
         }
-        for (k, &[a, b]) in self.pairs.iter().enumerate() {
-            if k % 4096 == 0 {
-                control.check()?;
-            }
-            let [[p, q, r], other] = [a, b].map(|triangle| corners(mesh, triangle));
-            if a < b && other.iter().all(|x| volume_sign(&p, &q, &r, x) == 0) {
-                return Ok(None);
-            }
+        if self.lie_on_each_other(mesh, control)? {
+            return Ok(None);
         }
         let (senses, triangles) = (self.senses.iter(), mesh.triangles());
         let is_wall = |(&sense, corners): (&i8, &[u32; 3])| {
             sense != 0 && sense != Sides::FLAT && (sense < Sides::UNKNOWN || !mesh.is_flat(corners))
         };
         Ok(Some(memory::collected(senses.zip(triangles).map(is_wall))?))
+    }
+
+    /// Whether two triangles that intersect lie in one plane.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`] by `control`.
+    pub(super) fn lie_on_each_other(
+        &self,
+        mesh: &TriangleMesh,
+        control: &Control<'_>,
+    ) -> Result<bool, Error> {
+        for (k, &[a, b]) in self.pairs.iter().enumerate() {
+            if k % 4096 == 0 {
+                control.check()?;
+            }
+            let [[p, q, r], other] = [a, b].map(|triangle| corners(mesh, triangle));
+            if a < b && other.iter().all(|x| volume_sign(&p, &q, &r, x) == 0) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The triangles that intersect one beyond common vertices and edges.
+    pub(super) fn meeting(&self, triangle: u32) -> impl Iterator<Item = u32> {
+        let first = self.pairs.partition_point(|pair| pair[0] < triangle);
+        self.pairs[first..].iter().take_while(move |pair| pair[0] == triangle).map(|pair| pair[1])
+    }
+
+    /// Whether each triangle is known to belong to the boundary of the solid.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub(crate) fn bounding(&self) -> Result<Vec<bool>, Error> {
+        memory::collected(self.senses.iter().map(|sense| matches!(sense, 1 | -1)))
     }
 
     /// Whether two triangles intersect beyond common vertices and edges.

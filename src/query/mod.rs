@@ -64,9 +64,9 @@ pub use clearance::{
 pub use columns::{ColumnCells, ColumnRuns, Columns, Heights, Run, Side, columns, heights};
 pub use contains::contains;
 pub use content::{CellsIn, cells_in, volume_in};
-#[cfg(feature = "std")]
-pub(crate) use deviation::{Comparison, Reference, meshes_apart};
 pub use deviation::{DEVIATION_SPLITS, Deviation, OneWay, Within, Witness, deviation};
+#[cfg(feature = "std")]
+pub(crate) use deviation::{Reference, Remade, meshes_apart};
 pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, NearPoint, PointDistance, distances};
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
 pub use interference::{Ball, Interference, Overlap, interference, interference_at};

@@ -19,7 +19,7 @@
 //! | answers [`Question::Crossing`] | vertices of surfaces on the surface, with normals, without a search |
 //! | answers [`Question::Surfaces`], [`WholeQuestion::Surfaces`] | extended octrees that keep the surfaces, and are as exact as the solid |
 //! | answers [`Question::Layers`], [`WholeQuestion::Layers`] | the same where surfaces are known within a width |
-//! | answers [`WholeQuestion::Facets`] | how far its boundary is from another one, to rounding and without cells |
+//! | answers [`WholeQuestion::Facets`], or [`WholeQuestion::Pieces`] | how far its boundary is from another one, to rounding and without cells |
 //! | answers [`WholeQuestion::Walls`], writes [`Batch::inside`] | how far it is from another solid, to rounding and without cells |
 //! | answers [`Question::Ray`], [`Question::Nearest`], writes [`Batch::inside`] | single rays, distances and points in microseconds |
 //! | answers [`Question::Chords`], writes [`fill`](Worker::fill) | nothing but speed: tri-dexel models, octrees |
@@ -86,7 +86,9 @@ pub use question::{Ask, AskWhole, Chords, Direct, LayersQuestion, Question, Whol
 pub(crate) use question::{AskDirect, AskLayers};
 pub use split_counter::SplitCounter;
 pub use subtree::Subtree;
-pub use trace::{BoundaryFacets, BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrace};
+pub use trace::{
+    BoundaryFacets, BoundaryPieces, BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrace,
+};
 pub use transform::Transform;
 pub(crate) use transform::TransformClassifier;
 pub use verdict::Verdict;

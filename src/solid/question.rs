@@ -1,8 +1,8 @@
 //! What may be asked of a solid beside its cells.
 
 use super::{
-    BoundaryFacets, BoxContent, Classifier, Crossing, Enclosure, NearestSurface, OpenSurfaces,
-    PlacedHalfSpace, RayQuestion, RayTrace, Segment, Slab, Worker,
+    BoundaryFacets, BoundaryPieces, BoxContent, Classifier, Crossing, Enclosure, NearestSurface,
+    OpenSurfaces, PlacedHalfSpace, RayQuestion, RayTrace, Segment, Slab, Worker,
 };
 use crate::control::Control;
 use crate::cut;
@@ -336,7 +336,11 @@ pub enum WholeQuestion<'q> {
     /// and all of the boundary lies in the universe. Whether the solid or its complement is meant does not matter.
     Facets(&'q mut Option<BoundaryFacets>),
 
-    /// The same with triangles beside those of the boundary, all of which lie in the closed solid, or, if its complement is meant, outside of
+    /// The same where triangles intersect: those are cut into pieces, and where pieces meet others they have sides no longer than the given
+    /// size (model units).
+    Pieces(f64, &'q mut Option<BoundaryPieces>),
+
+    /// The triangles of [`Facets`](Self::Facets) with triangles beside those of the boundary, all of which lie in the closed solid, or, if its complement is meant, outside of
     /// that.
     Walls(&'q mut Option<BoundaryFacets>),
 }
@@ -415,6 +419,16 @@ pub trait AskWhole: Classifier {
     fn facets(&self, control: &Control<'_>) -> Result<Option<BoundaryFacets>, Error> {
         let mut known = None;
         self.answer_whole(WholeQuestion::Facets(&mut known), control)?;
+        Ok(known)
+    }
+
+    /// The triangles and pieces of triangles that the whole boundary consists of: [`WholeQuestion::Pieces`].
+    ///
+    /// # Errors
+    /// As [`moments`](Self::moments).
+    fn pieces(&self, size: f64, control: &Control<'_>) -> Result<Option<BoundaryPieces>, Error> {
+        let mut known = None;
+        self.answer_whole(WholeQuestion::Pieces(size, &mut known), control)?;
         Ok(known)
     }
 

@@ -157,6 +157,19 @@ pub struct BoundaryFacets {
     pub chosen: Vec<bool>,
 }
 
+/// Triangles that the boundary of a solid consists of but where triangles intersect, and pieces of these.
+#[derive(Clone)]
+pub struct BoundaryPieces {
+    /// Triangles that belong to the boundary.
+    pub facets: BoundaryFacets,
+    /// Pieces of others that do. They have no vertices in common.
+    pub sure: Vec<[[f64; 3]; 3]>,
+    /// Pieces that may. All that is not among the facets or the pieces does not belong to the boundary.
+    pub doubtful: Vec<[[f64; 3]; 3]>,
+    /// How far pieces may lie beside the triangles of the mesh, in model units.
+    pub rounding: f64,
+}
+
 /// How a box lies to a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoxContent {

@@ -289,6 +289,30 @@ fn bodies_that_overlap_count_by_their_union() {
     // Nobody knows of the walls inside that they are none of the boundary: they widen the interval.
     assert!(found.a_to_b.distance.contains(0.0) && found.b_to_a.distance.contains(0.0), "{found:?}");
     assert!(found.a_to_b.distance.upper < 0.6 && found.b_to_a.distance.upper < 0.05, "{found:?}");
+    // Walls that cross at lines: all of the union is known but next to these.
+    let bar = |turn: usize| {
+        let corner = |k: usize| {
+            [0, 1, 2].map(|axis| {
+                let half = if axis == turn { 1.0 } else { 0.4 + 0.01 * (turn + axis) as f64 };
+                0.013 * turn as f64 + if k >> axis & 1 == 0 { -half } else { half }
+            })
+        };
+        (corner(0), corner(7))
+    };
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let (mut vertices, mut triangles, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+    for (low, high) in [0, 1, 2].map(bar) {
+        let first = vertices.len() as u32;
+        vertices.extend((0..8).map(|k: usize| [0, 1, 2].map(|axis| [low, high][k >> axis & 1][axis])));
+        triangles.extend(
+            faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]].map(|t| t.map(|v| v + first))),
+        );
+        parts.push(Csg::cuboid(low, high).unwrap());
+    }
+    let crossing = solid(TriangleMesh::new(vertices, triangles).unwrap());
+    let found = ask(&crossing, &Csg::union_of(parts).unwrap(), &around(1.5, 7), 0.1);
+    holds(&found, [0.0; 2], 0.1);
+    assert_eq!(found.splits[0], 0);
     // Nested shells: the inner one lies in the solid.
     let nested = |inner: f64| {
         let (a, b) = (prism(12, 1.0, -1.0, 1.0, 0.0), prism(9, inner, -0.5, 0.5, 0.0));

@@ -23,7 +23,9 @@ use crate::walk::Proven;
 #[cfg(feature = "std")]
 use alloc::vec::Vec;
 #[cfg(feature = "std")]
-pub(crate) use reference::{Comparison, Reference};
+pub(crate) use reference::{Reference, Remade};
+#[cfg(feature = "std")]
+use search::Beyond;
 use search::Search;
 use surface::{Seen, Surface};
 
@@ -108,6 +110,10 @@ pub const DEVIATION_SPLITS: u64 = 1 << 18;
 #[cfg(feature = "std")]
 const EXACT: f64 = 1.0 / 128.0;
 
+/// How often a triangle is cut to find out whether it is within a limit.
+#[cfg(feature = "std")]
+const BEYOND: u64 = 1 << 10;
+
 /// Cells tell the boundary to this part of the tolerance.
 const CELLS: f64 = 12.0;
 
@@ -118,9 +124,10 @@ const CUTS: u64 = 64;
 /// under a placement is moved first (see [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`.
 ///
 /// The boundary of a closed mesh whose triangles do not intersect is known exactly; triangles within the solid, as those of a body
-/// inside of another one, are none of it. (Of a mesh whose triangles intersect cells are asked, and the walls inside of bodies that
-/// overlap may widen the intervals.) Of any other solid, cells of `frame` are split until the slabs of each tell where the
-/// boundary lies to a twelfth of `tolerance` (model units), and faces between FULL and EMPTY cells are known exactly; what is not
+/// inside of another one, are none of it. Triangles that intersect others are cut into pieces, which are known exactly up to a twelfth of
+/// `tolerance` (model units) from where they meet. (Where triangles lie on each other, or 524 288 pieces are too few, cells are asked.)
+/// Of any other solid, cells of `frame` are split until the slabs of each tell where the
+/// boundary lies to a twelfth of `tolerance`, and faces between FULL and EMPTY cells are known exactly; what is not
 /// decided widens the intervals. Both boundaries are then pieces of planes, and the answer is found to rounding (some 10^-12 of the
 /// coordinates) by cutting these.
 ///
@@ -226,12 +233,13 @@ pub(crate) fn meshes_apart(
     for k in 0..2 {
         let (from, to) = (&seen[k], &seen[1 - k]);
         let search = Search { from, to, tolerance: limit * EXACT, budget: DEVIATION_SPLITS };
-        let (own, list) =
-            control.run(worth, |parallel| search.beyond((1.0 - EXACT) * limit, parallel, &job))?;
+        let (own, list) = control.run(worth, |parallel| {
+            search.beyond((1.0 - EXACT) * limit, &|_, _| true, BEYOND, parallel, &job)
+        })?;
         job.advance(WHOLE / 2);
         most = f64::max(most, own);
-        for (triangle, other) in list {
-            let of_second = if k == 0 { other } else { Some(triangle) };
+        for Beyond { triangle, nearest, .. } in list {
+            let of_second = if k == 0 { nearest } else { Some(triangle) };
             if let Some(triangle) = of_second {
                 memory::push(&mut beyond, triangle)?;
             }
@@ -244,6 +252,9 @@ pub(crate) fn meshes_apart(
 fn surface<C: Classifier>(solid: &C, tolerance: f64, budget: u64, job: &Job<'_>) -> Result<Surface, Error> {
     match solid.facets(job.control())? {
         Some(facets) => Surface::of_facets(facets),
-        None => cells::surface(solid, tolerance, budget, job),
+        None => match solid.pieces(tolerance, job.control())? {
+            Some(pieces) => Surface::of_pieces(pieces),
+            None => cells::surface(solid, tolerance, budget, job),
+        },
     }
 }

@@ -1,11 +1,13 @@
 //! How far meshes are from the boundary of one solid.
 
-use super::search::Search;
+use super::piece::{dot, minus};
+use super::search::{Beyond, Search};
 use super::surface::{Seen, Surface};
-use crate::control::Job;
+use crate::control::{Control, Job};
 use crate::error::Error;
+use crate::lattice::exact::sqrt;
 use crate::memory;
-use crate::mesh::TriangleMesh;
+use crate::mesh::{TriangleMesh, TriangleTree};
 use crate::octree::Tag;
 use crate::solid::Classifier;
 use alloc::sync::Arc;
@@ -14,20 +16,31 @@ use alloc::vec::Vec;
 /// The boundary of a solid that ends in the universe, as far as it is known: meshes are compared with it.
 pub(crate) struct Reference(Option<Surface>);
 
-/// How far a mesh and a boundary are from each other.
-pub(crate) struct Comparison {
-    /// No point of the mesh is further from the boundary than that, and none of the boundary from the mesh (model units). That is proven;
-    /// infinite if nothing is known.
-    pub(crate) most: f64,
-    /// Points of either that are further from the other one than was allowed, or nearly so.
-    pub(crate) beyond: Vec<[f64; 3]>,
-}
-
 /// The greatest distance is known to this part of what is allowed.
 const SHARE: f64 = 1.0 / 16.0;
 
-/// Pieces are cut that often at the most, for each triangle.
+/// Pieces are cut that often at the most, for each triangle, to tell the greatest distance more exactly than was asked for, and triangles of
+/// both surfaces for which that is done.
 const CUTS: u64 = 4;
+const MANY: usize = 1 << 15;
+
+/// A mesh that is compared with a boundary, perhaps not for the first time.
+pub(crate) struct Remade<'c> {
+    pub(crate) mesh: &'c Arc<TriangleMesh>,
+    /// Which of its triangles are looked at, and of the boundary what is near to these; all if it is empty.
+    pub(crate) is_new: &'c [bool],
+    /// How often a triangle is cut at the most to find out how far it is.
+    pub(crate) cuts: u64,
+}
+
+/// What a comparison tells.
+pub(crate) struct Comparison {
+    /// No point of the triangles that were looked at is further from the boundary than that, and none of the boundary next to them from the
+    /// mesh (model units). That is proven; infinite if nothing is known.
+    pub(crate) most: f64,
+    /// Triangles of the mesh where one of both is proven to be further from the other than was allowed, or nearly so.
+    pub(crate) beyond: Vec<u32>,
+}
 
 impl Reference {
     /// Where the boundary is not known exactly, up to `budget` cells are split until it is known to `tolerance` (model units).
@@ -43,33 +56,107 @@ impl Reference {
         super::surface(solid, tolerance, budget, job).map(|surface| Reference(Some(surface)))
     }
 
-    /// Compares all triangles of a mesh. `allowed` is the distance beyond which points are told (model units).
-    pub(crate) fn compare(
+    /// Compares a mesh with the boundary, no more exactly than it takes to tell where they are further apart than `allowed` (model units).
+    pub(crate) fn beyond(
+        &self,
+        compared: &Remade<'_>,
+        allowed: f64,
+        control: &Control<'_>,
+    ) -> Result<Comparison, Error> {
+        let job = &Job::new(control);
+        let mut found = Comparison { most: f64::INFINITY, beyond: Vec::new() };
+        let Some(surface) = &self.0 else { return Ok(found) };
+        found.most = 0.0;
+        let new = compared.new_ones()?;
+        let tree = new.as_ref().map(|new| new.triangle_tree(job.control())).transpose()?;
+        self.each_way(compared.mesh, allowed, job, |k, search, parallel| {
+            if search.to.is_unknown() {
+                if !search.from.is_empty() {
+                    found.most = f64::INFINITY;
+                }
+                return Ok(());
+            }
+            let is_wanted = |layer: usize, triangle: u32| match (&tree, k) {
+                (None, _) => true,
+                (Some(_), 0) => compared.is_new[triangle as usize],
+                (Some(tree), _) => is_near(&surface.covers[layer].mesh, triangle, tree, allowed),
+            };
+            let (most, list) =
+                search.beyond((1.0 - SHARE) * allowed, &is_wanted, compared.cuts, parallel, job)?;
+            found.most = found.most.max(most);
+            for Beyond { triangle, nearest, .. } in list.into_iter().filter(|own| own.is_proven) {
+                if let Some(own) = if k == 0 { Some(triangle) } else { nearest } {
+                    memory::push(&mut found.beyond, own)?;
+                }
+            }
+            Ok(())
+        })?;
+        Ok(found)
+    }
+
+    /// No point of a mesh is further from the boundary than that, and none of the boundary from the mesh (model units): to a sixteenth of
+    /// `allowed`, if that is found out soon. Infinite if nothing is known, and where there are so many triangles that it takes long.
+    pub(crate) fn apart(
+        &self,
+        mesh: &Arc<TriangleMesh>,
+        allowed: f64,
+        control: &Control<'_>,
+    ) -> Result<f64, Error> {
+        let covers = self.0.iter().flat_map(|surface| &surface.covers);
+        let count = mesh.triangles().len() + covers.map(|layer| layer.mesh.triangles().len()).sum::<usize>();
+        if self.0.is_none() || count > MANY {
+            return Ok(f64::INFINITY);
+        }
+        let job = &Job::new(control);
+        let mut most: f64 = 0.0;
+        self.each_way(mesh, allowed, job, |_, search, parallel| {
+            let (way, ..) = search.run(parallel, job)?;
+            most = most.max(way.distance.upper);
+            Ok(())
+        })?;
+        Ok(most)
+    }
+
+    /// Searches from the triangles of a mesh to the boundary (0), and back (1).
+    fn each_way(
         &self,
         mesh: &Arc<TriangleMesh>,
         allowed: f64,
         job: &Job<'_>,
-    ) -> Result<Comparison, Error> {
-        let mut found = Comparison { most: f64::INFINITY, beyond: Vec::new() };
-        let Some(surface) = &self.0 else { return Ok(found) };
+        mut look: impl FnMut(usize, &Search<'_>, bool) -> Result<(), Error> + Send,
+    ) -> Result<(), Error> {
+        let Some(surface) = &self.0 else { return Ok(()) };
         let own = Surface::of_mesh(mesh)?;
         let seen = [own.seen(job.control())?, surface.seen(job.control())?];
         let budget = CUTS * (1024 + seen.iter().map(|seen| seen.count() as u64).sum::<u64>());
         let worth = seen.iter().any(Seen::is_large);
-        found.most = 0.0;
         for k in 0..2 {
             let search = Search { from: &seen[k], to: &seen[1 - k], tolerance: SHARE * allowed, budget };
-            let most = job.control().run(worth, |parallel| {
-                let (way, ..) = search.run(parallel, job)?;
-                if way.distance.upper > allowed && way.distance.upper < f64::INFINITY {
-                    for point in search.points_beyond(allowed, parallel, job)? {
-                        memory::push(&mut found.beyond, point)?;
-                    }
-                }
-                Ok::<_, Error>(way.distance.upper)
-            })?;
-            found.most = found.most.max(most);
+            job.control().run(worth, |parallel| look(k, &search, parallel))?;
         }
-        Ok(found)
+        Ok(())
     }
+}
+
+impl Remade<'_> {
+    /// The triangles that are looked at, if these are not all.
+    fn new_ones(&self) -> Result<Option<TriangleMesh>, Error> {
+        if self.is_new.is_empty() {
+            return Ok(None);
+        }
+        let count = self.is_new.iter().filter(|&&is_new| is_new).count();
+        let mut triangles = memory::with_capacity(count)?;
+        let all = self.mesh.triangles().iter().zip(self.is_new);
+        triangles.extend(all.filter(|(_, is_new)| **is_new).map(|(own, _)| *own));
+        let vertices = memory::copied(self.mesh.vertices())?;
+        Ok(Some(TriangleMesh::from_welded(vertices, triangles, 0, 0)))
+    }
+}
+
+/// Whether a triangle may be near to one of a tree.
+fn is_near(mesh: &TriangleMesh, triangle: u32, tree: &TriangleTree<'_>, distance: f64) -> bool {
+    let [a, b, c] = mesh.triangles()[triangle as usize].map(|vertex| mesh.vertices()[vertex as usize]);
+    let length = |p: [f64; 3]| dot(minus(p, a), minus(p, a));
+    let side = sqrt(length(b).max(length(c)));
+    tree.nearest_of(&a, |_| true).is_none_or(|(_, away)| away.lower <= side + 2.0 * distance)
 }

@@ -30,10 +30,6 @@ const CHUNK: usize = 1 << 10;
 const BATCH: usize = 128;
 const CUTS: u64 = 64;
 
-/// How often a triangle is cut to find out whether it is within a limit.
-#[cfg(feature = "std")]
-const BEYOND: u64 = 1 << 10;
-
 /// Facets that are tried for the upper bound of a piece.
 const TRIED: usize = 5;
 
@@ -64,10 +60,18 @@ struct Refined {
     cuts: u64,
 }
 
-/// A triangle that is not proven to be within a limit, and the triangle of the other surface that is nearest to where it is farthest,
-/// if that is known.
+/// A triangle that is not proven to be within a limit.
 #[cfg(feature = "std")]
-pub(super) type Beyond = (u32, Option<u32>);
+pub(super) struct Beyond {
+    pub(super) triangle: u32,
+    /// The triangle of the other surface that is nearest to where it is farthest, if that is known.
+    pub(super) nearest: Option<u32>,
+    /// Whether a point of it is proven to be further away.
+    pub(super) is_proven: bool,
+}
+
+/// Which triangles of which layers are looked at.
+pub(super) type Wanted<'w> = dyn Fn(usize, u32) -> bool + Sync + 'w;
 
 /// Two surfaces.
 pub(super) struct Search<'s> {
@@ -84,7 +88,7 @@ impl Search<'_> {
         if self.from.is_empty() {
             return Ok((OneWay { distance: Interval::exactly(0.0), at: None }, 0, StopReason::Tolerance));
         }
-        let nears = self.vertices(parallel, &mut best, job)?;
+        let nears = self.vertices(parallel, &mut best, &|_, _| true, job)?;
         let mut open = Open { queue: Queue::new(), pieces: Vec::new(), free: Vec::new() };
         let mut settled = self.triangles(parallel, &nears, &mut best, &mut open, job)?;
         let mut cuts = 0;
@@ -131,17 +135,20 @@ impl Search<'_> {
         Ok((OneWay { distance, at: self.witness(&best) }, cuts, stop_reason))
     }
 
-    /// How far the first surface is from the second one at the most, found no more exactly than `limit` asks, and the triangles of the
-    /// first that are not proven to be within the limit.
+    /// How far the wanted triangles of the first surface are from the second one at the most, found no more exactly than `limit` and
+    /// the tolerance ask, and those that are not proven to be within both together after so many cuts each.
     #[cfg(feature = "std")]
     pub(super) fn beyond(
         &self,
         limit: f64,
+        wanted: &Wanted<'_>,
+        cuts: u64,
         parallel: bool,
         job: &Job<'_>,
     ) -> Result<(f64, Vec<Beyond>), Error> {
         let none = Best { lower: limit, at: None };
-        let nears = self.vertices(parallel, &mut none.clone(), job)?;
+        let allowed = limit + self.tolerance;
+        let nears = self.vertices(parallel, &mut Best { lower: f64::INFINITY, ..none }, wanted, job)?;
         let (mut most, mut beyond) = (0.0, Vec::new());
         for (number, layer) in self.from.covers.iter().enumerate() {
             let count = layer.mesh.triangles().len();
@@ -149,19 +156,24 @@ impl Search<'_> {
                 let (mut most, mut beyond): (f64, _) = (0.0, Vec::new());
                 for triangle in task * CHUNK..count.min((task + 1) * CHUNK) {
                     let triangle = triangle as u32;
+                    if !layer.is_chosen(triangle) || !wanted(number, triangle) {
+                        continue;
+                    }
                     let (mut piece, mut best) = (self.triangle(&nears, number, triangle), none);
                     self.bound(&mut piece, limit, &mut best);
                     let mut upper = piece.upper;
-                    if upper > limit && layer.is_chosen(triangle) {
-                        let refined = self.refine(piece, best, BEYOND, job)?;
-                        let rest = refined.rest.iter().map(|piece| piece.upper);
-                        upper = rest.fold(refined.settled, f64::max);
-                        if refined.best.lower > limit {
-                            upper = upper.max(refined.best.lower);
+                    if upper > limit {
+                        for corner in piece.corners() {
+                            self.consider(&mut best, corner.at, corner.near, piece.radius);
                         }
-                        if upper > limit {
+                        let refined = self.refine(piece, best, cuts, job)?;
+                        let rest = refined.rest.iter().map(|piece| piece.upper);
+                        upper = rest.fold(refined.settled, f64::max).max(refined.best.lower);
+                        if upper > allowed {
                             let facet = refined.best.at.map_or(piece.hint, |(_, _, facet)| facet);
-                            memory::push(&mut beyond, (triangle, facet.triangle()))?;
+                            let is_proven = refined.best.lower > limit;
+                            let nearest = facet.triangle();
+                            memory::push(&mut beyond, Beyond { triangle, nearest, is_proven })?;
                         }
                     }
                     most = most.max(upper);
@@ -177,71 +189,25 @@ impl Search<'_> {
         Ok((most, beyond))
     }
 
-    /// Points of the first surface that are further than `limit` from the second one, or nearly so: one for each triangle in which that is
-    /// found out soon.
-    #[cfg(feature = "std")]
-    pub(super) fn points_beyond(
-        &self,
-        limit: f64,
-        parallel: bool,
-        job: &Job<'_>,
-    ) -> Result<Vec<[f64; 3]>, Error> {
-        let nears = self.vertices(parallel, &mut Best { lower: f64::INFINITY, at: None }, job)?;
-        let mut points = Vec::new();
-        for (number, layer) in self.from.covers.iter().enumerate() {
-            let count = layer.mesh.triangles().len();
-            let found = each(parallel, 0..count.div_ceil(CHUNK), |task| {
-                let (mut points, first) = (Vec::new(), task * CHUNK);
-                for triangle in first..count.min(first + CHUNK) {
-                    if layer.is_chosen(triangle as u32)
-                        && let Some(point) =
-                            self.point_beyond(limit, &nears, (number, triangle as u32), job)?
-                    {
-                        memory::push(&mut points, point)?;
-                    }
-                }
-                Ok(points)
-            })?;
-            points.try_reserve(found.iter().map(Vec::len).sum())?;
-            points.extend(found.into_iter().flatten());
-        }
-        Ok(points)
-    }
-
-    /// The same of a triangle of a layer.
-    #[cfg(feature = "std")]
-    fn point_beyond(
-        &self,
-        limit: f64,
-        nears: &[Vec<Near>],
-        (layer, triangle): (usize, u32),
-        job: &Job<'_>,
-    ) -> Result<Option<[f64; 3]>, Error> {
-        let mut best = Best { lower: limit - self.tolerance, at: None };
-        let mut piece = self.triangle(nears, layer, triangle);
-        for corner in piece.corners() {
-            self.consider(&mut best, corner.at, corner.near, piece.radius);
-        }
-        self.bound(&mut piece, limit, &mut best);
-        if best.at.is_none() && piece.upper > limit {
-            best = self.refine(piece, best, CUTS, job)?.best;
-        }
-        Ok(best.at.map(|(point, ..)| point))
-    }
-
     fn witness(&self, best: &Best) -> Option<Witness> {
         let (point, apart, facet) = best.at?;
         Some(Witness { point, apart, nearest: self.to.nearest_on(facet, point)? })
     }
 
-    /// What is known of all vertices that triangles of the first surface have.
-    fn vertices(&self, parallel: bool, best: &mut Best, job: &Job<'_>) -> Result<Vec<Vec<Near>>, Error> {
+    /// What is known of all vertices that wanted triangles of the first surface have.
+    fn vertices(
+        &self,
+        parallel: bool,
+        best: &mut Best,
+        wanted: &Wanted<'_>,
+        job: &Job<'_>,
+    ) -> Result<Vec<Vec<Near>>, Error> {
         let mut nears = memory::with_capacity(self.from.covers.len())?;
-        for layer in &self.from.covers {
+        for (number, layer) in self.from.covers.iter().enumerate() {
             let (vertices, triangles) = (layer.mesh.vertices(), layer.mesh.triangles());
             let mut is_used = memory::filled(vertices.len(), false)?;
             for (triangle, corners) in (0..).zip(triangles) {
-                if layer.is_chosen(triangle) {
+                if layer.is_chosen(triangle) && wanted(number, triangle) {
                     corners.iter().for_each(|&vertex| is_used[vertex as usize] = true);
                 }
             }

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::lattice::{Bounds, Frame};
 use crate::memory;
 use crate::mesh::{TriangleMesh, TriangleTree};
-use crate::solid::BoundaryFacets;
+use crate::solid::{BoundaryFacets, BoundaryPieces};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
@@ -45,6 +45,33 @@ impl Surface {
             covers.push(Layer { mesh, chosen, radius });
         }
         Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
+    }
+
+    /// A surface that is known exactly but where triangles intersect.
+    pub(super) fn of_pieces(pieces: BoundaryPieces) -> Result<Surface, Error> {
+        let BoundaryPieces { facets, sure, doubtful, rounding } = pieces;
+        let radius = facets.mesh.radius() + 2.0 * rounding;
+        let layer = |triangles: [&[[[f64; 3]; 3]]; 2]| {
+            let count = triangles.iter().map(|list| list.len()).sum::<usize>();
+            let mut vertices = memory::with_capacity(3 * count)?;
+            vertices.extend(triangles.into_iter().flatten().flatten());
+            let corners = (0..count as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
+            let mesh = TriangleMesh::new(vertices, memory::collected(corners)?)?;
+            Ok::<_, Error>((!mesh.triangles().is_empty()).then(|| Layer {
+                mesh: Arc::new(mesh),
+                chosen: Vec::new(),
+                radius,
+            }))
+        };
+        let mut surface = Surface::of_facets(facets)?;
+        let mut cores = memory::with_capacity(2)?;
+        surface.covers.try_reserve(1)?;
+        for Layer { mesh, chosen, radius } in &surface.covers {
+            cores.push(Layer { mesh: mesh.clone(), chosen: memory::copied(chosen)?, radius: *radius });
+        }
+        cores.extend(layer([&sure, &[]])?);
+        surface.covers.extend(layer([&sure, &doubtful])?);
+        Ok(Surface { cores: Some(cores), ..surface })
     }
 
     /// The triangles of a mesh, wherever the boundary that it stands for may lie.
@@ -160,6 +187,12 @@ impl<'s> Seen<'s> {
         self.covers.is_empty()
     }
 
+    /// Whether nothing of the boundary is known to be anywhere.
+    #[cfg(feature = "std")]
+    pub(super) fn is_unknown(&self) -> bool {
+        self.cores().is_empty()
+    }
+
     /// How many triangles there are.
     pub(super) fn count(&self) -> usize {
         self.covers.iter().map(|layer| layer.mesh.triangles().len()).sum()
@@ -178,7 +211,8 @@ impl<'s> Seen<'s> {
             Some(_) => self.near_core(point, hint),
         };
         for (number, layer) in (0..).zip(&self.covers) {
-            let hint = if self.is_exact() { hint.of_layer(number) } else { None };
+            // (Layers of both lists are often about the same.)
+            let hint = hint.of_layer(number);
             let found = layer.tree.nearest_beside(&point, hint, |triangle| layer.is_chosen(triangle));
             let Some((found, distance)) = found else {
                 // A layer has triangles: the point is too far away.

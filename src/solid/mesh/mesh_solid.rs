@@ -20,11 +20,11 @@ use crate::error::{Error, MeshError};
 use crate::lattice::axes;
 use crate::lattice::{Affine, Bounds, Cell, Frame};
 use crate::memory;
-use crate::mesh::{FacetPlanes, FillRule, Loops, MeshMoments, Sides, TriangleMesh};
+use crate::mesh::{FacetPlanes, FillRule, Loops, MeshMoments, Pieces, Sides, TriangleMesh};
 use crate::octree::{Block, Proof, Tag};
 use crate::solid::{
-    Batch, BoundaryFacets, Classifier, Crossing, Direct, Enclosure, Fingerprint, Fingerprinter,
-    LayersQuestion, Motion, Parts, Question, Segment, Solid, Verdict, WholeQuestion, Worker,
+    Batch, BoundaryFacets, BoundaryPieces, Classifier, Crossing, Direct, Enclosure, Fingerprint,
+    Fingerprinter, LayersQuestion, Motion, Parts, Question, Segment, Solid, Verdict, WholeQuestion, Worker,
     sample_one_by_one, split_one_by_one,
 };
 use alloc::boxed::Box;
@@ -420,6 +420,21 @@ impl Classifier for MeshClassifier {
                 {
                     *known =
                         sides.boundary()?.map(|chosen| BoundaryFacets { mesh: solid.mesh.clone(), chosen });
+                }
+            }
+            WholeQuestion::Pieces(size, known) => {
+                if solid.is_closed()
+                    && self.exterior() == Tag::Empty
+                    && let Some(sides) = solid.sides(control)?
+                {
+                    let found = solid.mesh.pieces(sides, solid.fill, size, control)?;
+                    let facets = BoundaryFacets { mesh: solid.mesh.clone(), chosen: sides.bounding()? };
+                    *known = found.map(|Pieces { sure, doubtful, rounding }| BoundaryPieces {
+                        facets,
+                        sure,
+                        doubtful,
+                        rounding,
+                    });
                 }
             }
             WholeQuestion::Walls(known) => {

@@ -28,6 +28,13 @@ const SLACK: f64 = 0.1;
 /// How many levels below a cell are looked at, where its own slab is not thin.
 const AHEAD: u8 = 3;
 
+/// Cells that are split to know where the boundary is, for each cell of the contour, and those of any contour.
+const SPLITS: u64 = 16;
+const ANYWAY: u64 = 4096;
+
+/// Cells are rare if there are so many times as many others.
+const RARE: u64 = 512;
+
 /// No normal of a flat piece is further than this from that of its slab.
 const CONE: f64 = 1.0;
 
@@ -78,6 +85,37 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
             self.grow(first + octant, parts / 8)?;
         }
         Ok(true)
+    }
+
+    /// Splits leaves, but for those that are split already; `count` of them are asked for, about. Where these are few beside all others, so
+    /// are their parts: one round does the work of two. Whether there was one to split.
+    pub(super) fn split_all(
+        &mut self,
+        count: usize,
+        leaves: impl IntoIterator<Item = u32>,
+    ) -> Result<bool, Error> {
+        let is_rare = count as u64 * RARE <= self.cells.open();
+        let mut is_any = false;
+        for leaf in leaves {
+            let first = self.cells.leaves.len() as u32;
+            if self.cells.leaves[leaf as usize].is_gone || !self.split(leaf, 0)? {
+                continue;
+            }
+            is_any = true;
+            for part in (first..first + 8).filter(|_| is_rare) {
+                let own = self.cells.leaves[part as usize];
+                if own.kind == Kind::Open && !own.is_gone {
+                    self.split(part, 0)?;
+                }
+            }
+        }
+        Ok(is_any)
+    }
+
+    /// How many cells may be split to know where the boundary is.
+    pub(super) fn budget(&self) -> u64 {
+        let most = self.job.control().max_splits.map_or(u64::MAX, |most| most.saturating_sub(self.splits));
+        (SPLITS * self.cells.open() + ANYWAY).min(most)
     }
 
     /// Splits a leaf as far as that is needed.

@@ -26,8 +26,10 @@ use crate::lattice::{Affine, Frame, MAX_DEPTH, axes, valid};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::Tag;
-use crate::query::{Comparison, Reference};
+use crate::parallel::each_with;
+use crate::query::{Reference, Remade};
 use crate::solid::{Classifier, Solid, Transform, Worker};
+use crate::surface::simplify::{Reduction, Regions};
 use crate::walk::Proven;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -57,7 +59,8 @@ pub struct ContourReport {
     /// Points of which the solid did not tell whether they lie inside; they counted as outside.
     pub undecided: u64,
     /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the mesh (model units): proven.
-    /// Infinite if nothing is known.
+    /// Where mesh and boundary have more than 32 768 triangles together, it is known no more exactly than it takes to tell whether it is within
+    /// the tolerance. Infinite if nothing is known.
     pub deviation: f64,
 }
 
@@ -78,18 +81,26 @@ impl Contour {
     }
 }
 
-/// How often cells are split where triangles intersect.
-const ROUNDS: usize = 24;
+/// How often the mesh is made anew because cells were split.
+const ROUNDS: usize = 48;
 
 /// Intersecting pairs that are looked at in one round.
 const PAIRS: usize = 1 << 16;
 
 /// How often cells are split because the mesh is proven to be too far from the boundary next to them.
-const PROOFS: usize = 6;
+const PROOFS: usize = 16;
 
-/// Cells that are split to know where the boundary is, for each cell of the contour, and those of any contour.
-const SPLITS: u64 = 16;
-const ANYWAY: u64 = 4096;
+/// How far cells may be from the surface, and the surface may move where vertices are taken out, as parts of the tolerance. (Both are
+/// rarely so at one place; where they are, vertices stay.)
+const CELLS: f64 = 0.7;
+const FEWER: f64 = 0.5;
+
+/// How often a triangle is cut to find out whether it is near, and to prove how near.
+const LOOKS: u64 = 16;
+const PROVES: u64 = 1 << 10;
+
+/// Pairs that intersect are looked for once no more than one cell of so many was refused.
+const ROUGH: u64 = 64;
 
 /// How well they tell it, as a part of the tolerance.
 const KNOWN: f64 = 0.25;
@@ -97,8 +108,9 @@ const KNOWN: f64 = 0.25;
 /// How many levels below a cell its surface is compared with the mesh.
 const AHEAD: u8 = 2;
 
-/// How far from each other samples of the surface and the mesh may be, in tolerances.
-const NEAR: f64 = 1.0;
+/// Cells or triangles that one task compares with the surface, and how many are worth several threads.
+const CHUNK: usize = 64;
+const MANY: usize = 1 << 10;
 
 /// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies in it.
 const SHIFTS: [f64; 3] = [0.013_371, 0.017_317, 0.011_831];
@@ -112,11 +124,12 @@ const LARGER: f64 = 1.031_77;
 /// that sharp edges and corners of flat faces are exact to rounding in such cells. Cells that are proven empty or full are never split.
 /// Slabs of the solid in a cell and in the cells below it tell whether a vertex will do, and lines through the cell do where there are
 /// none. Where the solid tells nearest points, as meshes do, the mesh is compared with it at many points, and cells are split where the
-/// two are further from each other than `tolerance` (model units), as far as the depth of the frame.
+/// two are further from each other than seven tenths of `tolerance` (model units), as far as the depth of the frame. At last vertices are taken out as
+/// [`simplify`](super::simplify()) does it, where the mesh stays within `tolerance`: a plane face has few triangles, however many cells it has.
 ///
-/// [`ContourReport::deviation`] is proven, as [`deviation`](crate::deviation) proves it: of a closed mesh whose triangles do not intersect
-/// exactly, and of anything else by slabs of cells, of which up to sixteen are split for each cell of the contour. Where the mesh is proven
-/// to be further from the boundary than `tolerance`, cells are split, too. What is left beyond it is told as it is: where cells of the
+/// [`ContourReport::deviation`] is proven, as [`deviation`](crate::deviation) proves it: for closed meshes by their triangles, and for
+/// anything else by slabs of cells, of which up to sixteen are split for each cell of the contour. Where a point of the mesh or of the boundary
+/// is proven to be further from the other than seven tenths of `tolerance`, cells are split, too. What is left beyond it is told as it is: where cells of the
 /// frame's depth are too coarse, and where slabs are. A solid without any is known to about the size of these cells, and of an octree
 /// that proves nothing of its solid nothing is known.
 ///
@@ -127,7 +140,7 @@ const LARGER: f64 = 1.031_77;
 /// PARTIAL cells of a stored octree, count as outside. The lattice is not that of the frame but lies a little beside it, so that
 /// faces may lie in planes of the frame's lattice.
 ///
-/// Some 100 µs a cell of a mesh, and more for solids that answer no rays; threads share only the proof. The result depends on the solid, the
+/// Some 100 µs a cell of a mesh, and more for solids that answer no rays; threads share what is compared with the solid, and the proof. The result depends on the solid, the
 /// frame and the tolerance alone. The memory is that of the cells and of the triangles. `control.max_nodes` bounds the splits; with
 /// `control.max_splits` spent cells stay as they are, and the mesh is coarser.
 ///
@@ -189,120 +202,133 @@ impl Wanted<'_> {
         }
         let frame = *classifier.frame();
         let mut probe = Probe::new(&classifier, self.depth, self.quiet)?;
-        let classifier = Proven(classifier);
-        let mut proof = Proof { reference: None, count: 0 };
-        let mut near = HashSet::new();
-        let mut grower = Grower::new(&mut probe, self.depth, self.tolerance, job)?;
+        let certain = Proven(classifier.clone());
+        let edge = frame.edge();
+        let cells = CELLS * self.tolerance;
+        let mut proof = Proof {
+            classifier: &certain,
+            reference: None,
+            tolerance: KNOWN * cells * edge,
+            job: Job::new(self.quiet),
+        };
+        let (mut near, mut proven) = (HashSet::new(), HashSet::new());
+        let mut grower = Grower::new(&mut probe, self.depth, cells, job)?;
         grower.grow(0, WHOLE / 2)?;
-        let mut round = 0;
-        loop {
+        let (mut round, mut proofs) = (0, 0);
+        let mesh = loop {
             round += 1;
             job.check()?;
             let sheets = Sheets::find(&grower.cells, grower.probe)?;
-            let mut places = memory::with_capacity(sheets.crossings.len())?;
-            let mut spare = Vec::new();
-            for crossing in &sheets.crossings {
-                let (axis, at) = (usize::from(crossing.axis), crossing.at.map(|c| 2 * c));
-                places.push(grower.probe.crossing(
-                    axis,
-                    at,
-                    2 * crossing.length,
-                    crossing.starts_inside,
-                    &mut spare,
-                )?);
-            }
+            let places = places(&sheets, grower.probe)?;
             let vertices = vertices(&grower.cells, &sheets, &places)?;
             let made = Triangles::of(&sheets, vertices, &places, |_| false)?;
             let mesh = Arc::new(assemble(&made, &frame)?);
-            if round < ROUNDS {
-                let refused = Compared { made: &made, sheets: &sheets, mesh: &mesh }.refused(
-                    &mut grower,
-                    &mut near,
-                    self.tolerance,
-                    self.quiet,
-                )?;
-                let mut is_changed = false;
-                for leaf in refused {
-                    if !grower.cells.leaves[leaf as usize].is_gone {
-                        is_changed |= grower.split(leaf, 0)?;
-                    }
-                }
-                if is_changed {
-                    continue;
-                }
+            if round >= ROUNDS {
+                break mesh;
             }
-            let pairs = mesh.intersecting_pairs(PAIRS, self.quiet)?;
-            let mut is_changed = false;
-            if pairs.count > 0 && round < ROUNDS {
-                for triangle in pairs.pairs.iter().flat_map(|pair| pair.triangles) {
-                    let crossing = made.crossings[triangle as usize];
-                    for leaf in sheets.crossings[crossing as usize].around {
-                        if !grower.cells.leaves[leaf as usize].is_gone {
-                            is_changed |= grower.split(leaf, 0)?;
-                        }
-                    }
-                }
+            let compared = Compared { made: &made, sheets: &sheets, mesh: &mesh };
+            let refused = compared.refused(&classifier, &mut grower.cells, &mut near, self)?;
+            let is_rough = refused.len() as u64 > grower.cells.open() / ROUGH;
+            let mut is_split = grower.split_all(refused.len(), refused)?;
+            if !(is_rough && is_split) {
+                let pairs = mesh.intersecting_pairs(PAIRS, self.quiet)?;
+                let meeting = pairs.pairs.iter().flat_map(|pair| pair.triangles);
+                let leaves = meeting.flat_map(|triangle| compared.around(triangle));
+                is_split |= grower.split_all(pairs.pairs.len(), leaves)?;
             }
-            if is_changed {
+            if is_split {
                 continue;
             }
-            let cells = grower.cells.open();
-            let most = job.control().max_splits.map_or(u64::MAX, |most| most - grower.splits);
-            let compared = proof.compare(&classifier, &mesh, self, (SPLITS * cells + ANYWAY).min(most))?;
-            if !compared.beyond.is_empty() && round < ROUNDS && proof.count <= PROOFS {
-                let tree = mesh.triangle_tree(self.quiet)?;
-                for point in &compared.beyond {
-                    let Some(near) = tree.nearest(point, None) else { continue };
-                    let crossing = made.crossings[near.triangle as usize];
-                    for leaf in sheets.crossings[crossing as usize].around {
-                        if !grower.cells.leaves[leaf as usize].is_gone {
-                            is_changed |= grower.split(leaf, 0)?;
-                        }
-                    }
-                }
+            if proofs >= PROOFS {
+                break mesh;
             }
-            if !is_changed {
-                let report = ContourReport {
-                    intersecting_pairs: pairs.count,
-                    cells,
-                    splits: grower.splits,
-                    undecided: grower.probe.undecided,
-                    deviation: compared.most,
-                };
-                return Ok(Contour { mesh: Arc::unwrap_or_clone(mesh), report });
+            proofs += 1;
+            let is_new = fresh(&mesh, &mut proven)?;
+            let remade = Remade { mesh: &mesh, is_new: if proofs > 1 { &is_new } else { &[] }, cuts: LOOKS };
+            let found = proof.reference(grower.budget())?.beyond(&remade, cells * edge, self.quiet)?;
+            let leaves = found.beyond.iter().flat_map(|&triangle| compared.around(triangle));
+            if !grower.split_all(found.beyond.len(), leaves)? {
+                break mesh;
             }
+        };
+        let (mesh, intersecting_pairs, deviation) =
+            self.reduced(&mesh, edge, proof.reference(grower.budget())?)?;
+        let report = ContourReport {
+            intersecting_pairs,
+            cells: grower.cells.open(),
+            splits: grower.splits,
+            undecided: grower.probe.undecided,
+            deviation,
+        };
+        Ok(Contour { mesh, report })
+    }
+
+    /// A mesh with fewer triangles, how many pairs of these intersect, and how far it is from the boundary of a solid in a universe with such
+    /// an edge.
+    fn reduced(
+        &self,
+        mesh: &TriangleMesh,
+        edge: f64,
+        reference: &Reference,
+    ) -> Result<(TriangleMesh, u64, f64), Error> {
+        let (tolerance, job) = (self.tolerance * edge, Job::new(self.quiet));
+        let mut reduction = Reduction::new(mesh, Regions::Alike(&[]), FEWER * tolerance)?;
+        let mut last = usize::MAX;
+        loop {
+            let (simple, kept, pairs) = reduction.run(&job)?;
+            let simple = Arc::new(simple);
+            let remade = Remade { mesh: &simple, is_new: &[], cuts: PROVES };
+            let found = reference.beyond(&remade, tolerance, self.quiet)?;
+            let beyond = found.beyond.iter().map(|&triangle| kept[triangle as usize]);
+            // (What is too far in any case, is so again.)
+            if found.beyond.len() >= last || !reduction.hold(beyond)? {
+                let deviation = reference.apart(&simple, tolerance, self.quiet)?.min(found.most);
+                return Ok((Arc::unwrap_or_clone(simple), pairs, deviation));
+            }
+            last = found.beyond.len();
         }
     }
 }
 
-/// How far meshes are from a solid.
-struct Proof {
-    /// Where the boundary is, once somebody has asked.
-    reference: Option<Reference>,
-    /// How many meshes were compared with it.
-    count: usize,
+/// Which triangles of a mesh are not among the known ones, which they become.
+fn fresh(mesh: &TriangleMesh, known: &mut HashSet<[[u64; 3]; 3]>) -> Result<Vec<bool>, Error> {
+    known.try_reserve(mesh.triangles().len())?;
+    let vertices = mesh.vertices();
+    let corners =
+        mesh.triangles().iter().map(|own| own.map(|vertex| vertices[vertex as usize].map(f64::to_bits)));
+    memory::collected(corners.map(|corners| known.insert(corners)))
 }
 
-impl Proof {
-    fn compare<C: Classifier>(
-        &mut self,
-        classifier: &C,
-        mesh: &Arc<TriangleMesh>,
-        wanted: &Wanted<'_>,
-        budget: u64,
-    ) -> Result<Comparison, Error> {
-        let job = Job::new(wanted.quiet);
-        let tolerance = wanted.tolerance * classifier.frame().edge();
-        let reference = match &mut self.reference {
-            Some(reference) => reference,
-            None => {
-                let known = Reference::new(classifier, KNOWN * tolerance, budget, &job)?;
-                self.reference.insert(known)
-            }
-        };
-        self.count += 1;
-        reference.compare(mesh, tolerance, &job)
+/// How far meshes are from a solid.
+struct Proof<'p, C> {
+    classifier: &'p C,
+    /// Where the boundary is, once somebody has asked.
+    reference: Option<Reference>,
+    /// To which it is to be known (model units).
+    tolerance: f64,
+    job: Job<'p>,
+}
+
+impl<C: Classifier> Proof<'_, C> {
+    /// Where the boundary is: by no more than `budget` cells if it is not known exactly.
+    fn reference(&mut self, budget: u64) -> Result<&Reference, Error> {
+        match &mut self.reference {
+            Some(reference) => Ok(reference),
+            none => Ok(none.insert(Reference::new(self.classifier, self.tolerance, budget, &self.job)?)),
+        }
     }
+}
+
+/// Where edges are crossed.
+fn places<W: Worker>(sheets: &Sheets, probe: &mut Probe<'_, W>) -> Result<Vec<Place>, Error> {
+    let mut places = memory::with_capacity(sheets.crossings.len())?;
+    let mut spare = Vec::new();
+    for crossing in &sheets.crossings {
+        let (axis, at) = (usize::from(crossing.axis), crossing.at.map(|c| 2 * c));
+        let length = 2 * crossing.length;
+        places.push(probe.crossing(axis, at, length, crossing.starts_inside, &mut spare)?);
+    }
+    Ok(places)
 }
 
 /// A mesh with what it was made of.
@@ -313,73 +339,111 @@ struct Compared<'c> {
 }
 
 impl Compared<'_> {
+    /// The leaves around the crossing that a triangle belongs to.
+    fn around(&self, triangle: u32) -> [u32; 4] {
+        self.sheets.crossings[self.made.crossings[triangle as usize] as usize].around
+    }
+
     /// The leaves next to which the mesh is too far from the surface. `known` are points of meshes that are near to it.
-    fn refused<W: Worker>(
+    fn refused<C: Classifier>(
         &self,
-        grower: &mut Grower<'_, '_, W>,
+        classifier: &C,
+        cells: &mut Cells,
         known: &mut HashSet<[u64; 3]>,
-        tolerance: f64,
-        control: &Control<'_>,
+        wanted: &Wanted<'_>,
     ) -> Result<Vec<u32>, Error> {
-        let mut refused = Vec::new();
-        let tree = self.mesh.triangle_tree(control)?;
-        let mut samples = Vec::new();
-        let mut hint = None;
-        for leaf in 0..grower.cells.leaves.len() {
-            let own = grower.cells.leaves[leaf];
-            if own.kind != Kind::Open || own.is_gone || own.is_checked {
+        let mut unchecked = Vec::new();
+        let tolerance = CELLS * wanted.tolerance;
+        for (number, leaf) in (0u32..).zip(&mut cells.leaves) {
+            if leaf.kind != Kind::Open || leaf.is_gone || leaf.is_checked {
                 continue;
             }
-            grower.cells.leaves[leaf].is_checked = true;
-            let edge = 1.0 / f64::from(1u32 << own.cell.level);
-            if own.cell.level >= grower.cells.depth || edge * 1.75 <= tolerance {
-                continue;
-            }
-            control.check()?;
-            samples.clear();
-            grower.probe.samples(own.cell, AHEAD, &mut samples)?;
-            for &sample in &samples {
-                let point = grower.probe.model(sample);
-                let near = tree.nearest(&point, hint);
-                let is_near = near.is_some_and(|near| {
-                    hint = Some(near.triangle);
-                    tree.most_from(near.triangle, &point) <= NEAR * tolerance * grower.probe.edge()
-                });
-                if !is_near {
-                    memory::push(&mut refused, leaf as u32)?;
-                    break;
-                }
+            leaf.is_checked = true;
+            let edge = 1.0 / f64::from(1u32 << leaf.cell.level);
+            if leaf.cell.level < cells.depth && edge * 1.75 > tolerance {
+                memory::push(&mut unchecked, (number, leaf.cell))?;
             }
         }
-        if !refused.is_empty() {
-            return Ok(refused);
-        }
-        for (triangle, &crossing) in self.made.triangles.iter().zip(&self.made.crossings) {
-            let corners = triangle.map(|vertex| self.made.vertices[vertex as usize]);
-            let [a, b, c] = corners;
-            // The middle, and those of sides that run this way.
-            let middle = |p: [f64; 3], q: [f64; 3]| axes(|k| 0.5 * (p[k] + q[k]));
-            let points = [axes(|k| (a[k] + b[k] + c[k]) / 3.0), middle(a, b), middle(b, c), middle(c, a)];
-            for (side, point) in points.into_iter().enumerate() {
-                if side > 0 && triangle[side - 1] > triangle[side % 3] {
-                    continue;
-                }
-                let bits = point.map(f64::to_bits);
-                if known.contains(&bits) {
-                    continue;
-                }
-                let Some(nearest) = grower.probe.nearest(point)? else { break };
-                let off = axes(|k| nearest[k] - point[k]);
-                if dot(off, off) > NEAR * NEAR * tolerance * tolerance {
-                    refused.try_reserve(4)?;
-                    refused.extend(self.sheets.crossings[crossing as usize].around);
-                    break;
-                }
-                known.try_reserve(1)?;
-                known.insert(bits);
+        let mut doubtful = Vec::new();
+        for triangle in 0..self.made.triangles.len() as u32 {
+            if self.points(triangle).any(|point| !known.contains(&point.map(f64::to_bits))) {
+                memory::push(&mut doubtful, triangle)?;
             }
         }
-        Ok(refused)
+        let tree = self.mesh.triangle_tree(wanted.quiet)?;
+        let (seen, is_worth) = (&*known, unchecked.len() + doubtful.len() > MANY);
+        let probe = || Probe::new(classifier, wanted.depth, wanted.quiet);
+        let none = || None;
+        let (mut refused, near) = wanted.quiet.run(is_worth, |parallel| {
+            let far = each_with(parallel, unchecked.chunks(CHUNK), none, |own, leaves| {
+                wanted.quiet.check()?;
+                let probe = match own {
+                    Some(probe) => probe,
+                    none => none.insert(probe()?),
+                };
+                let (mut far, mut samples, mut hint) = (Vec::new(), Vec::new(), None);
+                for &(leaf, cell) in leaves {
+                    samples.clear();
+                    probe.samples(cell, AHEAD, &mut samples)?;
+                    let is_near = |&sample: &[f64; 3]| {
+                        let point = probe.model(sample);
+                        tree.nearest(&point, hint).is_some_and(|near| {
+                            hint = Some(near.triangle);
+                            tree.most_from(near.triangle, &point) <= tolerance * probe.edge()
+                        })
+                    };
+                    if !samples.iter().all(is_near) {
+                        memory::push(&mut far, leaf)?;
+                    }
+                }
+                Ok(far)
+            })?;
+            let near = each_with(parallel, doubtful.chunks(CHUNK), none, |own, triangles| {
+                wanted.quiet.check()?;
+                let probe = match own {
+                    Some(probe) => probe,
+                    none => none.insert(probe()?),
+                };
+                let mut near = memory::with_capacity(triangles.len())?;
+                for &triangle in triangles {
+                    let mut is_near = true;
+                    let new = self.points(triangle).filter(|point| !seen.contains(&point.map(f64::to_bits)));
+                    for point in new {
+                        let Some(nearest) = probe.nearest(point)? else { break };
+                        let off = axes(|k| nearest[k] - point[k]);
+                        is_near &= dot(off, off) <= tolerance * tolerance;
+                    }
+                    near.push(is_near);
+                }
+                Ok(near)
+            })?;
+            Ok::<_, Error>((far, near))
+        })?;
+        let mut leaves = Vec::new();
+        for far in &mut refused {
+            leaves.try_reserve(far.len())?;
+            leaves.append(far);
+        }
+        for (&triangle, &is_near) in doubtful.iter().zip(near.iter().flatten()) {
+            known.try_reserve(4)?;
+            leaves.try_reserve(4)?;
+            if is_near {
+                known.extend(self.points(triangle).map(|point| point.map(f64::to_bits)));
+            } else {
+                leaves.extend(self.around(triangle));
+            }
+        }
+        Ok(leaves)
+    }
+
+    /// Points of a triangle that are compared with the surface: its middle, and those of sides that run this way.
+    fn points(&self, triangle: u32) -> impl Iterator<Item = [f64; 3]> {
+        let own = self.made.triangles[triangle as usize];
+        let [a, b, c] = own.map(|vertex| self.made.vertices[vertex as usize]);
+        let sides = [(a, b), (b, c), (c, a)].into_iter().enumerate();
+        let sides = sides.filter(move |&(k, _)| own[k] <= own[(k + 1) % 3]);
+        let middles = sides.map(|(_, (p, q))| axes(|k| 0.5 * (p[k] + q[k])));
+        middles.chain([axes(|k| (a[k] + b[k] + c[k]) / 3.0)])
     }
 }
 

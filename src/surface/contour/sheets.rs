@@ -36,15 +36,19 @@ pub(super) struct Crossing {
 
 impl Crossing {
     /// Crossings in the order in which those on one line follow each other.
-    fn key(&self) -> (u8, u32, u32, u32) {
-        let axis = usize::from(self.axis);
-        (self.axis, self.at[(axis + 1) % 3], self.at[(axis + 2) % 3], self.at[axis])
+    fn key(&self) -> u128 {
+        key(usize::from(self.axis), self.at)
     }
 
     /// The first place of a leaf around it.
     fn place(&self, leaf: u32) -> Option<usize> {
         self.around.iter().position(|&around| around == leaf)
     }
+}
+
+fn key(axis: usize, at: [u32; 3]) -> u128 {
+    let [along, u, v] = [0, 1, 2].map(|step| u128::from(at[(axis + step) % 3]));
+    (axis as u128) << 96 | u << 64 | v << 32 | along
 }
 
 /// What joins two crossings in a face.
@@ -81,6 +85,12 @@ const FULL: u8 = 2;
 const ASKED: u8 = 4;
 const INSIDE: u8 = 8;
 
+/// Whether there is nothing but empty cells around an edge: both its ends lie outside. Whoever else meets such an end says so, too.
+fn is_empty(cells: &Cells, edge: &Edge) -> bool {
+    let mut around = edge.around.iter().map(|&leaf| cells.leaves.get(leaf as usize));
+    around.all(|leaf| leaf.is_none_or(|leaf| leaf.kind == Kind::Empty))
+}
+
 /// Finds out what cells say of corners.
 struct Touched<'c> {
     cells: &'c Cells,
@@ -93,6 +103,9 @@ impl Visitor for Touched<'_> {
     }
 
     fn edge(&mut self, edge: &Edge) -> Result<(), Error> {
+        if is_empty(self.cells, edge) {
+            return Ok(());
+        }
         let mut state = 0;
         for leaf in edge.around {
             state |= match self.cells.leaves.get(leaf as usize).map(|leaf| leaf.kind) {
@@ -113,6 +126,7 @@ impl Visitor for Touched<'_> {
 
 /// Finds the edges that are crossed.
 struct Crossed<'i, I> {
+    cells: &'i Cells,
     states: HashMap<[u32; 3], u8>,
     inside: &'i mut I,
     crossings: Vec<Crossing>,
@@ -140,6 +154,9 @@ impl<I: Inside> Visitor for Crossed<'_, I> {
     }
 
     fn edge(&mut self, edge: &Edge) -> Result<(), Error> {
+        if is_empty(self.cells, edge) {
+            return Ok(());
+        }
         let mut end = edge.at;
         end[edge.axis] += edge.length;
         let starts_inside = self.is_inside(edge.at)?;
@@ -156,6 +173,10 @@ impl<I: Inside> Visitor for Crossed<'_, I> {
 struct Joined<'i, I> {
     inside: &'i mut I,
     crossings: Vec<Crossing>,
+    /// The keys of these.
+    keys: Vec<u128>,
+    /// Which leaves lie around crossings: no other face has any.
+    is_crossed: Vec<bool>,
     arcs: Vec<Arc>,
     /// Of the face at hand, counter-clockwise: crossings, and whether the corner before each lies inside.
     ring: Vec<(u32, bool)>,
@@ -164,9 +185,11 @@ struct Joined<'i, I> {
 impl<I> Joined<'_, I> {
     /// Takes in the crossings from a corner along an axis.
     fn along(&mut self, axis: usize, at: [u32; 3], length: u32, is_backward: bool) -> Result<(), Error> {
-        let key = |start: u32| (axis as u8, at[(axis + 1) % 3], at[(axis + 2) % 3], start);
-        let first = self.crossings.partition_point(|crossing| crossing.key() < key(at[axis]));
-        let end = self.crossings.partition_point(|crossing| crossing.key() < key(at[axis] + length));
+        let mut over = at;
+        over[axis] += length;
+        let first = self.keys.partition_point(|&own| own < key(axis, at));
+        let count = self.keys[first..].iter().take_while(|&&own| own < key(axis, over)).count();
+        let end = first + count;
         for k in 0..end - first {
             let number = if is_backward { end - 1 - k } else { first + k };
             let starts_inside = self.crossings[number].starts_inside;
@@ -183,7 +206,7 @@ impl<I: Inside> Visitor for Joined<'_, I> {
 
     fn face(&mut self, face: &Face) -> Result<(), Error> {
         let &Face { axis, at, length, sides } = face;
-        if sides.contains(&OUTSIDE) {
+        if sides.iter().any(|&leaf| leaf == OUTSIDE || !self.is_crossed[leaf as usize]) {
             return Ok(());
         }
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -228,7 +251,7 @@ impl Sheets {
     pub(super) fn find(cells: &Cells, inside: &mut impl Inside) -> Result<Sheets, Error> {
         let mut touched = Touched { cells, states: HashMap::new() };
         walk(cells, &mut touched)?;
-        let mut crossed = Crossed { states: touched.states, inside, crossings: Vec::new() };
+        let mut crossed = Crossed { cells, states: touched.states, inside, crossings: Vec::new() };
         walk(cells, &mut crossed)?;
         let Crossed { mut crossings, states, .. } = crossed;
         drop(states);
@@ -236,7 +259,12 @@ impl Sheets {
             return Err(MeshError::TooMany.into());
         }
         crossings.sort_unstable_by_key(Crossing::key);
-        let mut joined = Joined { inside, crossings, arcs: Vec::new(), ring: Vec::new() };
+        let mut is_crossed = memory::filled(cells.leaves.len(), false)?;
+        for leaf in crossings.iter().flat_map(|crossing| crossing.around) {
+            is_crossed[leaf as usize] = true;
+        }
+        let keys = memory::collected(crossings.iter().map(Crossing::key))?;
+        let mut joined = Joined { inside, crossings, keys, is_crossed, arcs: Vec::new(), ring: Vec::new() };
         walk(cells, &mut joined)?;
         let Joined { crossings, arcs, .. } = joined;
         let mut sheets =
