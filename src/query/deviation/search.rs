@@ -168,10 +168,13 @@ impl Search<'_> {
                         }
                         let refined = self.refine(piece, best, cuts, job)?;
                         let rest = refined.rest.iter().map(|piece| piece.upper);
-                        upper = rest.fold(refined.settled, f64::max).max(refined.best.lower);
+                        let is_proven = refined.best.lower > limit;
+                        upper = rest.fold(refined.settled, f64::max);
+                        if is_proven {
+                            upper = upper.max(refined.best.lower);
+                        }
                         if upper > allowed {
                             let facet = refined.best.at.map_or(piece.hint, |(_, _, facet)| facet);
-                            let is_proven = refined.best.lower > limit;
                             let nearest = facet.triangle();
                             memory::push(&mut beyond, Beyond { triangle, nearest, is_proven })?;
                         }
