@@ -275,7 +275,7 @@ impl Wanted<'_> {
         let mut reduction = Reduction::new(mesh, Regions::Alike(&[]), FEWER * tolerance)?;
         let mut last = usize::MAX;
         loop {
-            let (simple, kept, pairs) = reduction.run(&job)?;
+            let (simple, kept, pairs) = reduction.run(&job, 0)?;
             let simple = Arc::new(simple);
             let remade = Remade { mesh: &simple, is_new: &[], cuts: PROVES };
             let found = reference.beyond(&remade, tolerance, self.quiet)?;
