@@ -40,7 +40,7 @@ def leafless(*arguments):
 def apart(solid, mesh, tolerance):
     """The interval of the distance between the boundary of a solid and a mesh."""
     found = leafless("deviation", solid, mesh, "--tolerance", str(tolerance))
-    return found["deviation"]["lower"], found["deviation"]["upper"]
+    return found["lower"], found["upper"]
 
 
 def median(run):
@@ -88,7 +88,7 @@ def of_plate(folder):
         scad, off = folder / "sides.scad", folder / "sides.off"
         scad.write_text(PLATE % sides)
         seconds = statistics.median(said("openscad", str(scad), "-o", str(off))[1] for _ in range(3))
-        triangles = leafless("info", str(off))["triangles"]
+        triangles = leafless("info", str(off))["mesh"]["triangles"]
         row(f"OpenSCAD, {sides} sides", triangles, milliseconds(seconds), f"{chord:.1e} by its sides")
     for depth in [5, 6, 7, 8]:
         stl = str(folder / "fidget.stl")
@@ -100,13 +100,12 @@ def of_plate(folder):
 
 def of_model(folder, model):
     info = leafless("info", model)
-    box = info["bounds"]
-    size = max(high - low for low, high in zip(box["min"], box["max"]))
+    size = max(high - low for low, high in zip(info["min"], info["max"]))
     off, out = str(folder / "model.off"), str(folder / "out.off")
     leafless("convert", model, "-o", off)
     row(pathlib.Path(model).name, "triangles", "s", "deviation, of its length")
     row("---", "---:", "---:", "---:")
-    row("itself", info["triangles"], "", "")
+    row("itself", info["mesh"]["triangles"], "", "")
 
     def tell(name, triangles, seconds):
         low, high = apart(off, out, 1e-5 * size)

@@ -547,25 +547,14 @@ fn sharp_edges_of_a_turned_part() {
         let volume = 36_000.0 + PI * (round - holes);
         assert!((mesh.volume() - volume).abs() <= 1.1 * mesh.area() * report.deviation);
 
-        // Edges between triangles whose normals differ by more than 35 degrees.
-        let mut sides: BTreeMap<(u32, u32), [f64; 3]> = BTreeMap::new();
-        for &[a, b, c] in mesh.triangles() {
-            let [p, q, r] = [a, b, c].map(|k| vertices[k as usize]);
-            let (u, v) = ([0, 1, 2].map(|k| q[k] - p[k]), [0, 1, 2].map(|k| r[k] - p[k]));
-            let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-            let size = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
-            for edge in [(a, b), (b, c), (c, a)] {
-                sides.insert(edge, normal.map(|c| c / size));
-            }
+        // Edges between triangles on different surfaces.
+        let mut sides: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+        for (number, &[a, b, c]) in mesh.triangles().iter().enumerate() {
+            let surface = found.surface_of(number).unwrap();
+            sides.extend([(a, b), (b, c), (c, a)].map(|edge| (edge, surface)));
         }
-        let sharp: Vec<_> = sides
-            .iter()
-            .filter(|((a, b), normal)| {
-                let other = sides[&(*b, *a)];
-                (0..3).map(|k| normal[k] * other[k]).sum::<f64>() < 35f64.to_radians().cos()
-            })
-            .map(|(&(a, _), _)| vertices[a as usize])
-            .collect();
+        let sharp = sides.iter().filter(|((a, b), surface)| sides[&(*b, *a)] != **surface);
+        let sharp: Vec<_> = sharp.map(|(&(a, _), _)| vertices[a as usize]).collect();
         for &vertex in &sharp {
             let mut away = away_from_turned_part(vertex);
             away.sort_by(f64::total_cmp);

@@ -1,9 +1,9 @@
 //! Surfaces that need not be known in a cell because others tell their sides: of three that meet in one curve, as where a chamfer ends on
-//! a round, the third.
+//! a round, the third; of two beside each other that are nearly parallel, as where a ball ends a round bar, that which bounds nothing.
 //!
 //! Where b = c a + l p with factors c and l that keep their signs in a cell, a point at which c a and l p have the same sign has b of that
 //! sign, too: two of the eight combinations of signs cannot be. For two quadrics that meet in a plane p, l is a linear function, for
-//! three planes through a line it is constant.
+//! three planes through a line it is constant. Where b − c a has one sign, one of the surfaces lies beside the other.
 
 use super::figures::{Figures, Shape, dot, length};
 use crate::cut::Quadratic;
@@ -16,6 +16,9 @@ const SLACK: f64 = 1e-9;
 
 /// The factors of an identity are no smaller, if all functions have slope 1 at the centre.
 const FACTOR: f64 = 1e-3;
+
+/// Sums of terms are off by less, if all functions have slope 1 at the centre.
+const ROUNDING: f64 = 1e-12;
 
 /// Surfaces of an identity cross each other at no smaller angle (its sine).
 const SINE: f64 = 0.01;
@@ -43,7 +46,7 @@ pub(super) fn without_redundant(
     open: &OpenSurfaces,
 ) -> Option<(OpenSurfaces, f64)> {
     let count = open.indices().len();
-    if count < 3 {
+    if count < 2 {
         return None;
     }
     let mut known = [Known::default(); OpenSurfaces::MOST];
@@ -55,6 +58,13 @@ pub(super) fn without_redundant(
     let (mut cannot_be, mut slack) = (0u64, 0.0);
     for b in 0..count {
         for a in (0..count).filter(|&a| a != b) {
+            if let Some((is_turned, is_above)) = known[b].beside(&known[a]) {
+                let never = |signs: &u8| {
+                    let [a, b] = [a, b].map(|k| signs >> k & 1 != 0);
+                    (a != is_turned) == is_above && b != is_above
+                };
+                (0..1u8 << count).filter(never).for_each(|signs| cannot_be |= 1 << signs);
+            }
             for p in (0..count).filter(|&p| p != a && p != b) {
                 // (What is told of a and b is told of b and a, if both are curved.)
                 let is_new = known[p].is_plane && (a < b || known[a].is_plane);
@@ -140,6 +150,17 @@ impl Known {
         let sign = if is_turned { -1.0 } else { 1.0 };
         let differences = self.terms.iter().zip(other.terms).map(|(a, b)| (a - sign * b).abs());
         (differences.sum::<f64>() + self.error + other.error, is_turned)
+    }
+
+    /// Whether this function, less a multiple of another one, has one sign in all of the cell: whether the factor is negative, and
+    /// whether the sign is positive.
+    fn beside(&self, other: &Known) -> Option<(bool, bool)> {
+        let factor = dot(self.normal(), other.normal());
+        let mut rest = self.terms;
+        rest.iter_mut().zip(other.terms).for_each(|(own, term)| *own -= factor * term);
+        let away: f64 = rest[1..].iter().map(|term| term.abs()).sum();
+        let away = away + self.error + factor.abs() * other.error + ROUNDING;
+        (rest[0].abs() > away && factor != 0.0).then_some((factor < 0.0, rest[0] > 0.0))
     }
 
     fn normal(&self) -> [f64; 3] {
