@@ -18,7 +18,7 @@ pub fn of<S: Solid>(solid: &S, depth: u8, tolerance: f64) -> Boundary {
 }
 
 /// Each edge has two triangles, which run along it in opposite directions.
-fn assert_manifold(mesh: &TriangleMesh, text: &str) {
+pub fn assert_manifold(mesh: &TriangleMesh, text: &str) {
     let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
     for triangle in mesh.triangles() {
         for k in 0..3 {
@@ -166,7 +166,7 @@ pub fn away_from_mesh(p: [f64; 3], mesh: &TriangleMesh) -> f64 {
 }
 
 /// What is said to be proven of a mesh holds for points of the mesh, and for points of the boundary that rays find.
-fn assert_deviation(solid: &Csg, found: &Boundary, random: &mut Random, text: &str) {
+pub fn assert_deviation(solid: &Csg, found: &Boundary, random: &mut Random, text: &str) {
     let (mesh, most) = (found.mesh(), found.report().deviation);
     if mesh.triangles().is_empty() {
         return;

@@ -16,4 +16,5 @@ mod simple;
 mod simplify;
 mod single;
 mod solid;
+mod touching;
 mod volume;

@@ -90,6 +90,12 @@ impl OpenSurfaces {
         OpenSurfaces { table, ..self }
     }
 
+    /// The second of two functions of the same surfaces where surface `i` of the list is positive, else the first one.
+    pub(crate) fn choice(i: usize, [below, above]: [OpenSurfaces; 2]) -> OpenSurfaces {
+        let is_above = Table::of(i, false).0;
+        below.with_table(Table(below.table.0 & !is_above | above.table.0 & is_above))
+    }
+
     /// The same function with surfaces called otherwise; some may become one.
     #[must_use]
     pub(crate) fn renamed(&self, name: impl Fn(u32) -> u32) -> OpenSurfaces {

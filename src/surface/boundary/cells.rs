@@ -3,7 +3,8 @@
 use super::curve::refine;
 use super::edges::{Edges, NONE};
 use super::faces::{Arc, Corner, Faces, Meeting};
-use super::leaves::{Leaves, OpenLeaf, Refused};
+use super::joint::{self, Joint};
+use super::leaves::{Leaves, MOST, OpenLeaf, Refused};
 use crate::error::Error;
 use crate::lattice::{Cell, axes};
 use crate::memory;
@@ -107,8 +108,8 @@ impl Pieces {
 
 impl Cutter<'_, '_> {
     fn cut(&mut self, pieces: &mut Pieces) -> Result<(), Error> {
-        if let Some(OpenLeaf { cell, open: Some(open), is_simple: true }) = self.leaf {
-            if let Some(ways) = self.ways(&open)?
+        if let Some(OpenLeaf { cell, open: Some(open), is_simple: true, joint }) = self.leaf {
+            if let Some(ways) = self.ways(&open, joint)?
                 && self.polygons(cell, &open, &ways, pieces)?
             {
                 return Ok(());
@@ -162,7 +163,7 @@ impl Cutter<'_, '_> {
     }
 
     /// The edges in which surfaces meet, twice each: as both surfaces see them. `None` if they have no simple arrangement.
-    fn ways(&mut self, open: &OpenSurfaces) -> Result<Option<Vec<Way>>, Error> {
+    fn ways(&mut self, open: &OpenSurfaces, joint: Option<Joint>) -> Result<Option<Vec<Way>>, Error> {
         let count = open.indices().len();
         let mut ways = Vec::new();
         let mut tops: Vec<[Meeting; 2]> = Vec::new();
@@ -179,7 +180,9 @@ impl Cutter<'_, '_> {
                     memory::push(&mut tops, [one, other])?;
                     continue;
                 }
-                let surfaces = one.pair.map(|k| open.indices()[usize::from(k)]);
+                // (Newton's method does not find where surfaces touch.)
+                let pair = joint.map_or(one.pair.map(usize::from), |joint| [joint.plane, joint.sides[0]]);
+                let surfaces = pair.map(|k| open.indices()[k]);
                 for copy in 0..2 {
                     let ends = [one.vertices[copy], other.vertices[copy]];
                     if ends == [NONE; 2] || copy == 1 && one.vertices[0] == one.vertices[1] {
@@ -420,6 +423,14 @@ impl Cutter<'_, '_> {
             sum = axes(|k| sum[k] + self.at(corner)[k]);
         }
         let mean = sum.map(|c| c / corners.len() as f64);
+        let open = self
+            .leaf
+            .and_then(|leaf| Some((leaf.cell, leaf.open.filter(|open| open.indices().len() > MOST)?)));
+        let end = open.and_then(|(cell, open)| joint::end(self.edges.figures, cell, &open));
+        let end = end.and_then(|end| self.edges.figures.onto(&end, None, mean));
+        if let Some(end) = end.filter(|point| self.holds(point)) {
+            return end;
+        }
         let mut known: Vec<u32> = Vec::new();
         for &surface in surfaces {
             if surface != NONE && !known.contains(&surface) && known.len() < 3 {

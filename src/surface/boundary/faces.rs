@@ -7,6 +7,7 @@
 use super::curve::refine;
 use super::edges::{Crossing, Edges, NONE, best};
 use super::figures::middle;
+use super::joint::Joint;
 use super::leaves::{Leaf, Leaves, MOST, OpenLeaf, Refused};
 use super::walk::{At, Edge, Face, Visitor};
 use crate::error::Error;
@@ -172,8 +173,11 @@ impl Visitor for Finder<'_, '_, '_> {
         let first = self.faces.arcs.len();
         let mut met: Vec<Met> = Vec::new();
         let mut is_simple = false;
-        if let Some(open) = chosen.and_then(|leaf| leaf.open) {
-            is_simple = self.arrange(face, &outline, &open, &mut met)?;
+        if let Some(OpenLeaf { open: Some(open), joint, .. }) = chosen {
+            is_simple = match joint {
+                Some(joint) => self.arrange_joint(face, &outline, open, joint, &mut met)?,
+                None => self.arrange(face, &outline, open, &mut met)?,
+            };
             if !is_simple {
                 self.faces.arcs.truncate(first);
             }
@@ -188,7 +192,9 @@ impl Visitor for Finder<'_, '_, '_> {
                 self.refuse(at)?;
             }
             if self.faces.arcs.len() == first {
-                self.pair(face, &outline)?;
+                let own =
+                    best(leaves, face.sides.iter().map(|at| at.leaf)).and_then(|leaf| leaf.open.as_ref());
+                self.pair(face, &outline, own)?;
             }
         }
         for side in 0..2 {
@@ -257,12 +263,22 @@ impl Finder<'_, '_, '_> {
         let (along, other) = (axes(|k| b[k] - a[k]), axes(|k| d[k] - c[k]));
         let share = cross(axes(|k| c[k] - a[k]), other) / cross(along, other);
         let share = if (0.0..=1.0).contains(&share) { share } else { 0.5 };
-        let start = axes(|k| a[k] + share * along[k]);
         let open = arrangement.open.indices();
+        self.onto(face, [open[i], open[j]], axes(|k| a[k] + share * along[k]))
+    }
+
+    /// The point of a face next to another one in which two surfaces meet.
+    fn meeting_in(&self, face: &Face, surfaces: [u32; 2], start: [f64; 3]) -> Option<[f64; 3]> {
+        let (u, v) = ((face.axis + 1) % 3, (face.axis + 2) % 3);
         let (low, size) =
             (self.edges.unit(face.at), f64::from(face.edge) / f64::from(1u32 << self.leaves.depth));
         let is_in = |p: &[f64; 3]| [u, v].iter().all(|&k| low[k] <= p[k] && p[k] <= low[k] + size);
-        self.edges.figures.onto(&[open[i], open[j]], Some(face.axis), start).filter(is_in).unwrap_or(start)
+        self.edges.figures.onto(&surfaces, Some(face.axis), start).filter(is_in)
+    }
+
+    /// The same, and the place itself if there is no such point.
+    fn onto(&self, face: &Face, surfaces: [u32; 2], start: [f64; 3]) -> [f64; 3] {
+        self.meeting_in(face, surfaces, start).unwrap_or(start)
     }
 
     /// The meetings of an arrangement, with vertices of those that are known; new ones are made for the others if `makes`. `None` if
@@ -432,9 +448,13 @@ impl Finder<'_, '_, '_> {
     /// Tells a simple cell beside a face where its surfaces meet there. `false` if the face knows better.
     fn meet(&mut self, face: &Face, outline: &[Crossing], at: &At, met: &[Met]) -> Result<bool, Error> {
         let Leaf::Open(number) = at.leaf else { return Ok(true) };
-        let OpenLeaf { open: Some(open), is_simple: true, .. } = self.leaves.open[number as usize] else {
+        let OpenLeaf { open: Some(open), is_simple: true, joint, .. } = self.leaves.open[number as usize]
+        else {
             return Ok(true);
         };
+        if let Some(joint) = joint {
+            return self.meet_joint(number, outline, &open, &joint, met);
+        }
         let signs = self.signs(&open, face.at)?;
         let Some(arrangement) = Arrangement::new(&open, outline, signs) else { return Ok(false) };
         let mut met = memory::copied(met)?;
@@ -445,8 +465,71 @@ impl Finder<'_, '_, '_> {
         Ok(true)
     }
 
-    /// Connects the vertices of an outline so that each piece of the solid in it is cut off alone.
-    fn pair(&mut self, face: &Face, outline: &[Crossing]) -> Result<(), Error> {
+    /// Adds the arcs of a face as a cell with a joint knows them: one on each of its surfaces where the plane crosses the face, else one on
+    /// either. `false` if it is not as simple as it looks.
+    fn arrange_joint(
+        &mut self,
+        face: &Face,
+        outline: &[Crossing],
+        open: &OpenSurfaces,
+        joint: &Joint,
+        met: &mut Vec<Met>,
+    ) -> Result<bool, Error> {
+        let mut ends = outline.iter().filter(|crossing| crossing.vertex != NONE);
+        let (first, last) = match (ends.next(), ends.next(), ends.next()) {
+            (None, ..) => return Ok(true),
+            (Some(first), Some(last), None) => (*first, *last),
+            _ => return Ok(false),
+        };
+        let surfaces = joint.sides.map(|k| open.indices()[k]);
+        if ![first, last].iter().all(|end| surfaces.contains(&end.surface)) {
+            return Ok(false);
+        }
+        // The first corner is on the left.
+        let is_left = open.inside(self.signs(open, face.at)?);
+        let (ends, places) = ([first.vertex, last.vertex], [first.at, last.at]);
+        if first.surface == last.surface {
+            return self.add(face, first.surface, ends, places, is_left);
+        }
+        let plane = open.indices()[joint.plane];
+        let [from, to] = places.map(|at| self.edges.figures.about(plane, at).0);
+        let share = from / (from - to);
+        let share = if (0.0..=1.0).contains(&share) { share } else { 0.5 };
+        let start = axes(|k| first.at[k] + share * (last.at[k] - first.at[k]));
+        let at = self.onto(face, [plane, surfaces[0]], start);
+        let vertex = self.vertex(at)?;
+        let surfaces = [surfaces[0].min(surfaces[1]), surfaces[0].max(surfaces[1])];
+        memory::push(met, Met { surfaces, at, vertices: [vertex; 2] })?;
+        Ok(self.add(face, first.surface, [first.vertex, vertex], [first.at, at], is_left)?
+            && self.add(face, last.surface, [vertex, last.vertex], [at, last.at], is_left)?)
+    }
+
+    /// Tells a cell with a joint where that crosses a face. `false` if the face knows better.
+    fn meet_joint(
+        &mut self,
+        number: u32,
+        outline: &[Crossing],
+        open: &OpenSurfaces,
+        joint: &Joint,
+        met: &[Met],
+    ) -> Result<bool, Error> {
+        let mut surfaces = outline.iter().filter(|end| end.vertex != NONE).map(|end| end.surface);
+        let first = surfaces.next();
+        if surfaces.all(|surface| Some(surface) == first) {
+            return Ok(met.iter().all(|met| met.vertices == [NONE; 2]));
+        }
+        let [a, b] = joint.sides;
+        let [low, high] = if open.indices()[a] < open.indices()[b] { [a, b] } else { [b, a] };
+        let pair = [open.indices()[low], open.indices()[high]];
+        let Some(met) = met.iter().find(|met| met.surfaces == pair) else { return Ok(false) };
+        let meeting = Meeting { pair: [low as u8, high as u8], signs: 0, vertices: met.vertices };
+        memory::push(&mut self.faces.meetings, (number, meeting))?;
+        Ok(true)
+    }
+
+    /// Connects the vertices of an outline so that each piece of the solid in it is cut off alone; of two pieces only if the solid is not
+    /// known to lie between them. Where two surfaces meet in the face, each has its own arc.
+    fn pair(&mut self, face: &Face, outline: &[Crossing], own: Option<&OpenSurfaces>) -> Result<(), Error> {
         let mut ends = Vec::new();
         for crossing in outline.iter().filter(|crossing| crossing.vertex != NONE) {
             memory::push(&mut ends, *crossing)?;
@@ -455,15 +538,32 @@ impl Finder<'_, '_, '_> {
             return Ok(());
         }
         let begins = usize::from(self.edges.is_inside(face.at));
+        let mut next = 0;
+        if let ([a, b, c, d], Some(open)) = (&ends[..], own) {
+            let between = axes(|k| 0.25 * (a.at[k] + b.at[k] + c.at[k] + d.at[k]));
+            let mut signs = 0;
+            for (k, &surface) in open.indices().iter().enumerate() {
+                signs |= u8::from(self.edges.figures.is_positive(surface, between)?) << k;
+            }
+            next = 2 * usize::from(open.inside(signs));
+        }
         for k in (begins..ends.len() + begins).step_by(2) {
-            let (enters, leaves) = (ends[k % ends.len()], ends[(k + 1) % ends.len()]);
-            let surface = if enters.surface == leaves.surface { enters.surface } else { NONE };
+            let (enters, leaves) = (ends[(k + next) % ends.len()], ends[(k + 1) % ends.len()]);
+            let (surfaces, start) = ([leaves.surface, enters.surface], middle(leaves.at, enters.at));
+            let is_known = surfaces[0] != surfaces[1] && !surfaces.contains(&NONE);
+            if let Some(at) = is_known.then(|| self.meeting_in(face, surfaces, start)).flatten() {
+                let vertex = self.vertex(at)?;
+                self.add(face, surfaces[0], [leaves.vertex, vertex], [leaves.at, at], true)?;
+                self.add(face, surfaces[1], [vertex, enters.vertex], [at, enters.at], true)?;
+                continue;
+            }
+            let surface = if surfaces[0] == surfaces[1] { surfaces[0] } else { NONE };
             let before = self.faces.between.len();
             self.add(face, surface, [leaves.vertex, enters.vertex], [leaves.at, enters.at], true)?;
             // Other faces beside an edge may have an arc between the same two places of it: each gets a vertex of its own.
             let is_on_side = (0..3).filter(|&k| leaves.at[k] == enters.at[k]).count() >= 2;
             if is_on_side && self.faces.between.len() == before {
-                let vertex = self.vertex(middle(leaves.at, enters.at))?;
+                let vertex = self.vertex(start)?;
                 memory::push(&mut self.faces.between, vertex)?;
                 self.faces.arcs.last_mut().into_iter().for_each(|arc| arc.count = 1);
             }

@@ -1,7 +1,9 @@
 //! The cells of a boundary evaluation: where the surfaces in them have a simple arrangement.
 
 use super::figures::{Figures, Shape, dot};
-use super::redundant::{Known, without_redundant};
+use super::joint::Joint;
+use super::redundant::without_redundant;
+use super::scaled::Scaled;
 use crate::control::Job;
 use crate::cut::Quadratic;
 use crate::error::Error;
@@ -32,6 +34,8 @@ pub(super) struct OpenLeaf {
     pub(super) open: Option<OpenSurfaces>,
     /// Whether the surfaces cross each other at most once in each of its faces.
     pub(super) is_simple: bool,
+    /// Two of them that touch each other, of a simple cell.
+    pub(super) joint: Option<Joint>,
 }
 
 /// The cells of the universe.
@@ -132,7 +136,9 @@ impl Leaves {
                 return match decided.tag() {
                     Tag::Empty => Ok(Leaf::Empty),
                     Tag::Full => Ok(Leaf::Full),
-                    Tag::Partial | Tag::Branch => self.end(OpenLeaf { cell, open: None, is_simple: false }),
+                    Tag::Partial | Tag::Branch => {
+                        self.end(OpenLeaf { cell, open: None, is_simple: false, joint: None })
+                    }
                 };
             }
         };
@@ -141,13 +147,18 @@ impl Leaves {
         if let Some((_, slack)) = fewer {
             self.slack = self.slack.max(slack);
         }
-        let open = fewer.map(|(open, _)| open).or(open);
+        let mut open = fewer.map(|(open, _)| open).or(open);
+        let found = open.and_then(|open| Joint::find(wanted.figures, cell, &open));
+        let joint = found.map(|(joint, function, slack)| {
+            (open, self.slack) = (Some(function), self.slack.max(slack));
+            joint
+        });
         if let Some(inside) = open.and_then(|open| open.settled()) {
             wanted.report(cell, job);
             return Ok(if inside { Leaf::Full } else { Leaf::Empty });
         }
         let is_refused = wanted.refused.contains(cell);
-        let is_simple = !is_refused && open.is_some_and(|open| wanted.is_simple(cell, &open));
+        let is_simple = !is_refused && open.is_some_and(|open| wanted.is_simple(cell, &open, joint));
         let may_end = cell.level > 0 && !is_refused;
         if is_simple
             || cell.level == self.depth
@@ -155,7 +166,7 @@ impl Leaves {
             || may_end && is_thin(worker, cell, &part, wanted)?
         {
             wanted.report(cell, job);
-            return self.end(OpenLeaf { cell, open, is_simple });
+            return self.end(OpenLeaf { cell, open, is_simple, joint });
         }
         job.spend(1, size_of::<[Leaf; 8]>())?;
         self.splits += 1;
@@ -211,9 +222,9 @@ impl Wanted<'_> {
     /// to each other, as where a ball ends a round bar, it depends on that one alone.
     fn is_merged(&self, cell: Cell, open: &OpenSurfaces) -> bool {
         let most = 0.4 * self.tolerance / (0.5 / f64::from(1u32 << cell.level));
-        let mut known = [Known::default(); OpenSurfaces::MOST];
+        let mut known = [Scaled::default(); OpenSurfaces::MOST];
         for (place, &surface) in known.iter_mut().zip(open.indices()) {
-            match Known::of(self.figures, surface, cell) {
+            match Scaled::of(self.figures, surface, cell) {
                 Some(own) => *place = own,
                 None => return false,
             }
@@ -233,8 +244,8 @@ impl Wanted<'_> {
         }
     }
 
-    /// Whether the surfaces in a cell are nearly flat, and cross each other at angles.
-    fn is_simple(&self, cell: Cell, open: &OpenSurfaces) -> bool {
+    /// Whether the surfaces in a cell are nearly flat, and cross each other at angles, but for two that touch in a joint.
+    fn is_simple(&self, cell: Cell, open: &OpenSurfaces, joint: Option<Joint>) -> bool {
         if open.indices().len() > MOST {
             return false;
         }
@@ -268,7 +279,8 @@ impl Wanted<'_> {
             for j in i + 1..count {
                 let ((n, a), (m, b)) = (known[i], known[j]);
                 let is_plane = |k: usize| self.figures.shape(open.indices()[k]) == Shape::Plane;
-                if is_plane(i) && is_plane(j) {
+                let are_one = joint.is_some_and(|joint| joint.sides.contains(&i) && joint.sides.contains(&j));
+                if are_one || is_plane(i) && is_plane(j) {
                     continue;
                 }
                 let cross = [n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]];

@@ -7,9 +7,10 @@
 //! different signs at the ends, faces have arcs between such crossings, and cells have polygons between such arcs. All of that is
 //! decided by signs at corners of the lattice, which neighbours share, so that the result is closed. Places are found last.
 //!
-//! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `redundant` (which of them need not be known), `leaves` (the cells), `walk` (their
-//! minimal faces and edges), `edges`, `curve` (curves as chords), `faces`, `cells`, `patches` (triangles), `held` (where these stay),
-//! `mates`, `proof`, `regions` (triangles on one surface as faces).
+//! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `scaled` (two functions beside each
+//! other), `redundant` (which surfaces need not be known), `joint` (which of them touch), `leaves` (the cells), `walk` (their minimal
+//! faces and edges), `edges`, `curve` (curves as chords), `faces`, `cells`, `patches` (triangles), `held` (where these stay), `mates`,
+//! `proof`, `regions` (triangles on one surface as faces).
 
 mod cells;
 mod curve;
@@ -17,12 +18,14 @@ mod edges;
 mod faces;
 mod figures;
 mod held;
+mod joint;
 mod leaves;
 mod mates;
 mod patches;
 mod proof;
 mod redundant;
 mod regions;
+mod scaled;
 mod strips;
 #[cfg(test)]
 mod tests;
@@ -175,8 +178,8 @@ const LARGER: f64 = 1.031_77;
 /// functions of the other surfaces tell how far it goes on. Where the proof is not within the tolerance, cells are split a few times.
 /// What is left beyond it (edges in which the solid touches itself, and finest cells) is told as it is.
 ///
-/// Cells are split until there are at most three surfaces in each that are nearly flat and cross at angles. Where more meet in a point, and
-/// where surfaces touch, cells are split as far as the depth of the frame, and the boundary is known to a finest cell there: a depth of
+/// Cells are split until there are at most three surfaces in each that are nearly flat and cross at angles, or two that touch along a curve on a
+/// plane and go over into one another there. Where more meet in a point, and where surfaces touch otherwise, cells are split as far as the depth of the frame, and the boundary is known to a finest cell there: a depth of
 /// 12 to 16 is good for parts, and costs little, because only such places are cut that far. What is thinner than such a cell may vanish
 /// there. The lattice is not that of the frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
 ///

@@ -3,11 +3,12 @@
 //!
 //! Where b = c a + l p with factors c and l that keep their signs in a cell, a point at which c a and l p have the same sign has b of that
 //! sign, too: two of the eight combinations of signs cannot be. For two quadrics that meet in a plane p, l is a linear function, for
-//! three planes through a line it is constant. Where b − c a has one sign, one of the surfaces lies beside the other.
+//! three planes through a line it is constant. Where b − c a has one sign in the cell, or everywhere, one of the surfaces lies beside the
+//! other, or touches it.
 
-use super::figures::{Figures, Shape, dot, length};
-use crate::cut::Quadratic;
-use crate::lattice::{Cell, axes};
+use super::figures::{Figures, length};
+use super::scaled::{Scaled, Terms};
+use crate::lattice::Cell;
 use crate::solid::OpenSurfaces;
 
 /// The surfaces of a cell in which one is left out may be further by no more than this from where the others have them (edges of the
@@ -17,26 +18,11 @@ const SLACK: f64 = 1e-9;
 /// The factors of an identity are no smaller, if all functions have slope 1 at the centre.
 const FACTOR: f64 = 1e-3;
 
-/// Sums of terms are off by less, if all functions have slope 1 at the centre.
-const ROUNDING: f64 = 1e-12;
-
 /// Surfaces of an identity cross each other at no smaller angle (its sine).
 const SINE: f64 = 0.01;
 
 /// The unknown factors of an identity: c, and the four terms of l.
 const UNKNOWN: usize = 5;
-
-/// The coefficients of a polynomial of degree two, those of mixed products twice, so that their squares add up evenly.
-type Terms = [f64; 10];
-
-/// A function in a cell whose slope at the centre is 1.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Known {
-    terms: Terms,
-    error: f64,
-    bend: f64,
-    is_plane: bool,
-}
 
 /// The function of a cell without surfaces whose sides others tell, and by how much the boundary may be elsewhere (edges of the universe).
 /// `None` if there are none.
@@ -49,9 +35,9 @@ pub(super) fn without_redundant(
     if count < 2 {
         return None;
     }
-    let mut known = [Known::default(); OpenSurfaces::MOST];
+    let mut known = [Scaled::default(); OpenSurfaces::MOST];
     for (place, &surface) in known.iter_mut().zip(open.indices()) {
-        *place = Known::of(figures, surface, cell)?;
+        *place = Scaled::of(figures, surface, cell)?;
     }
     let known = &known[..count];
     let half = 0.5 / f64::from(1u32 << cell.level);
@@ -59,11 +45,13 @@ pub(super) fn without_redundant(
     for b in 0..count {
         for a in (0..count).filter(|&a| a != b) {
             if let Some((is_turned, is_above)) = known[b].beside(&known[a]) {
-                let never = |signs: &u8| {
-                    let [a, b] = [a, b].map(|k| signs >> k & 1 != 0);
-                    (a != is_turned) == is_above && b != is_above
-                };
-                (0..1u8 << count).filter(never).for_each(|signs| cannot_be |= 1 << signs);
+                cannot_be |= never(count, [a, b], is_turned, is_above);
+            } else if a < b
+                && let Some(touch) = known[b].touches(&known[a])
+                && touch.away() * half <= SLACK
+            {
+                slack = f64::max(slack, touch.away() * half);
+                cannot_be |= never(count, [a, b], touch.is_turned, touch.is_above);
             }
             for p in (0..count).filter(|&p| p != a && p != b) {
                 // (What is told of a and b is told of b and a, if both are curved.)
@@ -92,14 +80,31 @@ pub(super) fn without_redundant(
     if cannot_be == 0 {
         return None;
     }
-    Some((left_out(open, count, cannot_be)?, slack))
+    Some((left_out(open, cannot_be)?, slack))
+}
+
+/// The combinations of signs in which surface b is on the wrong side of surface a: where one function (or its opposite, if it is turned)
+/// is positive and the other one is not, or the reverse.
+pub(super) fn never(count: usize, [a, b]: [usize; 2], is_turned: bool, is_above: bool) -> u64 {
+    let is = |signs: u8, k: usize| signs >> k & 1 != 0;
+    let never = |signs: &u8| (is(*signs, a) != is_turned) == is_above && is(*signs, b) != is_above;
+    (0..1u8 << count).filter(never).fold(0, |all, signs| all | 1 << signs)
 }
 
 /// The function without a variable on which it depends in no combination that can be, and again. `None` if there are none.
-fn left_out(open: &OpenSurfaces, count: usize, cannot_be: u64) -> Option<OpenSurfaces> {
-    let (mut table, mut is_changed) = (open.table(), false);
-    for k in (0..count).filter(|&k| open.table().depends_on(k)) {
-        let mut other = table;
+fn left_out(open: &OpenSurfaces, cannot_be: u64) -> Option<OpenSurfaces> {
+    let less = without(*open, cannot_be);
+    (less != *open).then(|| less.shortened())
+}
+
+/// A function that does not depend on a variable on which it depends in no combination that can be, and again.
+pub(super) fn without(mut open: OpenSurfaces, cannot_be: u64) -> OpenSurfaces {
+    let count = open.indices().len();
+    for k in 0..count {
+        let mut table = open.table();
+        if !table.depends_on(k) {
+            continue;
+        }
         let mut is_free = true;
         for signs in (0..1u32 << count).filter(|signs| signs >> k & 1 == 0) {
             let both = [signs, signs | 1 << k];
@@ -108,69 +113,20 @@ fn left_out(open: &OpenSurfaces, count: usize, cannot_be: u64) -> Option<OpenSur
             is_free &= !below || !above || low == high;
             let value = if below { low } else { high };
             for signs in both {
-                other.0 = other.0 & !(1 << signs) | value << signs;
+                table.0 = table.0 & !(1 << signs) | value << signs;
             }
         }
         if is_free {
-            (table, is_changed) = (other, true);
+            // (Bits of variables that there are not repeat those of the others.)
+            open = open.with_table((count..OpenSurfaces::MOST).fold(table, |table, k| table.with(k, false)));
         }
     }
-    // (Bits of variables that there are not repeat those of the others.)
-    for k in count..OpenSurfaces::MOST {
-        table = table.with(k, false);
-    }
-    is_changed.then(|| open.with_table(table).shortened())
-}
-
-impl Known {
-    pub(super) fn of(figures: &Figures, surface: u32, cell: Cell) -> Option<Known> {
-        let taylor = figures.taylor(surface, cell)?;
-        let Quadratic { value, gradient, squares: [xx, yy, zz, xy, xz, yz], error } = taylor.f;
-        let steep = length(gradient);
-        let [x, y, z] = gradient;
-        let terms = [value, x, y, z, xx, yy, zz, 2.0 * xy, 2.0 * xz, 2.0 * yz].map(|term| term / steep);
-        let known = Known {
-            terms,
-            error: error / steep,
-            bend: taylor.bend / steep,
-            is_plane: figures.shape(surface) == Shape::Plane,
-        };
-        let is_finite = terms.iter().chain([&known.error, &known.bend]).all(|term| term.is_finite());
-        is_finite.then_some(known)
-    }
-
-    /// How far the surface may be from its tangent plane (half edges of the cell).
-    pub(super) fn rise(&self) -> f64 {
-        self.terms[4..].iter().map(|term| term.abs()).sum::<f64>() + self.error
-    }
-
-    /// How far apart this surface and another one may be (half edges of the cell), and whether their functions have opposite signs.
-    pub(super) fn apart(&self, other: &Known) -> (f64, bool) {
-        let is_turned = dot(self.normal(), other.normal()) < 0.0;
-        let sign = if is_turned { -1.0 } else { 1.0 };
-        let differences = self.terms.iter().zip(other.terms).map(|(a, b)| (a - sign * b).abs());
-        (differences.sum::<f64>() + self.error + other.error, is_turned)
-    }
-
-    /// Whether this function, less a multiple of another one, has one sign in all of the cell: whether the factor is negative, and
-    /// whether the sign is positive.
-    fn beside(&self, other: &Known) -> Option<(bool, bool)> {
-        let factor = dot(self.normal(), other.normal());
-        let mut rest = self.terms;
-        rest.iter_mut().zip(other.terms).for_each(|(own, term)| *own -= factor * term);
-        let away: f64 = rest[1..].iter().map(|term| term.abs()).sum();
-        let away = away + self.error + factor.abs() * other.error + ROUNDING;
-        (rest[0].abs() > away && factor != 0.0).then_some((factor < 0.0, rest[0] > 0.0))
-    }
-
-    fn normal(&self) -> [f64; 3] {
-        axes(|k| self.terms[1 + k])
-    }
+    open
 }
 
 /// The least sine of an angle between two of three surfaces, wherever in the cell their normals are taken.
-fn least_sine(known: &[Known], of: [usize; 3]) -> f64 {
-    let sine = |a: &Known, b: &Known| {
+fn least_sine(known: &[Scaled], of: [usize; 3]) -> f64 {
+    let sine = |a: &Scaled, b: &Scaled| {
         let (n, m) = (a.normal(), b.normal());
         let cross = [n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]];
         length(cross) - 1.2 * (a.bend + b.bend)
@@ -199,7 +155,7 @@ fn product(p: &Terms, l: &[f64; 4]) -> Terms {
 
 /// Whether the factors are positive with which b = c a + l p, and how far a point may be from each of the surfaces (half edges of the cell) at
 /// which rounding makes it wrong. `None` if a factor has no sign.
-fn identity(known: &[Known], [a, b, p]: [usize; 3]) -> Option<([bool; 2], f64)> {
+fn identity(known: &[Scaled], [a, b, p]: [usize; 3]) -> Option<([bool; 2], f64)> {
     let (own, given, plane) = (&known[b], &known[a], &known[p]);
     let unit = |k: usize| product(&plane.terms, &core::array::from_fn(|i| f64::from(u8::from(i == k))));
     let columns = [given.terms, unit(0), unit(1), unit(2), unit(3)];
@@ -223,32 +179,38 @@ fn identity(known: &[Known], [a, b, p]: [usize; 3]) -> Option<([bool; 2], f64)> 
 }
 
 /// What columns leave of a polynomial.
-fn rest(of: &Terms, columns: &[Terms; UNKNOWN], factors: &[f64; UNKNOWN]) -> Terms {
+pub(super) fn rest<const N: usize, const M: usize>(
+    of: &[f64; M],
+    columns: &[[f64; M]; N],
+    factors: &[f64; N],
+) -> [f64; M] {
     core::array::from_fn(|k| {
         columns.iter().zip(factors).fold(of[k], |rest, (c, factor)| rest - factor * c[k])
     })
 }
 
 /// The factors of columns whose sum is nearest to a polynomial. `None` if there are several.
-fn least_squares(columns: &[Terms; UNKNOWN], of: &Terms) -> Option<[f64; UNKNOWN]> {
-    let sum = |a: &Terms, b: &Terms| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut rows: [[f64; UNKNOWN + 1]; UNKNOWN] = core::array::from_fn(|i| {
-        core::array::from_fn(
-            |k| if k < UNKNOWN { sum(&columns[i], &columns[k]) } else { sum(&columns[i], of) },
-        )
+pub(super) fn least_squares<const N: usize, const M: usize>(
+    columns: &[[f64; M]; N],
+    of: &[f64; M],
+) -> Option<[f64; N]> {
+    let sum = |a: &[f64; M], b: &[f64; M]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut rows: [([f64; N], f64); N] = core::array::from_fn(|i| {
+        (core::array::from_fn(|k| sum(&columns[i], &columns[k])), sum(&columns[i], of))
     });
-    for k in 0..UNKNOWN {
+    for k in 0..N {
         let pivot =
-            (k..UNKNOWN).fold(k, |best, i| if rows[i][k].abs() > rows[best][k].abs() { i } else { best });
+            (k..N).fold(k, |best, i| if rows[i].0[k].abs() > rows[best].0[k].abs() { i } else { best });
         rows.swap(k, pivot);
-        let own = rows[k];
+        let (own, value) = rows[k];
         if own[k].is_nan() || own[k].abs() <= 1e-12 {
             return None;
         }
         for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != k) {
-            let factor = row[k] / own[k];
-            row.iter_mut().zip(own).for_each(|(c, own)| *c -= factor * own);
+            let factor = row.0[k] / own[k];
+            row.0.iter_mut().zip(own).for_each(|(c, own)| *c -= factor * own);
+            row.1 -= factor * value;
         }
     }
-    Some(core::array::from_fn(|k| rows[k][UNKNOWN] / rows[k][k]))
+    Some(core::array::from_fn(|k| rows[k].1 / rows[k].0[k]))
 }

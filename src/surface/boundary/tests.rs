@@ -1,5 +1,6 @@
 //! What is proven of meshes that are not the boundary.
 
+use super::scaled::Scaled;
 use super::*;
 use crate::solid::Csg;
 use alloc::vec;
@@ -88,4 +89,71 @@ fn away_from_plate([x, y, z]: [f64; 3]) -> f64 {
     }
     let wall = ((x - 40.0).hypot(y - 30.0) - 5.0).abs();
     [x, 80.0 - x, y, 60.0 - y, z, 10.0 - z].into_iter().fold(wall, f64::min)
+}
+
+/// What is said of surfaces that touch each other holds in all of a cell, and nothing is said of others.
+#[test]
+fn surfaces_that_touch() {
+    let cylinder = || Csg::cylinder(3.0, -40.0, 40.0).unwrap();
+    let ball = |at: [f64; 3], radius: f64| Csg::ball(at, radius).unwrap();
+    let plane = |at: f64| Csg::cuboid([at, -90.0, -80.0], [at + 7.0, 95.0, 85.0]).unwrap();
+    let cone = Csg::frustum(4.0, 1.0, 3.0, 7.0).unwrap();
+    let turn = Affine::new([[0.36, 0.48, -0.8, 1.0], [-0.8, 0.6, 0.0, 2.0], [0.48, 0.64, 0.6, 3.0]]).unwrap();
+    // Two solids, a point next to which their surfaces are compared, and whether they touch.
+    let cases = [
+        (cylinder(), ball([0.0, 0.0, 1.0], 3.0), [3.0, 0.0, 1.0], true),
+        (cylinder(), ball([0.0, 0.0, 1.0], 3.001), [3.0, 0.0, 1.0], false),
+        (cylinder(), ball([0.001, 0.0, 1.0], 3.0), [0.0, 3.0, 1.0], false),
+        (cylinder(), ball([1.0, 0.0, 1.0], 2.0), [3.0, 0.0, 1.0], true),
+        (cylinder(), plane(3.0), [3.0, 0.0, 1.0], true),
+        (cylinder(), plane(2.9999), [3.0, 0.0, 1.0], false),
+        (ball([0.0; 3], 5.0), cone.clone(), [4.0, 0.0, 3.0], true),
+        (
+            ball([0.0; 3], 5.0),
+            cone.placed(&Affine::translation([0.0, 0.0, -0.001]).unwrap()).unwrap(),
+            [4.0, 0.0, 3.0],
+            false,
+        ),
+        (ball([0.0; 3], 5.0), plane(5.0), [5.0, 0.0, 0.0], true),
+    ];
+    for (case, (one, other, at, touch)) in cases.into_iter().enumerate() {
+        for placement in [Affine::IDENTITY, turn] {
+            let both = Csg::union_of([one.clone(), other.clone()]).unwrap().placed(&placement).unwrap();
+            let at = placement.apply(at);
+            for level in [8, 10, 12] {
+                let frame = Frame::new(axes(|k| at[k] - 60.1), 128.0, 14).unwrap();
+                let control = Control::threads(1);
+                let surfaces = both.on(&frame, &control).unwrap().surfaces(&control).unwrap().unwrap();
+                let figures = Figures::new(&surfaces, &frame).unwrap();
+                let size = f64::from(1u32 << level);
+                let cell = Cell { level, at: axes(|k| ((at[k] - frame.origin()[k]) / 128.0 * size) as u32) };
+                // Those two of all surfaces that come nearest to the point: they bound the two solids there.
+                let unit = axes(|k| (at[k] - frame.origin()[k]) / 128.0);
+                let mut near: Vec<u32> = (0..surfaces.len() as u32).collect();
+                let is_curved = |k: u32| {
+                    u8::from(figures.shape(k) == figures::Shape::Plane && case != 4 && case != 5 && case != 8)
+                };
+                near.sort_by_key(|&k| (is_curved(k), (figures.distance(k, unit) * 1e9) as u64));
+                let [a, b] = [near[0], near[1]].map(|k| Scaled::of(&figures, k, cell).unwrap());
+                let found = b.touches(&a);
+                assert_eq!(found.is_some(), touch, "case {case}, level {level}");
+                let Some(touch) = found else { continue };
+                let half = 0.5 / size;
+                for step in 0..4096 {
+                    let point: [f64; 3] = axes(|k| {
+                        let place = f64::from(step >> (4 * k) & 15) / 7.5 - 1.0;
+                        (f64::from(cell.at[k]) * 2.0 + 1.0 + place) * half
+                    });
+                    let [x, y] = [near[0], near[1]].map(|k| figures.about(k, point));
+                    let is_wrong =
+                        ((x.0 > 0.0) != touch.is_turned) == touch.is_above && (y.0 > 0.0) != touch.is_above;
+                    let away = |(value, gradient): (f64, [f64; 3])| value.abs() / figures::length(gradient);
+                    assert!(
+                        !is_wrong || away(x).max(away(y)) <= touch.away() * half,
+                        "case {case}: {point:?}"
+                    );
+                }
+            }
+        }
+    }
 }

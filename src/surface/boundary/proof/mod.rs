@@ -1,7 +1,7 @@
 //! How far a mesh and the boundary of a solid are from each other, by the surfaces that the solid is made of: a proof that does not depend
 //! on how the mesh was made.
 //!
-//! From the bottom up: `local` (functions about a place), `clip`, `truth` (what the leaves say), `witness` (from the mesh to the
+//! From the bottom up: `local` (functions about a place), `clip` (polygons), `truth` (what the leaves say), `witness` (from the mesh to the
 //! boundary), `sheets` (from the boundary to the mesh), `known` (what holds for several meshes).
 
 mod clip;
@@ -265,7 +265,9 @@ impl Prover<'_> {
     fn cell(&self, leaf: &OpenLeaf, boxes: u32, lists: &mut Lists) -> Result<Option<f64>, Error> {
         let Some(open) = leaf.open else { return Ok(None) };
         let mut most: f64 = 0.0;
-        for place in 0..open.indices().len() {
+        // (On the plane of a joint the solid changes nowhere but where its surfaces have both sides.)
+        let plane = leaf.joint.map(|joint| joint.plane);
+        for place in (0..open.indices().len()).filter(|&place| Some(place) != plane) {
             for is_above in [false, true] {
                 let (which, part) = ((place, is_above), (leaf.cell, self.tolerance));
                 let mut sheet = Sheet::new(self.subject, self.truth.figures, &open, which, part, lists);

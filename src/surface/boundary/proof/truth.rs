@@ -2,6 +2,7 @@
 
 use super::super::figures::{Figures, dot, minus};
 use super::super::leaves::{Leaf, Leaves, OpenLeaf};
+use super::clip::clip;
 use super::local::Local;
 use crate::error::Error;
 use crate::lattice::{Cell, axes};
@@ -124,6 +125,8 @@ pub(super) struct Near {
     around: Option<Around>,
     leaves: Vec<(Cell, Leaf)>,
     functions: Vec<(u32, Option<Local>)>,
+    part: Vec<[f64; 3]>,
+    cut: Vec<[f64; 3]>,
 }
 
 impl Near {
@@ -167,20 +170,47 @@ impl Near {
                 Leaf::Outside if around.is_in_universe() => continue,
                 Leaf::Outside => Some(false),
                 _ if !cube(cell).meets(&around) => continue,
-                Leaf::Empty | Leaf::Branch(_) => Some(false),
-                Leaf::Full => Some(true),
-                Leaf::Open(number) => match truth.open(number).open {
-                    Some(open) => self.by_functions(truth.figures, &open, polygon)?,
-                    None => None,
-                },
+                _ => self.in_leaf(truth, leaf, polygon)?,
             };
-            match (own, all) {
-                (None, _) => return Ok(None),
-                (Some(own), Some(other)) if own != other => return Ok(None),
-                _ => all = own,
+            if own.is_some() && (all.is_none() || all == own) {
+                all = own;
+                continue;
             }
+            // It may be only a part of the polygon that lies in the cell, or nothing of it.
+            if matches!(leaf, Leaf::Outside) || polygon.len() < 3 {
+                return Ok(None);
+            }
+            let mut part = core::mem::take(&mut self.part);
+            part.clear();
+            part.try_reserve(polygon.len())?;
+            part.extend(polygon);
+            let Around { low, high } = cube(cell).grown(ROUNDING);
+            clip(&mut part, &mut self.cut, low, high)?;
+            let own = if part.is_empty() { all } else { self.in_leaf(truth, leaf, &part)? };
+            let is_there = !part.is_empty();
+            self.part = part;
+            if is_there && (own.is_none() || all.is_some() && all != own) {
+                return Ok(None);
+            }
+            all = own;
         }
         Ok(all)
+    }
+
+    fn in_leaf(
+        &mut self,
+        truth: &Truth<'_>,
+        leaf: Leaf,
+        polygon: &[[f64; 3]],
+    ) -> Result<Option<bool>, Error> {
+        match leaf {
+            Leaf::Empty | Leaf::Outside | Leaf::Branch(_) => Ok(Some(false)),
+            Leaf::Full => Ok(Some(true)),
+            Leaf::Open(number) => match truth.open(number).open {
+                Some(open) => self.by_functions(truth.figures, &open, polygon),
+                None => Ok(None),
+            },
+        }
     }
 
     fn by_functions(
@@ -200,6 +230,9 @@ impl Near {
         Ok(settled(open, signs, unknown))
     }
 }
+
+/// Places are off by less.
+const ROUNDING: f64 = 4e-15;
 
 /// Half the edge of the least cube in which functions are looked at.
 pub(super) const LEAST: f64 = 1.0 / (1u64 << 24) as f64;

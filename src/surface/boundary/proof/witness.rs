@@ -22,6 +22,9 @@ const MOST: usize = 3;
 /// Steps are a little longer than they need be.
 const LONGER: f64 = 1.0 + 1.0 / 128.0;
 
+/// The longest steps are longer by this part of the tolerance.
+const ASIDE: f64 = 0.02;
+
 /// What is added to each step (edges of the universe): places are off by some last digits.
 const SLACK: f64 = 1e-14;
 
@@ -232,7 +235,9 @@ impl<'t> Witnesses<'t> {
                 }
             }
             let Some(step) = shortest(&rows[..count], &shares) else { continue };
-            for longer in [LONGER, 1.25 * LONGER] {
+            // The last one for slivers in neighbouring cells, of which rounding hides the sides.
+            let far = ASIDE * self.tolerance / length(step).max(SLACK);
+            for longer in [LONGER, 1.25 * LONGER, LONGER + far] {
                 let step = step.map(|c| c * longer);
                 let long = length(step);
                 if long <= self.longest() {
