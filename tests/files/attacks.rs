@@ -143,6 +143,8 @@ fn what_the_fuzzer_found_interesting() {
     corpus("records", records::records);
     corpus("direct", direct::direct);
     corpus("layers", direct::layers);
+    corpus("boundaries", surfaces::boundaries);
+    corpus("contours", surfaces::contours);
 }
 
 #[test]

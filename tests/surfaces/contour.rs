@@ -72,7 +72,7 @@ fn what_is_proven_is_not_contradicted() {
         })
     });
     let host = host.with_contains(move |point| Ok(away(point) < 0.0)).with_exterior(Tag::Empty);
-    let tree = build(&ball, &frame.with_depth(6).unwrap(), Rule::Certified, &alone()).unwrap();
+    let tree = build(&ball, &frame.with_depth(4).unwrap(), Rule::Certified, &alone()).unwrap();
     // What is known of each: slabs tell an expression well, cells of a size tell others about as well as they are large.
     let solids: [(&str, AnySolid, f64); 4] = [
         ("expression", AnySolid::new(ball.clone()), 1.5 * tolerance),
@@ -98,7 +98,7 @@ fn what_is_proven_is_not_contradicted() {
         assert!(true_one <= proven + 2e-3, "{name}: {true_one} {proven}");
     }
     // An octree of samples proves nothing.
-    let tree = build(&ball, &frame.with_depth(6).unwrap(), Rule::Sampled, &alone()).unwrap();
+    let tree = build(&ball, &frame.with_depth(4).unwrap(), Rule::Sampled, &alone()).unwrap();
     let found = contour(&tree, &frame, tolerance, &alone()).unwrap();
     assert_eq!(found.report().deviation, f64::INFINITY);
 }
@@ -175,15 +175,15 @@ fn solids_of_all_kinds() {
     let ball = Csg::ball([0.5, 0.25, 0.0], 4.0).unwrap();
     let volume = 4.0 / 3.0 * std::f64::consts::PI * 64.0;
     let frame = Frame::new([-8.0; 3], 16.0, 8).unwrap();
-    let tree = build(&ball, &frame.with_depth(6).unwrap(), Rule::Sampled, &alone()).unwrap();
-    let side = 32u32;
+    let tree = build(&ball, &frame.with_depth(5).unwrap(), Rule::Sampled, &alone()).unwrap();
+    let side = 16u32;
     let samples: Vec<f32> = (0..side.pow(3))
         .map(|i| {
-            let p = [i % side, i / side % side, i / side / side].map(|c| c as f32 * 0.5 - 7.75);
+            let p = [i % side, i / side % side, i / side / side].map(|c| c as f32 - 7.5);
             4.0 - ((p[0] - 0.5).powi(2) + (p[1] - 0.25).powi(2) + p[2].powi(2)).sqrt()
         })
         .collect();
-    let grid = VoxelGrid::new([side; 3], [-8.0; 3], [0.5; 3]).unwrap();
+    let grid = VoxelGrid::new([side; 3], [-8.0; 3], [1.0; 3]).unwrap();
     let field = Volume::new(samples.into(), &grid, Band::at_least(0.0).unwrap(), &alone()).unwrap();
     let solids: [(&str, AnySolid); 4] = [
         ("expression", AnySolid::new(ball.clone())),

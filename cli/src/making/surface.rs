@@ -35,6 +35,10 @@ use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
+/// What is said of layers.
+const LAYERS: &str = "its cells keep layers in which the surface lies, which decide no points: this is the surface of what may be solid, by \
+                      --method nets, and with --resolve inner that of what is proven to be";
+
 /// The depth of meshes, scenes, and octrees whose cells keep surfaces, if none is asked for.
 const DEPTH: u8 = 8;
 
@@ -191,11 +195,11 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
         }
         Shape::Source(source) if matches!(method, Method::Faces | Method::Adaptive) => {
             let unit = source.unit();
-            let (mesh, by, found) = to_tolerance(source, job, wanted, method)?;
+            let (mesh, by, found, followed) = to_tolerance(source, job, wanted, method)?;
             method = by;
             // (Of what is moved after that, they would lie elsewhere.)
             faces = found.filter(|_| !is_stored || taking.placing.map().is_none());
-            (unit, mesh, None)
+            (unit, mesh, followed)
         }
         Shape::Source(source) if asks_rays(&source, wanted, method) => {
             let unit = source.unit();
@@ -254,8 +258,7 @@ fn usual(shape: &Shape, input: &Input, wanted: &Wanted) -> Method {
         Shape::Source(source) if source.is_of_cells() => (Method::Nets, None),
         Shape::Source(_) if wanted.resolve.is_some() => (Method::Nets, Some("--resolve")),
         Shape::Source(Source::Scene(scene)) if scene.report().meshes.is_empty() => (Method::Faces, None),
-        // (Its rays are as sharp, and surfaces in planes of its own lattice are cut to many cells.)
-        Shape::Source(Source::Octree(_)) => (Method::Mc, None),
+        Shape::Source(Source::Octree(_)) => (Method::Faces, None),
         Shape::Source(Source::Scene(_) | Source::Volume(_)) if wanted.tolerance.is_some() => {
             (Method::Adaptive, Some("--tolerance"))
         }
@@ -446,9 +449,19 @@ fn by_rays(
     }
     let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?;
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
+    by_rays_of(&solid, &frame, job, method)
+}
+
+fn by_rays_of(
+    solid: &AnySolid,
+    frame: &Frame,
+    job: &Job,
+    method: Method,
+) -> Result<(TriangleMesh, Followed), Failure> {
+    let input = &job.input;
     let format = DexelFormat { normals: DexelNormals::Bits32, ..Default::default() };
     let options = DexelOptions { format, ..Default::default() };
-    let model = watched("dexelize", job.threads, |control| dexelize(&solid, &frame, &options, control));
+    let model = watched("dexelize", job.threads, |control| dexelize(solid, frame, &options, control));
     let model = model.of(input)?;
     match method {
         Method::Dual => dexel_surface::dual(&model, input, job.threads),
@@ -462,7 +475,7 @@ fn to_tolerance(
     job: &Job,
     wanted: &Wanted,
     method: Method,
-) -> Result<(TriangleMesh, Method, Option<Faces>), Failure> {
+) -> Result<(TriangleMesh, Method, Option<Faces>, Option<Followed>), Failure> {
     let (input, is_named) = (&job.input, wanted.method.is_some());
     if wanted.resolve.is_some() {
         let name = name_of(method);
@@ -484,16 +497,24 @@ fn to_tolerance(
     let bounds = source.bounds(input)?;
     let deepest = if method == Method::Faces { DEEP } else { FINE };
     let frame = source.frame_to(input, job.bounds.as_ref(), job.depth, deepest)?;
+    let of_cells = match &source {
+        Source::Octree(_) => Some(source.frame_to(input, job.bounds.as_ref(), job.depth, DEPTH)?),
+        _ => None,
+    };
     let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
     if method == Method::Faces
         && let Some((mesh, faces)) = by_surfaces(&solid, &frame, tolerance, job, is_named)?
     {
-        return Ok((mesh, Method::Faces, faces));
+        return Ok((mesh, Method::Faces, faces, None));
+    }
+    if let Some(frame) = of_cells.filter(|_| !is_named) {
+        let (mesh, method, followed) = of_layers(&solid, &frame, job, wanted)?;
+        return Ok((mesh, method, None, followed));
     }
     let frame =
         if job.depth.is_none() && frame.depth() > FINE { frame.with_depth(FINE).of(input)? } else { frame };
     if let Some(mesh) = by_contour(&solid, &frame, tolerance, job, is_named)? {
-        return Ok((mesh, Method::Adaptive, None));
+        return Ok((mesh, Method::Adaptive, None, None));
     }
     let problem = "its surface does not end in the cube that is looked at";
     complain(&format!("{input}: note: {problem}, and is cut off there by --method mc"));
@@ -504,7 +525,31 @@ fn to_tolerance(
     };
     let frame = frame.of(input)?;
     let mesh = watched("mesh", job.threads, |control| of_solid(&solid, &frame, wanted, Method::Mc, control));
-    Ok((mesh.of(input)?, Method::Mc, None))
+    Ok((mesh.of(input)?, Method::Mc, None, None))
+}
+
+/// The surface of an octree whose cells keep surfaces in layers, or no surface in many of them: by rays if points can be decided, else that of
+/// its cells.
+fn of_layers(
+    solid: &AnySolid,
+    frame: &Frame,
+    job: &Job,
+    wanted: &Wanted,
+) -> Result<(TriangleMesh, Method, Option<Followed>), Failure> {
+    let input = &job.input;
+    let coarse = frame.with_depth(frame.depth().min(2)).of(input)?;
+    let sampled =
+        build(&solid, &coarse, Rule::Sampled, &Control { threads: job.threads, ..Control::default() });
+    if !matches!(sampled, Err(Error::NotSampled)) {
+        let (mesh, followed) = by_rays_of(solid, frame, job, Method::Mc)?;
+        return Ok((mesh, Method::Mc, Some(followed)));
+    }
+    complain(&format!("{input}: note: {LAYERS}"));
+    let mesh = watched("mesh", job.threads, |control| {
+        let octree = build(solid, frame, Rule::Certified, control)?;
+        of_cells(&octree, Some(Resolve::Outer), wanted, Method::Nets, control)
+    });
+    Ok((mesh.of(input)?, Method::Nets, None))
 }
 
 /// The surface of a solid that knows its surfaces. Nothing if it does not, and the method is not named.

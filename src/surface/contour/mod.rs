@@ -174,11 +174,13 @@ pub fn contour<S: Solid>(
     let job = Job::new(control);
     job.check()?;
     let quiet = Control { progress: None, ..*control };
-    let wanted = Wanted { depth: frame.depth(), tolerance: tolerance / edge, quiet: &quiet };
+    let mut wanted = Wanted { depth: frame.depth(), tolerance: tolerance / edge, quiet: &quiet };
     let found = match solid.home() {
         None => wanted.find(solid.on(&lattice, &quiet)?, &job)?,
         Some(home) => {
-            // A stored octree is known on its own lattice alone.
+            // A stored octree is known on its own lattice alone, and says nothing of what is smaller than half of its cells.
+            let is_finer = |depth: &u8| edge / f64::from(1u32 << depth) < 0.5 * home.cell_size();
+            wanted.depth -= (2..=frame.depth()).filter(is_finer).count() as u8;
             let moved = Transform::new(solid, &home, &Affine::IDENTITY);
             wanted.find(moved.on(&lattice, &quiet)?, &job)?
         }
