@@ -18,7 +18,7 @@ use std::time::Instant;
 /// file (.lfl) whose cells keep surfaces; a closed mesh has its triangles, merged within --tolerance. A mesh that is not closed, or whose triangles intersect, has cells of several sizes (adaptive).
 /// Both are sharp, have few triangles, and say what is proven of their distance from the solid. A scene with meshes in it has vertices
 /// where rays leave the solid, with sharp edges (dual), and so has a tri-dexel model (mc if it has no normals). A solid from a file
-/// that is no more than cells, or keeps layers of a mesh, has surface nets (nets), and a volume marching cubes (mc).
+/// that is no more than cells has surface nets (nets), one that keeps layers of a mesh, and a volume, marching cubes (mc).
 ///
 /// All other methods separate samples that lie inside from those outside. Samples of a mesh or a scene are the corners of
 /// cells, and vertices lie where the edges between corners cross the surface. Samples of a volume are its voxels, of a tri-dexel model

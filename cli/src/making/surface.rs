@@ -8,6 +8,7 @@ use crate::making::faces::{Faces, Region};
 use crate::making::job::Job;
 use crate::options::{UNDECIDED, name_of};
 use crate::progress::watched;
+use crate::report::cuts::Cuts;
 use crate::report::octree::Info;
 use crate::sink::written::{self, Losses, Writing};
 use crate::source::file::Taking;
@@ -258,6 +259,10 @@ fn usual(shape: &Shape, input: &Input, wanted: &Wanted) -> Method {
         Shape::Source(source) if source.is_of_cells() => (Method::Nets, None),
         Shape::Source(_) if wanted.resolve.is_some() => (Method::Nets, Some("--resolve")),
         Shape::Source(Source::Scene(scene)) if scene.report().meshes.is_empty() => (Method::Faces, None),
+        // (Layers of a curved mesh cross each other in countless finest cells.)
+        Shape::Source(Source::Octree(octree)) if Cuts::new(octree).is_some_and(|cuts| cuts.has_layers()) => {
+            (Method::Mc, None)
+        }
         Shape::Source(Source::Octree(_)) => (Method::Faces, None),
         Shape::Source(Source::Scene(_) | Source::Volume(_)) if wanted.tolerance.is_some() => {
             (Method::Adaptive, Some("--tolerance"))

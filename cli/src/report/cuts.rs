@@ -50,6 +50,11 @@ impl Cuts {
         Some(Cuts { cells, given_up, splits, surfaces, bytes: found.bytes })
     }
 
+    /// Whether some of the surfaces are layers with a width, as those of a mesh.
+    pub fn has_layers(&self) -> bool {
+        self.surfaces.slabs > 0
+    }
+
     /// The volume that the surfaces tell; `None` of a file that is damaged.
     pub fn volume(octree: &Octree) -> Option<Interval> {
         let finest = octree.frame().with_depth(leafless::lattice::MAX_DEPTH).ok()?;
