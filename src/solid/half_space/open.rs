@@ -91,6 +91,7 @@ impl OpenSurfaces {
     }
 
     /// The second of two functions of the same surfaces where surface `i` of the list is positive, else the first one.
+    #[cfg(feature = "std")]
     pub(crate) fn choice(i: usize, [below, above]: [OpenSurfaces; 2]) -> OpenSurfaces {
         let is_above = Table::of(i, false).0;
         below.with_table(Table(below.table.0 & !is_above | above.table.0 & is_above))
