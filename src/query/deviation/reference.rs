@@ -65,7 +65,8 @@ impl Reference {
     ) -> Result<Comparison, Error> {
         let job = &Job::new(control);
         let mut found = Comparison { most: f64::INFINITY, beyond: Vec::new() };
-        let Some(surface) = &self.0 else { return Ok(found) };
+        // (Nothing is proven to be too far from what may be anywhere.)
+        let Some(surface) = self.0.as_ref().filter(|surface| !surface.is_unknown()) else { return Ok(found) };
         found.most = 0.0;
         let new = compared.new_ones()?;
         let tree = new.as_ref().map(|new| new.triangle_tree(job.control())).transpose()?;
@@ -104,7 +105,7 @@ impl Reference {
     ) -> Result<f64, Error> {
         let covers = self.0.iter().flat_map(|surface| &surface.covers);
         let count = mesh.triangles().len() + covers.map(|layer| layer.mesh.triangles().len()).sum::<usize>();
-        if self.0.is_none() || count > MANY {
+        if self.0.as_ref().is_none_or(Surface::is_unknown) || count > MANY {
             return Ok(f64::INFINITY);
         }
         let job = &Job::new(control);

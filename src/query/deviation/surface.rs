@@ -47,6 +47,12 @@ impl Surface {
         Ok(Surface { covers, cores: None, clipped: None, splits: 0, is_cut_short: false })
     }
 
+    /// Whether nothing is known of where the boundary is, although there may be one.
+    #[cfg(feature = "std")]
+    pub(super) fn is_unknown(&self) -> bool {
+        !self.covers.is_empty() && self.cores.as_ref().is_some_and(Vec::is_empty)
+    }
+
     /// A surface that is known exactly but where triangles intersect.
     pub(super) fn of_pieces(pieces: BoundaryPieces) -> Result<Surface, Error> {
         let BoundaryPieces { facets, sure, doubtful, rounding } = pieces;

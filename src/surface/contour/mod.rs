@@ -102,6 +102,9 @@ const PROVES: u64 = 1 << 10;
 /// Pairs that intersect are looked for once no more than one cell of so many was refused.
 const ROUGH: u64 = 64;
 
+/// Vertices are put back, and the mesh is compared again, while the triangles that are too far become fewer by a sixteenth, or are so few.
+const FEW: usize = 1 << 8;
+
 /// How well they tell it, as a part of the tolerance.
 const KNOWN: f64 = 0.25;
 
@@ -283,11 +286,13 @@ impl Wanted<'_> {
             let found = reference.beyond(&remade, tolerance, self.quiet)?;
             let beyond = found.beyond.iter().map(|&triangle| kept[triangle as usize]);
             // (What is too far in any case, is so again.)
-            if found.beyond.len() >= last || !reduction.hold(beyond)? {
+            let count = found.beyond.len();
+            let hardly_falls = count >= last || (count > FEW && count > last - last / 16);
+            if hardly_falls || !reduction.hold(beyond)? {
                 let deviation = reference.apart(&simple, tolerance, self.quiet)?.min(found.most);
                 return Ok((Arc::unwrap_or_clone(simple), pairs, deviation));
             }
-            last = found.beyond.len();
+            last = count;
         }
     }
 }
