@@ -47,6 +47,7 @@
 //! | `walk` | what walks through the cells of a solid, for all that stands above |
 //! | `op` | building, splitting on demand, and the set algebra of stored trees |
 //! | `query` | points, boxes and rays, measures, interference |
+//! | `layout` | placements of solids in a container |
 //! | `attribute` | what has a value at points, inside or outside of solids |
 //! | `voxel` | voxels as records, sorted by code |
 //! | `surface` | triangle meshes of solids |
@@ -104,6 +105,7 @@ pub mod error;
 pub mod exchange;
 pub mod file;
 pub mod lattice;
+pub mod layout;
 #[cfg(feature = "std")]
 mod lock;
 #[doc(hidden)]

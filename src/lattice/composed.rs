@@ -15,6 +15,16 @@ pub(crate) struct Composed {
 }
 
 impl Composed {
+    /// The rows of `[M | t]`.
+    pub(crate) fn rows(&self) -> &[[f64; 4]; 3] {
+        &self.rows
+    }
+
+    /// What each entry may be off.
+    pub(crate) fn errors(&self) -> &[[f64; 4]; 3] {
+        &self.errors
+    }
+
     /// `inner` first, then this.
     pub(crate) fn after(&self, inner: &Affine) -> Composed {
         let (mut rows, mut errors) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);

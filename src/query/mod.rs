@@ -58,6 +58,7 @@ mod section;
 
 pub use classify_box::{Region, classify_box};
 pub use classify_in::classify_in;
+pub(crate) use clearance::{Asked, Ready};
 pub use clearance::{
     CLEARANCE_SPLITS, Clearance, Gap, GapVerdict, clearance, clearance_at, gap_at_least, gap_at_least_at,
 };

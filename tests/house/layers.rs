@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// From the bottom up; modules of one row may use each other.
-const LAYERS: [&[&str]; 17] = [
+const LAYERS: [&[&str]; 18] = [
     &["error", "memory", "lock", "parallel", "control", "dispatch"],
     &["lattice"],
     &["cut"],
@@ -19,6 +19,7 @@ const LAYERS: [&[&str]; 17] = [
     &["walk"],
     &["op"],
     &["query"],
+    &["layout"],
     &["attribute"],
     &["voxel"],
     &["surface"],

@@ -5,13 +5,14 @@ mod facets;
 mod nodes;
 mod piece;
 mod polish;
+mod ready;
 mod search;
 mod simplex;
 
 use super::StopReason;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Affine, Cell, Frame, Interval, axes, valid};
+use crate::lattice::{Affine, Bounds, Cell, Frame, Interval, axes, valid};
 use crate::memory;
 use crate::octree::Proof;
 use crate::parallel::each;
@@ -20,6 +21,7 @@ use crate::walk::Proven;
 use alloc::vec::Vec;
 use facets::{Boundary, ByFacets, Pair};
 use piece::Place;
+pub(crate) use ready::{Asked, Ready};
 use search::{Found, Goal, Search};
 
 /// What is known of the distance between two solids.
@@ -250,35 +252,13 @@ fn at_each<A: Solid, B: Solid>(
 ) -> Result<Vec<Clearance>, Error> {
     let job = Job::new(control);
     job.check()?;
-    let (bounds, solid) = (b.bounds(), b);
+    let solid = b;
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(own, control)?));
     let boundaries = boundaries((&a, &b), solid.motion() == Motion::Vertices, control)?;
-    let keeps_surfaces = solid.home().is_some() && b.surfaces(control)?.is_some_and(|list| !list.is_empty());
+    let boundaries = boundaries.as_ref().map(|[own, other]| [own, other]);
+    let moved = Moved::new(solid, own, &b, control)?;
     let one = |placement: &Affine| {
-        if solid.motion() == Motion::Exact
-            && let Some(moved) = solid.placed(placement)?
-        {
-            let found = apart(&a, &Proven(moved.on(frame, control)?), wanted, &job)?;
-            job.advance(WHOLE / placements.len());
-            return Ok(found);
-        }
-        let around = bounds.and_then(|bounds| bounds.placed(placement));
-        let moved = Proven(TransformClassifier::new(b.0.clone(), placement, frame, around));
-        let found = match (&boundaries, around) {
-            (Some([own, other]), Some(around)) if around.is_within(frame) => {
-                let pair = Pair {
-                    solids: (&a, &b),
-                    boundaries: [own, other],
-                    placement: Some(placement).filter(|placement| !placement.is_identity()),
-                };
-                apart_by_facets(&pair, (&a, &moved), wanted, &job)?
-            }
-            _ if keeps_surfaces => {
-                let moved = Transform::new(solid, own, placement).on(frame, control)?;
-                apart(&a, &Proven(moved), wanted, &job)?
-            }
-            _ => apart(&a, &moved, wanted, &job)?,
-        };
+        let found = moved.apart_from(&a, boundaries, placement, wanted, &job)?;
         job.advance(WHOLE / placements.len());
         Ok::<_, Error>(found)
     };
@@ -290,6 +270,64 @@ fn at_each<A: Solid, B: Solid>(
         }
         Ok(found)
     })
+}
+
+/// A solid on its own frame, which is compared with others in many places.
+struct Moved<'m, B: Solid> {
+    solid: &'m B,
+    own: &'m Frame,
+    classifier: &'m Proven<B::Classifier>,
+    bounds: Option<Bounds>,
+    keeps_surfaces: bool,
+    /// Whether what lies outside of the universe does not count.
+    is_clipped: bool,
+}
+
+impl<'m, B: Solid> Moved<'m, B> {
+    fn new(
+        solid: &'m B,
+        own: &'m Frame,
+        classifier: &'m Proven<B::Classifier>,
+        control: &Control<'_>,
+    ) -> Result<Self, Error> {
+        let keeps_surfaces =
+            solid.home().is_some() && classifier.surfaces(control)?.is_some_and(|list| !list.is_empty());
+        Ok(Moved { solid, own, classifier, bounds: solid.bounds(), keeps_surfaces, is_clipped: true })
+    }
+
+    /// How far it is from `a` in some place; `boundaries` are those of both solids, if both consist of triangles.
+    fn apart_from<A: Classifier>(
+        &self,
+        a: &A,
+        boundaries: Option<[&Boundary; 2]>,
+        placement: &Affine,
+        wanted: Goal,
+        job: &Job<'_>,
+    ) -> Result<Clearance, Error> {
+        let (frame, control) = (a.frame(), job.control());
+        if self.solid.motion() == Motion::Exact
+            && let Some(moved) = self.solid.placed(placement)?
+        {
+            return apart(a, &Proven(moved.on(frame, control)?), wanted, job);
+        }
+        let around = self.bounds.and_then(|bounds| bounds.placed(placement));
+        let moved = Proven(TransformClassifier::new(self.classifier.0.clone(), placement, frame, around));
+        match (boundaries, around) {
+            (Some(boundaries), Some(around)) if !self.is_clipped || around.is_within(frame) => {
+                let pair = Pair {
+                    solids: (a, self.classifier),
+                    boundaries,
+                    placement: Some(placement).filter(|placement| !placement.is_identity()),
+                };
+                apart_by_facets(&pair, (a, &moved), wanted, job)
+            }
+            _ if self.keeps_surfaces => {
+                let moved = Transform::new(self.solid, self.own, placement).on(frame, control)?;
+                apart(a, &Proven(moved), wanted, job)
+            }
+            _ => apart(a, &moved, wanted, job),
+        }
+    }
 }
 
 /// The boundaries of two solids, if both consist of triangles. What is no mesh tells so at once, and is asked first: `is_mesh` says whether

@@ -1,0 +1,91 @@
+//! What is laid out.
+
+use super::orientation::{Orientations, is_motion};
+use crate::error::Error;
+use crate::lattice::Bounds;
+use crate::solid::{AnySolid, Solid};
+
+/// A solid that is to be laid out, once or several times.
+#[derive(Clone)]
+pub struct Item {
+    pub(super) solid: AnySolid,
+    pub(super) bounds: Bounds,
+    pub(super) count: u32,
+    pub(super) orientations: Orientations,
+    pub(super) density: f64,
+}
+
+impl Item {
+    /// One copy of a solid of density 1, which may be turned by the 24 turns that take axes to axes.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the solid does not tell [bounds](Solid::bounds), or these have no extent along an axis.
+    pub fn new(solid: AnySolid) -> Result<Item, Error> {
+        let bounds = bounds_of(&solid, "item")?;
+        Ok(Item { solid, bounds, count: 1, orientations: Orientations::Turns, density: 1.0 })
+    }
+
+    /// So many copies.
+    #[must_use]
+    pub fn with_count(self, count: u32) -> Item {
+        Item { count, ..self }
+    }
+
+    /// How it may be turned.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if a map of a list is no turn: it mirrors, or stretches by more than 10^-9; or if the list is empty.
+    pub fn with_orientations(self, orientations: Orientations) -> Result<Item, Error> {
+        if let Orientations::List(list) = &orientations {
+            if list.is_empty() {
+                return Err(Error::Argument { name: "orientations", problem: "must not be empty" });
+            }
+            if !list.iter().all(is_motion) {
+                return Err(NO_MOTION);
+            }
+        }
+        Ok(Item { orientations, ..self })
+    }
+
+    /// Mass per volume, for the centre of gravity and the inertia of the whole.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if it is not a positive number.
+    pub fn with_density(self, density: f64) -> Result<Item, Error> {
+        if !(density > 0.0 && density < f64::INFINITY) {
+            return Err(Error::Argument { name: "density", problem: "must be a positive number" });
+        }
+        Ok(Item { density, ..self })
+    }
+
+    /// The solid.
+    pub fn solid(&self) -> &AnySolid {
+        &self.solid
+    }
+
+    /// How many copies there are.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+}
+
+/// The refusal of a map that is no motion.
+pub(super) const NO_MOTION: Error = Error::Argument {
+    name: "placement",
+    problem: "must turn and move, and neither mirror nor stretch by more than a billionth",
+};
+
+/// A box around a solid.
+pub(super) fn bounds_of(solid: &AnySolid, name: &'static str) -> Result<Bounds, Error> {
+    let of_home = || solid.home().as_ref().map(Bounds::of);
+    let Some(bounds) = solid.bounds().or_else(of_home) else {
+        return Err(Error::Argument {
+            name,
+            problem: "must have bounds: a solid that goes on without end cannot be laid out",
+        });
+    };
+    if (0..3).any(|k| bounds.max[k] <= bounds.min[k]) {
+        return Err(Error::Argument { name, problem: "must have an extent along every axis" });
+    }
+    Ok(bounds)
+}

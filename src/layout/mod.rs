@@ -1,0 +1,195 @@
+//! Placing solids in a container, with proof.
+//!
+//! A [`Layout`] holds a container, obstacles, items, and which of these stand where. [`Layout::check`] says of one that is placed
+//! whether it fits, and [`Layout::search`] places what is not placed yet. All that either claims is proven by the solids themselves:
+//! cells are split where it takes that, and nowhere else (Dai, Zha & Ni 1994).
+//!
+//! | question | file |
+//! |---|---|
+//! | which turns are there? | `orientation` |
+//! | are two placed solids apart, is one within the container? | `proof`; where one is as the other sees it: `relative` |
+//! | who is in the way, and how near is the next one? | `check` |
+//! | where does what is not placed go? | `search/` |
+
+mod check;
+mod item;
+mod orientation;
+mod proof;
+mod random;
+mod relative;
+mod search;
+
+pub use check::{Neighbour, Stander, Standing};
+pub use item::Item;
+pub use orientation::Orientations;
+pub use search::{Direction, Objective, SearchEnd, SearchOptions, SearchReport};
+
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Affine, Bounds, valid};
+use crate::memory;
+use crate::solid::AnySolid;
+use alloc::vec::Vec;
+use item::{NO_MOTION, bounds_of};
+use orientation::is_motion;
+use proof::{Container, Piece};
+
+/// What is laid out, and where.
+#[derive(Clone)]
+pub struct Bay {
+    /// What holds everything; any solid that ends.
+    pub container: AnySolid,
+    /// Solids that stand where they are.
+    pub obstacles: Vec<AnySolid>,
+    /// What is to be placed.
+    pub items: Vec<Item>,
+    /// The least distance between two items, and between an item and an obstacle (model units, at least 0).
+    pub clearance: f64,
+    /// The least distance between an item and what lies outside of the container (model units, at least 0).
+    pub wall_clearance: f64,
+}
+
+/// A copy of an item in its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placed {
+    /// Which item, by its place among those of the bay.
+    pub item: usize,
+    /// Where it stands.
+    pub placement: Affine,
+}
+
+/// A container with obstacles, items, and the places of those that are placed.
+///
+/// Solids are prepared once. Items with the same number share what is prepared.
+///
+/// ```
+/// use leafless::{Affine, AnySolid, Control, Csg};
+/// use leafless::layout::{Bay, Item, Layout};
+/// use leafless::query::GapVerdict;
+/// let control = Control::default();
+/// let ball = Item::new(AnySolid::new(Csg::ball([0.0; 3], 10.0)?))?.with_count(2);
+/// let mut layout = Layout::new(
+///     &Bay {
+///         container: AnySolid::new(Csg::cuboid([0.0; 3], [50.0, 30.0, 30.0])?),
+///         obstacles: vec![],
+///         items: vec![ball],
+///         clearance: 1.0,
+///         wall_clearance: 0.5,
+///     },
+///     &control,
+/// )?;
+/// let first = layout.place(0, &Affine::translation([11.0, 15.0, 15.0])?)?;
+/// let second = layout.place(0, &Affine::translation([31.5, 15.0, 15.0])?)?;
+/// let found = layout.check(second, &control)?;
+/// assert_eq!(found.verdict, GapVerdict::No);
+/// assert!(found.conflicts[0].gap.contains(0.5));
+/// layout.move_to(second, &Affine::translation([32.5, 15.0, 15.0])?)?;
+/// assert_eq!(layout.check(second, &control)?.verdict, GapVerdict::Yes);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub struct Layout {
+    container: Container,
+    obstacles: Vec<Piece>,
+    items: Vec<Item>,
+    pieces: Vec<Piece>,
+    clearance: f64,
+    placed: Vec<Placed>,
+    /// Boxes around what is placed.
+    boxes: Vec<Bounds>,
+}
+
+impl Layout {
+    /// A layout in which nothing is placed. It takes what the solids take to be put on frames, once each.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if a clearance is negative or not a number, or beyond 2^64; if the container or an obstacle has no bounds;
+    /// what the solids refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+    pub fn new(bay: &Bay, control: &Control<'_>) -> Result<Layout, Error> {
+        valid::tolerance("clearance", bay.clearance)?;
+        valid::tolerance("wall clearance", bay.wall_clearance)?;
+        let longest = bay.items.iter().map(|item| proof::diagonal(&item.bounds)).fold(0.0, f64::max);
+        // What is further away than that is told apart by boxes.
+        let reach = 1.25 * longest + 2.0 * bay.clearance.max(bay.wall_clearance);
+        let container = Container::new(&bay.container, bay.wall_clearance, reach, control)?;
+        let mut obstacles = memory::with_capacity(bay.obstacles.len())?;
+        for solid in &bay.obstacles {
+            obstacles.push(Piece::new(solid, &bounds_of(solid, "obstacle")?, reach, control)?);
+        }
+        let mut pieces = memory::with_capacity(bay.items.len())?;
+        let mut items = memory::with_capacity(bay.items.len())?;
+        for item in &bay.items {
+            pieces.push(Piece::new(&item.solid, &item.bounds, reach, control)?);
+            items.push(item.clone());
+        }
+        let clearance = bay.clearance;
+        Ok(Layout { container, obstacles, items, pieces, clearance, placed: Vec::new(), boxes: Vec::new() })
+    }
+
+    /// What may be placed.
+    pub fn items(&self) -> &[Item] {
+        &self.items
+    }
+
+    /// What is placed, in the order in which it was.
+    pub fn placed(&self) -> &[Placed] {
+        &self.placed
+    }
+
+    #[doc(hidden)]
+    pub fn tops(&self) -> f64 {
+        self.boxes.iter().map(|b| b.max[2]).fold(0.0, f64::max)
+    }
+
+    /// Places a copy of an item, wherever that is, and tells its number. Nothing is checked. The counts of items are not looked at.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if there is no such item, or the placement mirrors, or stretches by more than 10^-9;
+    /// [`Error::OutOfMemory`].
+    pub fn place(&mut self, item: usize, placement: &Affine) -> Result<usize, Error> {
+        if item >= self.items.len() {
+            return Err(Error::Argument { name: "item", problem: "must be the number of one of the items" });
+        }
+        let around = self.around(item, placement)?;
+        memory::push(&mut self.boxes, around)?;
+        if let Err(error) = memory::push(&mut self.placed, Placed { item, placement: *placement }) {
+            self.boxes.pop();
+            return Err(error);
+        }
+        Ok(self.placed.len() - 1)
+    }
+
+    /// Moves what is placed to another place. Nothing is checked.
+    ///
+    /// # Errors
+    /// As [`place`](Self::place), for the number of what is placed.
+    pub fn move_to(&mut self, number: usize, placement: &Affine) -> Result<(), Error> {
+        let Some(own) = self.placed.get(number) else { return Err(NOT_PLACED) };
+        self.boxes[number] = self.around(own.item, placement)?;
+        self.placed[number].placement = *placement;
+        Ok(())
+    }
+
+    /// Takes what is placed away. Those that were placed later get numbers that are less by one.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if there is nothing of this number.
+    pub fn remove(&mut self, number: usize) -> Result<Placed, Error> {
+        if number >= self.placed.len() {
+            return Err(NOT_PLACED);
+        }
+        self.boxes.remove(number);
+        Ok(self.placed.remove(number))
+    }
+
+    /// A box around an item in a place.
+    fn around(&self, item: usize, placement: &Affine) -> Result<Bounds, Error> {
+        if !is_motion(placement) {
+            return Err(NO_MOTION);
+        }
+        self.items[item].bounds.placed(placement).ok_or(NO_MOTION)
+    }
+}
+
+/// The refusal of a number that nothing placed has.
+const NOT_PLACED: Error =
+    Error::Argument { name: "number", problem: "must be the number of something that is placed" };

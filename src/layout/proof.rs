@@ -1,0 +1,215 @@
+//! Whether two placed solids are apart, and whether one lies within the container.
+
+use super::relative::Relative;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::exact::sqrt;
+use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
+use crate::query::{Asked, GapVerdict, Overlap, Ready, interference};
+use crate::solid::{AnySolid, Csg};
+
+/// Splits that the question about one pair may take.
+pub(super) const PAIR_SPLITS: u64 = 1 << 14;
+
+/// A solid that is compared with others.
+pub(super) struct Piece(Ready);
+
+/// What is known of two solids.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Known {
+    pub(super) verdict: GapVerdict,
+    /// What is known of their distance.
+    pub(super) gap: Interval,
+    pub(super) splits: u64,
+}
+
+impl Piece {
+    /// What is no further away than `reach` can be compared with it.
+    pub(super) fn new(
+        solid: &AnySolid,
+        bounds: &Bounds,
+        reach: f64,
+        control: &Control<'_>,
+    ) -> Result<Piece, Error> {
+        let around = bounds.grown(reach);
+        let frame = Frame::fitted(around.min, around.max, MAX_DEPTH)?;
+        Ok(Piece(Ready::new(solid, bounds, &frame, control)?))
+    }
+
+    pub(super) fn solid(&self) -> &AnySolid {
+        self.0.solid()
+    }
+
+    /// A box that holds it.
+    pub(super) fn bounds(&self) -> &Bounds {
+        self.0.bounds()
+    }
+
+    /// Whether another one, as this one sees it, is no nearer than `least`; with `least` = 0, whether the two do not overlap.
+    ///
+    /// `places` are those of both in the model.
+    pub(super) fn is_apart(
+        &self,
+        other: &Piece,
+        seen: &Relative,
+        places: [&Affine; 2],
+        least: f64,
+        control: &Control<'_>,
+    ) -> Result<Known, Error> {
+        let control = &Control { max_splits: control.max_splits.or(Some(PAIR_SPLITS)), ..*control };
+        let asked = Asked::AtLeast(seen.needed(least));
+        let found = self.0.compared(&other.0, &seen.placement, asked, control)?;
+        let gap = seen.distance(found.distance);
+        let splits = found.splits.iter().sum();
+        // (What is needed is no less than `least` with all that rounding may do.)
+        if found.distance.lower >= seen.needed(least) {
+            return Ok(Known { verdict: GapVerdict::Yes, gap, splits });
+        }
+        if least > 0.0 {
+            let verdict = if gap.upper < least { GapVerdict::No } else { GapVerdict::Undecided };
+            return Ok(Known { verdict, gap, splits });
+        }
+        // Solids that may touch: exact numbers tell, where there are some.
+        let placed = [self.0.solid().placed(places[0])?, other.0.solid().placed(places[1])?];
+        let boxes = [self.0.bounds().placed(places[0]), other.0.bounds().placed(places[1])];
+        let [Some(own), Some(others)] = boxes else {
+            return Ok(Known { verdict: GapVerdict::Undecided, gap, splits });
+        };
+        let around = own.hull(&others);
+        let frame = Frame::fitted(around.min, around.max, MAX_DEPTH)?;
+        let found = interference(&placed[0], &placed[1], &frame, f64::INFINITY, control)?;
+        let splits = splits + found.splits.iter().sum::<u64>();
+        Ok(match found.verdict {
+            Overlap::Disjoint => Known { verdict: GapVerdict::Yes, gap, splits },
+            Overlap::Overlapping => Known { verdict: GapVerdict::No, gap: Interval::exactly(0.0), splits },
+            Overlap::Undecided => Known { verdict: GapVerdict::Undecided, gap, splits },
+        })
+    }
+
+    /// How far another one is.
+    pub(super) fn distance(
+        &self,
+        other: &Piece,
+        seen: &Relative,
+        tolerance: f64,
+        control: &Control<'_>,
+    ) -> Result<(Interval, u64), Error> {
+        let control = &Control { max_splits: control.max_splits.or(Some(PAIR_SPLITS)), ..*control };
+        let found = self.0.compared(&other.0, &seen.placement, Asked::Distance(tolerance), control)?;
+        Ok((seen.distance(found.distance), found.splits.iter().sum()))
+    }
+}
+
+/// What holds everything.
+pub(super) struct Container {
+    /// What lies around it, as far as anything placed may reach.
+    wall: Piece,
+    wall_solid: AnySolid,
+    solid: AnySolid,
+    bounds: Bounds,
+    outer: Bounds,
+    /// Whether it is proven to be the whole box that holds it.
+    is_box: bool,
+    clearance: f64,
+}
+
+impl Container {
+    pub(super) fn new(
+        solid: &AnySolid,
+        clearance: f64,
+        reach: f64,
+        control: &Control<'_>,
+    ) -> Result<Container, Error> {
+        let bounds = super::item::bounds_of(solid, "container")?;
+        let outer = bounds.grown(reach + clearance);
+        let wall = Csg::cuboid(outer.min, outer.max)?.difference(&Csg::solid(solid.clone()))?;
+        let wall_solid = AnySolid::new(wall);
+        let wall = Piece::new(&wall_solid, &outer, 0.0, control)?;
+        let mut container =
+            Container { wall, wall_solid, solid: solid.clone(), bounds, outer, is_box: false, clearance };
+        container.is_box = container.holds(&bounds, control)?;
+        Ok(container)
+    }
+
+    pub(super) fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    pub(super) fn is_box(&self) -> bool {
+        self.is_box
+    }
+
+    pub(super) fn clearance(&self) -> f64 {
+        self.clearance
+    }
+
+    /// Whether a box lies within, as far as that is known.
+    fn holds(&self, block: &Bounds, control: &Control<'_>) -> Result<bool, Error> {
+        const SPLITS: u64 = 64;
+        let control = Control { max_splits: Some(SPLITS), ..*control };
+        let block = Csg::cuboid(block.min, block.max)?;
+        let frame = Frame::fitted(self.outer.min, self.outer.max, MAX_DEPTH)?;
+        let found = interference(&self.wall_solid, &block, &frame, f64::INFINITY, &control)?;
+        Ok(found.verdict == Overlap::Disjoint)
+    }
+
+    pub(super) fn solid(&self) -> &AnySolid {
+        &self.solid
+    }
+
+    /// Whether something placed lies within, and as far from the wall as it should; `around` holds it there.
+    pub(super) fn takes(
+        &self,
+        piece: &Piece,
+        placement: &Affine,
+        around: &Bounds,
+        control: &Control<'_>,
+    ) -> Result<Known, Error> {
+        let block = around.grown(self.clearance);
+        let is_inside =
+            (0..3).all(|k| self.bounds.min[k] <= block.min[k] && block.max[k] <= self.bounds.max[k]);
+        let known = |verdict, gap| Ok(Known { verdict, gap, splits: 0 });
+        if is_inside && self.is_box {
+            return known(GapVerdict::Yes, Interval::between(self.clearance, f64::INFINITY));
+        }
+        let is_within =
+            (0..3).all(|k| self.outer.min[k] <= around.min[k] && around.max[k] <= self.outer.max[k]);
+        if !is_within {
+            // Nobody has looked so far from the container. What does not even meet it is outside.
+            let away = self.bounds.common(around).is_none();
+            return known(
+                if away { GapVerdict::No } else { GapVerdict::Undecided },
+                Interval::between(0.0, f64::INFINITY),
+            );
+        }
+        self.wall.is_apart(
+            piece,
+            &Relative::of(placement),
+            [&Affine::IDENTITY, placement],
+            self.clearance,
+            control,
+        )
+    }
+}
+
+/// The length of a box from corner to corner, rounded upward.
+pub(super) fn diagonal(bounds: &Bounds) -> f64 {
+    let sides: [f64; 3] = axes(|k| bounds.max[k] - bounds.min[k]);
+    sqrt(sides.iter().map(|side| side * side).sum::<f64>()) * (1.0 + 1e-12)
+}
+
+/// No more than the distance of two boxes; less than 0 if their insides meet.
+pub(super) fn boxes_apart(a: &Bounds, b: &Bounds) -> f64 {
+    let gaps: [f64; 3] = axes(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]));
+    if gaps.iter().all(|&gap| gap < 0.0) {
+        return -1.0;
+    }
+    let parts = gaps.map(|gap| gap.max(0.0));
+    let alone = parts.iter().filter(|&&part| part > 0.0).count() <= 1;
+    if alone {
+        // (A difference is off by half a last place at the most.)
+        let gap = parts.iter().sum::<f64>();
+        return if gap == 0.0 { 0.0 } else { gap * (1.0 - f64::EPSILON) };
+    }
+    sqrt(parts.iter().map(|part| part * part).sum::<f64>()) * (1.0 - 1e-12)
+}

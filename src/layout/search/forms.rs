@@ -1,0 +1,111 @@
+//! Items as cells, in all their orientations.
+
+use super::super::item::Item;
+use super::bits::Bits;
+use super::space::Shape;
+use super::voxels::Voxels;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Affine, axes};
+use crate::memory;
+use alloc::vec::Vec;
+
+/// Cells of the lattice that a cell of the search has along each axis.
+pub(super) const FINER: usize = 4;
+
+/// An item in one orientation.
+pub(super) struct Form {
+    pub(super) map: Affine,
+    pub(super) shape: Shape,
+    /// What it takes from others: all cells that are too near to it, and how many of them lie below its own along each axis.
+    pub(super) taken: Bits,
+    pub(super) below: usize,
+    /// The lower corner of its cells when it is turned, and the centre of these from there (model units).
+    pub(super) origin: [f64; 3],
+    pub(super) centre: [f64; 3],
+}
+
+/// The forms of an item, of which no two have the same cells.
+pub(super) struct Forms {
+    pub(super) all: Vec<Form>,
+    /// About its volume (cubic model units).
+    pub(super) volume: f64,
+}
+
+impl Forms {
+    /// By cells with the edge `cell`; others are to be `clearance` away.
+    pub(super) fn of(
+        item: &Item,
+        maps: &[Affine],
+        cell: f64,
+        clearance: f64,
+        control: &Control<'_>,
+    ) -> Result<Forms, Error> {
+        let fine = cell / FINER as f64;
+        let given = Voxels::of(&item.solid, &item.bounds, fine, None, control)?;
+        let mut all: Vec<Form> = Vec::new();
+        for map in maps {
+            control.check()?;
+            let voxels = if map.is_monomial() {
+                turned(&given, map, fine)?
+            } else {
+                of_turned(item, map, fine, control)?
+            };
+            let shape = voxels.bits.coarser(FINER, [0; 3])?;
+            let own = Shape::new(&shape)?;
+            if all.iter().any(|form| form.shape.size == own.size && form.shape.runs == own.runs) {
+                continue;
+            }
+            let pad = (libm::ceil(clearance / fine) as usize).next_multiple_of(FINER);
+            let taken = match clearance {
+                0.0 => shape,
+                _ => voxels.bits.grown(clearance / fine, pad)?.coarser(FINER, [0; 3])?,
+            };
+            let centre = centre(&voxels.bits)?.map(|c| fine * c);
+            let below = pad / FINER;
+            memory::push(
+                &mut all,
+                Form { map: *map, shape: own, taken, below, origin: voxels.origin, centre },
+            )?;
+        }
+        Ok(Forms { all, volume: given.bits.count() as f64 * fine * fine * fine })
+    }
+}
+
+/// Cells of a solid under one of the 24 turns: those of the solid, turned.
+fn turned(given: &Voxels, map: &Affine, cell: f64) -> Result<Voxels, Error> {
+    let rows = map.rows();
+    let order: [usize; 3] = axes(|i| (0..3).find(|&j| rows[i][j] != 0.0).unwrap_or(i));
+    let flip: [bool; 3] = axes(|i| rows[i][order[i]] < 0.0);
+    let origin = axes(|i| {
+        let j = order[i];
+        let end = given.origin[j] + cell * given.bits.size[j] as f64;
+        if flip[i] { -end } else { given.origin[j] }
+    });
+    Ok(Voxels { bits: given.bits.turned(order, flip)?, origin })
+}
+
+/// Cells of a solid under any other turn.
+fn of_turned(item: &Item, map: &Affine, cell: f64, control: &Control<'_>) -> Result<Voxels, Error> {
+    let solid = item.solid.placed(map)?;
+    let around = item.bounds.placed(map);
+    // (What is turned often tells better where it ends.)
+    let own = crate::solid::Solid::bounds(&solid);
+    let bounds = match (around, own) {
+        (Some(around), Some(own)) => own.common(&around).unwrap_or(around),
+        (around, own) => own.or(around).unwrap_or(item.bounds),
+    };
+    Voxels::of(&solid, &bounds, cell, None, control)
+}
+
+/// The centre of all cells, in cells.
+fn centre(bits: &Bits) -> Result<[f64; 3], Error> {
+    let (mut sums, mut count) = ([0.0; 3], 0.0);
+    for run in bits.runs()? {
+        let length = f64::from(run.length);
+        let at = [f64::from(run.x) + 0.5 * length, f64::from(run.y) + 0.5, f64::from(run.z) + 0.5];
+        (0..3).for_each(|k| sums[k] += length * at[k]);
+        count += length;
+    }
+    Ok(sums.map(|sum| if count > 0.0 { sum / count } else { 0.0 }))
+}

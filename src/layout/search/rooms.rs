@@ -1,0 +1,142 @@
+//! Places for the boxes of items: what takes no split.
+
+use super::super::Layout;
+use super::boxes::Free;
+use super::plan::{Plan, Step, Tally};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Affine, Bounds, axes};
+use crate::memory;
+use alloc::vec::Vec;
+
+/// An orientation, and the box of the item in it.
+struct Turned {
+    map: Affine,
+    block: Bounds,
+    /// The box of the item as it is.
+    own: Bounds,
+}
+
+/// The boxes of items in their orientations, of which no two are of the same size.
+pub(super) struct Rooms {
+    items: Vec<Vec<Turned>>,
+    whole: Bounds,
+    least: f64,
+}
+
+impl Rooms {
+    /// `None` if the container is not known to be a box, or has no room.
+    pub(super) fn new(layout: &Layout, maps: &[Vec<Affine>]) -> Result<Option<Rooms>, Error> {
+        let container = &layout.container;
+        let (bounds, margin) = (container.bounds(), container.clearance());
+        let whole = Bounds::new(
+            bounds.min.map(|low| if margin > 0.0 { (low + margin).next_up() } else { low }),
+            bounds.max.map(|high| if margin > 0.0 { (high - margin).next_down() } else { high }),
+        );
+        let Some(whole) = whole.filter(|_| container.is_box()) else { return Ok(None) };
+        let mut items = memory::with_capacity(maps.len())?;
+        let mut least = f64::INFINITY;
+        for (item, maps) in layout.items.iter().zip(maps) {
+            let mut list: Vec<Turned> = Vec::new();
+            for map in maps {
+                let Some(block) = item.bounds.placed(map) else { continue };
+                let size = |own: &Bounds| -> [f64; 3] { axes(|k| own.max[k] - own.min[k]) };
+                let is_known = list.iter().any(|own| size(&own.block) == size(&block));
+                if !is_known {
+                    least = size(&block).into_iter().fold(least, f64::min);
+                    memory::push(&mut list, Turned { map: *map, block, own: item.bounds })?;
+                }
+            }
+            items.push(list);
+        }
+        Ok(Some(Rooms { items, whole, least }))
+    }
+
+    /// Places what finds a place, in the order of a plan. Nothing is proven yet.
+    pub(super) fn round(
+        &self,
+        layout: &Layout,
+        plan: &Plan,
+        control: &Control<'_>,
+    ) -> Result<Vec<Step>, Error> {
+        let mut free = Free::new(&self.whole)?;
+        for obstacle in &layout.obstacles {
+            free.take(&obstacle.bounds().grown(layout.clearance))?;
+        }
+        for block in &layout.boxes {
+            free.take(&block.grown(layout.clearance))?;
+        }
+        let mut steps = memory::with_capacity(plan.order.len())?;
+        let mut is_full = memory::filled(self.items.len(), false)?;
+        for &item in &plan.order {
+            control.check()?;
+            if is_full[item] {
+                continue;
+            }
+            match self.place(item, &free, plan) {
+                Some((step, block)) => {
+                    free.take(&block.grown(layout.clearance))?;
+                    free.forget_below(self.least);
+                    steps.push(step);
+                }
+                None => is_full[item] = true,
+            }
+        }
+        Ok(steps)
+    }
+
+    /// The best place for an item, and its box there.
+    fn place(&self, item: usize, free: &Free, plan: &Plan) -> Option<(Step, Bounds)> {
+        let mut best: Option<([f64; 4], Step, Bounds)> = None;
+        for turned in &self.items[item] {
+            let size: [f64; 3] = axes(|k| turned.block.max[k] - turned.block.min[k]);
+            for room in free.boxes() {
+                if (0..3).any(|k| size[k] > room.max[k] - room.min[k]) {
+                    continue;
+                }
+                let left = (0..3).map(|k| room.max[k] - room.min[k] - size[k]).fold(f64::INFINITY, f64::min);
+                let rank = plan.rank(room.min, size, left);
+                if best.as_ref().is_some_and(|best| best.0 <= rank) {
+                    continue;
+                }
+                if let Some((placement, block)) = put(turned, room) {
+                    best = Some((rank, Step { item, placement }, block));
+                }
+            }
+        }
+        best.map(|(_, step, block)| (step, block))
+    }
+}
+
+/// Moves a turned item into the lower corner of a room: where rounding leaves its box within.
+fn put(turned: &Turned, room: &Bounds) -> Option<(Affine, Bounds)> {
+    let mut to: [f64; 3] = axes(|k| room.min[k] - turned.block.min[k]);
+    for _ in 0..4 {
+        let rows = turned.map.rows();
+        let placement = Affine::new(axes(|k| [rows[k][0], rows[k][1], rows[k][2], to[k]])).ok()?;
+        let there = turned.own.placed(&placement)?;
+        let is_below = |k: usize| there.min[k] < room.min[k];
+        if !(0..3).any(is_below) {
+            let is_within = (0..3).all(|k| there.max[k] <= room.max[k]);
+            return is_within.then_some((placement, there));
+        }
+        for k in (0..3).filter(|&k| is_below(k)) {
+            to[k] = (to[k] + (room.min[k] - there.min[k])).next_up();
+        }
+    }
+    None
+}
+
+/// What the boxes of all steps take.
+pub(super) fn tally(layout: &Layout, steps: &[Step]) -> Tally {
+    let mut tally = Tally::default();
+    for step in steps {
+        let bounds = &layout.items[step.item].bounds;
+        tally.count += 1;
+        tally.volume += (0..3).map(|k| bounds.max[k] - bounds.min[k]).product::<f64>();
+        if let Some(there) = bounds.placed(&step.placement) {
+            tally.height = tally.height.max(there.max[2]);
+        }
+    }
+    tally
+}

@@ -1,0 +1,269 @@
+//! Where shapes of cells go among cells that are taken.
+//!
+//! A shape is a list of runs along x. Where a run of length 2^k meets a taken cell is known of all places at once, if each bit has been
+//! joined with those up to 2^k − 1 cells further on; any other run is two of these that overlap. So 64 places take two shifts a run, and
+//! the places of one layer are told by the runs of the shape, with nothing that is transformed or rounded. (Fourier transforms tell all
+//! places of all layers: Cui, Rong, Chen & Matusik 2023. The lowest layer with a place takes less, and cells that are taken later never
+//! free one, so that no layer is looked at again.)
+
+use super::bits::{Bits, Run};
+use crate::error::Error;
+use crate::memory;
+use alloc::vec::Vec;
+
+/// Cells that are taken.
+pub(super) struct Space {
+    size: [usize; 3],
+    words: usize,
+    /// By k: which cells have one that is taken among the 2^k from them on.
+    joined: Vec<Vec<u64>>,
+}
+
+/// Places of a layer: a bit is set where the shape does not go.
+#[derive(Debug, Default)]
+pub(super) struct Layer {
+    bits: Vec<u64>,
+    words: usize,
+    rows: usize,
+}
+
+/// A shape that is to be placed.
+pub(super) struct Shape {
+    pub(super) size: [usize; 3],
+    pub(super) runs: Vec<Run>,
+}
+
+impl Shape {
+    pub(super) fn new(bits: &Bits) -> Result<Shape, Error> {
+        Ok(Shape { size: bits.size, runs: bits.runs()? })
+    }
+}
+
+impl Space {
+    /// Nothing is taken. No shape has a run that is longer than `longest`, which is not 0.
+    pub(super) fn new(size: [usize; 3], longest: usize) -> Result<Space, Error> {
+        let words = size[0].div_ceil(64);
+        // (Reading goes on beyond the end of a row.)
+        let count = words * size[1] * size[2] + words + 2;
+        let mut joined = Vec::new();
+        for _ in 0..=longest.ilog2() {
+            memory::push(&mut joined, memory::filled(count, 0)?)?;
+        }
+        Ok(Space { size, words, joined })
+    }
+
+    /// The same cells, once more.
+    pub(super) fn try_clone(&self) -> Result<Space, Error> {
+        let mut joined = memory::with_capacity(self.joined.len())?;
+        for list in &self.joined {
+            joined.push(memory::copied(list)?);
+        }
+        Ok(Space { size: self.size, words: self.words, joined })
+    }
+
+    pub(super) fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// Takes the cells of a row from `from` up to `to`, which may lie beyond its ends.
+    pub(super) fn take_row(&mut self, from: isize, to: isize, y: usize, z: usize) {
+        let (from, to) = (from.max(0) as usize, to.clamp(0, self.size[0] as isize) as usize);
+        if from >= to {
+            return;
+        }
+        let row = self.words * (y + self.size[1] * z);
+        for (k, joined) in self.joined.iter_mut().enumerate() {
+            let from = (from + 1).saturating_sub(1 << k);
+            for word in from / 64..to.div_ceil(64) {
+                let low = from.saturating_sub(64 * word);
+                let high = (to - 64 * word).min(64);
+                joined[row + word] |= (u64::MAX >> (64 - (high - low))) << low;
+            }
+        }
+    }
+
+    /// Takes cells that lie at an offset, and, if `shade` is an axis and a sense, all that lie from them on that way.
+    pub(super) fn take(
+        &mut self,
+        cells: &Bits,
+        offset: [isize; 3],
+        shade: Option<(usize, bool)>,
+    ) -> Result<(), Error> {
+        let [nx, ny, nz] = self.size.map(|size| size as isize);
+        for z in 0..cells.size[2] {
+            for y in 0..cells.size[1] {
+                let (wy, wz) = (y as isize + offset[1], z as isize + offset[2]);
+                let beyond = |at: isize, end: isize, axis: usize| match shade {
+                    Some((own, upward)) if own == axis => {
+                        if upward {
+                            at.max(0)..end
+                        } else {
+                            0..(at + 1).clamp(0, end)
+                        }
+                    }
+                    _ => at.max(0)..(at + 1).clamp(0, end),
+                };
+                cells.runs_of(y, z, |x, length| {
+                    let (mut from, mut to) = (x as isize + offset[0], (x + length) as isize + offset[0]);
+                    match shade {
+                        Some((0, true)) => to = nx,
+                        Some((0, false)) => from = 0,
+                        _ => {}
+                    }
+                    for wz in beyond(wz, nz, 2) {
+                        for wy in beyond(wy, ny, 1) {
+                            self.take_row(from, to, wy as usize, wz as usize);
+                        }
+                    }
+                    Ok(())
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The places in layer `z` where a shape does not go, which fits into the space. `false` if it goes nowhere.
+    pub(super) fn layer(&self, shape: &Shape, z: usize, layer: &mut Layer) -> Result<bool, Error> {
+        let rows = self.size[1] - shape.size[1] + 1;
+        let words = self.words;
+        layer.bits.clear();
+        layer.bits.try_reserve(rows * words)?;
+        // Bits of places along x at which the shape would stick out.
+        let places = self.size[0] - shape.size[0] + 1;
+        for _ in 0..rows {
+            for word in 0..words {
+                let within = places.saturating_sub(64 * word).min(64);
+                layer.bits.push(if within == 0 { !0 } else { !(u64::MAX >> (64 - within)) });
+            }
+        }
+        (layer.words, layer.rows) = (words, rows);
+        let mut last = 0;
+        for run in &shape.runs {
+            if run.z != last {
+                last = run.z;
+                if layer.bits.iter().all(|&word| word == !0) {
+                    return Ok(false);
+                }
+            }
+            let k = run.length.ilog2();
+            let joined = &self.joined[k as usize];
+            let row = words * (run.y as usize + self.size[1] * (z + run.z as usize));
+            let mut shift = |x: usize| {
+                let from = &joined[row + x / 64..][..rows * words + 1];
+                let by = x % 64;
+                if by == 0 {
+                    for (to, &word) in layer.bits.iter_mut().zip(from) {
+                        *to |= word;
+                    }
+                } else {
+                    for (to, pair) in layer.bits.iter_mut().zip(from.windows(2)) {
+                        *to |= pair[0] >> by | pair[1] << (64 - by);
+                    }
+                }
+            };
+            let x = run.x as usize;
+            shift(x);
+            let rest = run.length as usize - (1 << k);
+            if rest > 0 {
+                shift(x + rest);
+            }
+        }
+        Ok(layer.bits.iter().any(|&word| word != !0))
+    }
+}
+
+impl Layer {
+    /// The places where the shape goes, by y and then by x.
+    pub(super) fn places(&self) -> impl Iterator<Item = [usize; 2]> {
+        (0..self.rows).flat_map(move |y| {
+            let row = &self.bits[self.words * y..][..self.words];
+            row.iter().enumerate().flat_map(move |(k, &word)| {
+                let mut left = !word;
+                core::iter::from_fn(move || {
+                    let bit = (left != 0).then(|| left.trailing_zeros() as usize)?;
+                    left &= left - 1;
+                    Some([64 * k + bit, y])
+                })
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::random::Random;
+    use super::*;
+
+    fn any(size: [usize; 3], one_of: usize, random: &mut Random) -> Bits {
+        let mut bits = Bits::new(size).unwrap();
+        for z in 0..size[2] {
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    if random.below(one_of) == 0 {
+                        bits.set([x, y, z]);
+                    }
+                }
+            }
+        }
+        bits
+    }
+
+    #[test]
+    fn places_are_those_where_nothing_is_taken() {
+        let mut random = Random::new(11);
+        for (size, own) in [
+            ([20, 9, 6], [3, 2, 2]),
+            ([64, 5, 4], [1, 1, 1]),
+            ([150, 4, 4], [70, 2, 3]),
+            ([130, 6, 3], [130, 1, 1]),
+            ([129, 3, 3], [5, 3, 3]),
+        ] {
+            for shade in [None, Some((0, true)), Some((0, false)), Some((1, true)), Some((2, false))] {
+                let mut space = Space::new(size, own[0]).unwrap();
+                let cells = any(own, 2, &mut random);
+                let shape = Shape::new(&cells).unwrap();
+                let mut taken = Bits::new(size).unwrap();
+                for _ in 0..3 {
+                    let block = any([5, 3, 2], 3, &mut random);
+                    let offset = [0, 1, 2].map(|k| random.below(size[k] + 2) as isize - 2);
+                    space.take(&block, offset, shade).unwrap();
+                    for cell in 0..30 {
+                        let cell = [cell % 5, cell / 5 % 3, cell / 15];
+                        if !block.has(cell) {
+                            continue;
+                        }
+                        let mut at = [0, 1, 2].map(|k| cell[k] as isize + offset[k]);
+                        for _ in 0..200 {
+                            if (0..3).all(|k| (0..size[k] as isize).contains(&at[k])) {
+                                taken.set(at.map(|c| c as usize));
+                            }
+                            match shade {
+                                Some((axis, upward)) => at[axis] += if upward { 1 } else { -1 },
+                                None => break,
+                            }
+                        }
+                    }
+                }
+                let mut layer = Layer::default();
+                for z in 0..=size[2] - own[2] {
+                    let is_any = space.layer(&shape, z, &mut layer).unwrap();
+                    let found: Vec<[usize; 2]> = if is_any { layer.places().collect() } else { Vec::new() };
+                    let mut expected = Vec::new();
+                    for y in 0..=size[1] - own[1] {
+                        for x in 0..=size[0] - own[0] {
+                            let meets = shape.runs.iter().any(|run| {
+                                let (ry, rz) = (y + run.y as usize, z + run.z as usize);
+                                let from = x + run.x as usize;
+                                (from..from + run.length as usize).any(|x| taken.has([x, ry, rz]))
+                            });
+                            if !meets {
+                                expected.push([x, y]);
+                            }
+                        }
+                    }
+                    assert_eq!(found, expected, "{size:?} {own:?} {shade:?} {z}");
+                }
+            }
+        }
+    }
+}

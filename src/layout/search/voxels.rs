@@ -1,0 +1,102 @@
+//! The cells that a solid may have points in.
+
+use super::bits::Bits;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Affine, Bounds, Frame, MAX_DEPTH, axes};
+use crate::memory;
+use crate::op::{Rule, build};
+use crate::solid::{AnySolid, Solid, Transform};
+use alloc::vec::Vec;
+
+/// Cells of a solid, and the lower corner of the first of them (model units).
+pub(super) struct Voxels {
+    pub(super) bits: Bits,
+    pub(super) origin: [f64; 3],
+}
+
+/// How far the first cell begins below the solid, as a part of a cell: so that no two solids in neighbouring cells touch.
+const BELOW: f64 = 1.0 / 64.0;
+
+impl Voxels {
+    /// Those with the edge `cell` of a solid in a box. Their corners are multiples of `cell` beyond `from`, if there is one.
+    pub(super) fn of(
+        solid: &AnySolid,
+        bounds: &Bounds,
+        cell: f64,
+        from: Option<[f64; 3]>,
+        control: &Control<'_>,
+    ) -> Result<Voxels, Error> {
+        let origin = axes(|k| match from {
+            Some(from) => from[k] + libm::floor((bounds.min[k] - from[k]) / cell) * cell,
+            None => bounds.min[k] - BELOW * cell,
+        });
+        let size: [usize; 3] =
+            axes(|k| (libm::ceil((bounds.max[k] - origin[k]) / cell + BELOW)).max(1.0) as usize);
+        let longest = size.into_iter().fold(1, usize::max);
+        let depth = longest.next_power_of_two().ilog2().max(1);
+        if depth > u32::from(MAX_DEPTH) {
+            return Err(Error::Argument {
+                name: "cells",
+                problem: "so many that an item takes more than 2^20 of them",
+            });
+        }
+        let frame = Frame::new(origin, cell * f64::from(1u32 << depth), depth as u8)?;
+        let mut bits = Bits::new(size)?;
+        on_frame(solid, &frame, &mut bits, control)?;
+        Ok(Voxels { bits, origin })
+    }
+}
+
+/// Cells of a box that are not proven to lie in a solid, and `pad` more at every end, which are not.
+pub(super) fn outside(
+    solid: &AnySolid,
+    (origin, cell, size): ([f64; 3], f64, [usize; 3]),
+    pad: usize,
+    control: &Control<'_>,
+) -> Result<Bits, Error> {
+    let longest = size.into_iter().fold(1, usize::max);
+    let depth = longest.next_power_of_two().ilog2().max(1);
+    let frame = Frame::new(origin, cell * f64::from(1u32 << depth), depth as u8)?;
+    let mut inside = Bits::new(size)?;
+    inside.bits = on_frame(solid, &frame, &mut inside, control)?;
+    let mut outside = Bits::new(size.map(|size| size + 2 * pad))?;
+    for z in 0..outside.size[2] {
+        for y in 0..outside.size[1] {
+            let is_beyond = |at: usize, k: usize| at < pad || at >= size[k] + pad;
+            let mut from = 0;
+            if !is_beyond(y, 1) && !is_beyond(z, 2) {
+                let mut gaps = Vec::new();
+                inside.runs_of(y - pad, z - pad, |x, length| {
+                    memory::push(&mut gaps, (x + pad, x + pad + length))
+                })?;
+                for (start, end) in gaps {
+                    outside.set_row(from, start, y, z);
+                    from = end;
+                }
+            }
+            let end = outside.size[0];
+            outside.set_row(from, end, y, z);
+        }
+    }
+    Ok(outside)
+}
+
+/// The cells of a frame that a solid may have points in, and those that are proven to lie in it: in the box of `outer`.
+fn on_frame(
+    solid: &AnySolid,
+    frame: &Frame,
+    outer: &mut Bits,
+    control: &Control<'_>,
+) -> Result<Vec<u64>, Error> {
+    let own = Control { progress: None, max_splits: None, ..*control };
+    // (A stored octree is known on its own frame alone.)
+    let tree = match solid.home() {
+        Some(_) => build(&Transform::of(solid.clone(), &Affine::IDENTITY), frame, Rule::Certified, &own)?,
+        None => build(solid, frame, Rule::Certified, &own)?,
+    };
+    let mut inner = memory::filled(outer.bits.len(), 0)?;
+    let end = outer.size.map(|cells| cells as u32);
+    tree.bitmap(frame.depth(), [0; 3], end, &mut inner, Some(&mut outer.bits), &own)?;
+    Ok(inner)
+}

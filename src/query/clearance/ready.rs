@@ -1,0 +1,82 @@
+//! Solids that are ready to be compared with each other, in whatever places.
+
+use super::facets::Boundary;
+use super::search::Goal;
+use super::{Clearance, Moved};
+use crate::control::{Control, Job};
+use crate::error::Error;
+use crate::lattice::{Affine, Bounds, Frame};
+use crate::solid::{AnyClassifier, AnySolid, Solid, Transform};
+use crate::walk::Proven;
+
+/// A solid that ends, on a frame of its own and on one that holds what may be near to it.
+pub(crate) struct Ready {
+    solid: AnySolid,
+    bounds: Bounds,
+    own: Frame,
+    moved: Proven<AnyClassifier>,
+    fixed: Proven<AnyClassifier>,
+    boundary: Option<Boundary>,
+}
+
+/// What two solids are asked.
+#[derive(Clone, Copy)]
+pub(crate) enum Asked {
+    /// Whether they are at least so far apart (model units), as [`gap_at_least`](crate::query::gap_at_least) finds it.
+    AtLeast(f64),
+    /// How far they are apart, within an interval no wider than that (model units), as [`clearance`](crate::clearance) finds it.
+    Distance(f64),
+}
+
+impl Ready {
+    /// Others are looked at in the universe of `frame`, which should hold those that may be near. O(t) of a mesh with t triangles, and
+    /// what the solid takes to be put on frames.
+    pub(crate) fn new(
+        solid: &AnySolid,
+        bounds: &Bounds,
+        frame: &Frame,
+        control: &Control<'_>,
+    ) -> Result<Ready, Error> {
+        // (A stored octree is known on its own frame alone.)
+        let (own, moved, fixed) = match solid.home() {
+            Some(home) => {
+                let around = AnySolid::new(Transform::of(solid.clone(), &Affine::IDENTITY));
+                (home, solid.on(&home, control)?, around.on(frame, control)?)
+            }
+            None => {
+                let on = solid.on(frame, control)?;
+                (*frame, on.clone(), on)
+            }
+        };
+        let (moved, fixed) = (Proven(moved), Proven(fixed));
+        let boundary = Boundary::of(&moved, control)?;
+        Ok(Ready { solid: solid.clone(), bounds: *bounds, own, moved, fixed, boundary })
+    }
+
+    pub(crate) fn solid(&self) -> &AnySolid {
+        &self.solid
+    }
+
+    /// A box that holds it.
+    pub(crate) fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// What is known of this solid and another one under a placement.
+    pub(crate) fn compared(
+        &self,
+        other: &Ready,
+        placement: &Affine,
+        asked: Asked,
+        control: &Control<'_>,
+    ) -> Result<Clearance, Error> {
+        let wanted = match asked {
+            Asked::AtLeast(least) => Goal::AtLeast(least),
+            Asked::Distance(tolerance) => Goal::Width(tolerance),
+        };
+        let boundaries = self.boundary.as_ref().zip(other.boundary.as_ref()).map(|(a, b)| [a, b]);
+        let moved =
+            Moved { is_clipped: false, ..Moved::new(&other.solid, &other.own, &other.moved, control)? };
+        moved.apart_from(&self.fixed, boundaries, placement, wanted, &Job::new(control))
+    }
+}
