@@ -2,7 +2,8 @@
 
 use super::super::item::Item;
 use super::bits::Bits;
-use super::space::Shape;
+use super::space::{Halo, Shape};
+use super::tally::Figure;
 use super::voxels::Voxels;
 use crate::control::Control;
 use crate::error::Error;
@@ -17,6 +18,7 @@ pub(super) const FINER: usize = 4;
 pub(super) struct Form {
     pub(super) map: Affine,
     pub(super) shape: Shape,
+    pub(super) halo: Halo,
     /// What it takes from others: all cells that are too near to it, and how many of them lie below its own along each axis.
     pub(super) taken: Bits,
     pub(super) below: usize,
@@ -28,8 +30,7 @@ pub(super) struct Form {
 /// The forms of an item, of which no two have the same cells.
 pub(super) struct Forms {
     pub(super) all: Vec<Form>,
-    /// About its volume (cubic model units).
-    pub(super) volume: f64,
+    pub(super) figure: Figure,
 }
 
 impl Forms {
@@ -52,7 +53,7 @@ impl Forms {
                 of_turned(item, map, fine, control)?
             };
             let shape = voxels.bits.coarser(FINER, [0; 3])?;
-            let own = Shape::new(&shape)?;
+            let (own, halo) = (Shape::new(&shape)?, Halo::of(&shape)?);
             if all.iter().any(|form| form.shape.size == own.size && form.shape.runs == own.runs) {
                 continue;
             }
@@ -65,10 +66,13 @@ impl Forms {
             let below = pad / FINER;
             memory::push(
                 &mut all,
-                Form { map: *map, shape: own, taken, below, origin: voxels.origin, centre },
+                Form { map: *map, shape: own, halo, taken, below, origin: voxels.origin, centre },
             )?;
         }
-        Ok(Forms { all, volume: given.bits.count() as f64 * fine * fine * fine })
+        let middle = centre(&given.bits)?;
+        let volume = given.bits.count() as f64 * fine * fine * fine;
+        let figure = Figure { volume, centre: axes(|k| given.origin[k] + fine * middle[k]) };
+        Ok(Forms { all, figure })
     }
 }
 

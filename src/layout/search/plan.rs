@@ -1,6 +1,7 @@
 //! In which order items are placed, and which places are preferred.
 
 use super::super::random::Random;
+use super::tally::Figure;
 use crate::error::Error;
 use crate::lattice::Affine;
 use crate::memory;
@@ -13,17 +14,6 @@ pub(super) struct Step {
     pub(super) placement: Affine,
 }
 
-/// What came of a round.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Tally {
-    pub(super) count: u64,
-    pub(super) volume: f64,
-    /// How far the highest reaches along z.
-    pub(super) height: f64,
-    /// How far the centre of gravity is from where it should be.
-    pub(super) off: f64,
-}
-
 /// How one round goes.
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
@@ -31,6 +21,8 @@ pub(super) struct Plan {
     pub(super) order: Vec<usize>,
     /// How much the height of an item counts beside that of its place.
     pub(super) lean: f64,
+    /// How much contact with others counts: all around, as much as so many of its mean sides in height.
+    pub(super) grip: f64,
     /// Which way items go within a layer.
     pub(super) way: Way,
 }
@@ -47,25 +39,31 @@ pub(super) enum Way {
 }
 
 impl Plan {
-    /// The plan of a round: `left` says how many copies of each item are to be placed, `sizes` how large each is.
-    pub(super) fn new(left: &[u32], sizes: &[f64], round: u64, seed: u64) -> Result<Plan, Error> {
+    /// The plan of a round: `left` says how many copies of each item are to be placed, `figures` how large each is.
+    pub(super) fn new(left: &[u32], figures: &[Figure], round: u64, seed: u64) -> Result<Plan, Error> {
         const LEANS: [f64; 4] = [1.0, 0.5, 0.75, 0.25];
+        const GRIPS: [f64; 4] = [2.0, 4.0, 0.5, 1.0];
         const WAYS: [Way; 3] = [Way::Corner, Way::Rows, Way::Columns];
         let mut random = Random::new(seed.wrapping_add(round.wrapping_mul(0xA076_1D64_78BD_642F)));
         // The first rounds go by size, later ones more and more by chance.
         let spread = if round < LEANS.len() as u64 { 0.0 } else { 0.15 * (1 + (round - 4) % 8) as f64 };
         let mut keyed = Vec::new();
-        for (item, (&count, &size)) in left.iter().zip(sizes).enumerate() {
+        for (item, (&count, figure)) in left.iter().zip(figures).enumerate() {
             for _ in 0..count {
                 let factor = libm::exp(2.0 * spread * (random.part() - 0.5));
-                memory::push(&mut keyed, (size * factor, item))?;
+                memory::push(&mut keyed, (figure.volume * factor, item))?;
             }
         }
         keyed.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut order = memory::with_capacity(keyed.len())?;
         order.extend(keyed.iter().map(|&(_, item)| item));
         let pick = |count: usize| (round % count as u64) as usize;
-        Ok(Plan { order, lean: LEANS[pick(LEANS.len())], way: WAYS[pick(WAYS.len())] })
+        Ok(Plan {
+            order,
+            lean: LEANS[pick(LEANS.len())],
+            grip: GRIPS[pick(GRIPS.len())],
+            way: WAYS[pick(WAYS.len())],
+        })
     }
 
     /// The rank of a place: the least comes first. `left` is what is left beside the item where it is tightest.

@@ -2,7 +2,7 @@
 
 use super::super::Layout;
 use super::boxes::Free;
-use super::plan::{Plan, Step, Tally};
+use super::plan::{Plan, Step};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, axes};
@@ -125,18 +125,4 @@ fn put(turned: &Turned, room: &Bounds) -> Option<(Affine, Bounds)> {
         }
     }
     None
-}
-
-/// What the boxes of all steps take.
-pub(super) fn tally(layout: &Layout, steps: &[Step]) -> Tally {
-    let mut tally = Tally::default();
-    for step in steps {
-        let bounds = &layout.items[step.item].bounds;
-        tally.count += 1;
-        tally.volume += (0..3).map(|k| bounds.max[k] - bounds.min[k]).product::<f64>();
-        if let Some(there) = bounds.placed(&step.placement) {
-            tally.height = tally.height.max(there.max[2]);
-        }
-    }
-    tally
 }

@@ -39,7 +39,55 @@ impl Shape {
     }
 }
 
+/// The cells around a shape: runs, from one cell below its lower corner, and how many cells they are.
+pub(super) struct Halo {
+    runs: Vec<Run>,
+    count: u32,
+}
+
+impl Halo {
+    pub(super) fn of(bits: &Bits) -> Result<Halo, Error> {
+        let mut around = bits.grown(0.5, 1)?;
+        for run in bits.runs()? {
+            let row = around.row(run.y as usize + 1, run.z as usize + 1);
+            for x in run.x as usize + 1..(run.x + run.length) as usize + 1 {
+                around.bits[row + x / 64] &= !(1 << (x % 64));
+            }
+        }
+        Ok(Halo { runs: around.runs()?, count: around.count() as u32 })
+    }
+}
+
 impl Space {
+    /// The part of the cells around a shape that are taken, or beyond the sides or the floor.
+    pub(super) fn contact(&self, halo: &Halo, at: [usize; 3]) -> f64 {
+        let mut count = 0;
+        let size = self.size.map(|size| size as isize);
+        for run in &halo.runs {
+            let y = (at[1] + run.y as usize) as isize - 1;
+            let z = (at[2] + run.z as usize) as isize - 1;
+            if y < 0 || y >= size[1] || z < 0 {
+                count += run.length;
+                continue;
+            }
+            if z >= size[2] {
+                continue;
+            }
+            let from = (at[0] + run.x as usize) as isize - 1;
+            let to = from + run.length as isize;
+            let (first, last) = (from.max(0) as usize, to.min(size[0]) as usize);
+            count += run.length - (last - first) as u32;
+            let row = self.words * (y + size[1] * z) as usize;
+            for word in first / 64..last.div_ceil(64) {
+                let low = first.saturating_sub(64 * word);
+                let high = (last - 64 * word).min(64);
+                let mask = (u64::MAX >> (64 - (high - low))) << low;
+                count += (self.joined[0][row + word] & mask).count_ones();
+            }
+        }
+        f64::from(count) / f64::from(halo.count.max(1))
+    }
+
     /// Nothing is taken. No shape has a run that is longer than `longest`, which is not 0.
     pub(super) fn new(size: [usize; 3], longest: usize) -> Result<Space, Error> {
         let words = size[0].div_ceil(64);
@@ -173,6 +221,20 @@ impl Space {
 }
 
 impl Layer {
+    /// Places where the shape goes, and not to one side along x, nor to one along y.
+    pub(super) fn corners(&self) -> impl Iterator<Item = [usize; 2]> {
+        let is_taken = move |x: isize, y: isize| {
+            if x < 0 || y < 0 || y as usize >= self.rows || x as usize >= 64 * self.words {
+                return true;
+            }
+            self.bits[self.words * y as usize + x as usize / 64] >> (x % 64) & 1 != 0
+        };
+        self.places().filter(move |&[x, y]| {
+            let (x, y) = (x as isize, y as isize);
+            (is_taken(x - 1, y) || is_taken(x + 1, y)) && (is_taken(x, y - 1) || is_taken(x, y + 1))
+        })
+    }
+
     /// The places where the shape goes, by y and then by x.
     pub(super) fn places(&self) -> impl Iterator<Item = [usize; 2]> {
         (0..self.rows).flat_map(move |y| {

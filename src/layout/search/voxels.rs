@@ -51,7 +51,9 @@ impl Voxels {
 /// Cells of a box that are not proven to lie in a solid, and `pad` more at every end, which are not.
 pub(super) fn outside(
     solid: &AnySolid,
-    (origin, cell, size): ([f64; 3], f64, [usize; 3]),
+    origin: [f64; 3],
+    cell: f64,
+    size: [usize; 3],
     pad: usize,
     control: &Control<'_>,
 ) -> Result<Bits, Error> {

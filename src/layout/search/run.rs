@@ -1,0 +1,274 @@
+//! One search: by boxes, by cells, and what is left when all has settled.
+
+use super::super::proof::PAIR_SPLITS;
+use super::super::{Layout, Placed, Standing};
+use super::ground::Lattice;
+use super::plan::{Plan, Step};
+use super::rooms::Rooms;
+use super::round::Round;
+use super::settle::settle;
+use super::tally::{Figure, Tally};
+use super::{Objective, SearchEnd, SearchOptions, SearchReport};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::Affine;
+use crate::memory;
+use crate::query::GapVerdict;
+use alloc::vec::Vec;
+
+/// Rounds by boxes, times items.
+const BOX_STEPS: u64 = 1 << 14;
+const BOX_ROUNDS: u64 = 1 << 10;
+
+/// How often everything settles, and what is left is tried again.
+const SETTLINGS: u32 = 3;
+
+/// What may still be spent.
+pub(super) struct Budget<'b> {
+    control: Control<'b>,
+    tests: u64,
+    max_tests: u64,
+    splits: u64,
+    max_splits: u64,
+}
+
+impl Budget<'_> {
+    pub(super) fn is_spent(&self) -> bool {
+        self.tests >= self.max_tests || self.splits >= self.max_splits
+    }
+
+    /// Has a place looked at.
+    pub(super) fn tested(
+        &mut self,
+        test: impl FnOnce(&Control<'_>) -> Result<Standing, Error>,
+    ) -> Result<bool, Error> {
+        self.tests += 1;
+        let left = self.max_splits - self.splits;
+        let standing = test(&Control { max_splits: Some(left.min(PAIR_SPLITS)), ..self.control })?;
+        self.splits += standing.splits.min(left);
+        Ok(standing.verdict == GapVerdict::Yes)
+    }
+}
+
+/// A search under way.
+struct Search<'s, 'c> {
+    layout: &'s mut Layout,
+    options: &'s SearchOptions,
+    control: Control<'c>,
+    budget: Budget<'c>,
+    /// How many were placed before.
+    before: usize,
+    left: Vec<u32>,
+    wanted: u64,
+    figures: Vec<Figure>,
+    /// What was placed in the best layout so far.
+    best: Vec<Placed>,
+    rounds: u64,
+}
+
+/// Places what is not placed yet; see [`Layout::search`].
+pub(super) fn search(
+    layout: &mut Layout,
+    options: &SearchOptions,
+    parallel: bool,
+    control: &Control<'_>,
+) -> Result<SearchReport, Error> {
+    let mut search = Search::new(layout, options, control)?;
+    let end = match search.run(parallel) {
+        Ok(end) => end,
+        Err(Error::Cancelled) => {
+            // (A round that was begun may be better than those before.)
+            search.keep()?;
+            SearchEnd::Cancelled
+        }
+        Err(error) => return Err(error),
+    };
+    search.show_best()?;
+    if let Some(progress) = control.progress {
+        progress(1.0);
+    }
+    let Search { budget, best, wanted, rounds, .. } = search;
+    let placed = best.len() as u64;
+    Ok(SearchReport {
+        placed,
+        left: wanted - placed,
+        rounds,
+        tests: budget.tests,
+        splits: budget.splits,
+        end,
+    })
+}
+
+impl<'s, 'c> Search<'s, 'c> {
+    fn new(layout: &'s mut Layout, options: &'s SearchOptions, control: &Control<'c>) -> Result<Self, Error> {
+        let mut left = memory::collected(layout.items.iter().map(|item| item.count))?;
+        for placed in &layout.placed {
+            left[placed.item] = left[placed.item].saturating_sub(1);
+        }
+        let figures = memory::collected(layout.items.iter().map(|item| Figure::of_box(&item.bounds)))?;
+        let budget = Budget {
+            control: Control { progress: None, ..*control },
+            tests: 0,
+            max_tests: options.max_tests.unwrap_or(u64::MAX),
+            splits: 0,
+            max_splits: control.max_splits.unwrap_or(u64::MAX),
+        };
+        let wanted = left.iter().map(|&count| u64::from(count)).sum();
+        let before = layout.placed.len();
+        Ok(Search {
+            layout,
+            options,
+            control: *control,
+            budget,
+            before,
+            left,
+            wanted,
+            figures,
+            best: Vec::new(),
+            rounds: 0,
+        })
+    }
+
+    fn run(&mut self, parallel: bool) -> Result<SearchEnd, Error> {
+        if self.wanted == 0 {
+            return Ok(SearchEnd::Complete);
+        }
+        let mut maps = memory::with_capacity(self.layout.items.len())?;
+        for item in &self.layout.items {
+            maps.push(item.orientations.maps(self.options.seed)?);
+        }
+        if !matches!(self.options.objective, Objective::Balance(_)) {
+            self.by_boxes(&maps)?;
+        }
+        match self.end() {
+            Some(end) => Ok(end),
+            None => self.by_cells(&maps, parallel),
+        }
+    }
+
+    /// Why nothing more is to be done, if that is so.
+    fn end(&self) -> Option<SearchEnd> {
+        if self.budget.is_spent() {
+            return Some(SearchEnd::Budget);
+        }
+        let is_whole = self.best.len() as u64 == self.wanted;
+        (is_whole && self.options.objective == Objective::Count).then_some(SearchEnd::Complete)
+    }
+
+    /// Takes away all that the search has placed.
+    fn clear(&mut self) {
+        self.layout.placed.truncate(self.before);
+        self.layout.boxes.truncate(self.before);
+    }
+
+    /// Keeps what is placed, if it is the best so far, and takes it away.
+    fn keep(&mut self) -> Result<(), Error> {
+        let objective = self.options.objective;
+        let now = Tally::of(self.layout, self.before, &self.figures, objective);
+        let new = memory::copied(&self.layout.placed[self.before..])?;
+        self.show_best()?;
+        if now.is_better_than(&Tally::of(self.layout, self.before, &self.figures, objective), objective) {
+            self.best = new;
+        }
+        self.clear();
+        Ok(())
+    }
+
+    /// Places the best layout so far, and nothing else.
+    fn show_best(&mut self) -> Result<(), Error> {
+        self.clear();
+        for placed in &self.best {
+            self.layout.place(placed.item, &placed.placement)?;
+        }
+        Ok(())
+    }
+
+    fn by_boxes(&mut self, maps: &[Vec<Affine>]) -> Result<(), Error> {
+        let Some(rooms) = Rooms::new(self.layout, maps)? else { return Ok(()) };
+        let objective = self.options.objective;
+        let mut best: Option<(Tally, Vec<Step>)> = None;
+        for round in 0..(BOX_STEPS / self.wanted).clamp(4, BOX_ROUNDS) {
+            let plan = Plan::new(&self.left, &self.figures, round, self.options.seed)?;
+            let steps = rooms.round(self.layout, &plan, &self.budget.control)?;
+            for step in &steps {
+                self.layout.place(step.item, &step.placement)?;
+            }
+            let tally = Tally::of(self.layout, self.before, &self.figures, objective);
+            self.clear();
+            let is_whole = steps.len() as u64 == self.wanted;
+            if best.as_ref().is_none_or(|best| tally.is_better_than(&best.0, objective)) {
+                best = Some((tally, steps));
+            }
+            if is_whole && objective == Objective::Count {
+                break;
+            }
+        }
+        // Boxes that are apart prove it; what they do not prove is left out.
+        for step in best.iter().flat_map(|best| &best.1) {
+            if self.budget.is_spent() {
+                break;
+            }
+            let layout = &*self.layout;
+            if self.budget.tested(|control| layout.stands(step.item, &step.placement, None, control))? {
+                self.layout.place(step.item, &step.placement)?;
+            }
+        }
+        self.keep()
+    }
+
+    fn by_cells(&mut self, maps: &[Vec<Affine>], parallel: bool) -> Result<SearchEnd, Error> {
+        let (options, own) = (self.options, self.budget.control);
+        let lattice = Lattice::of(self.layout, options, &self.left);
+        let forms = lattice.forms(self.layout, maps, &own)?;
+        for (figure, forms) in self.figures.iter_mut().zip(&forms) {
+            *figure = forms.figure;
+        }
+        let space = lattice.space(self.layout, &forms, options.free_along, &own)?;
+        let rounds = u64::from(options.rounds);
+        let shares = (rounds + u64::from(SETTLINGS)) as f64;
+        for round in 0..rounds {
+            let plan = Plan::new(&self.left, &self.figures, round, options.seed)?;
+            let ground = Round { lattice, forms: &forms, figures: &self.figures, options, parallel };
+            ground.run(self.layout, space.try_clone()?, &plan, &mut self.budget)?;
+            self.keep()?;
+            self.rounds += 1;
+            if let Some(end) = self.end() {
+                return Ok(end);
+            }
+            if let Some(progress) = self.control.progress {
+                progress((round + 1) as f64 / shares);
+            }
+        }
+        // (What settles may not get out any more along the way it came; and where the middle should be, nothing is to move.)
+        if options.free_along.is_some() || matches!(options.objective, Objective::Balance(_)) {
+            return Ok(SearchEnd::Rounds);
+        }
+        for k in 0..SETTLINGS {
+            self.show_best()?;
+            settle(self.layout, self.before, lattice.cell, &mut self.budget)?;
+            let settled = self.layout.placed.len();
+            let mut left = memory::copied(&self.left)?;
+            for placed in &self.layout.placed[self.before..] {
+                left[placed.item] -= 1;
+            }
+            if left.iter().any(|&left| left > 0) {
+                let space = lattice.space(self.layout, &forms, None, &own)?;
+                let plan = Plan::new(&left, &self.figures, k.into(), options.seed)?;
+                let ground = Round { lattice, forms: &forms, figures: &self.figures, options, parallel };
+                ground.run(self.layout, space, &plan, &mut self.budget)?;
+            }
+            let is_more = self.layout.placed.len() > settled;
+            self.keep()?;
+            if let Some(end) = self.end() {
+                return Ok(end);
+            }
+            if !is_more {
+                break;
+            }
+            if let Some(progress) = self.control.progress {
+                progress((rounds + u64::from(k) + 1) as f64 / shares);
+            }
+        }
+        Ok(SearchEnd::Rounds)
+    }
+}

@@ -1,0 +1,71 @@
+//! What is placed moves towards the corner, as far as it is proven that it may.
+
+use super::super::Layout;
+use super::run::Budget;
+use crate::error::Error;
+use crate::lattice::{Affine, axes};
+use crate::memory;
+use alloc::vec::Vec;
+
+/// The last step along an axis is the first one divided by two to this power.
+const HALVINGS: u32 = 5;
+
+/// Passes over everything that is placed.
+const PASSES: usize = 2;
+
+/// Moves everything that is placed from number `first` on down along z, y and x, the lowest first; `step` is the first step (model units).
+pub(super) fn settle(
+    layout: &mut Layout,
+    first: usize,
+    step: f64,
+    budget: &mut Budget<'_>,
+) -> Result<(), Error> {
+    for _ in 0..PASSES {
+        for axis in [2, 1, 0] {
+            let mut order: Vec<usize> = memory::collected(first..layout.placed.len())?;
+            order.sort_by(|&a, &b| {
+                layout.boxes[a].min[axis].total_cmp(&layout.boxes[b].min[axis]).then(a.cmp(&b))
+            });
+            for number in order {
+                lower(layout, number, axis, step, budget)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Moves one down along an axis: by steps that grow as long as they succeed, and are halved where they do not.
+fn lower(
+    layout: &mut Layout,
+    number: usize,
+    axis: usize,
+    step: f64,
+    budget: &mut Budget<'_>,
+) -> Result<(), Error> {
+    let floor = layout.container.bounds().min[axis] + layout.container.clearance();
+    let (mut by, mut grows) = (step, true);
+    let least = step / f64::from(1u32 << HALVINGS);
+    while by >= least && !budget.is_spent() {
+        let room = layout.boxes[number].min[axis] - floor;
+        if room < least {
+            return Ok(());
+        }
+        by = by.min(room);
+        let own = layout.placed[number];
+        let rows = own.placement.rows();
+        let Ok(placement) = Affine::new(axes(|k| {
+            let to = rows[k][3] - if k == axis { by } else { 0.0 };
+            [rows[k][0], rows[k][1], rows[k][2], to]
+        })) else {
+            return Ok(());
+        };
+        if budget.tested(|control| layout.stands(own.item, &placement, Some(number), control))? {
+            layout.move_to(number, &placement)?;
+            by *= if grows { 2.0 } else { 1.0 };
+        } else {
+            grows = false;
+            by *= 0.5;
+        }
+    }
+    Ok(())
+}
