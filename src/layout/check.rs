@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 
 /// What something that is placed may be too near to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Stander {
+pub enum Beside {
     /// What lies outside of the container.
     Wall,
     /// An obstacle, by its number.
@@ -25,7 +25,7 @@ pub enum Stander {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Neighbour {
     /// The other one.
-    pub other: Stander,
+    pub other: Beside,
     /// Whether the two are proven to be as far apart as they should be, or not to be.
     pub verdict: GapVerdict,
     /// What is known of the distance (model units): 0 if they touch or overlap.
@@ -93,7 +93,7 @@ impl Layout {
         let mut standing =
             Standing { verdict: GapVerdict::Yes, conflicts: Vec::new(), nearest: None, splits: 0 };
         let known = self.container.takes(piece, placement, &around, control)?;
-        standing.note(Stander::Wall, &known)?;
+        standing.note(Beside::Wall, &known)?;
         for (number, obstacle) in self.obstacles.iter().enumerate() {
             if self.is_far(boxes_apart(obstacle.bounds(), &around)) {
                 continue;
@@ -101,7 +101,7 @@ impl Layout {
             let places = [&Affine::IDENTITY, placement];
             let known =
                 obstacle.is_apart(piece, &Relative::of(placement), places, self.clearance, control)?;
-            standing.note(Stander::Obstacle(number), &known)?;
+            standing.note(Beside::Obstacle(number), &known)?;
         }
         for (number, (other, block)) in self.placed.iter().zip(&self.boxes).enumerate() {
             if except == Some(number) || self.is_far(boxes_apart(block, &around)) {
@@ -111,7 +111,7 @@ impl Layout {
             let seen = Relative::new(&other.placement, placement, piece.bounds())?;
             let places = [&other.placement, placement];
             let known = fixed.is_apart(piece, &seen, places, self.clearance, control)?;
-            standing.note(Stander::Placed(number), &known)?;
+            standing.note(Beside::Placed(number), &known)?;
         }
         Ok(standing)
     }
@@ -134,10 +134,10 @@ impl Layout {
         let mut others = memory::with_capacity(self.obstacles.len() + self.placed.len())?;
         let mut add = |block: &Bounds, other| others.push((boxes_apart(block, around).max(0.0), other));
         for (k, obstacle) in self.obstacles.iter().enumerate() {
-            add(obstacle.bounds(), Stander::Obstacle(k));
+            add(obstacle.bounds(), Beside::Obstacle(k));
         }
         for (k, block) in self.boxes.iter().enumerate().filter(|(k, _)| *k != number) {
-            add(block, Stander::Placed(k));
+            add(block, Beside::Placed(k));
         }
         others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let bounds = self.container.bounds();
@@ -149,15 +149,15 @@ impl Layout {
             }
             let ask = |fixed: &Piece, seen: &Relative| fixed.distance(piece, seen, tolerance, control);
             let (gap, spent) = match other {
-                Stander::Obstacle(k) => ask(&self.obstacles[k], &Relative::of(&own.placement))?,
-                Stander::Placed(k) => {
+                Beside::Obstacle(k) => ask(&self.obstacles[k], &Relative::of(&own.placement))?,
+                Beside::Placed(k) => {
                     let other = &self.placed[k];
                     ask(
                         &self.pieces[other.item],
                         &Relative::new(&other.placement, &own.placement, piece.bounds())?,
                     )?
                 }
-                Stander::Wall => continue,
+                Beside::Wall => continue,
             };
             *splits += spent;
             let gap = Interval::between(gap.lower.max(apart).min(gap.upper), gap.upper);
@@ -175,7 +175,7 @@ impl Layout {
 }
 
 impl Standing {
-    fn note(&mut self, other: Stander, known: &Known) -> Result<(), Error> {
+    fn note(&mut self, other: Beside, known: &Known) -> Result<(), Error> {
         self.splits += known.splits;
         let Known { verdict, gap, .. } = *known;
         self.verdict = match (self.verdict, verdict) {

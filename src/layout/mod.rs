@@ -10,17 +10,20 @@
 //! | are two placed solids apart, is one within the container? | `proof`; where one is as the other sees it: `relative` |
 //! | who is in the way, and how near is the next one? | `check` |
 //! | where does what is not placed go? | `search/` |
+//! | what does it weigh, and how much of the container does it fill? | `measures` |
 
 mod check;
 mod item;
+mod measures;
 mod orientation;
 mod proof;
 mod random;
 mod relative;
 mod search;
 
-pub use check::{Neighbour, Stander, Standing};
+pub use check::{Beside, Neighbour, Standing};
 pub use item::Item;
+pub use measures::LayoutMeasures;
 pub use orientation::Orientations;
 pub use search::{Direction, Objective, SearchEnd, SearchOptions, SearchReport};
 
@@ -133,11 +136,6 @@ impl Layout {
     /// What is placed, in the order in which it was.
     pub fn placed(&self) -> &[Placed] {
         &self.placed
-    }
-
-    #[doc(hidden)]
-    pub fn tops(&self) -> f64 {
-        self.boxes.iter().map(|b| b.max[2]).fold(0.0, f64::max)
     }
 
     /// Places a copy of an item, wherever that is, and tells its number. Nothing is checked. The counts of items are not looked at.

@@ -1,0 +1,219 @@
+//! What a layout weighs, and how much of the container it fills.
+
+use super::Layout;
+use super::orientation::stretch;
+use crate::control::{Control, Job, WHOLE};
+use crate::error::Error;
+use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
+use crate::memory;
+use crate::query::{MassProperties, bounding_box, measure};
+use crate::solid::{AnySolid, Solid, Transform};
+
+/// What is known of everything that is placed, together. All intervals contain the truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LayoutMeasures {
+    /// The volume of everything that is placed (cubic model units).
+    pub volume: Interval,
+    /// The part of the container's volume that this is.
+    pub density: Interval,
+    /// How far the highest point is above the lower end of the container's bounds, along z (model units); 0 if nothing is placed.
+    pub height: Interval,
+    /// The mass, by the densities of the items.
+    pub mass: Interval,
+    /// The centre of gravity; `None` if nothing is placed, or an item may be empty.
+    pub centroid: Option<[Interval; 3]>,
+    /// The tensor of inertia about the origin of the model.
+    pub inertia_about_origin: [[Interval; 3]; 3],
+    /// The tensor of inertia about the centre of gravity; about the origin if there is none.
+    pub inertia_about_centroid: [[Interval; 3]; 3],
+}
+
+const ZERO: Interval = Interval::exactly(0.0);
+
+/// A body in its place: its volume, its centroid, and ∫ (x − c)(x − c)ᵀ about that.
+struct Body {
+    density: Interval,
+    volume: Interval,
+    centroid: [Interval; 3],
+    second: [[Interval; 3]; 3],
+}
+
+impl Layout {
+    /// Measures each item and the container once, to a relative tolerance of their volumes, as [`measure`](crate::measure) does it, and
+    /// adds up what is placed. Overlaps, where there are any, count twice.
+    ///
+    /// # Errors
+    /// As [`measure`](crate::measure).
+    pub fn measures(&self, tolerance: f64, control: &Control<'_>) -> Result<LayoutMeasures, Error> {
+        let job = Job::new(control);
+        let own = &Control { progress: None, ..*control };
+        let container = measured(self.container.solid(), self.container.bounds(), tolerance, own)?;
+        let mut items = memory::with_capacity(self.items.len())?;
+        for item in &self.items {
+            let is_placed = self.placed.iter().any(|placed| placed.item == items.len());
+            items.push(match is_placed {
+                true => Some(measured(&item.solid, &item.bounds, tolerance, own)?),
+                false => None,
+            });
+            job.advance(WHOLE / (self.items.len() + 1));
+        }
+        let mut bodies = memory::with_capacity(self.placed.len())?;
+        let mut is_known = !self.placed.is_empty();
+        for placed in &self.placed {
+            let Some(known) = &items[placed.item] else { continue };
+            match Body::of(known, &placed.placement, self.items[placed.item].density) {
+                Some(body) => bodies.push(body),
+                None => is_known = false,
+            }
+        }
+        let sum =
+            |part: &dyn Fn(&Body) -> Interval| bodies.iter().fold(ZERO, |sum, body| sum.plus(part(body)));
+        // (What may be empty has a volume all the same, which is not known to be none.)
+        let mut volume = ZERO;
+        for placed in &self.placed {
+            let Some(known) = &items[placed.item] else { continue };
+            volume = volume.plus(known.volume.times(determinant(&placed.placement)));
+        }
+        let mass = sum(&|body| body.mass());
+        let centroid: Option<[Interval; 3]> = (is_known && mass.lower > 0.0)
+            .then(|| axes(|k| sum(&|body| body.mass().times(body.centroid[k])).over(mass)));
+        let about = |point: [Interval; 3]| axes(|i| axes(|j| sum(&|body| body.inertia(&point, i, j))));
+        let nothing_known = [[Interval::ALL; 3]; 3];
+        let origin = if is_known || self.placed.is_empty() { about([ZERO; 3]) } else { nothing_known };
+        let measures = LayoutMeasures {
+            volume,
+            density: match container.volume.lower > 0.0 {
+                true => volume.over(container.volume),
+                false => Interval::between(0.0, f64::INFINITY),
+            },
+            height: self.height(own)?,
+            mass: if is_known || self.placed.is_empty() {
+                mass
+            } else {
+                Interval::between(mass.lower, f64::INFINITY)
+            },
+            centroid,
+            inertia_about_origin: origin,
+            inertia_about_centroid: centroid.map_or(origin, about),
+        };
+        job.finish();
+        Ok(measures)
+    }
+
+    /// How far the highest point is above the lower end of the container.
+    fn height(&self, control: &Control<'_>) -> Result<Interval, Error> {
+        /// How well it is to be known, as a part of an item.
+        const PART: f64 = 1e-6;
+        let mut order = memory::collected(0..self.placed.len())?;
+        order.sort_by(|&a, &b| self.boxes[b].max[2].total_cmp(&self.boxes[a].max[2]));
+        let mut top: Option<Interval> = None;
+        for number in order {
+            let block = &self.boxes[number];
+            if top.is_some_and(|top| block.max[2] <= top.lower) {
+                break;
+            }
+            let placed = &self.placed[number];
+            let solid = self.items[placed.item].solid.placed(&placed.placement)?;
+            let frame = Frame::fitted(block.min, block.max, MAX_DEPTH)?;
+            let side = block.max[2] - block.min[2];
+            let found = on_any_frame(&solid, |solid| bounding_box(solid, &frame, PART * side, control))?;
+            let Some([_, max]) = found.corners else { continue };
+            let lower = if found.occupied { max[2].lower } else { f64::NEG_INFINITY };
+            let upper = max[2].upper.min(block.max[2]).max(lower);
+            top = Some(match top {
+                Some(top) => Interval::between(top.lower.max(lower), top.upper.max(upper)),
+                None => Interval::between(lower, upper),
+            });
+        }
+        let floor = Interval::exactly(self.container.bounds().min[2]);
+        Ok(top.map_or(ZERO, |top| top.minus(floor)))
+    }
+}
+
+/// Asks a solid, or a stored octree by way of a transform that moves nothing: alone it is known on its own frame only.
+fn on_any_frame<R>(solid: &AnySolid, ask: impl FnOnce(&AnySolid) -> Result<R, Error>) -> Result<R, Error> {
+    match solid.home() {
+        Some(_) => ask(&AnySolid::new(Transform::of(solid.clone(), &Affine::IDENTITY))),
+        None => ask(solid),
+    }
+}
+
+fn measured(
+    solid: &AnySolid,
+    bounds: &Bounds,
+    tolerance: f64,
+    control: &Control<'_>,
+) -> Result<MassProperties, Error> {
+    let frame = match solid.home() {
+        Some(home) => home,
+        None => Frame::fitted(bounds.min, bounds.max, MAX_DEPTH)?,
+    };
+    measure(solid, &frame, tolerance, control)
+}
+
+/// What the volume is multiplied by.
+fn determinant(placement: &Affine) -> Interval {
+    // The determinant of MᵀM, whose eigenvalues are that near to 1, is its square.
+    match stretch(placement) {
+        0.0 => Interval::exactly(1.0),
+        by => Interval::between(1.0 - 2.0 * by, 1.0 + 2.0 * by),
+    }
+}
+
+impl Body {
+    /// `None` if the solid may be empty.
+    fn of(known: &MassProperties, placement: &Affine, density: f64) -> Option<Body> {
+        let own = known.centroid?;
+        let rows = placement.rows().map(|row| row.map(Interval::exactly));
+        let half = Interval::exactly(0.5);
+        let tensor = &known.inertia_about_centroid;
+        let trace = tensor[0][0].plus(tensor[1][1]).plus(tensor[2][2]).times(half);
+        // ∫ x xᵀ is half the trace less the tensor.
+        let second = |i: usize, j: usize| match i == j {
+            true => {
+                let (a, b) = (tensor[(i + 1) % 3][(i + 1) % 3], tensor[(i + 2) % 3][(i + 2) % 3]);
+                let sharp = a.plus(b).minus(tensor[i][i]).times(half);
+                let rough = trace.minus(tensor[i][i]);
+                sharp.common(rough).unwrap_or(sharp)
+            }
+            false => tensor[i][j].negated(),
+        };
+        let determinant = determinant(placement);
+        let centroid = axes(|i| (0..3).fold(rows[i][3], |sum, k| sum.plus(rows[i][k].times(own[k]))));
+        let turned = axes(|i| {
+            axes(|j| {
+                let mut sum = ZERO;
+                for k in 0..3 {
+                    for l in 0..3 {
+                        sum = sum.plus(rows[i][k].times(rows[j][l]).times(second(k, l)));
+                    }
+                }
+                sum.times(determinant)
+            })
+        });
+        Some(Body {
+            density: Interval::exactly(density),
+            volume: known.volume.times(determinant),
+            centroid,
+            second: turned,
+        })
+    }
+
+    fn mass(&self) -> Interval {
+        self.density.times(self.volume)
+    }
+
+    /// An element of the tensor of inertia about a point.
+    fn inertia(&self, point: &[Interval; 3], i: usize, j: usize) -> Interval {
+        let off: [Interval; 3] = axes(|k| self.centroid[k].minus(point[k]));
+        let along = |k: usize, l: usize| {
+            let steps = if k == l { off[k].square() } else { off[k].times(off[l]) };
+            self.second[k][l].plus(steps.times(self.volume))
+        };
+        let element = match i == j {
+            true => along((i + 1) % 3, (i + 1) % 3).plus(along((i + 2) % 3, (i + 2) % 3)),
+            false => along(i, j).negated(),
+        };
+        element.times(self.density)
+    }
+}
