@@ -40,7 +40,7 @@ pub struct Standing {
     pub verdict: GapVerdict,
     /// Everything that is in the way, or may be: those of which `Yes` is not proven.
     pub conflicts: Vec<Neighbour>,
-    /// What is next to it, but for the wall; nothing if there is nothing else.
+    /// What is next to it, but for the wall; nothing if there is nothing else. The gap holds the least of all distances.
     pub nearest: Option<Neighbour>,
     /// Cells that were split.
     pub splits: u64,
@@ -52,7 +52,7 @@ const NEAREST: f64 = 1e-6;
 impl Layout {
     /// Says how something that is placed stands. Only what is near is looked at: what boxes tell apart costs nothing.
     ///
-    /// A pair of closed meshes takes some ten microseconds. Others take splits, of which `control.max_splits` limits the number a pair (16 384
+    /// A pair of closed meshes takes some ten microseconds. Others take splits, of which `control.max_splits` limits the number a pair (4 096
     /// if there is none); if it is spent, the answer is `Undecided`. One thread.
     ///
     /// # Errors
@@ -143,6 +143,7 @@ impl Layout {
         let bounds = self.container.bounds();
         let tolerance = NEAREST * (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
         let mut nearest: Option<Neighbour> = None;
+        let mut least = f64::INFINITY;
         for (apart, other) in others {
             if nearest.is_some_and(|near| near.gap.upper <= apart) {
                 break;
@@ -161,6 +162,7 @@ impl Layout {
             };
             *splits += spent;
             let gap = Interval::between(gap.lower.max(apart).min(gap.upper), gap.upper);
+            least = least.min(gap.lower);
             if nearest.is_none_or(|near| gap.upper < near.gap.upper) {
                 let verdict = match self.clearance {
                     least if gap.lower >= least && least > 0.0 => GapVerdict::Yes,
@@ -170,7 +172,8 @@ impl Layout {
                 nearest = Some(Neighbour { other, verdict, gap });
             }
         }
-        Ok(nearest)
+        // (Of two whose distances are not known well enough, either may be the nearest.)
+        Ok(nearest.map(|near| Neighbour { gap: Interval::between(least, near.gap.upper), ..near }))
     }
 }
 

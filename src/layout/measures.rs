@@ -2,12 +2,13 @@
 
 use super::Layout;
 use super::orientation::stretch;
+use super::proof::on_any_frame;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::memory;
 use crate::query::{MassProperties, bounding_box, measure};
-use crate::solid::{AnySolid, Solid, Transform};
+use crate::solid::{AnySolid, Solid};
 
 /// What is known of everything that is placed, together. All intervals contain the truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,7 +117,7 @@ impl Layout {
             let solid = self.items[placed.item].solid.placed(&placed.placement)?;
             let frame = Frame::fitted(block.min, block.max, MAX_DEPTH)?;
             let side = block.max[2] - block.min[2];
-            let found = on_any_frame(&solid, |solid| bounding_box(solid, &frame, PART * side, control))?;
+            let found = bounding_box(&on_any_frame(&solid), &frame, PART * side, control)?;
             let Some([_, max]) = found.corners else { continue };
             let lower = if found.occupied { max[2].lower } else { f64::NEG_INFINITY };
             let upper = max[2].upper.min(block.max[2]).max(lower);
@@ -127,14 +128,6 @@ impl Layout {
         }
         let floor = Interval::exactly(self.container.bounds().min[2]);
         Ok(top.map_or(ZERO, |top| top.minus(floor)))
-    }
-}
-
-/// Asks a solid, or a stored octree by way of a transform that moves nothing: alone it is known on its own frame only.
-fn on_any_frame<R>(solid: &AnySolid, ask: impl FnOnce(&AnySolid) -> Result<R, Error>) -> Result<R, Error> {
-    match solid.home() {
-        Some(_) => ask(&AnySolid::new(Transform::of(solid.clone(), &Affine::IDENTITY))),
-        None => ask(solid),
     }
 }
 

@@ -29,13 +29,13 @@ pub use search::{Direction, Objective, SearchEnd, SearchOptions, SearchReport};
 
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, valid};
+use crate::lattice::{Affine, Bounds};
 use crate::memory;
 use crate::solid::AnySolid;
 use alloc::vec::Vec;
 use item::{NO_MOTION, bounds_of};
 use orientation::is_motion;
-use proof::{Container, Piece};
+use proof::{Container, Near, Piece};
 
 /// What is laid out, and where.
 #[derive(Clone)]
@@ -108,20 +108,25 @@ impl Layout {
     /// [`Error::Argument`] if a clearance is negative or not a number, or beyond 2^64; if the container or an obstacle has no bounds;
     /// what the solids refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
     pub fn new(bay: &Bay, control: &Control<'_>) -> Result<Layout, Error> {
-        valid::tolerance("clearance", bay.clearance)?;
-        valid::tolerance("wall clearance", bay.wall_clearance)?;
+        for (name, clearance) in [("clearance", bay.clearance), ("wall clearance", bay.wall_clearance)] {
+            if !(0.0..=FURTHEST).contains(&clearance) {
+                return Err(Error::Argument { name, problem: "must be between 0 and 2^64" });
+            }
+        }
         let longest = bay.items.iter().map(|item| proof::diagonal(&item.bounds)).fold(0.0, f64::max);
         // What is further away than that is told apart by boxes.
         let reach = 1.25 * longest + 2.0 * bay.clearance.max(bay.wall_clearance);
-        let container = Container::new(&bay.container, bay.wall_clearance, reach, control)?;
+        let solids = [&bay.container].into_iter().chain(&bay.obstacles);
+        let near = &Near::new(reach, solids.chain(bay.items.iter().map(|item| &item.solid)));
+        let container = Container::new(&bay.container, bay.wall_clearance, near, control)?;
         let mut obstacles = memory::with_capacity(bay.obstacles.len())?;
         for solid in &bay.obstacles {
-            obstacles.push(Piece::new(solid, &bounds_of(solid, "obstacle")?, reach, control)?);
+            obstacles.push(Piece::new(solid, &bounds_of(solid, "obstacle")?, near, control)?);
         }
         let mut pieces = memory::with_capacity(bay.items.len())?;
         let mut items = memory::with_capacity(bay.items.len())?;
         for item in &bay.items {
-            pieces.push(Piece::new(&item.solid, &item.bounds, reach, control)?);
+            pieces.push(Piece::new(&item.solid, &item.bounds, near, control)?);
             items.push(item.clone());
         }
         let clearance = bay.clearance;
@@ -187,6 +192,9 @@ impl Layout {
         self.items[item].bounds.placed(placement).ok_or(NO_MOTION)
     }
 }
+
+/// The greatest clearance.
+const FURTHEST: f64 = (1u128 << 64) as f64;
 
 /// The refusal of a number that nothing placed has.
 const NOT_PLACED: Error =

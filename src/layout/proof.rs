@@ -6,10 +6,35 @@ use crate::error::Error;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::query::{Asked, GapVerdict, Overlap, Ready, interference};
-use crate::solid::{AnySolid, Csg};
+use crate::solid::{AnySolid, Csg, Solid, Transform};
 
 /// Splits that the question about one pair may take.
-pub(super) const PAIR_SPLITS: u64 = 1 << 14;
+pub(super) const PAIR_SPLITS: u64 = 1 << 12;
+
+/// How far, and how closely, solids are looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    /// What is further away is told apart by boxes (model units).
+    pub(super) reach: f64,
+    /// Smaller cells tell nothing more (model units).
+    pub(super) finest: f64,
+}
+
+impl Near {
+    /// Stored octrees among the solids know nothing of what is smaller than their cells.
+    pub(super) fn new<'s>(reach: f64, solids: impl Iterator<Item = &'s AnySolid>) -> Near {
+        let cells = solids.filter_map(|solid| solid.home()).map(|home| 0.5 * home.cell_size());
+        Near { reach, finest: cells.fold(f64::INFINITY, f64::min) }
+    }
+
+    fn frame(&self, around: &Bounds) -> Result<Frame, Error> {
+        let mut frame = Frame::fitted(around.min, around.max, MAX_DEPTH)?;
+        while self.finest < f64::INFINITY && frame.depth() > 1 && 2.0 * frame.cell_size() <= self.finest {
+            frame = frame.with_depth(frame.depth() - 1)?;
+        }
+        Ok(frame)
+    }
+}
 
 /// A solid that is compared with others.
 pub(super) struct Piece(Ready);
@@ -24,15 +49,14 @@ pub(super) struct Known {
 }
 
 impl Piece {
-    /// What is no further away than `reach` can be compared with it.
+    /// What is no further away than that can be compared with it.
     pub(super) fn new(
         solid: &AnySolid,
         bounds: &Bounds,
-        reach: f64,
+        near: &Near,
         control: &Control<'_>,
     ) -> Result<Piece, Error> {
-        let around = bounds.grown(reach);
-        let frame = Frame::fitted(around.min, around.max, MAX_DEPTH)?;
+        let frame = near.frame(&bounds.grown(near.reach))?;
         Ok(Piece(Ready::new(solid, bounds, &frame, control)?))
     }
 
@@ -100,6 +124,14 @@ impl Piece {
     }
 }
 
+/// A solid that can be asked on any frame, which a stored octree cannot: it is known on its own.
+pub(super) fn on_any_frame(solid: &AnySolid) -> AnySolid {
+    match solid.home() {
+        Some(_) => AnySolid::new(Transform::of(solid.clone(), &Affine::IDENTITY)),
+        None => solid.clone(),
+    }
+}
+
 /// What holds everything.
 pub(super) struct Container {
     /// What lies around it, as far as anything placed may reach.
@@ -111,22 +143,31 @@ pub(super) struct Container {
     /// Whether it is proven to be the whole box that holds it.
     is_box: bool,
     clearance: f64,
+    near: Near,
 }
 
 impl Container {
     pub(super) fn new(
         solid: &AnySolid,
         clearance: f64,
-        reach: f64,
+        near: &Near,
         control: &Control<'_>,
     ) -> Result<Container, Error> {
         let bounds = super::item::bounds_of(solid, "container")?;
-        let outer = bounds.grown(reach + clearance);
-        let wall = Csg::cuboid(outer.min, outer.max)?.difference(&Csg::solid(solid.clone()))?;
+        let outer = bounds.grown(near.reach + clearance);
+        let wall = Csg::cuboid(outer.min, outer.max)?.difference(&Csg::solid(on_any_frame(solid)))?;
         let wall_solid = AnySolid::new(wall);
-        let wall = Piece::new(&wall_solid, &outer, 0.0, control)?;
-        let mut container =
-            Container { wall, wall_solid, solid: solid.clone(), bounds, outer, is_box: false, clearance };
+        let wall = Piece::new(&wall_solid, &outer, &Near { reach: 0.0, ..*near }, control)?;
+        let mut container = Container {
+            wall,
+            wall_solid,
+            solid: solid.clone(),
+            bounds,
+            outer,
+            is_box: false,
+            clearance,
+            near: *near,
+        };
         container.is_box = container.holds(&bounds, control)?;
         Ok(container)
     }
@@ -148,7 +189,7 @@ impl Container {
         const SPLITS: u64 = 64;
         let control = Control { max_splits: Some(SPLITS), ..*control };
         let block = Csg::cuboid(block.min, block.max)?;
-        let frame = Frame::fitted(self.outer.min, self.outer.max, MAX_DEPTH)?;
+        let frame = self.near.frame(&self.outer)?;
         let found = interference(&self.wall_solid, &block, &frame, f64::INFINITY, &control)?;
         Ok(found.verdict == Overlap::Disjoint)
     }

@@ -22,6 +22,7 @@ mod distance_field;
 mod extended;
 mod extent;
 mod interference;
+mod layout;
 mod measure;
 mod measure_mixed;
 mod measure_primitives;

@@ -133,7 +133,8 @@ impl Layout {
     /// more a step.
     ///
     /// # Errors
-    /// [`Error::Argument`] if `rounds` is 0, `cells` is not 0 and not between 4 and 512, or an axis is not 0, 1 or 2; what the solids
+    /// [`Error::Argument`] if `rounds` is 0, `cells` is not 0 and not between 4 and 512, an axis is not 0, 1 or 2, or
+    /// a coordinate is not a number; what the solids
     /// refuse; [`Error::OutOfMemory`]. Then the layout is as it was.
     pub fn search(&mut self, options: &SearchOptions, control: &Control<'_>) -> Result<SearchReport, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
@@ -142,6 +143,11 @@ impl Layout {
         }
         if options.cells != 0 && !(4..=512).contains(&options.cells) {
             return refuse("cells", "must be 0, or between 4 and 512");
+        }
+        if let Objective::Balance(target) = options.objective
+            && !target.iter().all(|c| c.is_finite())
+        {
+            return refuse("objective", "must be a point of finite coordinates");
         }
         if options.free_along.is_some_and(|way| way.axis > 2) {
             return refuse("axis", "must be 0, 1 or 2");

@@ -203,8 +203,18 @@ impl<'s, 'c> Search<'s, 'c> {
                 break;
             }
         }
+        let mut steps = best.map_or(Vec::new(), |best| best.1);
+        if let Some(way) = self.options.free_along {
+            // What is further along the way gets out first, and nothing in its way is left.
+            let end = |step: &Step| {
+                let block = self.layout.items[step.item].bounds.placed(&step.placement);
+                let axis = usize::from(way.axis);
+                block.map_or(0.0, |block| if way.upward { block.min[axis] } else { -block.max[axis] })
+            };
+            steps.sort_by(|a, b| end(a).total_cmp(&end(b)));
+        }
         // Boxes that are apart prove it; what they do not prove is left out.
-        for step in best.iter().flat_map(|best| &best.1) {
+        for step in &steps {
             if self.budget.is_spent() {
                 break;
             }

@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 const HALVINGS: u32 = 5;
 
 /// Passes over everything that is placed.
-const PASSES: usize = 2;
+const PASSES: usize = 1;
 
 /// Moves everything that is placed from number `first` on down along z, y and x, the lowest first; `step` is the first step (model units).
 pub(super) fn settle(

@@ -76,6 +76,10 @@ impl Space {
             let from = (at[0] + run.x as usize) as isize - 1;
             let to = from + run.length as isize;
             let (first, last) = (from.max(0) as usize, to.min(size[0]) as usize);
+            if first >= last {
+                count += run.length;
+                continue;
+            }
             count += run.length - (last - first) as u32;
             let row = self.words * (y + size[1] * z) as usize;
             for word in first / 64..last.div_ceil(64) {

@@ -1,12 +1,13 @@
 //! The cells that a solid may have points in.
 
+use super::super::proof::on_any_frame;
 use super::bits::Bits;
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Frame, MAX_DEPTH, axes};
+use crate::lattice::{Bounds, Frame, MAX_DEPTH, axes};
 use crate::memory;
 use crate::op::{Rule, build};
-use crate::solid::{AnySolid, Solid, Transform};
+use crate::solid::AnySolid;
 use alloc::vec::Vec;
 
 /// Cells of a solid, and the lower corner of the first of them (model units).
@@ -92,11 +93,7 @@ fn on_frame(
     control: &Control<'_>,
 ) -> Result<Vec<u64>, Error> {
     let own = Control { progress: None, max_splits: None, ..*control };
-    // (A stored octree is known on its own frame alone.)
-    let tree = match solid.home() {
-        Some(_) => build(&Transform::of(solid.clone(), &Affine::IDENTITY), frame, Rule::Certified, &own)?,
-        None => build(solid, frame, Rule::Certified, &own)?,
-    };
+    let tree = build(&on_any_frame(solid), frame, Rule::Certified, &own)?;
     let mut inner = memory::filled(outer.bits.len(), 0)?;
     let end = outer.size.map(|cells| cells as u32);
     tree.bitmap(frame.depth(), [0; 3], end, &mut inner, Some(&mut outer.bits), &own)?;

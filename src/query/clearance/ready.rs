@@ -5,8 +5,8 @@ use super::search::Goal;
 use super::{Clearance, Moved};
 use crate::control::{Control, Job};
 use crate::error::Error;
-use crate::lattice::{Affine, Bounds, Frame};
-use crate::solid::{AnyClassifier, AnySolid, Solid, Transform};
+use crate::lattice::{Affine, Bounds, Frame, MAX_DEPTH};
+use crate::solid::{AnyClassifier, AnySolid, Classifier, Solid, Transform};
 use crate::walk::Proven;
 
 /// A solid that ends, on a frame of its own and on one that holds what may be near to it.
@@ -75,8 +75,19 @@ impl Ready {
             Asked::Distance(tolerance) => Goal::Width(tolerance),
         };
         let boundaries = self.boundary.as_ref().zip(other.boundary.as_ref()).map(|(a, b)| [a, b]);
-        let moved =
-            Moved { is_clipped: false, ..Moved::new(&other.solid, &other.own, &other.moved, control)? };
-        moved.apart_from(&self.fixed, boundaries, placement, wanted, &Job::new(control))
+        let moved = Moved::new(&other.solid, &other.own, &other.moved, control)?;
+        let moved = Moved { is_clipped: false, ..moved };
+        let job = &Job::new(control);
+        if boundaries.is_none()
+            && let Some(around) = other.bounds.placed(placement)
+            && !around.is_within(self.fixed.frame())
+        {
+            // (What is that far away is rarely asked for.)
+            let both = self.bounds.hull(&around);
+            let frame = Frame::fitted(both.min, both.max, MAX_DEPTH)?;
+            let far = Ready::new(&self.solid, &self.bounds, &frame, control)?;
+            return moved.apart_from(&far.fixed, None, placement, wanted, job);
+        }
+        moved.apart_from(&self.fixed, boundaries, placement, wanted, job)
     }
 }
