@@ -11,7 +11,7 @@ use crate::query::GapVerdict;
 use alloc::vec::Vec;
 
 /// What something that is placed may be too near to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Beside {
     /// What lies outside of the container.
     Wall,
@@ -139,7 +139,7 @@ impl Layout {
         for (k, block) in self.boxes.iter().enumerate().filter(|(k, _)| *k != number) {
             add(block, Beside::Placed(k));
         }
-        others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let bounds = self.container.bounds();
         let tolerance = NEAREST * (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
         let mut nearest: Option<Neighbour> = None;

@@ -58,6 +58,11 @@ impl Item {
         Ok(Item { density, ..self })
     }
 
+    /// The same without what would have to be allocated.
+    pub(super) fn shallow(&self) -> Item {
+        Item { solid: self.solid.clone(), orientations: Orientations::AsGiven, ..*self }
+    }
+
     /// The solid.
     pub fn solid(&self) -> &AnySolid {
         &self.solid

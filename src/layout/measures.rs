@@ -49,6 +49,7 @@ impl Layout {
         let job = Job::new(control);
         let own = &Control { progress: None, ..*control };
         let container = measured(self.container.solid(), self.container.bounds(), tolerance, own)?;
+        let share = WHOLE / (self.items.len() + 1);
         let mut items = memory::with_capacity(self.items.len())?;
         for item in &self.items {
             let is_placed = self.placed.iter().any(|placed| placed.item == items.len());
@@ -56,7 +57,7 @@ impl Layout {
                 true => Some(measured(&item.solid, &item.bounds, tolerance, own)?),
                 false => None,
             });
-            job.advance(WHOLE / (self.items.len() + 1));
+            job.advance(share);
         }
         let mut bodies = memory::with_capacity(self.placed.len())?;
         let mut is_known = !self.placed.is_empty();
@@ -97,7 +98,7 @@ impl Layout {
             inertia_about_origin: origin,
             inertia_about_centroid: centroid.map_or(origin, about),
         };
-        job.finish();
+        job.advance(WHOLE - share * self.items.len());
         Ok(measures)
     }
 
@@ -106,7 +107,8 @@ impl Layout {
         /// How well it is to be known, as a part of an item.
         const PART: f64 = 1e-6;
         let mut order = memory::collected(0..self.placed.len())?;
-        order.sort_by(|&a, &b| self.boxes[b].max[2].total_cmp(&self.boxes[a].max[2]));
+        order
+            .sort_unstable_by(|&a, &b| self.boxes[b].max[2].total_cmp(&self.boxes[a].max[2]).then(a.cmp(&b)));
         let mut top: Option<Interval> = None;
         for number in order {
             let block = &self.boxes[number];

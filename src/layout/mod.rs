@@ -127,7 +127,7 @@ impl Layout {
         let mut items = memory::with_capacity(bay.items.len())?;
         for item in &bay.items {
             pieces.push(Piece::new(&item.solid, &item.bounds, near, control)?);
-            items.push(item.clone());
+            items.push(Item { orientations: item.orientations.try_clone()?, ..item.shallow() });
         }
         let clearance = bay.clearance;
         Ok(Layout { container, obstacles, items, pieces, clearance, placed: Vec::new(), boxes: Vec::new() })

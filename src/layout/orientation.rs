@@ -24,6 +24,15 @@ pub enum Orientations {
 pub(super) const STRETCH: f64 = 1e-9;
 
 impl Orientations {
+    pub(super) fn try_clone(&self) -> Result<Orientations, Error> {
+        Ok(match self {
+            Orientations::AsGiven => Orientations::AsGiven,
+            Orientations::Turns => Orientations::Turns,
+            Orientations::Free(count) => Orientations::Free(*count),
+            Orientations::List(list) => Orientations::List(memory::copied(list)?),
+        })
+    }
+
     /// The maps, all of which leave the origin where it is.
     pub(super) fn maps(&self, seed: u64) -> Result<Vec<Affine>, Error> {
         let mut maps = Vec::new();

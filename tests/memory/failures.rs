@@ -13,6 +13,7 @@ use crate::common::on_all_processors;
 use crate::{bodies, zip};
 use leafless::attribute::{FunctionAttribute, dexel_materials, sample_triangles};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
+use leafless::layout::{Bay, Item, Layout, Objective, Orientations, SearchOptions};
 use leafless::mesh::{MeshAttribute, Polyhedron, PolyhedronArrays};
 use leafless::op::{DexelOptions, Zone, octree_from_dexel_ends, octree_from_dexels, resolve, union_of};
 use leafless::query::{
@@ -350,6 +351,26 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
         let turn = Affine::new([[0.8, -0.6, 0.0, 9.0], [0.6, 0.8, 0.0, -6.0], [0.0, 0.0, 1.0, 0.25]])?;
         let control = Control { max_splits: Some(10), ..CONTROL };
         clearance_at(&Csg::ball([15.0; 3], 9.0)?, &a, &frame(), &[turn; 2], &frame(), 0.0, &control)
+    });
+    operation!("layout", [], {
+        let solid = |size| Ok::<_, Error>(AnySolid::new(Csg::cuboid([0.0; 3], [size; 3])?));
+        let turns = Orientations::List(vec![Affine::IDENTITY]);
+        let items = vec![
+            Item::new(solid(3.0)?)?.with_count(2).with_orientations(turns)?,
+            Item::new(AnySolid::new(Csg::ball([0.0; 3], 1.0)?))?.with_orientations(Orientations::AsGiven)?,
+        ];
+        let obstacles = vec![solid(1.0)?];
+        let bay = Bay { container: solid(7.0)?, obstacles, items, clearance: 0.25, wall_clearance: 0.0 };
+        let control = Control { max_splits: Some(40), ..CONTROL };
+        let mut layout = Layout::new(&bay, &control)?;
+        let objective = Objective::Height;
+        let options =
+            SearchOptions { rounds: 1, cells: 6, objective, max_tests: Some(12), ..SearchOptions::default() };
+        layout.search(&options, &control)?;
+        layout.check_all(&control)?;
+        layout.place(1, &Affine::translation([4.5; 3])?)?;
+        layout.check(0, &control)?;
+        layout.measures(0.5, &control)
     });
     operation!("gap", [a], {
         let control = Control { max_splits: Some(10), ..CONTROL };

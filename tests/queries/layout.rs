@@ -118,9 +118,20 @@ fn eight_blocks() {
     assert!(density.contains(0.8) && density.width() < 1e-5, "{density:?}");
 }
 
-/// A thousand arrangements of balls and blocks, placed by chance: no verdict contradicts the distance in closed form.
 #[test]
 fn arrangements_by_chance() {
+    check_arrangements(200);
+}
+
+/// `cargo test --release --test queries layout -- --ignored`
+#[test]
+#[ignore = "a minute"]
+fn a_thousand_arrangements() {
+    check_arrangements(1000);
+}
+
+/// Arrangements of balls and blocks, placed by chance: no verdict contradicts the distance in closed form.
+fn check_arrangements(count: usize) {
     let mut random = Random(40);
     let (size, radius, clearance) = ([2.0, 1.5, 1.0], 0.8, 0.25);
     let wide = [8.0, 7.0, 6.0];
@@ -128,7 +139,7 @@ fn arrangements_by_chance() {
     let bay = Bay { clearance, wall_clearance: 0.125, ..bay(wide, items) };
     let mut counts = [[0; 2]; 3];
     let mut layout = layout(&bay);
-    for _ in 0..1000 {
+    for _ in 0..count {
         while !layout.placed().is_empty() {
             layout.remove(0).unwrap();
         }
@@ -195,7 +206,10 @@ fn arrangements_by_chance() {
         }
     }
     let [[_, yes], [no, _], undecided] = counts;
-    assert!(yes > 300 && no > 300 && undecided.iter().sum::<usize>() < 5, "{counts:?}");
+    assert!(
+        yes > count / 3 && no > count / 3 && undecided.iter().sum::<usize>() <= count / 200,
+        "{counts:?}"
+    );
 }
 
 /// Solids of all kinds, found by a search, against dense samples: no point lies in two of them, or outside of the container.

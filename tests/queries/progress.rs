@@ -5,6 +5,7 @@ use leafless::attribute::{
     FillOptions, FunctionAttribute, ScalarType, ValueType, dexel_materials, fill_channel, sample_triangles,
 };
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
+use leafless::layout::{Bay, Item, Layout, Objective, SearchOptions};
 use leafless::op::{
     DexelOptions, Zone, difference_of, intersection_of, octree_from_dexel_ends, octree_from_dexels, resolve,
     union_of, xor_of,
@@ -22,10 +23,10 @@ use leafless::surface::{
 };
 use leafless::voxel::{Symmetry, Viewpoint, VoxelOptions, VoxelRecords, dexel_voxels};
 use leafless::{
-    Affine, Bounds, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership, MeshSolid, Octree, Ray,
-    Rule, SurfaceOptions, Tag, TriDexel, TriangleMesh, Volume, bounding_box, build, build_extended,
-    cast_rays, clearance, complement, contains, deviation, dexelize, difference, intersection,
-    marching_cubes, measure, union, xor,
+    Affine, AnySolid, Bounds, Control, Csg, Error, FillRule, Frame, LazyOctree, Membership, MeshSolid,
+    Octree, Ray, Rule, SurfaceOptions, Tag, TriDexel, TriangleMesh, Volume, bounding_box, build,
+    build_extended, cast_rays, clearance, complement, contains, deviation, dexelize, difference,
+    intersection, marching_cubes, measure, union, xor,
 };
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -274,6 +275,19 @@ fn all_operations(depth: u8) -> Vec<Told> {
         let turn = Affine::translation([0.1, 0.2, 0.3]).unwrap();
         gap_at_least_at(&ball, &part, &frame, &[turn; 4], &frame, 1e-3, control)
     });
+    let bay = Bay {
+        container: AnySolid::new(Csg::cuboid([0.0; 3], [9.0; 3]).unwrap()),
+        obstacles: vec![],
+        items: vec![Item::new(AnySolid::new(Csg::ball([0.0; 3], 1.0).unwrap())).unwrap().with_count(60)],
+        clearance: 0.05,
+        wall_clearance: 0.0,
+    };
+    let mut layout = Layout::new(&bay, &CONTROL).unwrap();
+    let options =
+        SearchOptions { cells: 40, rounds: 8, objective: Objective::Density, ..SearchOptions::default() };
+    heard.of("layout searched", |control| layout.search(&options, control));
+    heard.of("layout checked", |control| layout.check_all(control));
+    heard.of("layout measured", |control| layout.measures(1e-2, control));
     let mut lazy = LazyOctree::new(&part, &frame).unwrap();
     heard.of("refine", |control| lazy.refine(&Zone::Whole, depth, control));
     heard.of("lazy octree frozen", |control| lazy.freeze(control));

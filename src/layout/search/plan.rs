@@ -54,7 +54,7 @@ impl Plan {
                 memory::push(&mut keyed, (figure.volume * factor, item))?;
             }
         }
-        keyed.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        keyed.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut order = memory::with_capacity(keyed.len())?;
         order.extend(keyed.iter().map(|&(_, item)| item));
         let pick = |count: usize| (round % count as u64) as usize;

@@ -181,7 +181,7 @@ impl Round<'_> {
         let along = |k: usize, at: usize| first[k] + self.lattice.cell * at as f64 - wanted[k];
         let square = |k: usize, at: usize| along(k, at) * along(k, at);
         let mut layers = memory::collected(0..space.size()[2] - form.shape.size[2] + 1)?;
-        layers.sort_by(|&a, &b| along(2, a).abs().total_cmp(&along(2, b).abs()).then(a.cmp(&b)));
+        layers.sort_unstable_by(|&a, &b| along(2, a).abs().total_cmp(&along(2, b).abs()).then(a.cmp(&b)));
         let mut best: Option<Place> = None;
         for z in layers {
             let away = square(2, z);

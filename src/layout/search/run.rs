@@ -211,7 +211,7 @@ impl<'s, 'c> Search<'s, 'c> {
                 let axis = usize::from(way.axis);
                 block.map_or(0.0, |block| if way.upward { block.min[axis] } else { -block.max[axis] })
             };
-            steps.sort_by(|a, b| end(a).total_cmp(&end(b)));
+            steps.sort_unstable_by(|a, b| end(a).total_cmp(&end(b)).then(a.item.cmp(&b.item)));
         }
         // Boxes that are apart prove it; what they do not prove is left out.
         for step in &steps {

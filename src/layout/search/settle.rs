@@ -23,7 +23,7 @@ pub(super) fn settle(
     for _ in 0..PASSES {
         for axis in [2, 1, 0] {
             let mut order: Vec<usize> = memory::collected(first..layout.placed.len())?;
-            order.sort_by(|&a, &b| {
+            order.sort_unstable_by(|&a, &b| {
                 layout.boxes[a].min[axis].total_cmp(&layout.boxes[b].min[axis]).then(a.cmp(&b))
             });
             for number in order {
