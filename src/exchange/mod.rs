@@ -27,7 +27,8 @@
 //! Some files depart from their format in a way that leaves no doubt about the mesh. They are read, and
 //! [`MeshFile::warnings`] tells of it.
 //!
-//! [`write_mesh`] writes a file of any of them, and `write_polygons` an OBJ or OFF of polygons. STL rounds coordinates to 32 bits: [`written_form`] tells the mesh that is
+//! [`write_mesh`] writes a file of any of them, `write_polygons` an OBJ or OFF of polygons, and `write_placed_meshes` (feature
+//! `threemf`) a 3MF of several objects, each in any number of places. STL rounds coordinates to 32 bits: [`written_form`] tells the mesh that is
 //! read back, and what is lost.
 //!
 //! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be
@@ -106,6 +107,8 @@ pub use volume::{
     volume_data_file, write_nrrd, write_raw_volume,
 };
 pub use warning::MeshWarning;
+#[cfg(feature = "threemf")]
+pub use write::write_placed_meshes;
 #[cfg(feature = "png")]
 pub use write::write_png;
 pub use write::{WriteOptions, WrittenForm, write_mesh, write_stl, written_form};

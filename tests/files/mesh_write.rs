@@ -209,6 +209,49 @@ proptest! {
     }
 }
 
+/// Objects with names, each in several places, come back as one mesh with the volume of all.
+#[cfg(feature = "threemf")]
+#[test]
+fn placed_meshes_come_back() {
+    use leafless::Affine;
+    use leafless::exchange::write_placed_meshes;
+    let tetrahedron = |size: f64| {
+        let vertices = vec![[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]];
+        TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap()
+    };
+    let flat = TriangleMesh::new(vec![[0.0; 3], [1.0; 3]], vec![[0, 1, 1]]).unwrap();
+    let (small, large) = (tetrahedron(1.0), tetrahedron(3.0));
+    let objects = [("flat", &flat), ("a \"small\" <one> & \u{1}more", &small), ("large", &large)];
+    let turned = [[0.6, -0.8, 0.0, 10.1], [0.8, 0.6, 0.0, -1e-7], [0.0, 0.0, 1.0, 1.0 / 3.0]];
+    let mirrored = [[-1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 50.0]];
+    let [turned, mirrored] = [turned, mirrored].map(|rows| Affine::new(rows).unwrap());
+    let far = Affine::translation([-7.0, 0.1, 1e20 / 3e20]).unwrap();
+    let items = [(1, Affine::IDENTITY), (2, turned), (1, far), (0, turned), (2, mirrored)];
+    let options = WriteOptions { unit: Some(LengthUnit::Inch), ..WriteOptions::default() };
+    let bytes = write_placed_meshes(&objects, &items, &options).unwrap();
+    let back = read_mesh(&bytes, &MeshOptions::default()).unwrap();
+    assert_eq!((back.format, back.unit, back.skipped), (MeshFormat::ThreeMf, Some(LengthUnit::Inch), 0));
+    assert!(back.warnings.is_empty());
+    // The vertices of all places, one after another.
+    let placed = [(&small, Affine::IDENTITY), (&large, turned), (&small, far), (&large, mirrored)];
+    let expected: Vec<[f64; 3]> =
+        placed.iter().flat_map(|(mesh, map)| mesh.vertices().iter().map(|v| map.apply(*v))).collect();
+    assert_eq!(back.mesh.vertices().len(), expected.len());
+    for (own, expected) in back.mesh.vertices().iter().zip(&expected) {
+        assert!((0..3).all(|k| (own[k] - expected[k]).abs() < 1e-14), "{own:?} {expected:?}");
+    }
+    // What is mirrored is not inside out.
+    let volume = 2.0 * small.volume() + 2.0 * large.volume();
+    assert!((back.mesh.volume() - volume).abs() < 1e-12, "{} {volume}", back.mesh.volume());
+    let objects_of = back.mesh.attributes().iter().find(|attribute| attribute.name() == "object").unwrap();
+    assert_eq!(objects_of.names(), ["a \"small\" <one> &  more", "large"]);
+
+    let nothing = write_placed_meshes(&objects[..1], &items[3..4], &options).unwrap();
+    assert!(read_mesh(&nothing, &MeshOptions::default()).unwrap().mesh.triangles().is_empty());
+    let unknown = write_placed_meshes(&objects[..2], &items, &options);
+    assert!(matches!(unknown, Err(Error::Argument { name: "items", .. })));
+}
+
 #[test]
 fn a_mesh_of_nothing_is_written_where_a_format_has_it() {
     let empty = TriangleMesh::new(vec![], vec![]).unwrap();

@@ -24,6 +24,8 @@ pub use png::write_png;
 #[cfg(feature = "std")]
 pub use polygons::{write_grouped_polygons, write_polygons};
 pub use stl::write_stl;
+#[cfg(feature = "threemf")]
+pub use threemf::write_placed_meshes;
 
 use super::{LengthUnit, MeshFormat, stated};
 use crate::error::Error;

@@ -1,16 +1,18 @@
-//! 3MF packages of the core specification 1.x, one object each.
+//! 3MF packages of the core specification 1.x: one object that is built as it is, or several that are placed.
 
 use super::WriteOptions;
 use super::attributes::{self, Materials};
 use super::lines::Number;
 use crate::error::Error;
 use crate::exchange::LengthUnit;
-use crate::exchange::stated::Shown;
+use crate::exchange::stated::{self, Shown};
 use crate::exchange::threemf::model::DEVIATION;
+use crate::lattice::Affine;
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
+use core::fmt::{self, Write as _};
 use hashbrown::HashMap;
 use miniz_oxide::deflate::core::{
     CompressorOxide, TDEFLFlush, TDEFLStatus, compress_to_output, create_comp_flags_from_zip_params,
@@ -28,18 +30,81 @@ const RELATIONSHIPS: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" \
     Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
 
-pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u8>, Error> {
-    let properties = Properties::of(mesh)?;
-    // Writing to memory fails only for want of it.
-    package(mesh, &properties, options).map_err(|_| Error::OutOfMemory)
+/// The 3MF of several meshes, each of which is built in any number of places: an object with its name for each of `objects`, and an item of
+/// the build with its transform for each of `items`, which are a number of an object and where it stands. A name may be empty.
+///
+/// Objects are stored once, however often they stand somewhere. [`read_mesh`](crate::exchange::read_mesh) makes one mesh of all that is built. An object
+/// without triangles, which a 3MF must not have, is left out with its items. Of `options` the unit and the deviation count; for
+/// colours and materials see [`write_mesh`](crate::exchange::write_mesh).
+///
+/// O(n) time and memory.
+///
+/// # Errors
+/// [`Error::Argument`] if an item has the number of no object, if there are more than 2^30 objects, and for a deviation that
+/// [`TriangleMesh::with_deviation`] refuses; [`Error::OutOfMemory`].
+///
+/// ```
+/// use leafless::exchange::{read_mesh, write_placed_meshes};
+/// use leafless::{Affine, TriangleMesh};
+/// let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// let places = [(0, Affine::IDENTITY), (0, Affine::translation([5.0, 0.0, 0.0])?)];
+/// let bytes = write_placed_meshes(&[("corner", &mesh)], &places, &Default::default())?;
+/// let back = read_mesh(&bytes, &Default::default())?.mesh;
+/// assert_eq!(back.bounds(), ([0.0; 3], [6.0, 1.0, 1.0]));
+/// assert_eq!(back.volume(), 2.0 * mesh.volume());
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn write_placed_meshes(
+    objects: &[(&str, &TriangleMesh)],
+    items: &[(usize, Affine)],
+    options: &WriteOptions,
+) -> Result<Vec<u8>, Error> {
+    stated::check(options.deviation)?;
+    if items.iter().any(|&(object, _)| object >= objects.len()) {
+        return Err(Error::Argument { name: "items", problem: "must name one of the objects" });
+    }
+    if objects.len() > 1 << 30 {
+        return Err(Error::Argument { name: "objects", problem: "must not be more than 2^30" });
+    }
+    let mut all = memory::with_capacity(objects.len())?;
+    for (name, mesh) in objects {
+        all.push(Object { name, mesh, properties: Properties::of(mesh)? });
+    }
+    package(&all, items, options).map_err(|_| Error::OutOfMemory)
 }
 
-fn package(mesh: &TriangleMesh, properties: &Properties<'_>, options: &WriteOptions) -> io::Result<Vec<u8>> {
+pub(super) fn write(mesh: &TriangleMesh, options: &WriteOptions) -> Result<Vec<u8>, Error> {
+    let object = Object { name: "", mesh, properties: Properties::of(mesh)? };
+    // Writing to memory fails only for want of it.
+    package(&[object], &[(0, Affine::IDENTITY)], options).map_err(|_| Error::OutOfMemory)
+}
+
+/// What is placed.
+struct Object<'a> {
+    name: &'a str,
+    mesh: &'a TriangleMesh,
+    properties: Properties<'a>,
+}
+
+impl Object<'_> {
+    /// The triangles that a 3MF may have, with their places.
+    fn triangles(&self) -> impl Iterator<Item = (usize, &[u32; 3])> {
+        self.mesh.triangles().iter().enumerate().filter(|(_, [a, b, c])| a != b && b != c && c != a)
+    }
+
+    /// Whether nothing is left of it.
+    fn is_empty(&self) -> bool {
+        self.triangles().next().is_none()
+    }
+}
+
+fn package(objects: &[Object<'_>], items: &[(usize, Affine)], options: &WriteOptions) -> io::Result<Vec<u8>> {
     let mut archive = ZipArchiveWriter::new(Bytes::default());
     part(&mut archive, "[Content_Types].xml", |out| out.write_all(CONTENT_TYPES.as_bytes()))?;
     part(&mut archive, "_rels/.rels", |out| out.write_all(RELATIONSHIPS.as_bytes()))?;
     part(&mut archive, "3D/3dmodel.model", |out| {
-        model(mesh, properties, options, &mut io::BufWriter::new(out))
+        model(objects, items, options, &mut io::BufWriter::new(out))
     })?;
     Ok(archive.finish().map_err(io::Error::other)?.0)
 }
@@ -61,8 +126,8 @@ fn part(
 }
 
 fn model(
-    mesh: &TriangleMesh,
-    properties: &Properties<'_>,
+    objects: &[Object<'_>],
+    items: &[(usize, Affine)],
     options: &WriteOptions,
     out: &mut impl Write,
 ) -> io::Result<()> {
@@ -83,46 +148,96 @@ fn model(
     if options.deviation.is_some() {
         write!(out, " xmlns:leafless=\"urn:leafless\"")?;
     }
-    if matches!(properties, Properties::Colours { .. }) {
+    if objects.iter().any(|object| matches!(object.properties, Properties::Colours { .. })) {
         write!(out, " xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"")?;
     }
     write!(out, ">\n<metadata name=\"Application\">Leafless</metadata>\n")?;
     if let Some(deviation) = options.deviation {
         writeln!(out, "<metadata name=\"{DEVIATION}\">{}</metadata>", Shown(deviation))?;
     }
-    let triangles = mesh.triangles().iter().enumerate();
-    let mut triangles = triangles.filter(|(_, [a, b, c])| a != b && b != c && c != a).peekable();
     // An object must have triangles.
-    if triangles.peek().is_none() {
+    if objects.iter().all(Object::is_empty) {
         writeln!(out, "<resources/>\n<build/>\n</model>")?;
         return out.flush();
     }
     writeln!(out, "<resources>")?;
-    properties.group(out)?;
-    // What all triangles of an object have it should have, too.
-    let own = if properties.have_all(mesh.triangles().len()) { " pid=\"2\" pindex=\"0\"" } else { "" };
-    write!(out, "<object id=\"1\" type=\"model\"{own}>\n<mesh>\n<vertices>\n")?;
-    for vertex in mesh.vertices() {
-        let [x, y, z] = vertex.map(Number);
-        writeln!(out, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")?;
+    for (number, object) in objects.iter().enumerate().filter(|(_, object)| !object.is_empty()) {
+        object.write(number, out)?;
     }
-    write!(out, "</vertices>\n<triangles>\n")?;
-    for (place, [a, b, c]) in triangles {
-        write!(out, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
-        match properties.get(place) {
-            Some([p, q, r]) if p != q || p != r => {
-                write!(out, " pid=\"2\" p1=\"{p}\" p2=\"{q}\" p3=\"{r}\"")?;
+    write!(out, "</resources>\n<build>\n")?;
+    for (number, placement) in items.iter().filter(|(number, _)| !objects[*number].is_empty()) {
+        write!(out, "<item objectid=\"{}\"", id(*number))?;
+        if !placement.is_identity() {
+            // (Of row vectors.)
+            let rows = placement.rows();
+            for column in 0..4 {
+                let [x, y, z] = rows.map(|row| Number(row[column]));
+                write!(out, "{}{x} {y} {z}", if column == 0 { " transform=\"" } else { " " })?;
             }
-            Some([p, ..]) => write!(out, " pid=\"2\" p1=\"{p}\"")?,
-            None => {}
+            write!(out, "\"")?;
         }
         writeln!(out, "/>")?;
     }
-    write!(
-        out,
-        "</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item objectid=\"1\"/>\n</build>\n</model>\n"
-    )?;
+    write!(out, "</build>\n</model>\n")?;
     out.flush()
+}
+
+/// The identifier of an object; that of its properties is the next one.
+fn id(number: usize) -> usize {
+    2 * number + 1
+}
+
+impl Object<'_> {
+    fn write(&self, number: usize, out: &mut impl Write) -> io::Result<()> {
+        let (Object { name, mesh, properties }, id) = (self, id(number));
+        let group = id + 1;
+        properties.group(group, out)?;
+        write!(out, "<object id=\"{id}\" type=\"model\"")?;
+        if !name.is_empty() {
+            write!(out, " name=\"{}\"", Escaped(name))?;
+        }
+        // What all triangles of an object have it should have, too.
+        if properties.have_all(mesh.triangles().len()) {
+            write!(out, " pid=\"{group}\" pindex=\"0\"")?;
+        }
+        write!(out, ">\n<mesh>\n<vertices>\n")?;
+        for vertex in mesh.vertices() {
+            let [x, y, z] = vertex.map(Number);
+            writeln!(out, "<vertex x=\"{x}\" y=\"{y}\" z=\"{z}\"/>")?;
+        }
+        write!(out, "</vertices>\n<triangles>\n")?;
+        for (place, [a, b, c]) in self.triangles() {
+            write!(out, "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"")?;
+            match properties.get(place) {
+                Some([p, q, r]) if p != q || p != r => {
+                    write!(out, " pid=\"{group}\" p1=\"{p}\" p2=\"{q}\" p3=\"{r}\"")?;
+                }
+                Some([p, ..]) => write!(out, " pid=\"{group}\" p1=\"{p}\"")?,
+                None => {}
+            }
+            writeln!(out, "/>")?;
+        }
+        write!(out, "</triangles>\n</mesh>\n</object>\n")
+    }
+}
+
+/// A text as the value of an attribute. What XML has no place for are blanks.
+struct Escaped<'a>(&'a str);
+
+impl fmt::Display for Escaped<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for c in self.0.chars() {
+            match c {
+                '&' => f.write_str("&amp;")?,
+                '<' => f.write_str("&lt;")?,
+                '>' => f.write_str("&gt;")?,
+                '"' => f.write_str("&quot;")?,
+                '\0'..=' ' | '\u{FFFE}' | '\u{FFFF}' => f.write_char(' ')?,
+                other => f.write_char(other)?,
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What triangles refer to.
@@ -193,28 +308,19 @@ impl<'a> Properties<'a> {
     }
 
     /// Writes the group.
-    fn group(&self, out: &mut impl Write) -> io::Result<()> {
+    fn group(&self, id: usize, out: &mut impl Write) -> io::Result<()> {
         match self {
             Properties::None => Ok(()),
             Properties::Materials(materials, shown) => {
-                writeln!(out, "<basematerials id=\"2\">")?;
+                writeln!(out, "<basematerials id=\"{id}\">")?;
                 for (name, [r, g, b, a]) in materials.names.iter().zip(shown) {
-                    write!(out, "<base name=\"")?;
-                    for c in name.chars() {
-                        match c {
-                            '&' => write!(out, "&amp;")?,
-                            '<' => write!(out, "&lt;")?,
-                            '>' => write!(out, "&gt;")?,
-                            '"' => write!(out, "&quot;")?,
-                            other => write!(out, "{other}")?,
-                        }
-                    }
+                    write!(out, "<base name=\"{}", Escaped(name))?;
                     writeln!(out, "\" displaycolor=\"#{r:02X}{g:02X}{b:02X}{a:02X}\"/>")?;
                 }
                 writeln!(out, "</basematerials>")
             }
             Properties::Colours { colours, .. } => {
-                writeln!(out, "<m:colorgroup id=\"2\">")?;
+                writeln!(out, "<m:colorgroup id=\"{id}\">")?;
                 for [r, g, b, a] in colours {
                     writeln!(out, "<m:color color=\"#{r:02X}{g:02X}{b:02X}{a:02X}\"/>")?;
                 }
