@@ -106,6 +106,10 @@ enum Command {
     Voxels(voxels::Arguments),
     #[command(about = "Say whether two solids or meshes overlap, by how much, and how far they are apart")]
     Interfere(interfere::Arguments),
+    #[command(
+        about = "Place as many copies of parts in a container as go in, proven to be apart; or check such a layout"
+    )]
+    Layout(layout::Arguments),
     #[command(about = "Say how far the boundaries of two solids or meshes are from each other")]
     Deviation(deviation::Arguments),
     #[command(
@@ -177,6 +181,7 @@ fn main() -> ExitCode {
         Command::Bitmap(arguments) => bitmap::run(arguments),
         Command::Voxels(arguments) => voxels::run(arguments),
         Command::Interfere(arguments) => interfere::run(arguments),
+        Command::Layout(arguments) => layout::run(arguments),
         Command::Deviation(arguments) => deviation::run(arguments),
         Command::Measure(arguments) => measure::run(arguments),
         Command::Within(arguments) => within::run(arguments),

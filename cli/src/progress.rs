@@ -146,6 +146,25 @@ pub fn within_time<R>(
     is_done: impl Fn(&R) -> bool,
 ) -> Result<R, Error> {
     let Some(seconds) = seconds else { return work(control) };
+    until(Some(seconds), |is_over| {
+        let most = control.max_splits.unwrap_or(u64::MAX);
+        let (mut best, mut splits) = (None, FIRST_SPLITS.min(most));
+        loop {
+            let control = Control { max_splits: Some(splits), cancel: is_over, ..*control };
+            match work(&control) {
+                Ok(found) if splits == most || is_done(&found) => break Ok(found),
+                Ok(found) => best = Some(found),
+                Err(Error::Cancelled) => break best.ok_or(Error::Cancelled),
+                Err(error) => break Err(error),
+            }
+            splits = splits.saturating_mul(4).min(most);
+        }
+    })
+}
+
+/// Does work with a flag that is raised when the time is over. Without a time there is none.
+pub fn until<R>(seconds: Option<f64>, work: impl FnOnce(Option<&AtomicBool>) -> R) -> R {
+    let Some(seconds) = seconds else { return work(None) };
     let is_over = AtomicBool::new(false);
     let (end, ended) = channel::<()>();
     std::thread::scope(|scope| {
@@ -154,18 +173,7 @@ pub fn within_time<R>(
             let _ = ended.recv_timeout(Duration::from_secs_f64(seconds));
             is_over.store(true, Relaxed);
         });
-        let most = control.max_splits.unwrap_or(u64::MAX);
-        let (mut best, mut splits) = (None, FIRST_SPLITS.min(most));
-        let result = loop {
-            let control = Control { max_splits: Some(splits), cancel: Some(is_over), ..*control };
-            match work(&control) {
-                Ok(found) if splits == most || is_done(&found) => break Ok(found),
-                Ok(found) => best = Some(found),
-                Err(Error::Cancelled) => break best.ok_or(Error::Cancelled),
-                Err(error) => break Err(error),
-            }
-            splits = splits.saturating_mul(4).min(most);
-        };
+        let result = work(Some(is_over));
         drop(end);
         result
     })

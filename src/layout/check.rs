@@ -38,13 +38,16 @@ pub struct Standing {
     /// `Yes`: it is proven to lie in the container, to overlap with nothing, and to be as far from everything as it should be. `No`: one
     /// of these is proven to be wrong.
     pub verdict: GapVerdict,
-    /// Everything that is in the way, or may be: those of which `Yes` is not proven.
+    /// What is in the way, or may be: those of which `Yes` is not proven, and no more than 256 of them.
     pub conflicts: Vec<Neighbour>,
     /// What is next to it, but for the wall; nothing if there is nothing else. The gap holds the least of all distances.
     pub nearest: Option<Neighbour>,
     /// Cells that were split.
     pub splits: u64,
 }
+
+/// Most conflicts that are told of one.
+const CONFLICTS: usize = 256;
 
 /// How well the distance of what is nearest is to be known, as a part of the longest side of the container.
 const NEAREST: f64 = 1e-6;
@@ -186,7 +189,7 @@ impl Standing {
             (GapVerdict::Undecided, _) | (_, GapVerdict::Undecided) => GapVerdict::Undecided,
             _ => GapVerdict::Yes,
         };
-        if verdict != GapVerdict::Yes {
+        if verdict != GapVerdict::Yes && self.conflicts.len() < CONFLICTS {
             memory::push(&mut self.conflicts, Neighbour { other, verdict, gap })?;
         }
         Ok(())

@@ -3,7 +3,7 @@
 use super::relative::Relative;
 use crate::control::Control;
 use crate::error::Error;
-use crate::lattice::exact::sqrt;
+use crate::lattice::exact::{sqrt, two_diff, two_sum};
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::query::{Asked, GapVerdict, Overlap, Ready, interference};
 use crate::solid::{AnySolid, Csg, Solid, Transform};
@@ -206,7 +206,7 @@ impl Container {
         around: &Bounds,
         control: &Control<'_>,
     ) -> Result<Known, Error> {
-        let block = around.grown(self.clearance);
+        let block = wider(around, self.clearance);
         let is_inside =
             (0..3).all(|k| self.bounds.min[k] <= block.min[k] && block.max[k] <= self.bounds.max[k]);
         let known = |verdict, gap| Ok(Known { verdict, gap, splits: 0 });
@@ -239,18 +239,33 @@ pub(super) fn diagonal(bounds: &Bounds) -> f64 {
     sqrt(sides.iter().map(|side| side * side).sum::<f64>()) * (1.0 + 1e-12)
 }
 
+/// A box that holds all that is no further than a margin from one, along each axis: rounded outward, and not where nothing is rounded.
+pub(super) fn wider(bounds: &Bounds, margin: f64) -> Bounds {
+    let rounded = |(sum, rest): (f64, f64), sense: f64| match rest * sense {
+        off if off > 0.0 && sense > 0.0 => sum.next_up(),
+        off if off > 0.0 => sum.next_down(),
+        _ => sum,
+    };
+    Bounds {
+        min: bounds.min.map(|low| rounded(two_diff(low, margin), -1.0)),
+        max: bounds.max.map(|high| rounded(two_sum(high, margin), 1.0)),
+    }
+}
+
 /// No more than the distance of two boxes; less than 0 if their insides meet.
 pub(super) fn boxes_apart(a: &Bounds, b: &Bounds) -> f64 {
-    let gaps: [f64; 3] = axes(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]));
+    let gap = |high: f64, low: f64| {
+        let (gap, rest) = two_diff(high, low);
+        if rest < 0.0 { gap.next_down() } else { gap }
+    };
+    let gaps: [f64; 3] = axes(|k| gap(a.min[k], b.max[k]).max(gap(b.min[k], a.max[k])));
     if gaps.iter().all(|&gap| gap < 0.0) {
         return -1.0;
     }
     let parts = gaps.map(|gap| gap.max(0.0));
     let alone = parts.iter().filter(|&&part| part > 0.0).count() <= 1;
     if alone {
-        // (A difference is off by half a last place at the most.)
-        let gap = parts.iter().sum::<f64>();
-        return if gap == 0.0 { 0.0 } else { gap * (1.0 - f64::EPSILON) };
+        return parts.iter().sum();
     }
     sqrt(parts.iter().map(|part| part * part).sum::<f64>()) * (1.0 - 1e-12)
 }

@@ -397,6 +397,16 @@ fn the_centre_of_gravity_goes_where_it_should() {
     }
 }
 
+/// As many as possible comes first: two cubes that just go in, none of which can stand in the middle.
+#[test]
+fn balance_leaves_nothing_out() {
+    let mut layout = layout(&bay([20.0, 10.0, 10.0], vec![item(cuboid([10.0; 3])).with_count(2)]));
+    let objective = Objective::Balance([10.0, 5.0, 5.0]);
+    let found = layout.search(&SearchOptions { objective, ..SearchOptions::default() }, &alone()).unwrap();
+    assert_eq!(found.left, 0);
+    assert_proven(&layout);
+}
+
 /// Volume, mass, centroid and inertia of turned blocks in closed form.
 #[test]
 fn what_a_layout_weighs() {
@@ -505,6 +515,14 @@ fn what_touches_is_apart() {
     assert_proven(&layout);
     let standing: Standing = layout.check(13, &alone()).unwrap();
     assert!(standing.nearest.unwrap().gap.contains(0.0));
+    // With a clearance, and one to the wall, that leave nothing.
+    let cubes = || vec![item(cuboid([10.0; 3])).with_count(8)];
+    for (side, clearance, wall_clearance) in [(21.0, 1.0, 0.0), (23.0, 1.0, 1.0), (20.5, 0.0, 0.25)] {
+        let mut layout = self::layout(&Bay { clearance, wall_clearance, ..bay([side; 3], cubes()) });
+        let found = layout.search(&SearchOptions::default(), &alone()).unwrap();
+        assert_eq!((found.placed, found.splits), (8, 0), "{side}");
+        assert_proven(&layout);
+    }
     // A ball in a corner of three walls, and one a little further.
     let mut layout = self::layout(&bay([6.0; 3], vec![item(ball(1.0))]));
     for (at, expected) in

@@ -8,6 +8,7 @@ use crate::report::bounds::{Proven, Range, gap_word, stop_word, verdict_word};
 use crate::sink::print_told;
 use crate::source::file::Taking;
 use crate::source::input::Input;
+use crate::source::placing::from_file;
 use crate::source::solid::{Corners, Source, evaluations};
 use crate::words::{count, number, put_line};
 use clap::Args;
@@ -146,7 +147,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let [first, second] =
         [Source::read(a, &taking)?, Source::read(b, &taking)?].map(|source| source.taken(arguments.cells));
     let placements = match &arguments.poses {
-        Some(path) => poses::read(path, &placement)?,
+        Some(path) => from_file(path, &placement)?,
         None => vec![placement],
     };
     let frame = match &arguments.bounds {

@@ -13,6 +13,7 @@ pub mod distance;
 pub mod heights;
 pub mod info;
 pub mod interfere;
+pub mod layout;
 pub mod measure;
 pub mod mesh;
 pub mod neighbours;

@@ -6,12 +6,10 @@ use crate::progress::watched;
 use crate::report::bounds::{Range, gap_word, verdict_word};
 use crate::sink::print_told;
 use crate::source::input::Input;
-use crate::source::placing::{after, matrix};
 use crate::words::{count, number, table};
 use leafless::query::{Ball, Gap, GapVerdict, clearance_at, gap_at_least_at, interference_at};
 use leafless::{Affine, AnySolid, Clearance, Control, Frame, Interference};
 use serde::Serialize;
-use std::path::Path;
 
 /// What is asked under all placements.
 pub struct Asked<'a> {
@@ -73,24 +71,6 @@ struct Report<P> {
     #[serde(skip_serializing_if = "Option::is_none")]
     least: Option<f64>,
     poses: Vec<P>,
-}
-
-/// The placements in a file: a line for each, as --place takes it. Empty lines and lines that begin with # are skipped.
-pub fn read(path: &Path, first: &Affine) -> Result<Vec<Affine>, Failure> {
-    let input = Input::Path(path.into());
-    let of_file = |problem: String| Failure::of(&input, problem);
-    let text = String::from_utf8(input.read()?).map_err(|_| of_file("is no text".into()))?;
-    let mut placements = Vec::new();
-    for (line, text) in (1..).zip(text.lines()) {
-        let text = text.trim();
-        if text.is_empty() || text.starts_with('#') {
-            continue;
-        }
-        let placement = matrix(text).map_err(|problem| of_file(format!("line {line}: {problem}")))?;
-        let whole = after(&placement, first).map_err(|error| of_file(format!("line {line}: {error}")))?;
-        placements.push(whole);
-    }
-    Ok(placements)
 }
 
 impl Asked<'_> {

@@ -12,6 +12,7 @@ pub mod dexel_surface;
 pub mod dexels;
 pub mod faces;
 pub mod job;
+pub mod laid;
 pub mod like;
 pub mod moved;
 pub mod octree_from_dexels;

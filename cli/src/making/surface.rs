@@ -10,6 +10,7 @@ use crate::options::{UNDECIDED, name_of};
 use crate::progress::watched;
 use crate::report::cuts::Cuts;
 use crate::report::octree::Info;
+use crate::sink::Output;
 use crate::sink::written::{self, Losses, Writing};
 use crate::source::file::Taking;
 use crate::source::input::Input;
@@ -35,6 +36,7 @@ use serde::Serialize;
 use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
+use std::time::Instant;
 
 /// What is said of layers.
 const LAYERS: &str = "its cells keep layers in which the surface lies, which decide no points: this is the surface of what may be solid, by \
@@ -177,38 +179,15 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     let bearing = wanted.channel.as_deref().map(|name| Bearing::of(&shape, input, name, job.threads));
     let bearing = bearing.transpose()?;
     bearing.as_ref().map(|bearing| bearing.called(format)).transpose()?;
-    let mut faces = None;
     let certain = match &shape {
         // Vertices that are samples lie beside the surface; those of the other methods lie on it, or between samples.
         Shape::Source(source) if method.moves_to_samples() => certain_volume(source).of(input)?,
         _ => None,
     };
-    let mut is_copy = false;
-    let (unit, mesh, followed) = match shape {
-        Shape::Dexels(model) => {
-            let unit = model.metadata().get("units").and_then(|unit| unit.parse().ok());
-            let (mesh, followed) = of_dexels(&model, job, wanted, method)?;
-            (unit, mesh, Some(followed))
-        }
-        Shape::Source(Source::Mesh(mesh, _, unit)) if wanted.copy => {
-            is_copy = true;
-            (unit, mesh, None)
-        }
-        Shape::Source(source) if matches!(method, Method::Faces | Method::Adaptive) => {
-            let unit = source.unit();
-            let (mesh, by, found, followed) = to_tolerance(source, job, wanted, method)?;
-            method = by;
-            // (Of what is moved after that, they would lie elsewhere.)
-            faces = found.filter(|_| !is_stored || taking.placing.map().is_none());
-            (unit, mesh, followed)
-        }
-        Shape::Source(source) if asks_rays(&source, wanted, method) => {
-            let unit = source.unit();
-            let (mesh, followed) = by_rays(source, job, wanted, method)?;
-            (unit, mesh, Some(followed))
-        }
-        Shape::Source(source) => (source.unit(), extract(source, job, wanted, method)?, None),
-    };
+    let is_copy = wanted.copy && matches!(shape, Shape::Source(Source::Mesh(..)));
+    let Found { mesh, unit, faces, followed } = surface_of(shape, job, wanted, &mut method)?;
+    // (Of what is moved after that, they would lie elsewhere.)
+    let mut faces = faces.filter(|_| !is_stored || taking.placing.map().is_none());
     if let Some(certain) = certain.filter(|certain| !certain.contains(mesh.volume())) {
         let (volume, name) = (short(mesh.volume()), name_of(method));
         let [least, greatest] = [certain.lower, certain.upper].map(short);
@@ -231,6 +210,56 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     }
     let method = if is_copy { "copy".into() } else { name_of(method) };
     write(job, format, wanted, Made { mesh, unit, method, followed, faces })
+}
+
+/// A surface, in the place that the file gives it.
+struct Found {
+    mesh: TriangleMesh,
+    unit: Option<LengthUnit>,
+    faces: Option<Faces>,
+    followed: Option<Followed>,
+}
+
+/// The surface of a shape by a method, which may become another one.
+fn surface_of(shape: Shape, job: &Job, wanted: &Wanted, method: &mut Method) -> Result<Found, Failure> {
+    let (unit, mesh, faces, followed) = match shape {
+        Shape::Dexels(model) => {
+            let unit = model.metadata().get("units").and_then(|unit| unit.parse().ok());
+            let (mesh, followed) = of_dexels(&model, job, wanted, *method)?;
+            (unit, mesh, None, Some(followed))
+        }
+        Shape::Source(Source::Mesh(mesh, _, unit)) if wanted.copy => (unit, mesh, None, None),
+        Shape::Source(source) if matches!(method, Method::Faces | Method::Adaptive) => {
+            let unit = source.unit();
+            let (mesh, by, faces, followed) = to_tolerance(source, job, wanted, *method)?;
+            *method = by;
+            (unit, mesh, faces, followed)
+        }
+        Shape::Source(source) if asks_rays(&source, wanted, *method) => {
+            let unit = source.unit();
+            let (mesh, followed) = by_rays(source, job, wanted, *method)?;
+            (unit, mesh, None, Some(followed))
+        }
+        Shape::Source(source) => (source.unit(), extract(source, job, wanted, *method)?, None, None),
+    };
+    Ok(Found { mesh, unit, faces, followed })
+}
+
+/// The surface of a file as it is made where nothing more is said; a mesh is its own.
+pub fn usual_surface(input: &Input, threads: usize) -> Result<TriangleMesh, Failure> {
+    let job = Job {
+        input: input.clone(),
+        output: Output::Standard,
+        start: Instant::now(),
+        depth: None,
+        bounds: None,
+        threads,
+        json: false,
+    };
+    let wanted = Wanted { copy: true, ..Wanted::default() };
+    let shape = Shape::before_moving(input, &Taking::default())?.0;
+    let mut method = usual(&shape, input, &wanted);
+    Ok(surface_of(shape, &job, &wanted, &mut method)?.mesh)
 }
 
 /// The mesh with fewer triangles. How far it is from the solid is known if it was known before, or if the mesh is the solid.

@@ -6,6 +6,7 @@ pub mod cuts;
 pub mod density;
 pub mod dexels;
 pub mod fitness;
+pub mod layout;
 pub mod mesh;
 pub mod octree;
 pub mod scene;

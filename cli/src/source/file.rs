@@ -13,7 +13,7 @@ use leafless::scene::Scene;
 use leafless::{FillRule, Octree, TriDexel, file};
 
 /// How a file of any kind is to be taken.
-#[derive(Clone, Args)]
+#[derive(Clone, Default, Args)]
 pub struct Taking {
     #[command(flatten)]
     pub reading: Reading,

@@ -5,6 +5,7 @@ use crate::source::input::Input;
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use leafless::{Affine, Error, Frame, TriangleMesh};
+use std::path::Path;
 
 /// An option that moves something.
 struct Move {
@@ -261,6 +262,24 @@ pub fn matrix(text: &str) -> Result<Affine, String> {
     };
     let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]];
     told(Affine::new([row(0), row(1), row(2)]))
+}
+
+/// The placements in a file: a line for each, as --place takes it. Empty lines and lines that begin with # are skipped.
+pub fn from_file(path: &Path, first: &Affine) -> Result<Vec<Affine>, Failure> {
+    let input = Input::Path(path.into());
+    let of_file = |problem: String| Failure::of(&input, problem);
+    let text = String::from_utf8(input.read()?).map_err(|_| of_file("is no text".into()))?;
+    let mut placements = Vec::new();
+    for (line, text) in (1..).zip(text.lines()) {
+        let text = text.trim();
+        if text.is_empty() || text.starts_with('#') {
+            continue;
+        }
+        let placement = matrix(text).map_err(|problem| of_file(format!("line {line}: {problem}")))?;
+        let whole = after(&placement, first).map_err(|error| of_file(format!("line {line}: {error}")))?;
+        placements.push(whole);
+    }
+    Ok(placements)
 }
 
 #[cfg(test)]

@@ -171,7 +171,7 @@ const VALUES: [&str; 46] = [
 ];
 
 /// Values that some options take.
-const FITTING: [(&str, &str); 27] = [
+const FITTING: [(&str, &str); 33] = [
     ("--bounds", "-2,-2,-2,4"),
     ("--threads", "1"),
     ("--threshold", "0.5"),
@@ -199,6 +199,12 @@ const FITTING: [(&str, &str); 27] = [
     ("--clip", "1,0,0,0.2"),
     ("--place-b", "1,0,0,0.5,0,1,0,0,0,0,1,0"),
     ("--carry", "heat=max"),
+    ("--clearance", "0.1"),
+    ("--wall-clearance", "0.1"),
+    ("--objective", "balance=0,0,0"),
+    ("--orientations", "free:3"),
+    ("--free-along", "+z"),
+    ("--rounds", "1"),
 ];
 
 /// What a subcommand cannot do without.
@@ -215,12 +221,8 @@ const NEEDED: [(&str, &str); 6] = [
 fn line(random: &mut Random, name: &str, choices: &[Choice], files: &[String]) -> Vec<String> {
     let file = |random: &mut Random| files[random.below(files.len())].clone();
     let mut words = vec![name.to_owned()];
-    let operands = if ["union", "intersection", "difference", "xor", "interfere", "deviation"].contains(&name)
-    {
-        2
-    } else {
-        1
-    };
+    let pairs = ["union", "intersection", "difference", "xor", "interfere", "deviation", "layout"];
+    let operands = if pairs.contains(&name) { 2 } else { 1 };
     for _ in 0..operands + random.below(12) / 11 {
         words.push(file(random));
     }
@@ -233,6 +235,7 @@ fn line(random: &mut Random, name: &str, choices: &[Choice], files: &[String]) -
             "mesh" => "out.stl",
             "bitmap" => "out.nrrd",
             "voxels" => "out.npz",
+            "layout" => "out.json",
             _ => "out.lfl",
         };
         let names = [

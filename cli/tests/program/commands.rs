@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(100);
 
 /// The commands that take a solid, `F`, with what they read behind `<`; those that write, to `out`.
-pub const COMMANDS: [&str; 52] = [
+pub const COMMANDS: [&str; 53] = [
     "info F",
     "verify F",
     "dexelize F -o out.lfl --rule outer",
@@ -66,6 +66,7 @@ pub const COMMANDS: [&str; 52] = [
     "sample F < 0.3 0.3 0.3",
     "summary F",
     "voxelize F -o out.lfl --depth 3",
+    "layout F F*2 -o out.json --rounds 1 --cells 8 --tests 20 --splits 2000",
 ];
 
 /// Runs the program under a limit of addresses, with twice what it is allowed: what it takes for threads counts, too.

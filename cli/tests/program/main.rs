@@ -13,6 +13,7 @@ mod deviation;
 mod dexels;
 mod heights;
 mod interfere;
+mod layout;
 mod limits;
 mod moves;
 mod near;

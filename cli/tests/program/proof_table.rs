@@ -170,7 +170,7 @@ const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
 ];
 
 /// Subcommands that write no solid that was made of another.
-const OTHERS: [&str; 14] = [
+const OTHERS: [&str; 15] = [
     "info",
     "verify",
     "contains",
@@ -180,6 +180,7 @@ const OTHERS: [&str; 14] = [
     "render",
     "heights",
     "interfere",
+    "layout",
     "deviation",
     "measure",
     "within",

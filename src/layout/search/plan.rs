@@ -23,6 +23,8 @@ pub(super) struct Plan {
     pub(super) lean: f64,
     /// How much contact with others counts: all around, as much as so many of its mean sides in height.
     pub(super) grip: f64,
+    /// Whether items go where the centre of gravity wants them, and not down: where there is hardly room, not all go there.
+    pub(super) is_for_balance: bool,
     /// Which way items go within a layer.
     pub(super) way: Way,
 }
@@ -62,6 +64,7 @@ impl Plan {
             order,
             lean: LEANS[pick(LEANS.len())],
             grip: GRIPS[pick(GRIPS.len())],
+            is_for_balance: round % 2 == 0,
             way: WAYS[pick(WAYS.len())],
         })
     }

@@ -1,6 +1,7 @@
 //! Places for the boxes of items: what takes no split.
 
 use super::super::Layout;
+use super::super::proof::wider;
 use super::boxes::Free;
 use super::plan::{Plan, Step};
 use crate::control::Control;
@@ -29,10 +30,7 @@ impl Rooms {
     pub(super) fn new(layout: &Layout, maps: &[Vec<Affine>]) -> Result<Option<Rooms>, Error> {
         let container = &layout.container;
         let (bounds, margin) = (container.bounds(), container.clearance());
-        let whole = Bounds::new(
-            bounds.min.map(|low| if margin > 0.0 { (low + margin).next_up() } else { low }),
-            bounds.max.map(|high| if margin > 0.0 { (high - margin).next_down() } else { high }),
-        );
+        let whole = narrower(bounds, margin);
         let Some(whole) = whole.filter(|_| container.is_box()) else { return Ok(None) };
         let mut items = memory::with_capacity(maps.len())?;
         let mut least = f64::INFINITY;
@@ -61,10 +59,10 @@ impl Rooms {
     ) -> Result<Vec<Step>, Error> {
         let mut free = Free::new(&self.whole)?;
         for obstacle in &layout.obstacles {
-            free.take(&obstacle.bounds().grown(layout.clearance))?;
+            free.take(&wider(obstacle.bounds(), layout.clearance))?;
         }
         for block in &layout.boxes {
-            free.take(&block.grown(layout.clearance))?;
+            free.take(&wider(block, layout.clearance))?;
         }
         let mut steps = memory::with_capacity(plan.order.len())?;
         let mut is_full = memory::filled(self.items.len(), false)?;
@@ -75,7 +73,7 @@ impl Rooms {
             }
             match self.place(item, &free, plan) {
                 Some((step, block)) => {
-                    free.take(&block.grown(layout.clearance))?;
+                    free.take(&wider(&block, layout.clearance))?;
                     free.forget_below(self.least);
                     steps.push(step);
                 }
@@ -106,6 +104,14 @@ impl Rooms {
         }
         best.map(|(_, step, block)| (step, block))
     }
+}
+
+/// The box within another one all points of which are no nearer than a margin to its faces; `None` if there is none.
+fn narrower(bounds: &Bounds, margin: f64) -> Option<Bounds> {
+    // (Where the margin is rounded it is so outward, seen from the faces.)
+    let low = wider(&Bounds { min: bounds.min, max: bounds.min }, margin).max;
+    let high = wider(&Bounds { min: bounds.max, max: bounds.max }, margin).min;
+    Bounds::new(low, high)
 }
 
 /// Moves a turned item into the lower corner of a room: where rounding leaves its box within.

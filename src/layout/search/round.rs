@@ -54,7 +54,7 @@ impl Round<'_> {
         for &item in &plan.order {
             while !is_full[item] && !budget.is_spent() {
                 let wanted = match self.options.objective {
-                    Objective::Balance(target) => {
+                    Objective::Balance(target) if plan.is_for_balance => {
                         let mass = self.figures[item].volume * layout.items[item].density;
                         Some(masses.wanted(mass, &target))
                     }

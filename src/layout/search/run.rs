@@ -137,9 +137,7 @@ impl<'s, 'c> Search<'s, 'c> {
         for item in &self.layout.items {
             maps.push(item.orientations.maps(self.options.seed)?);
         }
-        if !matches!(self.options.objective, Objective::Balance(_)) {
-            self.by_boxes(&maps)?;
-        }
+        self.by_boxes(&maps)?;
         match self.end() {
             Some(end) => Ok(end),
             None => self.by_cells(&maps, parallel),
