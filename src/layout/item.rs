@@ -2,8 +2,8 @@
 
 use super::orientation::{Orientations, is_motion};
 use crate::error::Error;
-use crate::lattice::Bounds;
-use crate::solid::{AnySolid, Solid};
+use crate::lattice::{Affine, Bounds};
+use crate::solid::{AnySolid, Solid, Transform};
 
 /// A solid that is to be laid out, once or several times.
 #[derive(Clone)]
@@ -93,4 +93,12 @@ pub(super) fn bounds_of(solid: &AnySolid, name: &'static str) -> Result<Bounds, 
         return Err(Error::Argument { name, problem: "must have an extent along every axis" });
     }
     Ok(bounds)
+}
+
+/// A solid that can be asked on any frame, which a stored octree cannot: it is known on its own.
+pub(super) fn on_any_frame(solid: &AnySolid) -> AnySolid {
+    match solid.home() {
+        Some(_) => AnySolid::new(Transform::of(solid.clone(), &Affine::IDENTITY)),
+        None => solid.clone(),
+    }
 }

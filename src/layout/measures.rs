@@ -1,8 +1,8 @@
 //! What a layout weighs, and how much of the container it fills.
 
 use super::Layout;
+use super::item::on_any_frame;
 use super::orientation::stretch;
-use super::proof::on_any_frame;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};

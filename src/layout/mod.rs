@@ -7,7 +7,7 @@
 //! | question | file |
 //! |---|---|
 //! | which turns are there? | `orientation` |
-//! | are two placed solids apart, is one within the container? | `proof`; where one is as the other sees it: `relative` |
+//! | are two placed solids apart, is one within the container? | `proof`, by what lies around that: `wall`; where one is as the other sees it: `relative` |
 //! | who is in the way, and how near is the next one? | `check` |
 //! | where does what is not placed go? | `search/` |
 //! | what does it weigh, and how much of the container does it fill? | `measures` |
@@ -20,6 +20,7 @@ mod proof;
 mod random;
 mod relative;
 mod search;
+mod wall;
 
 pub use check::{Beside, Neighbour, Standing};
 pub use item::Item;

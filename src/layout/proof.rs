@@ -1,12 +1,13 @@
 //! Whether two placed solids are apart, and whether one lies within the container.
 
 use super::relative::Relative;
+use super::wall::wall;
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::{sqrt, two_diff, two_sum};
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::query::{Asked, GapVerdict, Overlap, Ready, interference};
-use crate::solid::{AnySolid, Csg, Solid, Transform};
+use crate::solid::{AnySolid, Csg, Solid};
 
 /// Splits that the question about one pair may take.
 pub(super) const PAIR_SPLITS: u64 = 1 << 12;
@@ -124,14 +125,6 @@ impl Piece {
     }
 }
 
-/// A solid that can be asked on any frame, which a stored octree cannot: it is known on its own.
-pub(super) fn on_any_frame(solid: &AnySolid) -> AnySolid {
-    match solid.home() {
-        Some(_) => AnySolid::new(Transform::of(solid.clone(), &Affine::IDENTITY)),
-        None => solid.clone(),
-    }
-}
-
 /// What holds everything.
 pub(super) struct Container {
     /// What lies around it, as far as anything placed may reach.
@@ -155,8 +148,7 @@ impl Container {
     ) -> Result<Container, Error> {
         let bounds = super::item::bounds_of(solid, "container")?;
         let outer = bounds.grown(near.reach + clearance);
-        let wall = Csg::cuboid(outer.min, outer.max)?.difference(&Csg::solid(on_any_frame(solid)))?;
-        let wall_solid = AnySolid::new(wall);
+        let wall_solid = wall(solid, &outer, control)?;
         let wall = Piece::new(&wall_solid, &outer, &Near { reach: 0.0, ..*near }, control)?;
         let mut container = Container {
             wall,

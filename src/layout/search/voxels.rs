@@ -1,6 +1,6 @@
 //! The cells that a solid may have points in.
 
-use super::super::proof::on_any_frame;
+use super::super::item::on_any_frame;
 use super::bits::Bits;
 use crate::control::Control;
 use crate::error::Error;

@@ -1,0 +1,73 @@
+//! What lies around a container, as a solid.
+
+use super::item::on_any_frame;
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Bounds, axes};
+use crate::memory;
+use crate::mesh::{FillRule, MeshMoments, TriangleMesh};
+use crate::solid::{AnySolid, Csg, MeshSolid};
+
+/// A block without a container that lies within it. Where the container is a good mesh, the block is one, too, so that triangles tell how far
+/// other meshes are from it.
+pub(super) fn wall(container: &AnySolid, outer: &Bounds, control: &Control<'_>) -> Result<AnySolid, Error> {
+    if let Some(mesh) = container.get::<MeshSolid>().map(|solid| solid.mesh())
+        && is_good(mesh, control)?
+    {
+        return Ok(AnySolid::new(MeshSolid::new(turned_out(mesh, outer)?, FillRule::Positive)?));
+    }
+    let wall = Csg::cuboid(outer.min, outer.max)?.difference(&Csg::solid(on_any_frame(container)))?;
+    Ok(AnySolid::new(wall))
+}
+
+/// Whether the winding number around each point is known to be what the solid says by any rule but the even one: no triangles intersect, and
+/// no body is inside out.
+fn is_good(mesh: &TriangleMesh, control: &Control<'_>) -> Result<bool, Error> {
+    let own = Control { progress: None, ..*control };
+    let is_known = matches!(mesh.moments(FillRule::NonZero, &own)?, MeshMoments::Known(_));
+    Ok(is_known && mesh.report()?.inside_out_bodies == 0)
+}
+
+/// The triangles of a block, and those of a mesh the other way round.
+fn turned_out(mesh: &TriangleMesh, outer: &Bounds) -> Result<TriangleMesh, Error> {
+    /// The faces of a block between its corners, of which bit k tells the upper one along axis k.
+    const FACES: [[u32; 4]; 6] =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let mut vertices = memory::with_capacity(mesh.vertices().len() + 8)?;
+    let mut triangles = memory::with_capacity(mesh.triangles().len() + 12)?;
+    for corner in 0..8 {
+        vertices.push(axes(|k| if corner >> k & 1 == 0 { outer.min[k] } else { outer.max[k] }));
+    }
+    for [a, b, c, d] in FACES {
+        triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    vertices.extend(mesh.vertices());
+    triangles.extend(mesh.triangles().iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]));
+    TriangleMesh::new(vertices, triangles)?.with_deviation(mesh.displacement())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    #[test]
+    fn a_wall_has_the_volume_that_the_container_leaves() {
+        let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mesh = TriangleMesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]).unwrap();
+        let outer = Bounds::new([-1.0; 3], [2.0; 3]).unwrap();
+        let container = AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero).unwrap());
+        let wall = wall(&container, &outer, &Control::threads(1)).unwrap();
+        let mesh = wall.get::<MeshSolid>().unwrap().mesh();
+        let MeshMoments::Known(moments) = mesh.moments(FillRule::Positive, &Control::threads(1)).unwrap()
+        else {
+            panic!("the wall is a good mesh");
+        };
+        assert!(moments.volume.contains(27.0 - 1.0 / 6.0), "{moments:?}");
+        // One that is inside out is not.
+        let turned = mesh.triangles()[12..].iter().map(|own| own.map(|vertex| vertex - 8)).collect();
+        let turned = TriangleMesh::new(mesh.vertices()[8..].to_vec(), turned).unwrap();
+        let container = AnySolid::new(MeshSolid::new(turned, FillRule::NonZero).unwrap());
+        assert!(super::wall(&container, &outer, &Control::threads(1)).unwrap().get::<MeshSolid>().is_none());
+    }
+}
