@@ -1,6 +1,6 @@
 //! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense arrays.
 
-use crate::{attributes, contacts, direct, measures, records, surfaces};
+use crate::{attributes, contacts, direct, layouts, measures, records, surfaces};
 use leafless::attribute::{
     Attribute, Criterion, Detail, FillOptions, MovedAttribute, ScalarType, ValueRange, ValueType,
     fill_channel,
@@ -145,6 +145,11 @@ fn what_the_fuzzer_found_interesting() {
     corpus("layers", direct::layers);
     corpus("boundaries", surfaces::boundaries);
     corpus("contours", surfaces::contours);
+}
+
+#[test]
+fn layouts_are_proven() {
+    any_bytes(layouts::layouts, 0..60, 60);
 }
 
 #[test]

@@ -13,6 +13,8 @@ mod direct;
 #[cfg(feature = "volumes")]
 #[path = "../../fuzz/bodies/volumes.rs"]
 mod fuzzed_volumes;
+#[path = "../../fuzz/bodies/layouts.rs"]
+mod layouts;
 #[allow(dead_code)]
 #[path = "../../format_spec/make_vectors.rs"]
 mod make_vectors;
