@@ -13,9 +13,11 @@
 //! | where does a shape go? | `space`, one item after another in `round` |
 //! | can it move down yet? | `settle` |
 //! | what comes after what, and which layout is the best? | `run`, `tally` |
+//! | is anything left to spend? | `budget` |
 
 mod bits;
 mod boxes;
+mod budget;
 mod forms;
 mod ground;
 mod plan;

@@ -1,10 +1,10 @@
 //! A round of the search by cells: one item after another goes to the best place that is left.
 
 use super::super::Layout;
+use super::budget::Budget;
 use super::forms::{Form, Forms};
 use super::ground::Lattice;
 use super::plan::Plan;
-use super::run::Budget;
 use super::space::{Layer, Space};
 use super::tally::{Figure, Masses};
 use super::{Direction, Objective, SearchOptions};

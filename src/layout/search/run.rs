@@ -1,7 +1,7 @@
 //! One search: by boxes, by cells, and what is left when all has settled.
 
-use super::super::proof::PAIR_SPLITS;
-use super::super::{Layout, Placed, Standing};
+use super::super::{Layout, Placed};
+use super::budget::Budget;
 use super::ground::Lattice;
 use super::plan::{Plan, Step};
 use super::rooms::Rooms;
@@ -13,7 +13,6 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::Affine;
 use crate::memory;
-use crate::query::GapVerdict;
 use alloc::vec::Vec;
 
 /// Rounds by boxes, times items.
@@ -22,33 +21,6 @@ const BOX_ROUNDS: u64 = 1 << 10;
 
 /// How often everything settles, and what is left is tried again.
 const SETTLINGS: u32 = 3;
-
-/// What may still be spent.
-pub(super) struct Budget<'b> {
-    control: Control<'b>,
-    tests: u64,
-    max_tests: u64,
-    splits: u64,
-    max_splits: u64,
-}
-
-impl Budget<'_> {
-    pub(super) fn is_spent(&self) -> bool {
-        self.tests >= self.max_tests || self.splits >= self.max_splits
-    }
-
-    /// Has a place looked at.
-    pub(super) fn tested(
-        &mut self,
-        test: impl FnOnce(&Control<'_>) -> Result<Standing, Error>,
-    ) -> Result<bool, Error> {
-        self.tests += 1;
-        let left = self.max_splits - self.splits;
-        let standing = test(&Control { max_splits: Some(left.min(PAIR_SPLITS)), ..self.control })?;
-        self.splits += standing.splits.min(left);
-        Ok(standing.verdict == GapVerdict::Yes)
-    }
-}
 
 /// A search under way.
 struct Search<'s, 'c> {

@@ -1,7 +1,7 @@
 //! What is placed moves towards the corner, as far as it is proven that it may.
 
 use super::super::Layout;
-use super::run::Budget;
+use super::budget::Budget;
 use crate::error::Error;
 use crate::lattice::{Affine, axes};
 use crate::memory;
