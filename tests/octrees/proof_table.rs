@@ -13,6 +13,7 @@ use leafless::attribute::{
     CarryRule, ConstantAttribute, FillOptions, ScalarType, ValueRegion, ValueType, carry_channels,
     fill_channel,
 };
+use leafless::layout::Item;
 use leafless::op::{
     DexelOptions, Zone, difference_of, intersection_of, octree_from_dexel_ends, octree_from_dexels, resolve,
     union_of, xor_of,
@@ -610,6 +611,12 @@ const WAYS: &[Way] = &[
             assert_eq!(whole(prepared.solid())?.proof(), again.proof());
             of_ball(again)
         },
+        proven: SAME,
+    },
+    Way {
+        name: "laid out",
+        through: &["layout/item.rs solid"],
+        make: |a| asked(Item::new(AnySolid::new(a.tree.clone()))?.solid()),
         proven: SAME,
     },
     // ---- split on demand
