@@ -64,7 +64,7 @@ impl Plan {
             order,
             lean: LEANS[pick(LEANS.len())],
             grip: GRIPS[pick(GRIPS.len())],
-            is_for_balance: round % 2 == 0,
+            is_for_balance: round.is_multiple_of(2),
             way: WAYS[pick(WAYS.len())],
         })
     }
