@@ -40,11 +40,11 @@ struct Body {
 }
 
 impl Layout {
-    /// Measures each item and the container once, to a relative tolerance of their volumes, as [`measure`](crate::measure) does it, and
+    /// Measures each item and the container once, to a relative tolerance of their volumes, as [`measure`] does it, and
     /// adds up what is placed. Overlaps, where there are any, count twice.
     ///
     /// # Errors
-    /// As [`measure`](crate::measure).
+    /// As [`measure`].
     pub fn measures(&self, tolerance: f64, control: &Control<'_>) -> Result<LayoutMeasures, Error> {
         let job = Job::new(control);
         let own = &Control { progress: None, ..*control };
