@@ -269,7 +269,7 @@ fn what_is_changed_is_seen() {
     let (told, _) = changed(&|value| value["clearance"] = json!(50));
     assert!(told["conflicts"].as_array().unwrap().len() >= 2, "{told}");
     // And another part.
-    place.write("cube.stl", stl(&block([-5.0; 3], [5.0, 5.0, 50.0])));
+    place.write("cube.stl", stl(&block([-5.0; 3], [50.0; 3])));
     left(&place.run("layout --check a.json"), &["a.json: of 3 copies", "in conflict"]);
     std::fs::remove_file(place.path("cube.stl")).unwrap();
     place.run("layout --check a.json").bad(1, &["cube.stl", "No such file"]);
