@@ -37,6 +37,7 @@ const SECTIONS: &[Section] = &[
         title: "Distance and interference",
         files: &["distance", "interference", "clearance", "deviation"],
     },
+    Section { title: "Layouts: solids in a container", files: &["bay", "placing", "layout_search"] },
     Section { title: "Octrees that are split on demand", files: &["lazy"] },
     Section { title: "Attributes", files: &["attribute", "attribute_host", "mesh_attribute"] },
     Section { title: "Channels", files: &["channel", "channel_fill", "channel_summary", "octree_channels"] },
@@ -90,8 +91,9 @@ fn generate() -> String {
 /// The header for C++, made of the one for C. Which pointers may be NULL the tests of NULL pointers know.
 fn generated_for_cpp() -> String {
     let read = |name: &str| std::fs::read_to_string(root().join(name)).unwrap();
-    let tests =
-        ["null", "null_tridexel", "null_picture"].map(|name| read(&format!("c_tests/{name}.c"))).concat();
+    let tests = ["null", "null_tridexel", "null_picture", "null_layout"]
+        .map(|name| read(&format!("c_tests/{name}.c")))
+        .concat();
     let tests = tests.split_whitespace().collect::<Vec<_>>().join(" ");
     let may_be_null =
         |function: &str, parameter: &str| tests.contains(&format!("MAY_BE_NULL({function}, {parameter},"));

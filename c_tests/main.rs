@@ -167,7 +167,7 @@ fn panic() {
 #[test]
 fn null() {
     // Each pointer that goes in or out is tried: the programs name all of them.
-    let programs = ["null", "null_source", "null_tridexel", "null_picture"];
+    let programs = ["null", "null_source", "null_tridexel", "null_picture", "null_layout"];
     let source: String = programs.iter().map(|name| text(format!("c_tests/{name}.c"))).collect();
     let flat = source.split_whitespace().collect::<Vec<_>>().join(" ");
     for function in &header().functions {
@@ -355,6 +355,11 @@ fn interferences() {
 }
 
 #[test]
+fn layouts() {
+    run("bay", C99, Link::Static, &[]);
+}
+
+#[test]
 fn cancel() {
     run("cancel", CPP17, Link::Static, &[]);
 }
@@ -462,6 +467,7 @@ fn examples() {
         ("cpp/cut_stock.cpp", CPP17),
         ("cpp/part.cpp", CPP17),
         ("cpp/faces.cpp", CPP17),
+        ("cpp/move_part.cpp", CPP17),
     ];
     for (name, standard) in examples {
         let source = root().join("examples").join(name);

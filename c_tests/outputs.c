@@ -15,6 +15,7 @@ static leafless_attribute *attribute;
 static leafless_tridexel *tridexel;
 static leafless_tridexel_editor *editor;
 static leafless_boundary *boundary;
+static leafless_layout *layout;
 static uint8_t *file;
 static uint64_t file_length;
 static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
@@ -45,6 +46,9 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_clearance, leafless_solid_clearance(solid, other, &frame, 0.1, NULL, out))                          \
     FILLS(leafless_deviation, leafless_solid_deviation(solid, other, &frame, 0.1, 1, NULL, out))                       \
     FILLS(leafless_gap, leafless_solid_gap_at_least(solid, other, &frame, 0.1, NULL, out))                             \
+    FILLS(leafless_standing, leafless_layout_check(layout, 0, NULL, NULL, 0, out))                                     \
+    FILLS(leafless_search_report, leafless_layout_search(layout, NULL, NULL, out))                                     \
+    FILLS(leafless_layout_measures, leafless_layout_measure(layout, 0.1, NULL, out))                                   \
     FILLS(leafless_lazy_info, leafless_lazy_describe(lazy, out))                                                       \
     FILLS(leafless_solid_info, leafless_solid_describe(solid, out))                                                    \
     FILLS(leafless_attribute_info, leafless_attribute_describe(attribute, out))                                        \
@@ -152,7 +156,11 @@ int main(void) {
     const leafless_source of_text = leafless_from_bytes(text, sizeof text - 1, LEAFLESS_ACCESS_COPY);
     const leafless_source of_samples = leafless_from_bytes(samples, 8, LEAFLESS_ACCESS_COPY);
     const double far_centre[3] = {0.9, 0.9, 0.9}, one = 1;
-    leafless_volume_layout layout = LEAFLESS_INIT(leafless_volume_layout);
+    leafless_volume_layout samples_layout = LEAFLESS_INIT(leafless_volume_layout);
+    const double low[3] = {-2, -2, -2}, high[3] = {2, 2, 2}, unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    leafless_solid *container = NULL;
+    leafless_bay *bay = NULL;
+    uint64_t number;
     const char *name;
     size_t size;
     int which;
@@ -163,9 +171,9 @@ int main(void) {
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     OK(leafless_octree_build_extended(solid, &frame, NULL, NULL, &extended));
     file = check_bytes(octree, &file_length);
-    layout.extents[0] = layout.extents[1] = layout.extents[2] = 2;
-    layout.spacing_model[0] = layout.spacing_model[1] = layout.spacing_model[2] = 1;
-    OK(leafless_volume_new(&layout, &of_samples, &volume));
+    samples_layout.extents[0] = samples_layout.extents[1] = samples_layout.extents[2] = 2;
+    samples_layout.spacing_model[0] = samples_layout.spacing_model[1] = samples_layout.spacing_model[2] = 1;
+    OK(leafless_volume_new(&samples_layout, &of_samples, &volume));
     OK(leafless_scene_read(&of_text, NULL, &scene));
     OK(leafless_cursor_new(octree, &cursor));
     OK(leafless_lazy_new(solid, &frame, &lazy));
@@ -174,6 +182,13 @@ int main(void) {
     OK(leafless_tridexel_build(solid, &frame, LEAFLESS_RULE_SAMPLED, NULL, NULL, &tridexel));
     OK(leafless_tridexel_editor_new(tridexel, &editor));
     OK(leafless_solid_boundary(solid, &frame, frame.edge, NULL, &boundary));
+    OK(leafless_solid_new_box(low, high, &container));
+    OK(leafless_bay_new(container, 0, 0, &bay));
+    OK(leafless_bay_add_item(bay, solid, 1, NULL, &number));
+    OK(leafless_layout_new(bay, NULL, &layout));
+    OK(leafless_layout_place(layout, 0, unit, &number));
+    leafless_bay_free(bay);
+    leafless_solid_free(container);
     for (which = 0;; which++) {
         (void)call(which, NULL, &name, &size);
         if (name == NULL) break;
@@ -184,6 +199,7 @@ int main(void) {
     leafless_octree_free(extended);
     leafless_tridexel_editor_free(editor);
     leafless_boundary_free(boundary);
+    leafless_layout_free(layout);
     leafless_tridexel_free(tridexel);
     leafless_channel_free(channel);
     leafless_attribute_free(attribute);

@@ -15,7 +15,8 @@
  *   it can be built. A leafless_octree stores a shape in the cells of a leafless_frame; set operations on
  *   one frame are exact. A leafless_tridexel stores a shape as intervals of rays. Octrees and tri-dexel
  *   models are written to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or PARTIAL,
- *   which is undecided. A volume is an interval that contains the true volume.
+ *   which is undecided. A volume is an interval that contains the true volume. A leafless_layout tells which
+ *   solids may stand where in a container, and places them.
  *
  * EXAMPLE: a bored ball, its volume, a file. (Check each status; see RULES.)
  *
@@ -54,14 +55,15 @@
  *   17. Rays, columns, heights
  *   18. Volumes, areas, bounding boxes
  *   19. Distance and interference
- *   20. Octrees that are split on demand
- *   21. Attributes
- *   22. Channels
- *   23. Voxel records
- *   24. Surfaces
- *   25. Tri-dexel models
- *   26. Files of octrees and tri-dexel models
- *   27. Pictures
+ *   20. Layouts: solids in a container
+ *   21. Octrees that are split on demand
+ *   22. Attributes
+ *   23. Channels
+ *   24. Voxel records
+ *   25. Surfaces
+ *   26. Tri-dexel models
+ *   27. Files of octrees and tri-dexel models
+ *   28. Pictures
  *
  * RULES that hold for all functions
  *
@@ -76,7 +78,8 @@
  *   its enumeration; a path is empty; a struct_size is not sensible, or fields are set that this library does
  *   not know.
  * - LEAFLESS_E_PANIC: the library has a defect. The host program goes on, and all objects stay usable, except
- *   a leafless_tridexel_editor that the call was changing. Rust prints a message to stderr.
+ *   a leafless_tridexel_editor or a leafless_layout that the call was changing. Rust prints a message to
+ *   stderr.
  *
  * Memory. The library returns LEAFLESS_E_NO_MEMORY if the system refuses memory whose size depends on an
  * input or a result. The process ends only if the system refuses one of the remaining small pieces (2 KiB at
@@ -89,9 +92,9 @@
  *
  * Threads. Calls that take only pointers to const handles may run at once, on the same object too. Other
  * calls need the object for themselves. A _free needs only its own reference; other references may be in use
- * meanwhile. A leafless_lazy and a leafless_tridexel_editor return LEAFLESS_E_BUSY while they are in use.
- * Different objects never interfere. The library has no global state. No thread of the library outlives the
- * call that started it.
+ * meanwhile. A leafless_lazy, a leafless_tridexel_editor and a leafless_layout return LEAFLESS_E_BUSY while
+ * they are in use. Different objects never interfere. The library has no global state. No thread of the
+ * library outlives the call that started it.
  *
  * Names. A function has the name of its object, which is the first parameter or the result, and a verb. _new
  * makes an object of parameters, _from_x of another model, _read of a source; _build does so under options.
@@ -257,6 +260,18 @@ typedef struct leafless_faces leafless_faces;
 ///
 /// It does not change: any number of threads may read it at once.
 typedef struct leafless_columns leafless_columns;
+
+/// A container, obstacles and items: what leafless_layout_new makes a layout of. It is filled by one thread
+/// at a time.
+typedef struct leafless_bay leafless_bay;
+
+/// A container with obstacles, items, and the places of copies of these items. Solids are prepared once, when
+/// the layout is made. Copies are numbered from 0, in the order in which they were placed.
+///
+/// While one call changes it, every other call returns LEAFLESS_E_BUSY, from another thread as from the
+/// host's functions that are asked about a cell. While another call reads it, changing it returns
+/// LEAFLESS_E_BUSY. Calls that read it may be made at once from any number of threads.
+typedef struct leafless_layout leafless_layout;
 
 /// An octree of a solid that is not built in one go: a cell is split when somebody asks for it, and what was
 /// split is remembered. FULL and EMPTY cells are proven; cells that nobody has split yet are PARTIAL.
@@ -3927,7 +3942,334 @@ leafless_status leafless_solid_deviation(const leafless_solid *a, const leafless
     const leafless_frame *frame, double tolerance_model, double within_model, const leafless_options *options,
     leafless_deviation *deviation);
 
-/* ---- 20. Octrees that are split on demand ------------------------------------------------------------- */
+/* ---- 20. Layouts: solids in a container --------------------------------------------------------------- */
+
+/// The ways in which an item may be turned.
+LEAFLESS_ENUM(leafless_orientations, uint32_t) {
+    LEAFLESS_ORIENTATIONS_TURNS = 0,  ///< The 24 turns that take axes to axes. They are exact.
+    LEAFLESS_ORIENTATIONS_AS_GIVEN = 1,  ///< Only as it is.
+    /// As it is, and `free_count` turns by chance, evenly spread over all turns. They depend on the seed of
+    /// the search.
+    LEAFLESS_ORIENTATIONS_FREE = 2,
+    LEAFLESS_ORIENTATIONS_LIST = 3,  ///< Any of `matrices`, of which only the linear part M counts.
+};
+
+/// What is said of an item beside its solid.
+typedef struct leafless_item_options {
+    uint32_t struct_size;  ///< sizeof(leafless_item_options).
+    leafless_orientations orientations;  ///< A leafless_orientations: how a search may turn the item.
+    double density;  ///< Mass per cubic model unit, a positive number; 0 means 1.
+    /// Of LEAFLESS_ORIENTATIONS_LIST: `matrix_count` times 12 numbers, the rows of [M | t]. M must turn; it
+    /// may neither mirror nor stretch lengths by more than 10^-9 of them.
+    const double *matrices;
+    uint64_t matrix_count;  ///< Of LEAFLESS_ORIENTATIONS_LIST: how many matrices there are, at least 1.
+    uint32_t free_count;  ///< Of LEAFLESS_ORIENTATIONS_FREE: how many turns by chance there are.
+    uint32_t reserved;  ///< 0.
+} leafless_item_options;
+
+/// A bay with a container, without obstacles and items. The container is any solid that ends.
+///
+/// - Buffers: `bay`, one pointer. `clearance_model` is the least distance between two items, and between an
+///   item and an obstacle; `wall_clearance_model` that between an item and what lies outside of the
+///   container.
+/// - Result: `*bay`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64.
+/// - Ownership: the bay shares the container, which may be freed; give `*bay` back with leafless_bay_free.
+/// - Untrusted input: any solid and numbers.
+leafless_status leafless_bay_new(const leafless_solid *container, double clearance_model,
+    double wall_clearance_model, leafless_bay **bay);
+
+/// Gives back a bay. Layouts that were made of it stay.
+///
+/// - Buffers: `bay`, a handle or NULL, which does nothing.
+/// - Ownership: the handle is gone.
+/// - Threads: no other call may use the handle.
+void leafless_bay_free(leafless_bay *bay);
+
+/// Adds a solid that stands where it is, and that items must stay away from.
+///
+/// - Buffers: `number`, one number.
+/// - Result: `*number`, which leafless_neighbour tells: obstacles are counted from 0.
+/// - Errors: LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the bay shares the solid, which may be freed.
+/// - Threads: any, but no other call may use the bay.
+/// - Untrusted input: any solid. leafless_layout_new refuses one that goes on without end.
+leafless_status leafless_bay_add_obstacle(leafless_bay *bay, const leafless_solid *solid, uint64_t *number);
+
+/// Adds an item: a solid, of which leafless_layout_search places so many copies. leafless_layout_place places
+/// any number.
+///
+/// - Buffers: `item`, one struct or NULL, which means 24 turns and a density of 1; `number`, one number.
+/// - Result: `*number`, by which leafless_layout_place takes it: items are counted from 0.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; if a field of `item`
+///   is none of its enumeration, or is set though it is not used; if the density is neither 0 nor a positive
+///   number; if a matrix does not turn, or there is none though there should be one; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the bay shares the solid, which may be freed. It copies the matrices.
+/// - Threads: any, but no other call may use the bay.
+/// - Untrusted input: any solid and numbers. A search takes memory for the cells of each orientation.
+leafless_status leafless_bay_add_item(leafless_bay *bay, const leafless_solid *solid, uint32_t count,
+    const leafless_item_options *item, uint64_t *number);
+
+/// A copy of an item in its place.
+typedef struct leafless_placement {
+    uint64_t item;  ///< The number of the item.
+    /// Where it stands: the rows of [M | t], where a point p of the item goes to M p + t.
+    double matrix[12];
+} leafless_placement;
+
+/// What a copy may be too near to.
+LEAFLESS_ENUM(leafless_beside, uint32_t) {
+    LEAFLESS_BESIDE_WALL = 0,  ///< What lies outside of the container.
+    LEAFLESS_BESIDE_OBSTACLE = 1,  ///< An obstacle.
+    LEAFLESS_BESIDE_PLACED = 2,  ///< Another copy.
+};
+
+/// What is known of a copy and something beside it.
+typedef struct leafless_neighbour {
+    leafless_interval gap_model;  ///< The distance of the two, in model units: 0 if they touch or overlap.
+    uint64_t number;  ///< The number of the obstacle or of the other copy; 0 for the wall.
+    uint32_t beside;  ///< A leafless_beside: what is beside it.
+    /// A leafless_gap_verdict: whether the two are proven to be as far apart as they should be, or not to be.
+    uint32_t verdict;
+} leafless_neighbour;
+
+/// How a copy stands, and what is next to it.
+typedef struct leafless_standing {
+    uint32_t struct_size;  ///< sizeof(leafless_standing).
+    /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap with nothing, and
+    /// to be as far from everything as it should be. NO: one of these is proven to be wrong.
+    uint32_t verdict;
+    /// How many neighbours are in the way, or may be: those of which YES is not proven.
+    uint64_t conflict_count;
+    uint64_t splits;  ///< Cells that were split.
+    /// If `has_nearest`, what is next to the copy, but for the wall. Else it is UNDECIDED about the wall.
+    leafless_neighbour nearest;
+    bool has_nearest;  ///< Whether there is anything else in the container.
+} leafless_standing;
+
+/// How one of many copies stands.
+typedef struct leafless_placed_standing {
+    uint64_t conflict_count;  ///< As leafless_standing has it.
+    uint64_t splits;  ///< Cells that were split.
+    uint32_t verdict;  ///< A leafless_gap_verdict.
+} leafless_placed_standing;
+
+/// A layout of what a bay holds, in which nothing is placed. It takes the time that its solids take to be
+/// prepared, once each.
+///
+/// - Buffers: `options`, one struct or NULL; `layout`, one pointer.
+/// - Result: `*layout`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the container or an obstacle has no bounds, or no extent along an axis;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the layout shares the solids. The bay may be changed and freed, which does not concern the
+///   layout. Give `*layout` back with leafless_layout_free.
+/// - Untrusted input: any solids.
+leafless_status leafless_layout_new(const leafless_bay *bay, const leafless_options *options,
+    leafless_layout **layout);
+
+/// Gives back a layout.
+///
+/// - Buffers: `layout`, a handle or NULL, which does nothing.
+/// - Ownership: the handle is gone.
+/// - Threads: no other call may use the handle.
+void leafless_layout_free(leafless_layout *layout);
+
+/// Places a copy of an item, wherever that is. Nothing is checked, and the count of the item is not looked
+/// at.
+///
+/// - Buffers: `matrix`, 12 numbers, the rows of [M | t], where a point p of the item goes to M p + t;
+///   `number`, one number.
+/// - Result: `*number`, the number of the copy, which is greater by one than that of the last.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no such item; if an entry is neither 0 nor of a magnitude
+///   between 2^-64 and 2^64; if M mirrors, or stretches lengths by more than 10^-9 of them;
+///   LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the layout.
+/// - Untrusted input: any numbers.
+leafless_status leafless_layout_place(leafless_layout *layout, uint64_t item, const double matrix[12],
+    uint64_t *number);
+
+/// Moves a copy to another place. Nothing is checked: leafless_layout_check does that.
+///
+/// - Buffers: `matrix`, 12 numbers, as for leafless_layout_place.
+/// - Errors: as leafless_layout_place, and LEAFLESS_E_ARGUMENT if there is no copy of this number.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the layout.
+/// - Untrusted input: any numbers.
+leafless_status leafless_layout_move_to(leafless_layout *layout, uint64_t number, const double matrix[12]);
+
+/// Takes a copy away. Copies that were placed later get numbers that are less by one.
+///
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_BUSY.
+/// - Threads: any; LEAFLESS_E_BUSY while another call uses the layout.
+/// - Untrusted input: any number.
+leafless_status leafless_layout_remove(leafless_layout *layout, uint64_t number);
+
+/// Which copies stand where, in the order of their numbers.
+///
+/// - Buffers: `placements`, room for `capacity` structs, or NULL to ask for their number only; `count`, one
+///   number.
+/// - Result: `*count`; `placements`.
+/// - Errors: LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_BUSY.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the layout.
+leafless_status leafless_layout_placements(const leafless_layout *layout, leafless_placement *placements,
+    uint64_t capacity, uint64_t *count);
+
+/// Where one copy stands.
+///
+/// - Buffers: `placement`, one struct.
+/// - Result: `*placement`.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_BUSY.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the layout.
+/// - Untrusted input: any number.
+leafless_status leafless_layout_placement_at(const leafless_layout *layout, uint64_t number,
+    leafless_placement *placement);
+
+/// Whether a copy may stand where it does, what is in its way, and what is next to it. Only what is near is
+/// looked at: what boxes tell apart costs nothing.
+///
+/// A pair of closed meshes takes some ten microseconds. Other pairs take splits. `max_splits` limits their
+/// number for each pair, which is 16 384 if that is 0; once it is spent, the answer is UNDECIDED.
+///
+/// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`,
+///   one struct.
+/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be.
+/// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_FRAME if a solid belongs to
+///   another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_BUSY. A `capacity` that is too small is no error.
+/// - Threads: any; LEAFLESS_E_BUSY while another call changes the layout.
+/// - Untrusted input: any number; the default of `max_splits` bounds the work.
+leafless_status leafless_layout_check(const leafless_layout *layout, uint64_t number,
+    const leafless_options *options, leafless_neighbour *conflicts, uint64_t capacity,
+    leafless_standing *standing);
+
+/// As leafless_layout_check for all copies, in the order of their numbers, but without what is next to them.
+/// The results are the same for any number of threads.
+///
+/// - Buffers: `options`, one struct or NULL; `standings`, room for `capacity` structs, or NULL to ask for
+///   their number only, for which nothing is checked; `count`, one number.
+/// - Result: `*count`, the number of copies; `standings`.
+/// - Errors: as leafless_layout_check, and LEAFLESS_E_BUFFER if the capacity is too small.
+/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.
+/// - Untrusted input: none but the solids; the default of `max_splits` bounds the work for each pair.
+leafless_status leafless_layout_check_all(const leafless_layout *layout, const leafless_options *options,
+    leafless_placed_standing *standings, uint64_t capacity, uint64_t *count);
+
+/// What a search is after. First of all it places as much as goes in.
+LEAFLESS_ENUM(leafless_objective, uint32_t) {
+    LEAFLESS_OBJECTIVE_COUNT = 0,  ///< As many copies as possible.
+    LEAFLESS_OBJECTIVE_HEIGHT = 1,  ///< As many copies as possible, as low as possible along z.
+    LEAFLESS_OBJECTIVE_DENSITY = 2,  ///< As much volume as possible.
+    /// As many copies as possible, with the centre of gravity of all of them near to `target_model`.
+    LEAFLESS_OBJECTIVE_BALANCE = 3,
+};
+
+/// A direction along which all copies can be taken out.
+LEAFLESS_ENUM(leafless_free_along, uint32_t) {
+    LEAFLESS_FREE_ALONG_NONE = 0,  ///< None is asked for.
+    LEAFLESS_FREE_ALONG_X_UP = 1,  ///< Along x, to greater coordinates.
+    LEAFLESS_FREE_ALONG_X_DOWN = 2,  ///< Along x, to lesser coordinates.
+    LEAFLESS_FREE_ALONG_Y_UP = 3,  ///< Along y, to greater coordinates.
+    LEAFLESS_FREE_ALONG_Y_DOWN = 4,  ///< Along y, to lesser coordinates.
+    LEAFLESS_FREE_ALONG_Z_UP = 5,  ///< Along z, to greater coordinates.
+    LEAFLESS_FREE_ALONG_Z_DOWN = 6,  ///< Along z, to lesser coordinates.
+};
+
+/// How a search proceeds.
+typedef struct leafless_search_options {
+    uint32_t struct_size;  ///< sizeof(leafless_search_options).
+    leafless_objective objective;  ///< A leafless_objective: what the search is after.
+    /// Of LEAFLESS_OBJECTIVE_BALANCE: the point that the centre of gravity should be near to, in model units.
+    double target_model[3];
+    /// What chance depends on: the same seed gives the same layout, for any number of threads.
+    uint64_t seed;
+    /// How many places the solids themselves are asked about at the most; 0 means no limit.
+    uint64_t max_tests;
+    /// How often everything is placed anew, in other orders, of which the best one stays; 0 means 4.
+    uint32_t rounds;
+    /// Cells along the longest side of the container, 4 to 512; 0 means as many as the items ask for.
+    uint32_t cells;
+    /// A leafless_free_along: all copies can be taken out in this direction, one after another, the last that
+    /// was placed first. No other copy and no obstacle is in the way of a straight move; the container may
+    /// be.
+    leafless_free_along free_along;
+    uint32_t reserved;  ///< 0.
+} leafless_search_options;
+
+/// Why a search ended.
+LEAFLESS_ENUM(leafless_search_end, uint32_t) {
+    LEAFLESS_SEARCH_END_COMPLETE = 0,  ///< Everything is placed, and nothing else is asked for.
+    LEAFLESS_SEARCH_END_ROUNDS = 1,  ///< All rounds were made.
+    LEAFLESS_SEARCH_END_BUDGET = 2,  ///< `max_tests` of the search, or `max_splits` of the options, is spent.
+    LEAFLESS_SEARCH_END_CANCELLED = 3,  ///< It was cancelled. What was best until then is placed.
+};
+
+/// What a search did.
+typedef struct leafless_search_report {
+    uint32_t struct_size;  ///< sizeof(leafless_search_report).
+    leafless_search_end end;  ///< Why it ended.
+    uint64_t placed;  ///< Copies that it placed.
+    uint64_t left;  ///< Copies that are still to be placed.
+    uint64_t rounds;  ///< Rounds that were made, those by boxes not counted.
+    uint64_t tests;  ///< Places that the solids themselves were asked about.
+    /// Cells that were split for that. (Cells of items and of the container by which places are found are not
+    /// counted.)
+    uint64_t splits;
+} leafless_search_report;
+
+/// What all copies amount to. All intervals contain the truth. Overlaps, where there are any, count twice.
+typedef struct leafless_layout_measures {
+    uint32_t struct_size;  ///< sizeof(leafless_layout_measures).
+    leafless_interval volume_model;  ///< The volume of all copies.
+    leafless_interval filled_part;  ///< The part of the container's volume that this is.
+    /// How far the highest point is above the lower end of the container's bounds, along z; 0 if nothing is
+    /// placed.
+    leafless_interval height_model;
+    leafless_interval mass;  ///< The mass, by the densities of the items.
+    leafless_interval centroid_model[3];  ///< The centre of gravity; all numbers unless `has_centroid`.
+    /// Tensor of inertia about the model's origin, row by row, as leafless_measures has it, times the
+    /// densities.
+    leafless_interval inertia_origin_model[9];
+    /// The same about the centre of gravity; about the origin unless `has_centroid`.
+    leafless_interval inertia_centroid_model[9];
+    bool has_centroid;  ///< Whether anything is placed, and no placed item may be empty.
+} leafless_layout_measures;
+
+/// Places copies of items of which fewer are placed than their counts say. Copies that are placed already
+/// stay where they are.
+///
+/// Each copy is proven to lie in the container, to overlap with nothing, and to be as far from everything as
+/// it should be: by boxes, by the triangles of meshes, or by splits of the solids. What could not be proven
+/// is not placed. The layout that stays is the best of all rounds by what the search is after. A cancel ends
+/// the search and keeps what was best by then, and so does a budget: neither is an error.
+///
+/// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes. A
+/// step takes O(r n² / 64), with n the cells along the container and r the runs of cells of an item, for each
+/// layer of cells that is looked at.
+///
+/// - Buffers: `search`, one struct or NULL; `options`, one struct or NULL; `report`, one struct.
+/// - Result: the layout is changed; `*report`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `cells` is neither 0 nor between 4 and 512, if a field is none of its
+///   enumeration, or if `target_model` is not finite, or is set though it is not used; LEAFLESS_E_FRAME if a
+///   solid belongs to another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY;
+///   LEAFLESS_E_BUSY. Then the layout is as it was.
+/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call uses the layout.
+/// - Untrusted input: any numbers; set `max_tests` and `max_splits` where the solids are not your own choice.
+leafless_status leafless_layout_search(leafless_layout *layout, const leafless_search_options *search,
+    const leafless_options *options, leafless_search_report *report);
+
+/// Measures the container and each item of which there is a copy, once, as leafless_solid_measure does it,
+/// and adds up the copies. `relative` says how wide the interval of each volume may be, as a part of it.
+///
+/// - Buffers: `options`, one struct or NULL; `measures`, one struct.
+/// - Result: `*measures`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `relative` is negative or not a number; LEAFLESS_E_CALLBACK;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.
+/// - Untrusted input: any number; the default of `max_splits`, that of leafless_solid_measure, bounds the
+///   work.
+leafless_status leafless_layout_measure(const leafless_layout *layout, double relative,
+    const leafless_options *options, leafless_layout_measures *measures);
+
+/* ---- 21. Octrees that are split on demand ------------------------------------------------------------- */
 
 /// What can be said of a lazy octree at once.
 typedef struct leafless_lazy_info {
@@ -4089,7 +4431,7 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy, uint64_t *splits
 leafless_status leafless_lazy_freeze(const leafless_lazy *lazy, const leafless_options *options,
     leafless_octree **octree);
 
-/* ---- 21. Attributes ----------------------------------------------------------------------------------- */
+/* ---- 22. Attributes ----------------------------------------------------------------------------------- */
 
 /// What is known of the values in the interior of a box.
 LEAFLESS_ENUM(leafless_range_kind, uint32_t) {
@@ -4328,7 +4670,7 @@ leafless_status leafless_attribute_from_mesh(const leafless_mesh *mesh, const ch
 leafless_status leafless_attribute_from_mesh_values(const leafless_mesh *mesh, const double *values,
     uint64_t count, uint32_t components, bool per_corner, leafless_attribute **attribute);
 
-/* ---- 22. Channels ------------------------------------------------------------------------------------- */
+/* ---- 23. Channels ------------------------------------------------------------------------------------- */
 
 /// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even
 /// integer half-way.
@@ -4727,7 +5069,7 @@ leafless_status leafless_octree_carry_channels(const leafless_octree *octree,
     const leafless_carry_rule *rules, uint64_t rule_count, const leafless_options *options,
     leafless_octree **result);
 
-/* ---- 23. Voxel records -------------------------------------------------------------------------------- */
+/* ---- 24. Voxel records -------------------------------------------------------------------------------- */
 
 /// What a voxel is: a number in the array `kinds`.
 LEAFLESS_ENUM(leafless_voxel_kind, uint8_t) {
@@ -4879,7 +5221,7 @@ leafless_status leafless_octree_from_voxels(const leafless_frame *lattice, const
     const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, leafless_tag boundary,
     const leafless_options *options, leafless_octree **octree);
 
-/* ---- 24. Surfaces ------------------------------------------------------------------------------------- */
+/* ---- 25. Surfaces ------------------------------------------------------------------------------------- */
 
 /// How a surface is made.
 LEAFLESS_ENUM(leafless_surface_method, uint32_t) {
@@ -5269,7 +5611,7 @@ typedef struct leafless_simplified {
 leafless_status leafless_mesh_simplify(const leafless_mesh *mesh, double tolerance_model,
     const leafless_options *options, leafless_simplified *report, leafless_mesh **simple);
 
-/* ---- 25. Tri-dexel models ----------------------------------------------------------------------------- */
+/* ---- 26. Tri-dexel models ----------------------------------------------------------------------------- */
 
 /// The axes that rays run along. The numbers may be added.
 LEAFLESS_ENUM(leafless_axes, uint32_t) {
@@ -5883,7 +6225,7 @@ leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel, cons
     const uint8_t *colours, uint64_t colour_count, leafless_long_voxel *voxels, uint64_t capacity,
     uint64_t *count);
 
-/* ---- 26. Files of octrees and tri-dexel models -------------------------------------------------------- */
+/* ---- 27. Files of octrees and tri-dexel models -------------------------------------------------------- */
 
 /// Major version of the file format that this library writes, and the only one that it reads.
 #define LEAFLESS_FORMAT_MAJOR 0
@@ -6004,7 +6346,7 @@ leafless_status leafless_tridexel_read(const leafless_source *source, leafless_t
 /// - Untrusted input: any model.
 leafless_status leafless_tridexel_write(const leafless_tridexel *tridexel, const leafless_sink *sink);
 
-/* ---- 27. Pictures ------------------------------------------------------------------------------------- */
+/* ---- 28. Pictures ------------------------------------------------------------------------------------- */
 
 /// From where a picture is taken. leafless_camera_fitted sets all of it; a host may as well.
 typedef struct leafless_camera {

@@ -337,6 +337,8 @@ class cursor;
 class cells;
 class faces;
 class columns;
+class bay;
+class layout;
 class lazy;
 class attribute;
 class channel;
@@ -692,6 +694,37 @@ public:
     using owner::owner;
     [[nodiscard]] returns<std::tuple<std::vector<uint64_t>,
         std::vector<leafless_run>>> copy(leafless_obstacle on) const;
+};
+
+/// A leafless_bay.
+class bay : public detail::owner<leafless_bay, leafless_bay_free> {
+public:
+    using owner::owner;
+    [[nodiscard]] static returns<leafless::bay> make(const leafless::solid &container, double clearance_model,
+        double wall_clearance_model);
+    returns<uint64_t> add_obstacle(const leafless::solid &solid);
+    returns<uint64_t> add_item(const leafless::solid &solid, uint32_t count,
+        const leafless_item_options *item = nullptr);
+};
+
+/// A leafless_layout.
+class layout : public detail::owner<leafless_layout, leafless_layout_free> {
+public:
+    using owner::owner;
+    [[nodiscard]] static returns<leafless::layout> make(const leafless::bay &bay,
+        const leafless_options *options = nullptr);
+    returns<uint64_t> place(uint64_t item, const affine &matrix);
+    returns<void> move_to(uint64_t number, const affine &matrix);
+    returns<void> remove(uint64_t number);
+    [[nodiscard]] returns<std::vector<leafless_placement>> placements() const;
+    [[nodiscard]] returns<leafless_placement> placement_at(uint64_t number) const;
+    [[nodiscard]] returns<leafless_standing> check(uint64_t number, const leafless_options *options,
+        span<leafless_neighbour> conflicts) const;
+    [[nodiscard]] returns<std::vector<leafless_placed_standing>> check_all(const leafless_options *options = nullptr) const;
+    returns<leafless_search_report> search(const leafless_search_options *search = nullptr,
+        const leafless_options *options = nullptr);
+    [[nodiscard]] returns<leafless_layout_measures> measure(double relative,
+        const leafless_options *options = nullptr) const;
 };
 
 /// A leafless_lazy.
@@ -2274,6 +2307,99 @@ inline returns<std::tuple<std::vector<uint64_t>,
     }
     return detail::finish(status, std::tuple<std::vector<uint64_t>,
         std::vector<leafless_run>>(std::move(offsets), std::move(runs)));
+}
+
+inline returns<leafless::bay> bay::make(const leafless::solid &container, double clearance_model,
+    double wall_clearance_model) {
+    leafless_bay *bay_handle = nullptr;
+    const leafless_status status = leafless_bay_new(container.get(), clearance_model, wall_clearance_model,
+        &bay_handle);
+    return detail::finish(status, leafless::bay(bay_handle));
+}
+
+inline returns<uint64_t> bay::add_obstacle(const leafless::solid &solid) {
+    uint64_t number{};
+    const leafless_status status = leafless_bay_add_obstacle(get(), solid.get(), &number);
+    return detail::finish(status, number);
+}
+
+inline returns<uint64_t> bay::add_item(const leafless::solid &solid, uint32_t count,
+    const leafless_item_options *item) {
+    uint64_t number{};
+    const leafless_status status = leafless_bay_add_item(get(), solid.get(), count, item, &number);
+    return detail::finish(status, number);
+}
+
+inline returns<leafless::layout> layout::make(const leafless::bay &bay, const leafless_options *options) {
+    leafless_layout *layout_handle = nullptr;
+    const leafless_status status = leafless_layout_new(bay.get(), options, &layout_handle);
+    return detail::finish(status, leafless::layout(layout_handle));
+}
+
+inline returns<uint64_t> layout::place(uint64_t item, const affine &matrix) {
+    uint64_t number{};
+    const leafless_status status = leafless_layout_place(get(), item, matrix.data(), &number);
+    return detail::finish(status, number);
+}
+
+inline returns<void> layout::move_to(uint64_t number, const affine &matrix) {
+    const leafless_status status = leafless_layout_move_to(get(), number, matrix.data());
+    return detail::finish(status);
+}
+
+inline returns<void> layout::remove(uint64_t number) {
+    const leafless_status status = leafless_layout_remove(get(), number);
+    return detail::finish(status);
+}
+
+inline returns<std::vector<leafless_placement>> layout::placements() const {
+    std::uint64_t count = 0;
+    std::vector<leafless_placement> placements;
+    leafless_status status = leafless_layout_placements(get(), nullptr, 0, &count);
+    if (status == LEAFLESS_OK) {
+        placements.resize(static_cast<std::size_t>(count));
+        status = leafless_layout_placements(get(), placements.data(), placements.size(), &count);
+    }
+    return detail::finish(status, std::move(placements));
+}
+
+inline returns<leafless_placement> layout::placement_at(uint64_t number) const {
+    leafless_placement placement{};
+    const leafless_status status = leafless_layout_placement_at(get(), number, &placement);
+    return detail::finish(status, placement);
+}
+
+inline returns<leafless_standing> layout::check(uint64_t number, const leafless_options *options,
+    span<leafless_neighbour> conflicts) const {
+    leafless_standing standing = LEAFLESS_INIT(leafless_standing);
+    const leafless_status status = leafless_layout_check(get(), number, options, conflicts.data(),
+        conflicts.size(), &standing);
+    return detail::finish(status, standing);
+}
+
+inline returns<std::vector<leafless_placed_standing>> layout::check_all(const leafless_options *options) const {
+    std::uint64_t count = 0;
+    std::vector<leafless_placed_standing> standings;
+    leafless_status status = leafless_layout_check_all(get(), options, nullptr, 0, &count);
+    if (status == LEAFLESS_OK) {
+        standings.resize(static_cast<std::size_t>(count));
+        status = leafless_layout_check_all(get(), options, standings.data(), standings.size(), &count);
+    }
+    return detail::finish(status, std::move(standings));
+}
+
+inline returns<leafless_search_report> layout::search(const leafless_search_options *search,
+    const leafless_options *options) {
+    leafless_search_report report = LEAFLESS_INIT(leafless_search_report);
+    const leafless_status status = leafless_layout_search(get(), search, options, &report);
+    return detail::finish(status, report);
+}
+
+inline returns<leafless_layout_measures> layout::measure(double relative,
+    const leafless_options *options) const {
+    leafless_layout_measures measures = LEAFLESS_INIT(leafless_layout_measures);
+    const leafless_status status = leafless_layout_measure(get(), relative, options, &measures);
+    return detail::finish(status, measures);
 }
 
 inline returns<leafless::lazy> lazy::make(const leafless::solid &solid, const leafless_frame &frame) {

@@ -15,7 +15,8 @@
  *   it can be built. A leafless_octree stores a shape in the cells of a leafless_frame; set operations on
  *   one frame are exact. A leafless_tridexel stores a shape as intervals of rays. Octrees and tri-dexel
  *   models are written to files, and mapped from them. A cell is EMPTY or FULL, which is proven, or PARTIAL,
- *   which is undecided. A volume is an interval that contains the true volume.
+ *   which is undecided. A volume is an interval that contains the true volume. A leafless_layout tells which
+ *   solids may stand where in a container, and places them.
  *
  * EXAMPLE: a bored ball, its volume, a file. (Check each status; see RULES.)
  *
@@ -50,7 +51,8 @@
  *   its enumeration; a path is empty; a struct_size is not sensible, or fields are set that this library does
  *   not know.
  * - LEAFLESS_E_PANIC: the library has a defect. The host program goes on, and all objects stay usable, except
- *   a leafless_tridexel_editor that the call was changing. Rust prints a message to stderr.
+ *   a leafless_tridexel_editor or a leafless_layout that the call was changing. Rust prints a message to
+ *   stderr.
  *
  * Memory. The library returns LEAFLESS_E_NO_MEMORY if the system refuses memory whose size depends on an
  * input or a result. The process ends only if the system refuses one of the remaining small pieces (2 KiB at
@@ -63,9 +65,9 @@
  *
  * Threads. Calls that take only pointers to const handles may run at once, on the same object too. Other
  * calls need the object for themselves. A _free needs only its own reference; other references may be in use
- * meanwhile. A leafless_lazy and a leafless_tridexel_editor return LEAFLESS_E_BUSY while they are in use.
- * Different objects never interfere. The library has no global state. No thread of the library outlives the
- * call that started it.
+ * meanwhile. A leafless_lazy, a leafless_tridexel_editor and a leafless_layout return LEAFLESS_E_BUSY while
+ * they are in use. Different objects never interfere. The library has no global state. No thread of the
+ * library outlives the call that started it.
  *
  * Names. A function has the name of its object, which is the first parameter or the result, and a verb. _new
  * makes an object of parameters, _from_x of another model, _read of a source; _build does so under options.

@@ -118,8 +118,9 @@ impl From<&Failure> for leafless_status {
 /// Runs the body of a function.
 ///
 /// A panic does not reach the host. Nothing that survives it can be half-changed: handles are immutable but
-/// for atomic flags, cursors, lazy octrees and editors. A cursor's position is checked at every step; a lazy octree
-/// changes only once the solid has answered; an editor that a panic left refuses everything.
+/// for atomic flags, cursors, bays, lazy octrees, editors and layouts. A cursor's position is checked at every step; a bay gets
+/// one thing at a time; a lazy octree changes only once the solid has answered; an editor and a layout that a panic left refuse
+/// everything.
 #[inline(always)]
 pub(super) fn guard(body: impl FnOnce() -> Result<(), Failure>) -> leafless_status {
     match catch_unwind(AssertUnwindSafe(body)) {
@@ -357,6 +358,8 @@ const _: () = {
     shared_by_threads::<super::leafless_columns>();
     shared_by_threads::<super::leafless_tridexel>();
     shared_by_threads::<super::leafless_tridexel_editor>();
+    shared_by_threads::<super::leafless_bay>();
+    shared_by_threads::<super::leafless_layout>();
 };
 
 /// A place for a result, checked before the work begins and written once it is done.

@@ -148,6 +148,19 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             distance_model, a_to_b, b_to_a, proof_a, proof_b, splits_a, splits_b, cuts_a, cuts_b, verdict, measured,
             is_clipped_a, is_clipped_b
         }
+        leafless_item_options { struct_size, orientations, density, matrices, matrix_count, free_count, reserved }
+        leafless_placement { item, matrix }
+        leafless_neighbour { gap_model, number, beside, verdict }
+        leafless_standing { struct_size, verdict, conflict_count, splits, nearest, has_nearest }
+        leafless_placed_standing { conflict_count, splits, verdict }
+        leafless_search_options {
+            struct_size, objective, target_model, seed, max_tests, rounds, cells, free_along, reserved
+        }
+        leafless_search_report { struct_size, end, placed, left, rounds, tests, splits }
+        leafless_layout_measures { struct_size,
+            volume_model, filled_part, height_model, mass, centroid_model, inertia_origin_model, inertia_centroid_model,
+            has_centroid
+        }
         leafless_measures { struct_size,
             volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
             measured, has_centroid, is_clipped, is_exact
@@ -239,6 +252,22 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
         leafless_within { LEAFLESS_WITHIN_YES, LEAFLESS_WITHIN_NO, LEAFLESS_WITHIN_UNDECIDED }
         leafless_overlap { LEAFLESS_OVERLAP_DISJOINT, LEAFLESS_OVERLAP_OVERLAPPING, LEAFLESS_OVERLAP_UNDECIDED }
         leafless_gap_verdict { LEAFLESS_GAP_VERDICT_YES, LEAFLESS_GAP_VERDICT_NO, LEAFLESS_GAP_VERDICT_UNDECIDED }
+        leafless_orientations {
+            LEAFLESS_ORIENTATIONS_TURNS, LEAFLESS_ORIENTATIONS_AS_GIVEN, LEAFLESS_ORIENTATIONS_FREE,
+            LEAFLESS_ORIENTATIONS_LIST
+        }
+        leafless_beside { LEAFLESS_BESIDE_WALL, LEAFLESS_BESIDE_OBSTACLE, LEAFLESS_BESIDE_PLACED }
+        leafless_objective {
+            LEAFLESS_OBJECTIVE_COUNT, LEAFLESS_OBJECTIVE_HEIGHT, LEAFLESS_OBJECTIVE_DENSITY, LEAFLESS_OBJECTIVE_BALANCE
+        }
+        leafless_free_along {
+            LEAFLESS_FREE_ALONG_NONE, LEAFLESS_FREE_ALONG_X_UP, LEAFLESS_FREE_ALONG_X_DOWN, LEAFLESS_FREE_ALONG_Y_UP,
+            LEAFLESS_FREE_ALONG_Y_DOWN, LEAFLESS_FREE_ALONG_Z_UP, LEAFLESS_FREE_ALONG_Z_DOWN
+        }
+        leafless_search_end {
+            LEAFLESS_SEARCH_END_COMPLETE, LEAFLESS_SEARCH_END_ROUNDS, LEAFLESS_SEARCH_END_BUDGET,
+            LEAFLESS_SEARCH_END_CANCELLED
+        }
         leafless_stop_reason {
             LEAFLESS_STOP_REASON_TOLERANCE, LEAFLESS_STOP_REASON_BUDGET, LEAFLESS_STOP_REASON_EXHAUSTED
         }

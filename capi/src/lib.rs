@@ -72,6 +72,9 @@
 //! | `interference`, `clearance` | solids under affine maps; overlap and distance of two solids |
 //! | `distance` | distances of points from solids |
 //! | `deviation` | distances of the boundaries of two solids |
+//! | `bay` | containers, obstacles and items: what is laid out |
+//! | `placing` | layouts: what stands where, and whether it may |
+//! | `layout_search` | layouts: placing what is left, and what all of it amounts to |
 //! | `measure` | volume, centroid, inertia, areas of surfaces and sections, bounding boxes of solids |
 //! | `tridexel` | tri-dexel models: made of solids, described, metadata |
 //! | `tridexel_read` | cells, rays and intervals of tri-dexel models, statistics |
@@ -89,6 +92,7 @@
 
 mod attribute;
 mod attribute_host;
+mod bay;
 mod bitmap;
 mod boundary;
 mod camera;
@@ -116,6 +120,7 @@ mod layer_section;
 mod layer_surface;
 #[cfg(feature = "test")]
 mod layout;
+mod layout_search;
 mod lazy;
 mod measure;
 mod mesh;
@@ -132,6 +137,7 @@ mod octree_channels;
 mod op;
 mod operation;
 mod picture;
+mod placing;
 mod point_cursor;
 mod polyhedron;
 mod rays;
@@ -156,6 +162,7 @@ mod voxel;
 
 pub use attribute::*;
 pub use attribute_host::*;
+pub use bay::*;
 pub use bitmap::*;
 #[cfg(feature = "test")]
 pub use boundary::leafless_test_panic;
@@ -184,6 +191,7 @@ pub use layer_section::*;
 pub use layer_surface::*;
 #[cfg(feature = "test")]
 pub use layout::*;
+pub use layout_search::*;
 pub use lazy::*;
 pub use measure::*;
 pub use mesh::*;
@@ -198,6 +206,7 @@ pub use octree_channels::*;
 pub use op::*;
 pub use operation::*;
 pub use picture::*;
+pub use placing::*;
 pub use point_cursor::*;
 pub use polyhedron::*;
 pub use rays::*;

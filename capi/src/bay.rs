@@ -1,0 +1,198 @@
+//! What is laid out: a container, obstacles, items and how these may be turned.
+
+use super::boundary::{Failure, Sized32, discard, exclusive, guard, out, shared, sized, slice};
+use super::csg::placement;
+use super::number::{Number, enumeration};
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use leafless::layout::{Bay, Item, Orientations};
+use leafless::memory;
+
+/// A container, obstacles and items: what leafless_layout_new makes a layout of. It is filled by one thread at a time.
+pub struct leafless_bay(pub(super) Bay);
+
+/// The ways in which an item may be turned.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_orientations {
+    /// The 24 turns that take axes to axes. They are exact.
+    LEAFLESS_ORIENTATIONS_TURNS = 0,
+    /// Only as it is.
+    LEAFLESS_ORIENTATIONS_AS_GIVEN = 1,
+    /// As it is, and `free_count` turns by chance, evenly spread over all turns. They depend on the seed of the search.
+    LEAFLESS_ORIENTATIONS_FREE = 2,
+    /// Any of `matrices`, of which only the linear part M counts.
+    LEAFLESS_ORIENTATIONS_LIST = 3,
+}
+use leafless_orientations::*;
+
+enumeration!(leafless_orientations => leafless_orientations {
+    LEAFLESS_ORIENTATIONS_TURNS => LEAFLESS_ORIENTATIONS_TURNS,
+    LEAFLESS_ORIENTATIONS_AS_GIVEN => LEAFLESS_ORIENTATIONS_AS_GIVEN,
+    LEAFLESS_ORIENTATIONS_FREE => LEAFLESS_ORIENTATIONS_FREE,
+    LEAFLESS_ORIENTATIONS_LIST => LEAFLESS_ORIENTATIONS_LIST,
+});
+
+/// What is said of an item beside its solid.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_item_options {
+    /// sizeof(leafless_item_options).
+    pub struct_size: u32,
+    /// A leafless_orientations: how a search may turn the item.
+    pub orientations: Number<leafless_orientations>,
+    /// Mass per cubic model unit, a positive number; 0 means 1.
+    pub density: f64,
+    /// Of LEAFLESS_ORIENTATIONS_LIST: `matrix_count` times 12 numbers, the rows of [M | t]. M must turn; it may neither mirror nor
+    /// stretch lengths by more than 10^-9 of them.
+    pub matrices: *const f64,
+    /// Of LEAFLESS_ORIENTATIONS_LIST: how many matrices there are, at least 1.
+    pub matrix_count: u64,
+    /// Of LEAFLESS_ORIENTATIONS_FREE: how many turns by chance there are.
+    pub free_count: u32,
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: numbers and a pointer.
+unsafe impl Sized32 for leafless_item_options {}
+
+/// Refuses a field that should be zero, and is not.
+fn unused(is_unused: bool, name: &'static str, problem: &'static str) -> Result<(), Failure> {
+    if is_unused { Ok(()) } else { Err(Failure::Argument { name, problem }) }
+}
+
+impl leafless_item_options {
+    /// # Safety
+    /// `matrices` is NULL or misaligned, or there are that many.
+    unsafe fn orientations(&self) -> Result<Orientations, Failure> {
+        unused(self.reserved == 0, "item.reserved", "must be 0")?;
+        let orientations = self.orientations.known("item.orientations")?;
+        let is_list = matches!(orientations, LEAFLESS_ORIENTATIONS_LIST);
+        let is_free = matches!(orientations, LEAFLESS_ORIENTATIONS_FREE);
+        let problem = "is for LEAFLESS_ORIENTATIONS_LIST only";
+        unused(is_list || self.matrices.is_null(), "item.matrices", problem)?;
+        unused(is_list || self.matrix_count == 0, "item.matrix_count", problem)?;
+        let problem = "is for LEAFLESS_ORIENTATIONS_FREE only";
+        unused(is_free || self.free_count == 0, "item.free_count", problem)?;
+        Ok(match orientations {
+            LEAFLESS_ORIENTATIONS_TURNS => Orientations::Turns,
+            LEAFLESS_ORIENTATIONS_AS_GIVEN => Orientations::AsGiven,
+            LEAFLESS_ORIENTATIONS_FREE => Orientations::Free(self.free_count),
+            LEAFLESS_ORIENTATIONS_LIST => {
+                // SAFETY: the caller's promise.
+                let matrices: &[[f64; 12]] =
+                    unsafe { slice(self.matrices.cast(), self.matrix_count, "item.matrices")? };
+                let mut maps = memory::with_capacity(matrices.len())?;
+                for matrix in matrices {
+                    // SAFETY: 12 numbers.
+                    maps.push(unsafe { placement(matrix.as_ptr())? });
+                }
+                Orientations::List(maps)
+            }
+        })
+    }
+}
+
+/// A distance that has to be kept.
+fn distance(value: f64, name: &'static str) -> Result<f64, Failure> {
+    const MOST: f64 = 18_446_744_073_709_551_616.0;
+    match (0.0..=MOST).contains(&value) {
+        true => Ok(value),
+        false => Err(Failure::Argument { name, problem: "must be a number between 0 and 2^64" }),
+    }
+}
+
+/// A bay with a container, without obstacles and items. The container is any solid that ends.
+///
+/// - Buffers: `bay`, one pointer. `clearance_model` is the least distance between two items, and between an item and an
+///   obstacle; `wall_clearance_model` that between an item and what lies outside of the container.
+/// - Result: `*bay`.
+/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64.
+/// - Ownership: the bay shares the container, which may be freed; give `*bay` back with leafless_bay_free.
+/// - Untrusted input: any solid and numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_bay_new(
+    container: *const leafless_solid,
+    clearance_model: f64,
+    wall_clearance_model: f64,
+    bay: *mut *mut leafless_bay,
+) -> leafless_status {
+    guard(|| unsafe {
+        let made = Bay {
+            container: shared(container, "container")?.solid.solid().clone(),
+            obstacles: Vec::new(),
+            items: Vec::new(),
+            clearance: distance(clearance_model, "clearance_model")?,
+            wall_clearance: distance(wall_clearance_model, "wall_clearance_model")?,
+        };
+        let bay = out(bay, "bay")?;
+        bay.write(Box::into_raw(Box::new(leafless_bay(made))))
+    })
+}
+
+/// Gives back a bay. Layouts that were made of it stay.
+///
+/// - Buffers: `bay`, a handle or NULL, which does nothing.
+/// - Ownership: the handle is gone.
+/// - Threads: no other call may use the handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_bay_free(bay: *mut leafless_bay) {
+    // SAFETY: the caller's promise.
+    unsafe { discard(bay) }
+}
+
+/// Adds a solid that stands where it is, and that items must stay away from.
+///
+/// - Buffers: `number`, one number.
+/// - Result: `*number`, which leafless_neighbour tells: obstacles are counted from 0.
+/// - Errors: LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the bay shares the solid, which may be freed.
+/// - Threads: any, but no other call may use the bay.
+/// - Untrusted input: any solid. leafless_layout_new refuses one that goes on without end.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_bay_add_obstacle(
+    bay: *mut leafless_bay,
+    solid: *const leafless_solid,
+    number: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = shared(solid, "solid")?.solid.solid().clone();
+        let number = out(number, "number")?;
+        let obstacles = &mut exclusive(bay, "bay")?.0.obstacles;
+        memory::push(obstacles, solid)?;
+        number.write(obstacles.len() as u64 - 1)
+    })
+}
+
+/// Adds an item: a solid, of which leafless_layout_search places so many copies. leafless_layout_place places any number.
+///
+/// - Buffers: `item`, one struct or NULL, which means 24 turns and a density of 1; `number`, one number.
+/// - Result: `*number`, by which leafless_layout_place takes it: items are counted from 0.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; if a field of `item` is none of its
+///   enumeration, or is set though it is not used; if the density is neither 0 nor a positive number; if a matrix does
+///   not turn, or there is none though there should be one; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the bay shares the solid, which may be freed. It copies the matrices.
+/// - Threads: any, but no other call may use the bay.
+/// - Untrusted input: any solid and numbers. A search takes memory for the cells of each orientation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_bay_add_item(
+    bay: *mut leafless_bay,
+    solid: *const leafless_solid,
+    count: u32,
+    item: *const leafless_item_options,
+    number: *mut u64,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = shared(solid, "solid")?.solid.solid().clone();
+        let options = sized(item, "item")?;
+        let number = out(number, "number")?;
+        let mut item = Item::new(solid)?.with_count(count).with_orientations(options.orientations()?)?;
+        if options.density != 0.0 {
+            item = item.with_density(options.density)?;
+        }
+        let items = &mut exclusive(bay, "bay")?.0.items;
+        memory::push(items, item)?;
+        number.write(items.len() as u64 - 1)
+    })
+}

@@ -1,0 +1,282 @@
+//! Layouts: placing what is not placed yet, and what all of it amounts to.
+
+use super::boundary::{Failure, Sized32, filled, guard, output, sized};
+use super::control::{controlled, leafless_options};
+use super::frame::leafless_interval;
+use super::measure::row_by_row;
+use super::number::{Number, enumeration};
+use super::placing::{change, leafless_layout, read};
+use super::status::leafless_status;
+use leafless::Interval;
+use leafless::layout::{Direction, LayoutMeasures, Objective, SearchEnd, SearchOptions, SearchReport};
+
+/// What a search is after. First of all it places as much as goes in.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_objective {
+    /// As many copies as possible.
+    LEAFLESS_OBJECTIVE_COUNT = 0,
+    /// As many copies as possible, as low as possible along z.
+    LEAFLESS_OBJECTIVE_HEIGHT = 1,
+    /// As much volume as possible.
+    LEAFLESS_OBJECTIVE_DENSITY = 2,
+    /// As many copies as possible, with the centre of gravity of all of them near to `target_model`.
+    LEAFLESS_OBJECTIVE_BALANCE = 3,
+}
+use leafless_objective::*;
+
+enumeration!(leafless_objective => leafless_objective {
+    LEAFLESS_OBJECTIVE_COUNT => LEAFLESS_OBJECTIVE_COUNT,
+    LEAFLESS_OBJECTIVE_HEIGHT => LEAFLESS_OBJECTIVE_HEIGHT,
+    LEAFLESS_OBJECTIVE_DENSITY => LEAFLESS_OBJECTIVE_DENSITY,
+    LEAFLESS_OBJECTIVE_BALANCE => LEAFLESS_OBJECTIVE_BALANCE,
+});
+
+/// A direction along which all copies can be taken out.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_free_along {
+    /// None is asked for.
+    LEAFLESS_FREE_ALONG_NONE = 0,
+    /// Along x, to greater coordinates.
+    LEAFLESS_FREE_ALONG_X_UP = 1,
+    /// Along x, to lesser coordinates.
+    LEAFLESS_FREE_ALONG_X_DOWN = 2,
+    /// Along y, to greater coordinates.
+    LEAFLESS_FREE_ALONG_Y_UP = 3,
+    /// Along y, to lesser coordinates.
+    LEAFLESS_FREE_ALONG_Y_DOWN = 4,
+    /// Along z, to greater coordinates.
+    LEAFLESS_FREE_ALONG_Z_UP = 5,
+    /// Along z, to lesser coordinates.
+    LEAFLESS_FREE_ALONG_Z_DOWN = 6,
+}
+
+enumeration!(leafless_free_along => Option<Direction> {
+    LEAFLESS_FREE_ALONG_NONE => None,
+    LEAFLESS_FREE_ALONG_X_UP => Some(Direction { axis: 0, upward: true }),
+    LEAFLESS_FREE_ALONG_X_DOWN => Some(Direction { axis: 0, upward: false }),
+    LEAFLESS_FREE_ALONG_Y_UP => Some(Direction { axis: 1, upward: true }),
+    LEAFLESS_FREE_ALONG_Y_DOWN => Some(Direction { axis: 1, upward: false }),
+    LEAFLESS_FREE_ALONG_Z_UP => Some(Direction { axis: 2, upward: true }),
+    LEAFLESS_FREE_ALONG_Z_DOWN => Some(Direction { axis: 2, upward: false }),
+});
+
+/// How a search proceeds.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_search_options {
+    /// sizeof(leafless_search_options).
+    pub struct_size: u32,
+    /// A leafless_objective: what the search is after.
+    pub objective: Number<leafless_objective>,
+    /// Of LEAFLESS_OBJECTIVE_BALANCE: the point that the centre of gravity should be near to, in model units.
+    pub target_model: [f64; 3],
+    /// What chance depends on: the same seed gives the same layout, for any number of threads.
+    pub seed: u64,
+    /// How many places the solids themselves are asked about at the most; 0 means no limit.
+    pub max_tests: u64,
+    /// How often everything is placed anew, in other orders, of which the best one stays; 0 means 4.
+    pub rounds: u32,
+    /// Cells along the longest side of the container, 4 to 512; 0 means as many as the items ask for.
+    pub cells: u32,
+    /// A leafless_free_along: all copies can be taken out in this direction, one after another, the last that was placed first. No
+    /// other copy and no obstacle is in the way of a straight move; the container may be.
+    pub free_along: Number<leafless_free_along>,
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: numbers.
+unsafe impl Sized32 for leafless_search_options {}
+
+impl leafless_search_options {
+    fn known(&self) -> Result<SearchOptions, Failure> {
+        let refuse = |name, problem| Err(Failure::Argument { name, problem });
+        if self.reserved != 0 {
+            return refuse("search.reserved", "must be 0");
+        }
+        let objective = match self.objective.known("search.objective")? {
+            LEAFLESS_OBJECTIVE_COUNT => Objective::Count,
+            LEAFLESS_OBJECTIVE_HEIGHT => Objective::Height,
+            LEAFLESS_OBJECTIVE_DENSITY => Objective::Density,
+            LEAFLESS_OBJECTIVE_BALANCE => Objective::Balance(self.target_model),
+        };
+        let is_balance = matches!(objective, Objective::Balance(_));
+        if !self.target_model.iter().all(|c| if is_balance { c.is_finite() } else { *c == 0.0 }) {
+            let problem = match is_balance {
+                true => "must be three finite numbers",
+                false => "is for LEAFLESS_OBJECTIVE_BALANCE only",
+            };
+            return refuse("search.target_model", problem);
+        }
+        let default = SearchOptions::default();
+        Ok(SearchOptions {
+            objective,
+            seed: self.seed,
+            rounds: if self.rounds == 0 { default.rounds } else { self.rounds },
+            cells: self.cells,
+            max_tests: (self.max_tests != 0).then_some(self.max_tests),
+            free_along: self.free_along.known("search.free_along")?,
+        })
+    }
+}
+
+/// Why a search ended.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum leafless_search_end {
+    /// Everything is placed, and nothing else is asked for.
+    LEAFLESS_SEARCH_END_COMPLETE = 0,
+    /// All rounds were made.
+    LEAFLESS_SEARCH_END_ROUNDS = 1,
+    /// `max_tests` of the search, or `max_splits` of the options, is spent.
+    LEAFLESS_SEARCH_END_BUDGET = 2,
+    /// It was cancelled. What was best until then is placed.
+    LEAFLESS_SEARCH_END_CANCELLED = 3,
+}
+
+impl From<SearchEnd> for leafless_search_end {
+    fn from(end: SearchEnd) -> leafless_search_end {
+        match end {
+            SearchEnd::Complete => leafless_search_end::LEAFLESS_SEARCH_END_COMPLETE,
+            SearchEnd::Rounds => leafless_search_end::LEAFLESS_SEARCH_END_ROUNDS,
+            SearchEnd::Budget => leafless_search_end::LEAFLESS_SEARCH_END_BUDGET,
+            SearchEnd::Cancelled => leafless_search_end::LEAFLESS_SEARCH_END_CANCELLED,
+        }
+    }
+}
+
+/// What a search did.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_search_report {
+    /// sizeof(leafless_search_report).
+    pub struct_size: u32,
+    /// Why it ended.
+    pub end: leafless_search_end,
+    /// Copies that it placed.
+    pub placed: u64,
+    /// Copies that are still to be placed.
+    pub left: u64,
+    /// Rounds that were made, those by boxes not counted.
+    pub rounds: u64,
+    /// Places that the solids themselves were asked about.
+    pub tests: u64,
+    /// Cells that were split for that. (Cells of items and of the container by which places are found are not counted.)
+    pub splits: u64,
+}
+
+output!(leafless_search_report);
+
+impl From<SearchReport> for leafless_search_report {
+    fn from(report: SearchReport) -> leafless_search_report {
+        leafless_search_report {
+            struct_size: size_of::<leafless_search_report>() as u32,
+            end: report.end.into(),
+            placed: report.placed,
+            left: report.left,
+            rounds: report.rounds,
+            tests: report.tests,
+            splits: report.splits,
+        }
+    }
+}
+
+/// What all copies amount to. All intervals contain the truth. Overlaps, where there are any, count twice.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_layout_measures {
+    /// sizeof(leafless_layout_measures).
+    pub struct_size: u32,
+    /// The volume of all copies.
+    pub volume_model: leafless_interval,
+    /// The part of the container's volume that this is.
+    pub filled_part: leafless_interval,
+    /// How far the highest point is above the lower end of the container's bounds, along z; 0 if nothing is placed.
+    pub height_model: leafless_interval,
+    /// The mass, by the densities of the items.
+    pub mass: leafless_interval,
+    /// The centre of gravity; all numbers unless `has_centroid`.
+    pub centroid_model: [leafless_interval; 3],
+    /// Tensor of inertia about the model's origin, row by row, as leafless_measures has it, times the densities.
+    pub inertia_origin_model: [leafless_interval; 9],
+    /// The same about the centre of gravity; about the origin unless `has_centroid`.
+    pub inertia_centroid_model: [leafless_interval; 9],
+    /// Whether anything is placed, and no placed item may be empty.
+    pub has_centroid: bool,
+}
+
+output!(leafless_layout_measures);
+
+impl From<LayoutMeasures> for leafless_layout_measures {
+    fn from(measures: LayoutMeasures) -> leafless_layout_measures {
+        leafless_layout_measures {
+            struct_size: size_of::<leafless_layout_measures>() as u32,
+            volume_model: measures.volume.into(),
+            filled_part: measures.density.into(),
+            height_model: measures.height.into(),
+            mass: measures.mass.into(),
+            centroid_model: measures.centroid.unwrap_or([Interval::ALL; 3]).map(Into::into),
+            inertia_origin_model: row_by_row(measures.inertia_about_origin),
+            inertia_centroid_model: row_by_row(measures.inertia_about_centroid),
+            has_centroid: measures.centroid.is_some(),
+        }
+    }
+}
+
+/// Places copies of items of which fewer are placed than their counts say. Copies that are placed already stay where they are.
+///
+/// Each copy is proven to lie in the container, to overlap with nothing, and to be as far from everything as it should be: by boxes, by
+/// the triangles of meshes, or by splits of the solids. What could not be proven is not placed. The layout that stays is
+/// the best of all rounds by what the search is after. A cancel ends the search and keeps what was best by then, and so does a
+/// budget: neither is an error.
+///
+/// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes. A step takes
+/// O(r n² / 64), with n the cells along the container and r the runs of cells of an item, for each layer of cells that is looked
+/// at.
+///
+/// - Buffers: `search`, one struct or NULL; `options`, one struct or NULL; `report`, one struct.
+/// - Result: the layout is changed; `*report`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `cells` is neither 0 nor between 4 and 512, if a field is none of its enumeration, or if
+///   `target_model` is not finite, or is set though it is not used; LEAFLESS_E_FRAME if a solid belongs to another frame;
+///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. Then the layout is as it was.
+/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call uses the layout.
+/// - Untrusted input: any numbers; set `max_tests` and `max_splits` where the solids are not your own choice.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layout_search(
+    layout: *mut leafless_layout,
+    search: *const leafless_search_options,
+    options: *const leafless_options,
+    report: *mut leafless_search_report,
+) -> leafless_status {
+    guard(|| unsafe {
+        let mut layout = change(layout)?;
+        let search = sized(search, "search")?.known()?;
+        let report = filled(report, "report")?;
+        report.write(controlled(options, |control| layout.search(&search, control))?.into())
+    })
+}
+
+/// Measures the container and each item of which there is a copy, once, as leafless_solid_measure does it, and adds up the
+/// copies. `relative` says how wide the interval of each volume may be, as a part of it.
+///
+/// - Buffers: `options`, one struct or NULL; `measures`, one struct.
+/// - Result: `*measures`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `relative` is negative or not a number; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY.
+/// - Threads: any; uses as many as `options` says; LEAFLESS_E_BUSY while another call changes the layout.
+/// - Untrusted input: any number; the default of `max_splits`, that of leafless_solid_measure, bounds the work.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_layout_measure(
+    layout: *const leafless_layout,
+    relative: f64,
+    options: *const leafless_options,
+    measures: *mut leafless_layout_measures,
+) -> leafless_status {
+    guard(|| unsafe {
+        let layout = read(layout)?;
+        let measures = filled(measures, "measures")?;
+        measures.write(controlled(options, |control| layout.measures(relative, control))?.into())
+    })
+}
