@@ -4039,10 +4039,12 @@ typedef struct leafless_standing {
     /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap with nothing, and
     /// to be as far from everything as it should be. NO: one of these is proven to be wrong.
     uint32_t verdict;
-    /// How many neighbours are in the way, or may be: those of which YES is not proven.
+    /// How many neighbours are in the way, or may be: those of which YES is not proven. No more than 256 are
+    /// counted and told.
     uint64_t conflict_count;
     uint64_t splits;  ///< Cells that were split.
-    /// If `has_nearest`, what is next to the copy, but for the wall. Else it is UNDECIDED about the wall.
+    /// If `has_nearest`, what is next to the copy, but for the wall: the gap holds the least of all
+    /// distances. Else it is UNDECIDED about the wall.
     leafless_neighbour nearest;
     bool has_nearest;  ///< Whether there is anything else in the container.
 } leafless_standing;
@@ -4127,7 +4129,7 @@ leafless_status leafless_layout_placement_at(const leafless_layout *layout, uint
 /// looked at: what boxes tell apart costs nothing.
 ///
 /// A pair of closed meshes takes some ten microseconds. Other pairs take splits. `max_splits` limits their
-/// number for each pair, which is 16 384 if that is 0; once it is spent, the answer is UNDECIDED.
+/// number for each pair, which is 4 096 if that is 0; once it is spent, the answer is UNDECIDED.
 ///
 /// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`,
 ///   one struct.

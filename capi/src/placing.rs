@@ -125,11 +125,12 @@ pub struct leafless_standing {
     /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap with nothing, and to be as far from
     /// everything as it should be. NO: one of these is proven to be wrong.
     pub verdict: u32,
-    /// How many neighbours are in the way, or may be: those of which YES is not proven.
+    /// How many neighbours are in the way, or may be: those of which YES is not proven. No more than 256 are counted and told.
     pub conflict_count: u64,
     /// Cells that were split.
     pub splits: u64,
-    /// If `has_nearest`, what is next to the copy, but for the wall. Else it is UNDECIDED about the wall.
+    /// If `has_nearest`, what is next to the copy, but for the wall: the gap holds the least of all distances. Else it is UNDECIDED
+    /// about the wall.
     pub nearest: leafless_neighbour,
     /// Whether there is anything else in the container.
     pub has_nearest: bool,
@@ -320,7 +321,7 @@ pub unsafe extern "C" fn leafless_layout_placement_at(
 /// tell apart costs nothing.
 ///
 /// A pair of closed meshes takes some ten microseconds. Other pairs take splits. `max_splits` limits their number for each pair,
-/// which is 16 384 if that is 0; once it is spent, the answer is UNDECIDED.
+/// which is 4 096 if that is 0; once it is spent, the answer is UNDECIDED.
 ///
 /// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`, one struct.
 /// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be.
