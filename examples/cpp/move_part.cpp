@@ -1,20 +1,23 @@
-// A part is dragged through a box, step by step, as with a mouse: after each step the program asks whether the part may stand there,
-// what is in its way, and how far the next part is. At last the program is told to put the rest where there is room.
+// A part is dragged through a box, step by step, as with a mouse. After each step the program asks whether the part may stand
+// there, what is in its way, and how far the next part is. At last the program is told to put the rest where there is room.
 //
 // include/README.md tells how to build it.
 
 #include <leafless.hpp>
 
+#include <array>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 using leafless::affine;
 using leafless::solid;
 
 namespace {
 
-const char *name_of(uint32_t beside) {
-    return beside == LEAFLESS_BESIDE_WALL ? "the wall" : beside == LEAFLESS_BESIDE_OBSTACLE ? "a post" : "part";
+std::string name_of(const leafless_neighbour &neighbour) {
+    if (neighbour.beside == LEAFLESS_BESIDE_WALL) return "the wall";
+    return (neighbour.beside == LEAFLESS_BESIDE_OBSTACLE ? "post " : "part ") + std::to_string(neighbour.number);
 }
 
 void print(double x, const leafless_standing &standing, const leafless_neighbour &conflict) {
@@ -23,13 +26,12 @@ void print(double x, const leafless_standing &standing, const leafless_neighbour
                 : standing.verdict == LEAFLESS_GAP_VERDICT_NO ? "may not stand"
                                                               : "undecided");
     if (standing.conflict_count > 0) {
-        std::printf(", %llu in the way, first %s", static_cast<unsigned long long>(standing.conflict_count),
-                    name_of(conflict.beside));
+        std::printf(", %llu too near, first %s", static_cast<unsigned long long>(standing.conflict_count),
+                    name_of(conflict).c_str());
     }
     if (standing.has_nearest) {
         const leafless_interval &gap = standing.nearest.gap_model;
-        std::printf("; next is %s %llu, %.4f to %.4f away", name_of(standing.nearest.beside),
-                    static_cast<unsigned long long>(standing.nearest.number), gap.lower, gap.upper);
+        std::printf("; next is %s, %.4f to %.4f away", name_of(standing.nearest).c_str(), gap.lower, gap.upper);
     }
     std::printf("\n");
 }
@@ -56,7 +58,8 @@ void drag() {
         print(x, standing, conflicts[0]);
         if (standing.verdict == LEAFLESS_GAP_VERDICT_YES) last = x;
     }
-    // Where it stood when it was last proven to be allowed to.
+    // It goes back to where it was last proven to be allowed to stand. (Where a distance is the clearance to the last digit,
+    // nothing is proven.)
     layout.move_to(dragged, at(last));
     std::printf("let go at x = %.1f\n", last);
 
