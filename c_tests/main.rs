@@ -357,6 +357,7 @@ fn interferences() {
 #[test]
 fn layouts() {
     run("bay", C99, Link::Static, &[]);
+    run("layouts", CPP17, Link::Static, &[]);
 }
 
 #[test]

@@ -18,6 +18,7 @@ static void bays(void) {
     NULL_POINTER(leafless_bay_new, container, leafless_bay_new(NULL, 0, 0, result));
     NULL_POINTER(leafless_bay_new, bay, leafless_bay_new(solid, 0, 0, NULL));
     MISALIGNED(leafless_bay_new, bay, leafless_bay_new(solid, 0, 0, (leafless_bay **)WRONG(out)));
+    BAD_NUMBER(leafless_bay_new, bounds, leafless_bay_new(endless, 0, 0, result));
     for (i = 0; i < COUNT(wrong); i++) {
         BAD_NUMBER(leafless_bay_new, clearance_model, leafless_bay_new(solid, wrong[i], 0, result));
         BAD_NUMBER(leafless_bay_new, wall_clearance_model, leafless_bay_new(solid, 0, wrong[i], result));
@@ -26,6 +27,7 @@ static void bays(void) {
     NULL_POINTER(leafless_bay_add_obstacle, solid, leafless_bay_add_obstacle(bay, NULL, count));
     NULL_POINTER(leafless_bay_add_obstacle, number, leafless_bay_add_obstacle(bay, solid, NULL));
     MISALIGNED(leafless_bay_add_obstacle, number, leafless_bay_add_obstacle(bay, solid, (uint64_t *)WRONG(out)));
+    BAD_NUMBER(leafless_bay_add_obstacle, bounds, leafless_bay_add_obstacle(bay, endless, count));
     NULL_POINTER(leafless_bay_add_item, bay, leafless_bay_add_item(NULL, solid, 1, NULL, count));
     NULL_POINTER(leafless_bay_add_item, solid, leafless_bay_add_item(bay, NULL, 1, NULL, count));
     NULL_POINTER(leafless_bay_add_item, number, leafless_bay_add_item(bay, solid, 1, NULL, NULL));
@@ -44,6 +46,12 @@ static void bays(void) {
     ITEM(density, INFINITY);
     ITEM(matrix_count, 1);
     ITEM(free_count, 1);
+    item.orientations = LEAFLESS_ORIENTATIONS_FREE;
+    BAD_NUMBER(leafless_bay_add_item, orientations, leafless_bay_add_item(bay, solid, 1, &item, count));
+    item.free_count = 4097;
+    BAD_NUMBER(leafless_bay_add_item, orientations, leafless_bay_add_item(bay, solid, 1, &item, count));
+    item.orientations = LEAFLESS_ORIENTATIONS_TURNS;
+    item.free_count = 0;
     ITEM(reserved, 1);
     item.matrices = unit;
     BAD_NUMBER(leafless_bay_add_item, matrices, leafless_bay_add_item(bay, solid, 1, &item, count));

@@ -3962,8 +3962,8 @@ typedef struct leafless_item_options {
     /// Of LEAFLESS_ORIENTATIONS_LIST: `matrix_count` times 12 numbers, the rows of [M | t]. M must turn; it
     /// may neither mirror nor stretch lengths by more than 10^-9 of them.
     const double *matrices;
-    uint64_t matrix_count;  ///< Of LEAFLESS_ORIENTATIONS_LIST: how many matrices there are, at least 1.
-    uint32_t free_count;  ///< Of LEAFLESS_ORIENTATIONS_FREE: how many turns by chance there are.
+    uint64_t matrix_count;  ///< Of LEAFLESS_ORIENTATIONS_LIST: how many matrices there are, 1 to 4096.
+    uint32_t free_count;  ///< Of LEAFLESS_ORIENTATIONS_FREE: how many turns by chance there are, 1 to 4096.
     uint32_t reserved;  ///< 0.
 } leafless_item_options;
 
@@ -3973,7 +3973,8 @@ typedef struct leafless_item_options {
 ///   item and an obstacle; `wall_clearance_model` that between an item and what lies outside of the
 ///   container.
 /// - Result: `*bay`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64.
+/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64; if the container has no bounds, or
+///   no extent along an axis.
 /// - Ownership: the bay shares the container, which may be freed; give `*bay` back with leafless_bay_free.
 /// - Untrusted input: any solid and numbers.
 leafless_status leafless_bay_new(const leafless_solid *container, double clearance_model,
@@ -3990,10 +3991,11 @@ void leafless_bay_free(leafless_bay *bay);
 ///
 /// - Buffers: `number`, one number.
 /// - Result: `*number`, which leafless_neighbour tells: obstacles are counted from 0.
-/// - Errors: LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis;
+///   LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the bay shares the solid, which may be freed.
 /// - Threads: any, but no other call may use the bay.
-/// - Untrusted input: any solid. leafless_layout_new refuses one that goes on without end.
+/// - Untrusted input: any solid.
 leafless_status leafless_bay_add_obstacle(leafless_bay *bay, const leafless_solid *solid, uint64_t *number);
 
 /// Adds an item: a solid, of which leafless_layout_search places so many copies. leafless_layout_place places
@@ -4039,8 +4041,8 @@ typedef struct leafless_standing {
     /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap with nothing, and
     /// to be as far from everything as it should be. NO: one of these is proven to be wrong.
     uint32_t verdict;
-    /// How many neighbours are in the way, or may be: those of which YES is not proven. No more than 256 are
-    /// counted and told.
+    /// How many neighbours are in the way, or may be: those of which YES is not proven. All are counted; no
+    /// more than the first 256 are told.
     uint64_t conflict_count;
     uint64_t splits;  ///< Cells that were split.
     /// If `has_nearest`, what is next to the copy, but for the wall: the gap holds the least of all
@@ -4133,7 +4135,8 @@ leafless_status leafless_layout_placement_at(const leafless_layout *layout, uint
 ///
 /// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`,
 ///   one struct.
-/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be.
+/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be, and
+///   no more than 256.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_FRAME if a solid belongs to
 ///   another frame; LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY;
 ///   LEAFLESS_E_BUSY. A `capacity` that is too small is no error.

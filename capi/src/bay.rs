@@ -46,9 +46,9 @@ pub struct leafless_item_options {
     /// Of LEAFLESS_ORIENTATIONS_LIST: `matrix_count` times 12 numbers, the rows of [M | t]. M must turn; it may neither mirror nor
     /// stretch lengths by more than 10^-9 of them.
     pub matrices: *const f64,
-    /// Of LEAFLESS_ORIENTATIONS_LIST: how many matrices there are, at least 1.
+    /// Of LEAFLESS_ORIENTATIONS_LIST: how many matrices there are, 1 to 4096.
     pub matrix_count: u64,
-    /// Of LEAFLESS_ORIENTATIONS_FREE: how many turns by chance there are.
+    /// Of LEAFLESS_ORIENTATIONS_FREE: how many turns by chance there are, 1 to 4096.
     pub free_count: u32,
     /// 0.
     pub reserved: u32,
@@ -94,10 +94,9 @@ impl leafless_item_options {
     }
 }
 
-/// A distance that has to be kept.
+/// A distance that has to be kept, refused under the name that the host knows.
 fn distance(value: f64, name: &'static str) -> Result<f64, Failure> {
-    const MOST: f64 = 18_446_744_073_709_551_616.0;
-    match (0.0..=MOST).contains(&value) {
+    match (0.0..=Bay::FURTHEST).contains(&value) {
         true => Ok(value),
         false => Err(Failure::Argument { name, problem: "must be a number between 0 and 2^64" }),
     }
@@ -108,7 +107,7 @@ fn distance(value: f64, name: &'static str) -> Result<f64, Failure> {
 /// - Buffers: `bay`, one pointer. `clearance_model` is the least distance between two items, and between an item and an
 ///   obstacle; `wall_clearance_model` that between an item and what lies outside of the container.
 /// - Result: `*bay`.
-/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64.
+/// - Errors: LEAFLESS_E_ARGUMENT if a distance is not between 0 and 2^64; if the container has no bounds, or no extent along an axis.
 /// - Ownership: the bay shares the container, which may be freed; give `*bay` back with leafless_bay_free.
 /// - Untrusted input: any solid and numbers.
 #[unsafe(no_mangle)]
@@ -119,13 +118,10 @@ pub unsafe extern "C" fn leafless_bay_new(
     bay: *mut *mut leafless_bay,
 ) -> leafless_status {
     guard(|| unsafe {
-        let made = Bay {
-            container: shared(container, "container")?.solid.solid().clone(),
-            obstacles: Vec::new(),
-            items: Vec::new(),
-            clearance: distance(clearance_model, "clearance_model")?,
-            wall_clearance: distance(wall_clearance_model, "wall_clearance_model")?,
-        };
+        let container = shared(container, "container")?.solid.solid().clone();
+        let clearance = distance(clearance_model, "clearance_model")?;
+        let wall_clearance = distance(wall_clearance_model, "wall_clearance_model")?;
+        let made = Bay::new(container)?.with_clearances(clearance, wall_clearance)?;
         let bay = out(bay, "bay")?;
         bay.write(Box::into_raw(Box::new(leafless_bay(made))))
     })
@@ -146,10 +142,10 @@ pub unsafe extern "C" fn leafless_bay_free(bay: *mut leafless_bay) {
 ///
 /// - Buffers: `number`, one number.
 /// - Result: `*number`, which leafless_neighbour tells: obstacles are counted from 0.
-/// - Errors: LEAFLESS_E_NO_MEMORY.
+/// - Errors: LEAFLESS_E_ARGUMENT if the solid has no bounds, or no extent along an axis; LEAFLESS_E_NO_MEMORY.
 /// - Ownership: the bay shares the solid, which may be freed.
 /// - Threads: any, but no other call may use the bay.
-/// - Untrusted input: any solid. leafless_layout_new refuses one that goes on without end.
+/// - Untrusted input: any solid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn leafless_bay_add_obstacle(
     bay: *mut leafless_bay,
@@ -159,9 +155,7 @@ pub unsafe extern "C" fn leafless_bay_add_obstacle(
     guard(|| unsafe {
         let solid = shared(solid, "solid")?.solid.solid().clone();
         let number = out(number, "number")?;
-        let obstacles = &mut exclusive(bay, "bay")?.0.obstacles;
-        memory::push(obstacles, solid)?;
-        number.write(obstacles.len() as u64 - 1)
+        number.write(exclusive(bay, "bay")?.0.add_obstacle(solid)? as u64)
     })
 }
 
@@ -191,8 +185,6 @@ pub unsafe extern "C" fn leafless_bay_add_item(
         if options.density != 0.0 {
             item = item.with_density(options.density)?;
         }
-        let items = &mut exclusive(bay, "bay")?.0.items;
-        memory::push(items, item)?;
-        number.write(items.len() as u64 - 1)
+        number.write(exclusive(bay, "bay")?.0.add_item(item)? as u64)
     })
 }

@@ -214,7 +214,7 @@ impl From<LayoutMeasures> for leafless_layout_measures {
         leafless_layout_measures {
             struct_size: size_of::<leafless_layout_measures>() as u32,
             volume_model: measures.volume.into(),
-            filled_part: measures.density.into(),
+            filled_part: measures.filled_part.into(),
             height_model: measures.height.into(),
             mass: measures.mass.into(),
             centroid_model: measures.centroid.unwrap_or([Interval::ALL; 3]).map(Into::into),

@@ -125,7 +125,8 @@ pub struct leafless_standing {
     /// A leafless_gap_verdict. YES: the copy is proven to lie in the container, to overlap with nothing, and to be as far from
     /// everything as it should be. NO: one of these is proven to be wrong.
     pub verdict: u32,
-    /// How many neighbours are in the way, or may be: those of which YES is not proven. No more than 256 are counted and told.
+    /// How many neighbours are in the way, or may be: those of which YES is not proven. All are counted; no more than the first
+    /// 256 are told.
     pub conflict_count: u64,
     /// Cells that were split.
     pub splits: u64,
@@ -145,7 +146,7 @@ impl From<&Standing> for leafless_standing {
         leafless_standing {
             struct_size: size_of::<leafless_standing>() as u32,
             verdict: leafless_gap_verdict::from(found.verdict) as u32,
-            conflict_count: found.conflicts.len() as u64,
+            conflict_count: found.conflict_count as u64,
             splits: found.splits,
             nearest: (&found.nearest.unwrap_or(nothing)).into(),
             has_nearest: found.nearest.is_some(),
@@ -168,7 +169,7 @@ pub struct leafless_placed_standing {
 impl From<&Standing> for leafless_placed_standing {
     fn from(found: &Standing) -> leafless_placed_standing {
         leafless_placed_standing {
-            conflict_count: found.conflicts.len() as u64,
+            conflict_count: found.conflict_count as u64,
             splits: found.splits,
             verdict: leafless_gap_verdict::from(found.verdict) as u32,
         }
@@ -324,7 +325,7 @@ pub unsafe extern "C" fn leafless_layout_placement_at(
 /// which is 4 096 if that is 0; once it is spent, the answer is UNDECIDED.
 ///
 /// - Buffers: `options`, one struct or NULL; `conflicts`, room for `capacity` structs, or NULL; `standing`, one struct.
-/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be.
+/// - Result: `*standing`; in `conflicts` the first `capacity` neighbours that are in the way, or may be, and no more than 256.
 /// - Errors: LEAFLESS_E_ARGUMENT if there is no copy of this number; LEAFLESS_E_FRAME if a solid belongs to another frame;
 ///   LEAFLESS_E_CALLBACK; LEAFLESS_E_DAMAGED; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY; LEAFLESS_E_BUSY. A `capacity` that is
 ///   too small is no error.

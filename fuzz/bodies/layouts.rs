@@ -154,16 +154,17 @@ pub fn layouts(data: &[u8]) {
         let item = Item::new(figure.solid()).expect("a solid with bounds").with_count(bytes.below(5) as u32);
         item.with_orientations(orientations).expect("good turns")
     });
-    let items = items.collect();
+    let items: Vec<Item> = items.collect();
     let clearance = [0.0, 0.0, 1e-3, 0.25][bytes.below(4)];
     let wall_clearance = [0.0, 0.0, 0.125][bytes.below(3)];
-    let bay = Bay {
-        container: container.solid(),
-        obstacles: obstacles.iter().map(Figure::solid).collect(),
-        items,
-        clearance,
-        wall_clearance,
-    };
+    let bay = Bay::new(container.solid()).expect("a container with bounds");
+    let mut bay = bay.with_clearances(clearance, wall_clearance).expect("good distances");
+    for obstacle in &obstacles {
+        bay.add_obstacle(obstacle.solid()).expect("an obstacle with bounds");
+    }
+    for item in items {
+        bay.add_item(item).expect("room");
+    }
     let all = Figures { container, obstacles, items: figures };
     let alone = Control { max_splits: Some(2000), ..Control::threads(1) };
     let mut layout = Layout::new(&bay, &alone).expect("a good bay");

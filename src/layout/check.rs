@@ -38,8 +38,11 @@ pub struct Standing {
     /// `Yes`: it is proven to lie in the container, to overlap with nothing, and to be as far from everything as it should be. `No`: one
     /// of these is proven to be wrong.
     pub verdict: GapVerdict,
-    /// What is in the way, or may be: those of which `Yes` is not proven, and no more than 256 of them.
+    /// What is in the way, or may be: those of which `Yes` is not proven. These are the first 256 of them: the wall, obstacles, and
+    /// what is placed, each in the order of their numbers.
     pub conflicts: Vec<Neighbour>,
+    /// How many there are of which `Yes` is not proven, all counted.
+    pub conflict_count: usize,
     /// What is next to it, but for the wall; nothing if there is nothing else. The gap holds the least of all distances.
     pub nearest: Option<Neighbour>,
     /// Cells that were split.
@@ -93,8 +96,13 @@ impl Layout {
     ) -> Result<Standing, Error> {
         let around = self.around(item, placement)?;
         let piece = &self.pieces[item];
-        let mut standing =
-            Standing { verdict: GapVerdict::Yes, conflicts: Vec::new(), nearest: None, splits: 0 };
+        let mut standing = Standing {
+            verdict: GapVerdict::Yes,
+            conflicts: Vec::new(),
+            conflict_count: 0,
+            nearest: None,
+            splits: 0,
+        };
         let known = self.container.takes(piece, placement, &around, control)?;
         standing.note(Beside::Wall, &known)?;
         for (number, obstacle) in self.obstacles.iter().enumerate() {
@@ -189,8 +197,11 @@ impl Standing {
             (GapVerdict::Undecided, _) | (_, GapVerdict::Undecided) => GapVerdict::Undecided,
             _ => GapVerdict::Yes,
         };
-        if verdict != GapVerdict::Yes && self.conflicts.len() < CONFLICTS {
-            memory::push(&mut self.conflicts, Neighbour { other, verdict, gap })?;
+        if verdict != GapVerdict::Yes {
+            self.conflict_count += 1;
+            if self.conflicts.len() < CONFLICTS {
+                memory::push(&mut self.conflicts, Neighbour { other, verdict, gap })?;
+            }
         }
         Ok(())
     }

@@ -34,15 +34,24 @@ impl Item {
     /// How it may be turned.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a map of a list is no turn: it mirrors, or stretches by more than 10^-9; or if the list is empty.
+    /// [`Error::Argument`] if a map of a list is no turn: it mirrors, or stretches by more than 10^-9; or if there are no turns, or
+    /// more than [`Orientations::MOST`].
     pub fn with_orientations(self, orientations: Orientations) -> Result<Item, Error> {
-        if let Orientations::List(list) = &orientations {
-            if list.is_empty() {
-                return Err(Error::Argument { name: "orientations", problem: "must not be empty" });
-            }
-            if !list.iter().all(is_motion) {
-                return Err(NO_MOTION);
-            }
+        let count = match &orientations {
+            Orientations::AsGiven | Orientations::Turns => 1,
+            Orientations::Free(count) => *count as usize,
+            Orientations::List(list) => list.len(),
+        };
+        if !(1..=Orientations::MOST as usize).contains(&count) {
+            return Err(Error::Argument {
+                name: "orientations",
+                problem: "must be 1 at least and 4096 at the most",
+            });
+        }
+        if let Orientations::List(list) = &orientations
+            && !list.iter().all(is_motion)
+        {
+            return Err(NO_MOTION);
         }
         Ok(Item { orientations, ..self })
     }

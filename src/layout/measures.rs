@@ -16,7 +16,7 @@ pub struct LayoutMeasures {
     /// The volume of everything that is placed (cubic model units).
     pub volume: Interval,
     /// The part of the container's volume that this is.
-    pub density: Interval,
+    pub filled_part: Interval,
     /// How far the highest point is above the lower end of the container's bounds, along z (model units); 0 if nothing is placed.
     pub height: Interval,
     /// The mass, by the densities of the items.
@@ -84,7 +84,7 @@ impl Layout {
         let origin = if is_known || self.placed.is_empty() { about([ZERO; 3]) } else { nothing_known };
         let measures = LayoutMeasures {
             volume,
-            density: match container.volume.lower > 0.0 {
+            filled_part: match container.volume.lower > 0.0 {
                 true => volume.over(container.volume),
                 false => Interval::between(0.0, f64::INFINITY),
             },

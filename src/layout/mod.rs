@@ -6,12 +6,14 @@
 //!
 //! | question | file |
 //! |---|---|
+//! | what is laid out? | `bay`, `item` |
 //! | which turns are there? | `orientation` |
 //! | are two placed solids apart, is one within the container? | `proof`, by what lies around that: `wall`; where one is as the other sees it: `relative` |
 //! | who is in the way, and how near is the next one? | `check` |
 //! | where does what is not placed go? | `search/` |
 //! | what does it weigh, and how much of the container does it fill? | `measures` |
 
+mod bay;
 mod check;
 mod item;
 mod measures;
@@ -22,6 +24,7 @@ mod relative;
 mod search;
 mod wall;
 
+pub use bay::Bay;
 pub use check::{Beside, Neighbour, Standing};
 pub use item::Item;
 pub use measures::LayoutMeasures;
@@ -32,26 +35,10 @@ use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds};
 use crate::memory;
-use crate::solid::AnySolid;
 use alloc::vec::Vec;
-use item::{NO_MOTION, bounds_of};
+use item::NO_MOTION;
 use orientation::is_motion;
 use proof::{Container, Near, Piece};
-
-/// What is laid out, and where.
-#[derive(Clone)]
-pub struct Bay {
-    /// What holds everything; any solid that ends.
-    pub container: AnySolid,
-    /// Solids that stand where they are.
-    pub obstacles: Vec<AnySolid>,
-    /// What is to be placed.
-    pub items: Vec<Item>,
-    /// The least distance between two items, and between an item and an obstacle (model units, at least 0).
-    pub clearance: f64,
-    /// The least distance between an item and what lies outside of the container (model units, at least 0).
-    pub wall_clearance: f64,
-}
 
 /// A copy of an item in its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,19 +58,11 @@ pub struct Placed {
 /// use leafless::layout::{Bay, Item, Layout};
 /// use leafless::query::GapVerdict;
 /// let control = Control::default();
-/// let ball = Item::new(AnySolid::new(Csg::ball([0.0; 3], 10.0)?))?.with_count(2);
-/// let mut layout = Layout::new(
-///     &Bay {
-///         container: AnySolid::new(Csg::cuboid([0.0; 3], [50.0, 30.0, 30.0])?),
-///         obstacles: vec![],
-///         items: vec![ball],
-///         clearance: 1.0,
-///         wall_clearance: 0.5,
-///     },
-///     &control,
-/// )?;
-/// let first = layout.place(0, &Affine::translation([11.0, 15.0, 15.0])?)?;
-/// let second = layout.place(0, &Affine::translation([31.5, 15.0, 15.0])?)?;
+/// let mut bay = Bay::new(AnySolid::new(Csg::cuboid([0.0; 3], [50.0, 30.0, 30.0])?))?.with_clearances(1.0, 0.5)?;
+/// let ball = bay.add_item(Item::new(AnySolid::new(Csg::ball([0.0; 3], 10.0)?))?.with_count(2))?;
+/// let mut layout = Layout::new(&bay, &control)?;
+/// let first = layout.place(ball, &Affine::translation([11.0, 15.0, 15.0])?)?;
+/// let second = layout.place(ball, &Affine::translation([31.5, 15.0, 15.0])?)?;
 /// let found = layout.check(second, &control)?;
 /// assert_eq!(found.verdict, GapVerdict::No);
 /// assert!(found.conflicts[0].gap.contains(0.5));
@@ -106,23 +85,18 @@ impl Layout {
     /// A layout in which nothing is placed. It takes what the solids take to be put on frames, once each.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a clearance is negative or not a number, or beyond 2^64; if the container or an obstacle has no bounds;
-    /// what the solids refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+    /// What the solids refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
     pub fn new(bay: &Bay, control: &Control<'_>) -> Result<Layout, Error> {
-        for (name, clearance) in [("clearance", bay.clearance), ("wall clearance", bay.wall_clearance)] {
-            if !(0.0..=FURTHEST).contains(&clearance) {
-                return Err(Error::Argument { name, problem: "must be between 0 and 2^64" });
-            }
-        }
         let longest = bay.items.iter().map(|item| proof::diagonal(&item.bounds)).fold(0.0, f64::max);
         // What is further away than that is told apart by boxes.
         let reach = 1.25 * longest + 2.0 * bay.clearance.max(bay.wall_clearance);
-        let solids = [&bay.container].into_iter().chain(&bay.obstacles);
+        let obstacles = bay.obstacles.iter().map(|(solid, _)| solid);
+        let solids = [&bay.container].into_iter().chain(obstacles);
         let near = &Near::new(reach, solids.chain(bay.items.iter().map(|item| &item.solid)));
         let container = Container::new(&bay.container, bay.wall_clearance, near, control)?;
         let mut obstacles = memory::with_capacity(bay.obstacles.len())?;
-        for solid in &bay.obstacles {
-            obstacles.push(Piece::new(solid, &bounds_of(solid, "obstacle")?, near, control)?);
+        for (solid, bounds) in &bay.obstacles {
+            obstacles.push(Piece::new(solid, bounds, near, control)?);
         }
         let mut pieces = memory::with_capacity(bay.items.len())?;
         let mut items = memory::with_capacity(bay.items.len())?;
@@ -193,9 +167,6 @@ impl Layout {
         self.items[item].bounds.placed(placement).ok_or(NO_MOTION)
     }
 }
-
-/// The greatest clearance.
-const FURTHEST: f64 = (1u128 << 64) as f64;
 
 /// The refusal of a number that nothing placed has.
 const NOT_PLACED: Error =

@@ -14,7 +14,8 @@ pub enum Orientations {
     AsGiven,
     /// The 24 turns that take axes to axes. They are exact.
     Turns,
-    /// As it is, and that many turns by chance, evenly spread over all turns; they depend on the seed of the search.
+    /// As it is, and that many turns by chance, at least 1 and at most [`MOST`](Orientations::MOST), evenly spread over all turns; they
+    /// depend on the seed of the search.
     Free(u32),
     /// Any of these. Only the linear part of a map counts, which must be a turn: see [`Item::with_orientations`](super::Item).
     List(Vec<Affine>),
@@ -24,6 +25,9 @@ pub enum Orientations {
 pub(super) const STRETCH: f64 = 1e-9;
 
 impl Orientations {
+    /// The greatest number of turns of one item: a search keeps the cells of the item in each of them.
+    pub const MOST: u32 = 1 << 12;
+
     pub(super) fn try_clone(&self) -> Result<Orientations, Error> {
         Ok(match self {
             Orientations::AsGiven => Orientations::AsGiven,

@@ -355,12 +355,11 @@ fn operations(directory: &Path) -> Vec<(&'static str, Operation)> {
     operation!("layout", [], {
         let solid = |size| Ok::<_, Error>(AnySolid::new(Csg::cuboid([0.0; 3], [size; 3])?));
         let turns = Orientations::List(vec![Affine::IDENTITY]);
-        let items = vec![
-            Item::new(solid(3.0)?)?.with_count(2).with_orientations(turns)?,
-            Item::new(AnySolid::new(Csg::ball([0.0; 3], 1.0)?))?.with_orientations(Orientations::AsGiven)?,
-        ];
-        let obstacles = vec![solid(1.0)?];
-        let bay = Bay { container: solid(7.0)?, obstacles, items, clearance: 0.25, wall_clearance: 0.0 };
+        let ball = AnySolid::new(Csg::ball([0.0; 3], 1.0)?);
+        let mut bay = Bay::new(solid(7.0)?)?.with_clearances(0.25, 0.0)?;
+        bay.add_obstacle(solid(1.0)?)?;
+        bay.add_item(Item::new(solid(3.0)?)?.with_count(2).with_orientations(turns)?)?;
+        bay.add_item(Item::new(ball)?.with_orientations(Orientations::AsGiven)?)?;
         let control = Control { max_splits: Some(40), ..CONTROL };
         let mut layout = Layout::new(&bay, &control)?;
         let objective = Objective::Height;

@@ -26,7 +26,16 @@ fn item(solid: AnySolid) -> Item {
 
 /// A box with items, without clearances.
 fn bay(size: [f64; 3], items: Vec<Item>) -> Bay {
-    Bay { container: cuboid(size), obstacles: vec![], items, clearance: 0.0, wall_clearance: 0.0 }
+    bay_in(cuboid(size), items, [0.0; 2])
+}
+
+/// Any container with items, the clearance between them, and that to the wall.
+fn bay_in(container: AnySolid, items: Vec<Item>, [clearance, wall_clearance]: [f64; 2]) -> Bay {
+    let mut bay = Bay::new(container).unwrap().with_clearances(clearance, wall_clearance).unwrap();
+    for (number, item) in items.into_iter().enumerate() {
+        assert_eq!(bay.add_item(item).unwrap(), number);
+    }
+    bay
 }
 
 fn layout(bay: &Bay) -> Layout {
@@ -91,7 +100,7 @@ fn eight_blocks() {
     let container = counted(cuboid([80.0, 70.0, volume / (0.8 * 5600.0)]));
     let blocks: Vec<AnySolid> = sizes.iter().map(|&size| counted(cuboid(size))).collect();
     let items = blocks.iter().map(|block| item(block.clone())).collect();
-    let bay = Bay { container: container.clone(), ..bay([1.0; 3], items) };
+    let bay = bay_in(container.clone(), items, [0.0; 2]);
     let mut layout = layout(&bay);
     let found = layout.search(&SearchOptions::default(), &alone()).unwrap();
     assert_eq!((found.placed, found.left, found.end), (8, 0, SearchEnd::Complete));
@@ -114,8 +123,8 @@ fn eight_blocks() {
             assert!((0..3).any(|k| a[1][k] <= b[0][k] || b[1][k] <= a[0][k]));
         }
     }
-    let density = layout.measures(1e-6, &alone()).unwrap().density;
-    assert!(density.contains(0.8) && density.width() < 1e-5, "{density:?}");
+    let filled = layout.measures(1e-6, &alone()).unwrap().filled_part;
+    assert!(filled.contains(0.8) && filled.width() < 1e-5, "{filled:?}");
 }
 
 #[test]
@@ -136,7 +145,7 @@ fn check_arrangements(count: usize) {
     let (size, radius, clearance) = ([2.0, 1.5, 1.0], 0.8, 0.25);
     let wide = [8.0, 7.0, 6.0];
     let items = vec![item(ball(radius)), item(cuboid(size))];
-    let bay = Bay { clearance, wall_clearance: 0.125, ..bay(wide, items) };
+    let bay = bay_in(cuboid(wide), items, [clearance, 0.125]);
     let mut counts = [[0; 2]; 3];
     let mut layout = layout(&bay);
     for _ in 0..count {
@@ -224,19 +233,16 @@ fn what_is_placed_is_apart() {
         AnySolid::new(MeshSolid::new(made.mesh().clone(), FillRule::default()).unwrap())
     };
     let stored = build(&hook, &Frame::new([-1.0; 3], 8.0, 6).unwrap(), Rule::Certified, &alone()).unwrap();
-    let container = Csg::cylinder(5.0, 0.0, 9.0).unwrap();
-    let bay = Bay {
-        container: AnySolid::new(container),
-        obstacles: vec![AnySolid::new(Csg::cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 4.0]).unwrap())],
-        items: vec![
-            item(AnySolid::new(hook)).with_count(6),
-            item(AnySolid::new(stored)).with_count(4),
-            item(mesh).with_count(5),
-            item(AnySolid::new(ring)).with_count(3).with_orientations(Orientations::Free(4)).unwrap(),
-        ],
-        clearance: 0.1,
-        wall_clearance: 0.05,
-    };
+    let container = AnySolid::new(Csg::cylinder(5.0, 0.0, 9.0).unwrap());
+    let items = vec![
+        item(AnySolid::new(hook)).with_count(6),
+        item(AnySolid::new(stored)).with_count(4),
+        item(mesh).with_count(5),
+        item(AnySolid::new(ring)).with_count(3).with_orientations(Orientations::Free(4)).unwrap(),
+    ];
+    let mut bay = bay_in(container.clone(), items, [0.1, 0.05]);
+    let pillar = AnySolid::new(Csg::cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 4.0]).unwrap());
+    bay.add_obstacle(pillar.clone()).unwrap();
     let mut layout = layout(&bay);
     let options = SearchOptions { cells: 48, rounds: 2, seed: 5, ..SearchOptions::default() };
     let found = layout.search(&options, &alone()).unwrap();
@@ -254,13 +260,13 @@ fn what_is_placed_is_apart() {
     };
     let mut held = vec![0; points.len()];
     let mut hits = 0;
-    let mut solids: Vec<AnySolid> = bay.obstacles.clone();
+    let mut solids = vec![pillar];
     for placed in layout.placed() {
-        let solid = bay.items[placed.item].solid();
+        let solid = layout.items()[placed.item].solid();
         // (A stored octree is asked by way of its placement.)
         solids.push(solid.placed(&placed.placement).unwrap());
     }
-    let within = inside(&bay.container);
+    let within = inside(&container);
     for (k, solid) in solids.iter().enumerate() {
         for (i, membership) in inside(solid).into_iter().enumerate() {
             if membership == Membership::Inside {
@@ -282,7 +288,7 @@ fn the_seed_decides() {
             item(part).with_count(9).with_orientations(Orientations::Free(3)).unwrap(),
             item(cuboid([2.0, 2.0, 0.5])).with_count(9),
         ];
-        let mut layout = layout(&Bay { clearance: 0.1, ..bay([6.0, 6.0, 6.0], items) });
+        let mut layout = layout(&bay_in(cuboid([6.0; 3]), items, [0.1, 0.0]));
         let options = SearchOptions {
             seed,
             cells: 32,
@@ -351,7 +357,7 @@ fn items_get_out_along_a_direction() {
     .unwrap();
     for way in [Direction { axis: 2, upward: true }, Direction { axis: 0, upward: false }] {
         let items = vec![item(AnySolid::new(hook.clone())).with_count(20)];
-        let mut layout = layout(&Bay { clearance: 0.05, ..bay([7.0, 7.0, 7.0], items) });
+        let mut layout = layout(&bay_in(cuboid([7.0; 3]), items, [0.05, 0.0]));
         let options = SearchOptions {
             objective: Objective::Density,
             free_along: Some(way),
@@ -430,7 +436,7 @@ fn what_a_layout_weighs() {
     };
     near(found.volume, 48.0);
     near(found.mass, 120.0);
-    near(found.density, 48.0 / 8000.0);
+    near(found.filled_part, 48.0 / 8000.0);
     let centres = placements.map(|placement| placement.apply(size.map(|side| 0.5 * side)));
     let centre = [0, 1, 2].map(|k| 0.5 * (centres[0][k] + centres[1][k]));
     (0..3).for_each(|k| near(found.centroid.unwrap()[k], centre[k]));
@@ -472,13 +478,9 @@ fn containers_of_all_kinds() {
     let made = surface::boundary(&hollow, &frame.with_depth(12).unwrap(), 0.02, &alone()).unwrap();
     let mesh = MeshSolid::new(made.mesh().clone(), FillRule::default()).unwrap();
     for container in [AnySolid::new(hollow), AnySolid::new(stored), AnySolid::new(mesh)] {
-        let bay = Bay {
-            container,
-            clearance: 0.05,
-            wall_clearance: 0.1,
-            ..bay([1.0; 3], vec![item(cuboid([2.0; 3])).with_count(30)])
-        };
-        let mut layout = layout(&bay);
+        let is_stored = container.home().is_some();
+        let items = vec![item(cuboid([2.0; 3])).with_count(30)];
+        let mut layout = layout(&bay_in(container, items, [0.05, 0.1]));
         // In the middle it is free; beside the wall it is not; outside even less.
         for (x, expected) in
             [(-1.0, GapVerdict::Yes), (3.9, GapVerdict::No), (5.0, GapVerdict::No), (40.0, GapVerdict::No)]
@@ -486,8 +488,7 @@ fn containers_of_all_kinds() {
             let number = layout.place(0, &to([x, -1.0, -1.0])).unwrap();
             let found = layout.check(number, &alone()).unwrap();
             // (An octree knows its boundary to its cells.)
-            let is_close =
-                found.verdict == GapVerdict::Undecided && x == 3.9 && bay.container.home().is_some();
+            let is_close = found.verdict == GapVerdict::Undecided && x == 3.9 && is_stored;
             assert!(found.verdict == expected || is_close, "{x}: {found:?}");
             layout.remove(number).unwrap();
         }
@@ -518,7 +519,7 @@ fn what_touches_is_apart() {
     // With a clearance, and one to the wall, that leave nothing.
     let cubes = || vec![item(cuboid([10.0; 3])).with_count(8)];
     for (side, clearance, wall_clearance) in [(21.0, 1.0, 0.0), (23.0, 1.0, 1.0), (20.5, 0.0, 0.25)] {
-        let mut layout = self::layout(&Bay { clearance, wall_clearance, ..bay([side; 3], cubes()) });
+        let mut layout = self::layout(&bay_in(cuboid([side; 3]), cubes(), [clearance, wall_clearance]));
         let found = layout.search(&SearchOptions::default(), &alone()).unwrap();
         assert_eq!((found.placed, found.splits), (8, 0), "{side}");
         assert_proven(&layout);
@@ -534,26 +535,48 @@ fn what_touches_is_apart() {
     }
 }
 
+/// All that is in the way is counted, though not all of it is told.
+#[test]
+fn conflicts_are_counted() {
+    let mut layout = layout(&bay([4.0; 3], vec![item(cuboid([1.0; 3]))]));
+    for _ in 0..300 {
+        layout.place(0, &to([1.5; 3])).unwrap();
+    }
+    let found = layout.check(0, &alone()).unwrap();
+    assert_eq!((found.conflicts.len(), found.conflict_count), (256, 299));
+    assert_eq!(found.conflicts[255].other, Beside::Placed(256));
+    assert!(layout.check_all(&alone()).unwrap().iter().all(|standing| standing.conflict_count == 299));
+}
+
 #[test]
 fn what_is_refused() {
-    let good = bay([4.0; 3], vec![item(cuboid([1.0; 3]))]);
-    let refused = |bay: Bay| match Layout::new(&bay, &alone()) {
+    let refused = |found: Result<(), Error>| match found {
         Err(Error::Argument { name, .. }) => name,
         Err(error) => panic!("{error}"),
-        Ok(_) => "nothing",
+        Ok(()) => "nothing",
     };
-    assert_eq!(refused(good.clone()), "nothing");
+    let mut good = bay([4.0; 3], vec![item(cuboid([1.0; 3]))]);
     for wrong in [-1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(refused(Bay { clearance: wrong, ..good.clone() }), "clearance");
-        assert_eq!(refused(Bay { wall_clearance: wrong, ..good.clone() }), "wall clearance");
+        let with = |between, wall| {
+            refused(Bay::new(cuboid([4.0; 3])).unwrap().with_clearances(between, wall).map(|_| ()))
+        };
+        assert_eq!(with(wrong, 0.0), "clearance");
+        assert_eq!(with(0.0, wrong), "wall clearance");
+        assert_eq!(with(0.0, 1.0), "nothing");
     }
     let endless = AnySolid::new(Csg::half_space([1.0, 0.0, 0.0], 0.0).unwrap());
-    assert_eq!(refused(Bay { container: endless.clone(), ..good.clone() }), "container");
-    assert_eq!(refused(Bay { obstacles: vec![endless.clone()], ..good.clone() }), "obstacle");
+    assert_eq!(refused(Bay::new(endless.clone()).map(|_| ())), "container");
+    assert_eq!(refused(good.add_obstacle(endless.clone()).map(|_| ())), "obstacle");
+    assert_eq!(good.add_obstacle(cuboid([1.0; 3])).unwrap(), 0);
     assert!(Item::new(endless).is_err() && Item::new(AnySolid::new(Csg::empty())).is_err());
     let one = || item(cuboid([1.0; 3]));
     assert!(one().with_density(0.0).is_err() && one().with_density(f64::NAN).is_err());
     assert!(one().with_orientations(Orientations::List(vec![])).is_err());
+    for (count, is_good) in
+        [(0, false), (1, true), (Orientations::MOST, true), (Orientations::MOST + 1, false)]
+    {
+        assert_eq!(one().with_orientations(Orientations::Free(count)).is_ok(), is_good, "{count}");
+    }
     let mirror = Affine::new([[-1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]).unwrap();
     let larger = Affine::new([[1.1, 0.0, 0.0, 0.0], [0.0, 1.1, 0.0, 0.0], [0.0, 0.0, 1.1, 0.0]]).unwrap();
     for map in [mirror, larger] {

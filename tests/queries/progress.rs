@@ -275,13 +275,10 @@ fn all_operations(depth: u8) -> Vec<Told> {
         let turn = Affine::translation([0.1, 0.2, 0.3]).unwrap();
         gap_at_least_at(&ball, &part, &frame, &[turn; 4], &frame, 1e-3, control)
     });
-    let bay = Bay {
-        container: AnySolid::new(Csg::cuboid([0.0; 3], [9.0; 3]).unwrap()),
-        obstacles: vec![],
-        items: vec![Item::new(AnySolid::new(Csg::ball([0.0; 3], 1.0).unwrap())).unwrap().with_count(60)],
-        clearance: 0.05,
-        wall_clearance: 0.0,
-    };
+    let container = AnySolid::new(Csg::cuboid([0.0; 3], [9.0; 3]).unwrap());
+    let mut bay = Bay::new(container).unwrap().with_clearances(0.05, 0.0).unwrap();
+    let item = Item::new(AnySolid::new(Csg::ball([0.0; 3], 1.0).unwrap())).unwrap();
+    bay.add_item(item.with_count(60)).unwrap();
     let mut layout = Layout::new(&bay, &CONTROL).unwrap();
     let options =
         SearchOptions { cells: 40, rounds: 8, objective: Objective::Density, ..SearchOptions::default() };

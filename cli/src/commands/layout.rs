@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Of};
 use crate::making::laid::{Scenery, package, surfaces};
-use crate::options::{numbers, seconds, threads, tolerance};
+use crate::options::{density, numbers, seconds, threads, tolerance};
 use crate::progress::{until, watched};
 use crate::report::layout::{Checked, Found, Item};
 use crate::sink::{Output, print_told};
@@ -25,7 +25,7 @@ use std::time::Instant;
 /// places, ready to be printed: a mesh is taken as it is, and of anything else the surface is made as `leafless mesh` makes it, which is near to the solid. The scene
 /// is to look at, with `leafless render` or OpenSCAD: the container is marked by % in it.
 ///
-/// Lengths are those of the model. The mass is that of a density of 1. What is not known is null in JSON. Copies and obstacles have
+/// Lengths are those of the model. What is not known is null in JSON. Copies and obstacles have
 /// numbers from 0, in the order in which they stand in the JSON.
 #[derive(Args)]
 #[command(
@@ -61,6 +61,10 @@ pub struct Arguments {
     /// the matrices in a file, a line for each as --place takes it elsewhere, of which only the turn counts. Without it: 24
     #[arg(long, value_name = "TURNS", conflicts_with = "check")]
     orientations: Option<OsString>,
+    /// Mass per cubic model unit: one number for all items, or one for each, separated by commas. It counts for the mass, the centroid and
+    /// the objective `balance`. Without it: 1
+    #[arg(long, value_name = "D[,D]...", value_parser = density, value_delimiter = ',', allow_hyphen_values = true, conflicts_with = "check")]
+    density: Vec<f64>,
     /// What is sought: `count`, as many copies as possible; `height`, these as low as possible along z; `density`, as much volume as
     /// possible; `balance=X,Y,Z`, as many copies as possible with the centre of gravity near to a point. Without it: count
     #[arg(long, value_name = "AIM", value_parser = objective, conflicts_with = "check")]
@@ -94,8 +98,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// Most turns by chance.
-const MOST_TURNS: u32 = 4096;
 /// How well volumes are to be known, as a part of them; …
 const DIGITS: f64 = 1e-4;
 /// … and what may be split for each.
@@ -130,9 +132,10 @@ fn orientations(name: Option<&OsStr>) -> Result<Orientations, Failure> {
         _ => {}
     }
     if let Some(number) = name.to_str().and_then(|name| name.strip_prefix("free:")) {
-        let number = number.parse().ok().filter(|number| (1..=MOST_TURNS).contains(number));
+        const MOST: u32 = Orientations::MOST;
+        let number = number.parse().ok().filter(|number| (1..=MOST).contains(number));
         let number = number.ok_or_else(|| {
-            Failure::Usage(format!("--orientations free:N: expected a number from 1 to {MOST_TURNS}"))
+            Failure::Usage(format!("--orientations free:N: expected a number from 1 to {MOST}"))
         })?;
         return Ok(Orientations::Free(number));
     }
@@ -144,6 +147,10 @@ fn orientations(name: Option<&OsStr>) -> Result<Orientations, Failure> {
     let turns = from_file(path, &Affine::IDENTITY)?;
     if turns.is_empty() {
         return Err(Failure::of(path.display(), "has no matrix in it"));
+    }
+    if turns.len() > Orientations::MOST as usize {
+        let most = crate::words::count(Orientations::MOST.into());
+        return Err(Failure::of(path.display(), format_args!("has more than {most} matrices in it")));
     }
     Ok(Orientations::List(turns))
 }
@@ -177,11 +184,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outputs: Vec<Output> = arguments.output.iter().map(|name| Output::from(&**name)).collect();
     let formats = outputs.iter().map(format).collect::<Result<Vec<_>, _>>()?;
     let turns = orientations(arguments.orientations.as_deref())?;
-    let stock = Stock {
+    let mut stock = Stock {
         holder: Holder::of(arguments.container.as_deref().unwrap_or_default())?,
         obstacles: arguments.obstacle.iter().map(|name| named(name)).collect::<Result<_, _>>()?,
         items: arguments.items.iter().map(|name| Copies::of(name)).collect::<Result<_, _>>()?,
     };
+    stock.weigh(&arguments.density)?;
     for output in &outputs {
         if output.path().is_some() {
             output.check()?;
@@ -225,7 +233,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (layout, search, nearest, measures) = found.of(&stock.holder)?;
     let placed = layout.placed();
     let of_item = |item: usize| placed.iter().filter(|placed| placed.item == item).count() as u64;
-    let items = stock.items.iter().enumerate().map(|(item, Copies { input, count })| {
+    let items = stock.items.iter().enumerate().map(|(item, Copies { input, count, .. })| {
         let (name, count, placed) = (name_of(&input.to_string()), u64::from(*count), of_item(item));
         Item { name, count, placed, left: count - placed }
     });
@@ -279,10 +287,11 @@ fn known(layout: &Layout, control: &Control<'_>) -> Result<(Vec<Option<Near>>, M
         nearest.push(near.map(|near| Near { other: near.other.into(), gap: near.gap.into() }));
     }
     let quiet = Control { max_splits: Some(SPLITS), ..quiet };
-    let LayoutMeasures { volume, density, height, mass, centroid, .. } = layout.measures(DIGITS, &quiet)?;
+    let LayoutMeasures { volume, filled_part, height, mass, centroid, .. } =
+        layout.measures(DIGITS, &quiet)?;
     let measures = Measures {
         volume: volume.into(),
-        density: density.into(),
+        filled_part: filled_part.into(),
         height: height.into(),
         mass: mass.into(),
         centroid: centroid.map(|centre| centre.map(Ends::from)),

@@ -43,6 +43,8 @@ pub enum Container {
 pub struct Listed {
     pub file: String,
     pub count: u32,
+    /// Mass per cubic model unit.
+    pub density: f64,
 }
 
 /// A copy in its place.
@@ -112,9 +114,8 @@ impl Ends {
 pub struct Measures {
     pub volume: Ends,
     /// The part of the container's volume.
-    pub density: Ends,
+    pub filled_part: Ends,
     pub height: Ends,
-    /// At a density of 1.
     pub mass: Ends,
     pub centroid: Option<[Ends; 3]>,
     pub smallest_gap: Option<Ends>,
@@ -139,7 +140,9 @@ impl Plan {
             },
             obstacles: stock.obstacles.iter().map(name).collect::<Result<_, _>>()?,
             items: (stock.items.iter())
-                .map(|Copies { input, count }| Ok(Listed { file: name(input)?, count: *count }))
+                .map(|&Copies { ref input, count, density }| {
+                    Ok(Listed { file: name(input)?, count, density })
+                })
                 .collect::<Result<_, Failure>>()?,
             clearance: clearances.between,
             wall_clearance: clearances.wall,
@@ -208,6 +211,10 @@ impl Plan {
         if self.items.iter().map(|item| u64::from(item.count)).sum::<u64>() > most {
             return Err(format!("the items have more than {} copies", count(most)));
         }
+        if let Some(at) = self.items.iter().position(|item| !(item.density > 0.0 && item.density.is_finite()))
+        {
+            return Err(format!("item {at}: the density must be a number above 0"));
+        }
         for (what, clearance) in [("clearance", self.clearance), ("wall_clearance", self.wall_clearance)] {
             if !(clearance >= 0.0 && clearance.is_finite()) {
                 return Err(format!("{what} must be a number not below 0"));
@@ -246,7 +253,9 @@ impl Plan {
             Container::File(name) => Holder::File(file(name)?),
         };
         let obstacles = self.obstacles.iter().map(file).collect::<Result<_, _>>()?;
-        let copies = |item: &Listed| Ok(Copies { input: file(&item.file)?, count: item.count });
+        let copies = |&Listed { file: ref name, count, density }: &Listed| {
+            Ok(Copies { input: file(name)?, count, density })
+        };
         let items = self.items.iter().map(copies).collect::<Result<_, Failure>>()?;
         Ok(Stock { holder, obstacles, items })
     }

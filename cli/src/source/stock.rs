@@ -5,6 +5,7 @@ use crate::options::numbers;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::Source;
+use crate::words::counted;
 use leafless::exchange::LengthUnit;
 use leafless::layout::{Bay, Item, Orientations};
 use leafless::{Affine, AnySolid, Csg};
@@ -65,10 +66,12 @@ impl Holder {
 pub struct Copies {
     pub input: Input,
     pub count: u32,
+    /// Mass per cubic model unit.
+    pub density: f64,
 }
 
 impl Copies {
-    /// What is meant by a name: `part.stl*30` are thirty copies. A file that is called so is one.
+    /// What is meant by a name: `part.stl*30` are thirty copies. A file that is called so is one. Their density is 1.
     pub fn of(name: &OsStr) -> Result<Copies, Failure> {
         let counted = || {
             let (file, digits) = name.to_str()?.rsplit_once('*')?;
@@ -82,9 +85,9 @@ impl Copies {
                     let problem = format!("the number of copies must be one from 1 to {most}");
                     Failure::Usage(format!("{}: {problem}", Path::new(name).display()))
                 })?;
-            return Ok(Copies { input: named(OsStr::new(file))?, count });
+            return Ok(Copies { input: named(OsStr::new(file))?, count, density: 1.0 });
         }
-        Ok(Copies { input: named(name)?, count: 1 })
+        Ok(Copies { input: named(name)?, count: 1, density: 1.0 })
     }
 }
 
@@ -139,6 +142,23 @@ impl Stock {
         self.holder.file().into_iter().chain(&self.obstacles).chain(items)
     }
 
+    /// Gives all items one density, or each its own.
+    pub fn weigh(&mut self, densities: &[f64]) -> Result<(), Failure> {
+        match densities {
+            [] => {}
+            [density] => self.items.iter_mut().for_each(|copies| copies.density = *density),
+            all if all.len() == self.items.len() => {
+                self.items.iter_mut().zip(all).for_each(|(copies, density)| copies.density = *density);
+            }
+            all => {
+                let (densities, items) = (all.len(), counted(self.items.len() as u64, "item", "items"));
+                let problem = format!("expected one number, or one for each of {items}, not {densities}");
+                return Err(Failure::Usage(format!("--density: {problem}")));
+            }
+        }
+        Ok(())
+    }
+
     /// Reads all files.
     pub fn read(&self, orientations: &Orientations, clearances: Clearances) -> Result<Solids, Failure> {
         let total: u64 = self.items.iter().map(|copies| u64::from(copies.count)).sum();
@@ -156,22 +176,22 @@ impl Stock {
                 (solid, Some(kind))
             }
         };
-        let (mut obstacles, mut kinds) = (vec![], vec![]);
+        let bay = Bay::new(container).of(&self.holder)?;
+        let mut bay = bay.with_clearances(clearances.between, clearances.wall).of(&self.holder)?;
+        let (mut obstacles, mut items) = (vec![], vec![]);
         for input in &self.obstacles {
             let (solid, kind) = solid(input, &mut unit)?;
-            obstacles.push(solid);
-            kinds.push(kind);
+            bay.add_obstacle(solid).of(input)?;
+            obstacles.push(kind);
         }
-        let (mut items, mut item_kinds) = (vec![], vec![]);
-        for Copies { input, count } in &self.items {
+        for Copies { input, count, density } in &self.items {
             let (solid, kind) = solid(input, &mut unit)?;
             let item = Item::new(solid).and_then(|item| item.with_orientations(orientations.clone()));
-            items.push(item.of(input)?.with_count(*count));
-            item_kinds.push(kind);
+            let item = item.and_then(|item| item.with_count(*count).with_density(*density));
+            item.and_then(|item| bay.add_item(item)).of(input)?;
+            items.push(kind);
         }
-        let Clearances { between, wall } = clearances;
-        let bay = Bay { container, obstacles, items, clearance: between, wall_clearance: wall };
-        Ok(Solids { bay, holder, obstacles: kinds, items: item_kinds, unit: unit.map(|(unit, _)| unit) })
+        Ok(Solids { bay, holder, obstacles, items, unit: unit.map(|(unit, _)| unit) })
     }
 }
 
@@ -197,10 +217,7 @@ fn solid(input: &Input, unit: &mut Option<(LengthUnit, OsString)>) -> Result<(An
         _ => {}
     }
     let frame = source.frame(input, None)?;
-    let solid = source.placed(input, &Affine::IDENTITY, &frame)?;
-    // (An item is asked the same as a container and an obstacle, and says it of its file.)
-    Item::new(solid.clone()).of(input)?;
-    Ok((solid, kind))
+    Ok((source.placed(input, &Affine::IDENTITY, &frame)?, kind))
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ fn boxes_fill_a_box() {
     let told = place.run("layout box:20,20,20 cube.csg*8 -o full.json --json").good().json();
     assert_eq!((&told["placed"], &told["left"], &told["end"]), (&json!(8), &json!(0), &json!("complete")));
     assert_eq!(told["items"], json!([{ "name": "cube.csg", "count": 8, "placed": 8, "left": 0 }]));
-    holds(&told["density"], 1.0, 1e-3);
+    holds(&told["filled_part"], 1.0, 1e-3);
     holds(&told["volume"], 8000.0, 1.0);
     holds(&told["mass"], 8000.0, 1.0);
     holds(&told["height"], 20.0, 1e-3);
@@ -52,7 +52,7 @@ fn boxes_fill_a_box() {
     let told = layout(&place, "full.json");
     assert_eq!((&told["format"], &told["version"]), (&json!("leafless layout"), &json!(1)));
     assert_eq!(told["container"], json!({ "box": [20.0, 20.0, 20.0] }));
-    assert_eq!(told["items"], json!([{ "file": "cube.csg", "count": 8 }]));
+    assert_eq!(told["items"], json!([{ "file": "cube.csg", "count": 8, "density": 1.0 }]));
     assert_eq!(told["placed"].as_array().unwrap().len(), 8);
     for copy in told["placed"].as_array().unwrap() {
         assert_eq!((&copy["item"], &copy["name"]), (&json!(0), &json!("cube.csg")));
@@ -60,6 +60,15 @@ fn boxes_fill_a_box() {
     }
     let told = place.run("layout --check full.json --json").good().json();
     assert_eq!((&told["copies"], &told["proven"], &told["conflicts"]), (&json!(8), &json!(8), &json!([])));
+
+    // What is heavy, and how heavy.
+    let told = place.run("layout box:10,10,20 cube.csg*2 -o d.json --density 2.5 --json").good().json();
+    holds(&told["mass"], 5000.0, 1.0);
+    let heavy = "layout box:20,20,12 slab.csg cube.csg*2 -o d.json --density 2.5,1e-3 --json";
+    holds(&place.run(heavy).good().json()["mass"], 2002.0, 1.0);
+    let told = layout(&place, "d.json");
+    assert_eq!((&told["items"][0]["density"], &told["items"][1]["density"]), (&json!(2.5), &json!(1e-3)));
+    place.run("layout --check d.json").good();
 
     // With a distance between them there is less room; what goes in is written.
     let run = place.run("layout box:20,20,20 cube.csg*8 -o some.json --clearance 0.5 --rounds 1");
@@ -173,7 +182,7 @@ fn options() {
     );
     let line = "layout box:6,2,2 part*2 -o a.json --rounds 1";
     place.run(line).good();
-    assert_eq!(layout(&place, "a.json")["items"], json!([{ "file": "part*2", "count": 1 }]));
+    assert_eq!(layout(&place, "a.json")["items"], json!([{ "file": "part*2", "count": 1, "density": 1.0 }]));
     place.run("layout box:6,2,4 part*2*2 -o a.json").good();
     place.run(&format!("{line} --orientations 24")).good();
     place.run(&format!("{line} --orientations turns.txt")).good();
@@ -333,6 +342,8 @@ fn hostile_layouts_are_refused() {
         (&["placed", "0", "matrix", "0"], json!([1, 0, 0]), "is no layout"),
         (&["items", "0", "count"], json!(1), "placed 1: of item 0 there are more copies than 1"),
         (&["items", "0", "count"], json!(0), "item 0: the number of copies"),
+        (&["items", "0", "density"], json!(0.0), "item 0: the density"),
+        (&["items", "0", "density"], json!(null), "is no layout"),
         (&["items", "0", "count"], json!(4_294_967_295u32), "item 0: the number of copies"),
         (&["items", "0", "count"], json!(4_294_967_296u64), "is no layout"),
         (&["items", "0", "file"], json!("none/cube.csg"), "No such file"),
@@ -423,6 +434,9 @@ fn what_is_refused() {
         ("box:9,9,9 cube.csg -o a.json --orientations flip.txt", 1, &["mirror"]),
         ("box:9,9,9 cube.csg -o a.json --orientations empty.txt", 1, &["empty.txt", "no matrix"]),
         ("box:9,9,9 cube.csg -o a.json --objective most", 2, &["--objective", "balance=x,y,z"]),
+        ("box:9,9,9 cube.csg -o a.json --density 0", 2, &["--density", "above 0"]),
+        ("box:9,9,9 cube.csg -o a.json --density 1,2", 2, &["--density", "one for each of 1 item, not 2"]),
+        ("box:9,9,9 cube.csg slab.csg -o a.json --density 1,nan", 2, &["--density", "above 0"]),
         ("box:9,9,9 cube.csg -o a.json --objective balance=1,2", 2, &["balance=x,y,z"]),
         ("box:9,9,9 cube.csg -o a.json --objective balance=1,2,nan", 2, &["balance=x,y,z"]),
         ("box:9,9,9 cube.csg -o a.json --free-along w", 2, &["--free-along", "+x, -x"]),
