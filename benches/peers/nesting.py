@@ -1,9 +1,13 @@
 #!/usr/bin/env python3
-"""What MeshLib's 3D nesting does with a box of mixed CAD parts (peer measurement).
+"""What MeshLib's 3D nesting and `leafless layout` do with a box of mixed CAD parts.
 
     pip install meshlib numpy            # needed
     pip install trimesh python-fcl       # only for --fcl, the second check
-    python nesting.py MODELS [--stage series min densify sequential] ...
+    cargo build --release -p leafless-cli
+    python nesting.py MODELS --stage leafless sequential --leafless ../../target/release/leafless ...
+
+The stage `random` asks `leafless layout` for a thousand layouts by chance, and MeshLib for the exact distance of every
+pair of parts that are near in them.
 
 MODELS is a folder with featuretype.STL, angle_block.STL and plate_holes.STL. Every part is scaled
 uniformly so that the longest side of its axis-aligned bounding box is 1 and moved to the origin.
@@ -11,14 +15,16 @@ The container is a cube of edge E.
 
 Columns of the tables
   placed   parts with NestingResult.nested set
-  wall/cpu seconds of the call alone (wall clock / processor time of all threads)
+  wall/cpu seconds of the call alone (wall clock / processor time of all threads); of leafless those of the whole process,
+           which reads the files, proves the layout, measures it and writes it
+  d_cube   sum of true volumes of placed parts / E^3
   d_base   sum of true volumes of placed parts / (E * E * height reached)
   d_tight  sum of true volumes of placed parts / volume of the tight box of all placed parts
   min gap  smallest distance between two placed parts (exact mesh-mesh distance)
   <c       number of pairs nearer than the clearance asked for; coll: pairs that intersect
   out      by how much the worst part sticks out of the container
 """
-import argparse, itertools, os, sys, tempfile, threading, time
+import argparse, itertools, json, os, random, resource, subprocess, sys, tempfile, threading, time
 
 ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 ap.add_argument("models", help="folder with the three STL files")
@@ -26,7 +32,12 @@ ap.add_argument("--counts", type=int, nargs=3, default=[30, 20, 10], metavar="N"
                 help="number of featuretype, angle_block, plate_holes")
 ap.add_argument("--clearance", type=float, default=0.02)
 ap.add_argument("--stage", nargs="+", default=["series", "min", "densify", "sequential"],
-                choices=["series", "min", "densify", "loose", "sequential", "limit", "drop"])
+                choices=["series", "min", "densify", "loose", "sequential", "limit", "drop", "leafless", "random"])
+ap.add_argument("--leafless", default="leafless", help="the program")
+ap.add_argument("--leafless-edges", type=float, nargs="*", default=None, help="E of stage leafless (default: --edge)")
+ap.add_argument("--leafless-options", action="append", default=None,
+                help="options of stage leafless, one string for each run (may be given several times)")
+ap.add_argument("--layouts", type=int, default=1000, help="layouts of stage random")
 ap.add_argument("--edges", type=float, nargs=3, default=[2.0, 4.5, 0.1], metavar=("FROM", "TO", "STEP"))
 ap.add_argument("--min-step", type=float, default=0.01, help="step of E in stage min")
 ap.add_argument("--min-range", type=float, nargs=2, default=None)
@@ -187,6 +198,28 @@ def sequential(parts, E, config, voxel):
     return out, c
 
 
+def leafless(kinds, counts, E, options, out):
+    """Runs the program; returns its layout, the clock, and its report."""
+    target = os.path.join(out, "layout.json")
+    command = [A.leafless, "layout", f"box:{E},{E},{E}",
+               *(os.path.join(out, q.name + ".stl") + f"*{n}" for q, n in zip(kinds, counts) if n > 0),
+               "--clearance", str(A.clearance), "-o", target, "--json", *options]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with Clock() as c:
+        done = subprocess.run(command, capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    c.c = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    if done.returncode not in (0, 1) or not done.stdout:
+        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+    kinds = [q for q, n in zip(kinds, counts) if n > 0]
+    placed = []
+    for copy in json.load(open(target))["placed"]:
+        m = copy["matrix"]
+        a = mm.Matrix3f(*(mm.Vector3f(*row[:3]) for row in m))
+        placed.append((kinds[copy["item"]], mm.AffineXf3f(a, mm.Vector3f(*(row[3] for row in m)))))
+    return placed, c, json.loads(done.stdout)
+
+
 # ---------------------------------------------------------------- figures
 def boxes(placed):
     b = []
@@ -199,11 +232,11 @@ def boxes(placed):
 
 def density(placed, E):
     if not placed:
-        return dict(n=0, base=0, tight=0, h=0, out=0, dims=(0, 0, 0), wall=0)
+        return dict(n=0, base=0, cube=0, tight=0, h=0, out=0, dims=(0, 0, 0), wall=0)
     b = boxes(placed)
     lo, hi = np.min([x[0] for x in b], 0), np.max([x[1] for x in b], 0)
     V = sum(q.volume for q, _ in placed)
-    return dict(n=len(placed), base=V / (E * E * hi[2]), tight=V / np.prod(hi - lo), h=hi[2],
+    return dict(n=len(placed), base=V / (E * E * hi[2]), cube=V / E ** 3, tight=V / np.prod(hi - lo), h=hi[2],
                 out=max(0, -lo.min(), (hi - E).max()), dims=hi - lo, wall=min(lo.min(), (E - hi).min()))
 
 
@@ -264,12 +297,12 @@ def by_kind(placed):
     return "/".join(str(sum(q.name == n for q, _ in placed)) for n in NAMES)
 
 
-HEAD = f"{'E':>5} {'step':28} {'placed':>6} {'kinds':>11} {'wall':>7} {'cpu':>7} {'height':>6} {'d_base':>7} {'d_tight':>7} {'out':>7} {'pairs':>5} {'min gap':>8} {'<c':>4} {'coll':>4}"
+HEAD = f"{'E':>5} {'step':28} {'placed':>6} {'kinds':>11} {'wall':>7} {'cpu':>7} {'height':>6} {'d_cube':>7} {'d_base':>7} {'d_tight':>7} {'out':>7} {'pairs':>5} {'min gap':>8} {'<c':>4} {'coll':>4}"
 
 
 def row(E, step, placed, c):
     d = density(placed, E)
-    s = f"{E:5.2f} {step:28} {d['n']:6} {by_kind(placed):>11} {c.w:7.2f} {c.c:7.2f} {d['h']:6.3f} {d['base']:7.4f} {d['tight']:7.4f} {d['out']:7.4f}"
+    s = f"{E:5.2f} {step:28} {d['n']:6} {by_kind(placed):>11} {c.w:7.2f} {c.c:7.2f} {d['h']:6.3f} {d['cube']:7.4f} {d['base']:7.4f} {d['tight']:7.4f} {d['out']:7.4f}"
     if not A.no_check and placed:
         k = check(placed, E)
         s += f" {k['pairs']:5} {k['gap']:8.5f} {k['viol']:4} {k['coll']:4}"
@@ -387,6 +420,39 @@ def main():
                 row(E, f"sequential, voxel {v:g}", placed, c)
         print()
 
+    if "leafless" in A.stage:
+        print("# leafless layout")
+        print(HEAD)
+        for E in A.leafless_edges or [E0]:
+            for options in A.leafless_options or [""]:
+                placed, c, told = leafless(kinds, A.counts, E, options.split(), out)
+                row(E, f"{options or 'as it is'}", placed, c)
+                lower, upper = (told["filled_part"][end] for end in ("lower", "upper"))
+                true = density(placed, E)["cube"]
+                if not lower - 1e-6 <= true <= upper + 1e-6:
+                    sys.exit(f"it tells that {lower} to {upper} are filled, which is {true}")
+        print()
+
+    if "random" in A.stage:
+        chance, clock, pairs, copies, nearest = random.Random(40), time.perf_counter(), 0, 0, 9.0
+        for number in range(A.layouts):
+            E, A.clearance = chance.uniform(1.3, 2.2), chance.choice([0.001, 0.005, 0.02, 0.1])
+            counts = [chance.randrange(5) for _ in kinds]
+            counts[chance.randrange(3)] += 1
+            options = ["--rounds", "1", "--cells", str(chance.choice([16, 24, 40])), "--seed", str(number),
+                       "--orientations", chance.choice(["24", "free:6", "as-given"]),
+                       "--objective", chance.choice(["count", "height", "density", f"balance={E / 2},{E / 2},{E / 2}"])]
+            options += chance.choice([[], [], ["--free-along", "+z"]])
+            placed, _, told = leafless(kinds, counts, E, options, out)
+            # (MeshLib computes with single precision.)
+            found, around = check(placed, E, 2e-6), density(placed, E)
+            copies, pairs = copies + len(placed), pairs + found["pairs"]
+            nearest = min(nearest, found["gap"] / A.clearance)
+            if found["viol"] > 0 or found["coll"] > 0 or around["out"] > 1e-6:
+                sys.exit(f"layout {number}: {found}, {around['out']} out of the box: {told}")
+        print(f"# {A.layouts} layouts by chance: {copies} parts, {pairs} pairs nearer than the clearance by their boxes; the "
+              f"nearest has {nearest:.5f} of the clearance; {time.perf_counter() - clock:.0f} s\n")
+
     if "limit" in A.stage:
         print("# iterationLimit: N equal plates in a cube that holds many more")
         plate = kinds[2]
@@ -407,7 +473,6 @@ def main():
               f"given (7, 7, 7), returned {tuple(float(x) for x in np.round(xf_np(r[mm.ObjId(0)].xf)[:3, 3], 6))}")
         print()
 
-    import resource
     print(f"threads with processor time: {[round(t, 2) for t in threads() if t > 0.05]}, "
           f"peak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
 

@@ -94,11 +94,6 @@ pub fn tolerance(text: &str) -> Result<f64, String> {
     number(text, "a number not below 0", |tolerance| tolerance >= 0.0)
 }
 
-/// A density.
-pub fn density(text: &str) -> Result<f64, String> {
-    number(text, "a number above 0", |density| density > 0.0)
-}
-
 /// How long something may take.
 pub fn seconds(text: &str) -> Result<f64, String> {
     number(text, "a number of seconds above 0", |seconds| seconds > 0.0 && seconds < 1e9)

@@ -108,6 +108,11 @@ impl Layout {
         Ok(Layout { container, obstacles, items, pieces, clearance, placed: Vec::new(), boxes: Vec::new() })
     }
 
+    /// A box around the container.
+    pub fn bounds(&self) -> &Bounds {
+        self.container.bounds()
+    }
+
     /// What may be placed.
     pub fn items(&self) -> &[Item] {
         &self.items

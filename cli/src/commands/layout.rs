@@ -2,15 +2,19 @@
 
 use crate::failure::{Failure, Of};
 use crate::making::laid::{Scenery, package, surfaces};
-use crate::options::{density, numbers, seconds, threads, tolerance};
+use crate::making::laid_picture::picture;
+use crate::options::{numbers, seconds, threads, tolerance};
 use crate::progress::{until, watched};
+use crate::report::density::{Density, density};
 use crate::report::layout::{Checked, Found, Item};
 use crate::sink::{Output, print_told};
 use crate::source::input::Input;
+use crate::source::mesh::unit;
 use crate::source::placing::from_file;
-use crate::source::plan::{Ends, Measures, Near, Plan, Standing, folder_of, name_of};
+use crate::source::plan::{Ends, MassUnit, Measures, Near, Plan, Standing, folder_of, name_of};
 use crate::source::stock::{Clearances, Copies, Holder, Stock, named};
 use clap::Args;
+use leafless::exchange::LengthUnit;
 use leafless::layout::{Direction, Layout, LayoutMeasures, Objective, Orientations, SearchOptions};
 use leafless::{Affine, Control, Error, Interval};
 use std::ffi::{OsStr, OsString};
@@ -23,7 +27,8 @@ use std::time::Instant;
 ///
 /// The JSON says which copy stands where, and --check proves it again. The 3MF has an object for each item and its copies in their
 /// places, ready to be printed: a mesh is taken as it is, and of anything else the surface is made as `leafless mesh` makes it, which is near to the solid. The scene
-/// is to look at, with `leafless render` or OpenSCAD: the container is marked by % in it.
+/// is for `leafless render` and OpenSCAD: the container is marked by % in it. The picture shows the copies of each item in a colour of
+/// their own, obstacles in grey, and a box around the container.
 ///
 /// Lengths are those of the model. What is not known is null in JSON. Copies and obstacles have
 /// numbers from 0, in the order in which they stand in the JSON.
@@ -40,7 +45,7 @@ pub struct Arguments {
     /// What is placed, of the same kinds: `part.stl`, or `part.stl*30` for thirty copies; 10,000 copies of all items at the most
     #[arg(value_name = "ITEM[*COUNT]", required_unless_present = "check", conflicts_with = "check")]
     items: Vec<OsString>,
-    /// Where to write the layout: the extension .json, .3mf or .csg tells the format; `-` is standard output, for JSON. May be given several
+    /// Where to write the layout: the extension .json, .3mf, .csg or .png tells the format; `-` is standard output, for JSON. May be given several
     /// times
     #[arg(short, long, value_name = "OUTPUT", required_unless_present = "check", conflicts_with = "check")]
     output: Vec<OsString>,
@@ -61,10 +66,13 @@ pub struct Arguments {
     /// the matrices in a file, a line for each as --place takes it elsewhere, of which only the turn counts. Without it: 24
     #[arg(long, value_name = "TURNS", conflicts_with = "check")]
     orientations: Option<OsString>,
-    /// Mass per cubic model unit: one number for all items, or one for each, separated by commas. It counts for the mass, the centroid and
-    /// the objective `balance`. Without it: 1
+    /// Mass of a cubic unit: one number for all items, or one for each, separated by commas; or with units, g/cm3, kg/dm3, kg/m3 or lb/in3, if the
+    /// unit of the model is known. It counts for the mass, the centroid and the objective `balance`. Without it: 1
     #[arg(long, value_name = "D[,D]...", value_parser = density, value_delimiter = ',', allow_hyphen_values = true, conflicts_with = "check")]
-    density: Vec<f64>,
+    density: Vec<Density>,
+    /// The unit of the model where no file tells it: um, mm, cm, m, in or ft. The 3MF has it, too
+    #[arg(long, value_name = "UNIT", value_parser = unit, conflicts_with = "check")]
+    unit: Option<LengthUnit>,
     /// What is sought: `count`, as many copies as possible; `height`, these as low as possible along z; `density`, as much volume as
     /// possible; `balance=X,Y,Z`, as many copies as possible with the centre of gravity near to a point. Without it: count
     #[arg(long, value_name = "AIM", value_parser = objective, conflicts_with = "check")]
@@ -161,6 +169,7 @@ enum Format {
     Json,
     Package,
     Scene,
+    Picture,
 }
 
 fn format(output: &Output) -> Result<Format, Failure> {
@@ -169,8 +178,9 @@ fn format(output: &Output) -> Result<Format, Failure> {
         Some("json") => Ok(Format::Json),
         Some("3mf") => Ok(Format::Package),
         Some("csg") => Ok(Format::Scene),
+        Some("png") => Ok(Format::Picture),
         _ => {
-            let problem = "has none of the extensions .json, .3mf and .csg, which tell the format";
+            let problem = "has none of the extensions .json, .3mf, .csg and .png, which tell the format";
             Err(Failure::Usage(format!("{output}: {problem}")))
         }
     }
@@ -202,17 +212,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         between: arguments.clearance.unwrap_or(0.0),
         wall: arguments.wall_clearance.unwrap_or(0.0),
     };
-    let solids = stock.read(&turns, clearances)?;
+    let solids = stock.read(&turns, clearances, arguments.unit)?;
     // What cannot be written is told before the search.
     let scenes = outputs.iter().zip(&formats).map(|(output, format)| match format {
         Format::Scene => Scenery::new(&stock, &solids, folder_of(output.path())).map(Some),
         _ => Ok(None),
     });
     let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
-    let meshes = match formats.contains(&Format::Package) {
-        true => surfaces(&stock, arguments.threads)?,
-        false => vec![],
-    };
+    let is_shown = formats.contains(&Format::Picture);
+    let items = stock.items.iter().filter(|_| is_shown || formats.contains(&Format::Package));
+    let meshes = surfaces(items.map(|copies| &copies.input), arguments.threads)?;
+    let obstacles = surfaces(stock.obstacles.iter().filter(|_| is_shown), arguments.threads)?;
     let options = SearchOptions {
         objective: arguments.objective.unwrap_or(Objective::Count),
         seed: arguments.seed.unwrap_or(0),
@@ -227,7 +237,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             let control = Control { max_splits: arguments.splits, cancel, ..*control };
             layout.search(&options, &control)
         })?;
-        let (nearest, measures) = known(&layout, control)?;
+        let (nearest, measures) = known(&layout, solids.mass_unit, control)?;
         Ok((layout, search, nearest, measures))
     });
     let (layout, search, nearest, measures) = found.of(&stock.holder)?;
@@ -244,6 +254,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             (Format::Package, _) => {
                 output.write(&package(&stock, &meshes, placed, solids.unit).of(output)?)?;
             }
+            (Format::Picture, _) => {
+                let bytes = picture(&layout, &meshes, &obstacles, &Control::threads(arguments.threads));
+                output.write(&bytes.of(output)?)?;
+            }
             _ => {
                 let standings = placed.iter().zip(&nearest).map(|(placed, nearest)| Standing {
                     item: placed.item,
@@ -252,7 +266,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                     nearest: *nearest,
                 });
                 let folder = folder_of(output.path());
-                let plan = Plan::new(&stock, clearances, standings.collect(), measures, folder)?;
+                let plan =
+                    Plan::new(&stock, &solids.densities, clearances, standings.collect(), measures, folder)?;
                 output.write(plan.text()?.as_bytes())?;
             }
         }
@@ -270,7 +285,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// What is next to each copy, and what is known of all.
-fn known(layout: &Layout, control: &Control<'_>) -> Result<(Vec<Option<Near>>, Measures), Error> {
+fn known(
+    layout: &Layout,
+    mass_unit: MassUnit,
+    control: &Control<'_>,
+) -> Result<(Vec<Option<Near>>, Measures), Error> {
     let quiet = Control { progress: None, ..*control };
     let mut nearest = vec![];
     let mut smallest: Option<Interval> = None;
@@ -294,6 +313,7 @@ fn known(layout: &Layout, control: &Control<'_>) -> Result<(Vec<Option<Near>>, M
         filled_part: filled_part.into(),
         height: height.into(),
         mass: mass.into(),
+        mass_unit,
         centroid: centroid.map(|centre| centre.map(Ends::from)),
         smallest_gap: smallest.map(Ends::from),
     };
@@ -304,7 +324,7 @@ fn known(layout: &Layout, control: &Control<'_>) -> Result<(Vec<Option<Near>>, M
 fn check(arguments: &Arguments, input: &Input) -> Result<(), Failure> {
     let plan = Plan::read(input)?;
     let stock = plan.stock(folder_of(input.path()), input)?;
-    let solids = stock.read(&Orientations::AsGiven, plan.clearances())?;
+    let solids = stock.read(&Orientations::AsGiven, plan.clearances(), None)?;
     let control = Control { threads: arguments.threads, ..Control::default() };
     let mut layout = Layout::new(&solids.bay, &control).of(input)?;
     plan.place(&mut layout, input)?;

@@ -11,9 +11,12 @@ use leafless::layout::Placed;
 use leafless::{Affine, TriangleMesh};
 use std::path::Path;
 
-/// The surfaces of all items.
-pub fn surfaces(stock: &Stock, threads: usize) -> Result<Vec<TriangleMesh>, Failure> {
-    stock.items.iter().map(|copies| usual_surface(&copies.input, threads)).collect()
+/// The surfaces of what is in files.
+pub fn surfaces<'i>(
+    inputs: impl Iterator<Item = &'i Input>,
+    threads: usize,
+) -> Result<Vec<TriangleMesh>, Failure> {
+    inputs.map(|input| usual_surface(input, threads)).collect()
 }
 
 /// A 3MF: an object for each item, and an item of the build for each copy.

@@ -13,6 +13,7 @@ pub mod dexels;
 pub mod faces;
 pub mod job;
 pub mod laid;
+pub mod laid_picture;
 pub mod like;
 pub mod moved;
 pub mod octree_from_dexels;

@@ -28,6 +28,11 @@ pub fn density(text: &str) -> Result<Density, String> {
 }
 
 impl Density {
+    /// The mass of a cubic unit of the model, whatever that unit is.
+    pub fn of_number(number: f64) -> Density {
+        Density { number, unit: None }
+    }
+
     /// The mass of a cubic unit of the model, and the unit of that mass.
     pub fn of_cube(&self, unit: Option<LengthUnit>) -> Result<(f64, &'static str), String> {
         let Some((grams, edge)) = self.unit else { return Ok((self.number, "")) };

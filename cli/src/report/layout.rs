@@ -77,11 +77,11 @@ impl Found {
         for item in &self.items {
             put_line(&mut text, "", &format!("{} {}", of(item.placed, item.count), item.name));
         }
-        let Measures { filled_part, height, mass, centroid, smallest_gap, .. } = &self.measures;
+        let Measures { filled_part, height, mass, mass_unit, centroid, smallest_gap, .. } = &self.measures;
         let told = |ends: &Ends| measured(ends.interval());
         put_line(&mut text, "filled", &format!("{} of the container's volume", told(filled_part)));
         put_line(&mut text, "height", &told(height));
-        put_line(&mut text, "mass", &told(mass));
+        put_line(&mut text, "mass", format!("{} {}", told(mass), mass_unit.name()).trim_end());
         let centre = centroid.as_ref().map(|centre| centre.each_ref().map(told).join(", "));
         put_line(&mut text, "centroid", &centre.unwrap_or_else(|| "unknown".into()));
         put_line(&mut text, "smallest gap", &smallest_gap.as_ref().map_or_else(|| "none".into(), told));

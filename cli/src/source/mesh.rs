@@ -72,7 +72,7 @@ pub fn fill_name(fill: FillRule) -> &'static str {
     }
 }
 
-fn unit(text: &str) -> Result<LengthUnit, String> {
+pub fn unit(text: &str) -> Result<LengthUnit, String> {
     text.parse().map_err(|_| "expected um, mm, cm, m, in or ft".into())
 }
 

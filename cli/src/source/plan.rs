@@ -1,6 +1,7 @@
 //! Layouts in files: what stands where, as JSON.
 
 use crate::failure::{Failure, Of};
+use crate::report::density::Density;
 use crate::source::input::Input;
 use crate::source::stock::{Clearances, Copies, Holder, MOST_COPIES, Stock, named};
 use crate::words::count;
@@ -117,14 +118,35 @@ pub struct Measures {
     pub filled_part: Ends,
     pub height: Ends,
     pub mass: Ends,
+    /// `g`, or empty where densities have no unit.
+    pub mass_unit: MassUnit,
     pub centroid: Option<[Ends; 3]>,
     pub smallest_gap: Option<Ends>,
 }
 
+/// The unit of a mass.
+#[derive(Serialize, Deserialize, Clone, Copy, PartialEq)]
+pub enum MassUnit {
+    #[serde(rename = "")]
+    Unknown,
+    #[serde(rename = "g")]
+    Gram,
+}
+
+impl MassUnit {
+    pub fn name(self) -> &'static str {
+        match self {
+            MassUnit::Unknown => "",
+            MassUnit::Gram => "g",
+        }
+    }
+}
+
 impl Plan {
-    /// The layout, for a file in a folder.
+    /// The layout, for a file in a folder; `densities` are those of the items.
     pub fn new(
         stock: &Stock,
+        densities: &[f64],
         clearances: Clearances,
         placed: Vec<Standing>,
         measures: Measures,
@@ -139,9 +161,9 @@ impl Plan {
                 Holder::File(input) => Container::File(name(input)?),
             },
             obstacles: stock.obstacles.iter().map(name).collect::<Result<_, _>>()?,
-            items: (stock.items.iter())
-                .map(|&Copies { ref input, count, density }| {
-                    Ok(Listed { file: name(input)?, count, density })
+            items: (stock.items.iter().zip(densities))
+                .map(|(Copies { input, count, .. }, &density)| {
+                    Ok(Listed { file: name(input)?, count: *count, density })
                 })
                 .collect::<Result<_, Failure>>()?,
             clearance: clearances.between,
@@ -254,7 +276,7 @@ impl Plan {
         };
         let obstacles = self.obstacles.iter().map(file).collect::<Result<_, _>>()?;
         let copies = |&Listed { file: ref name, count, density }: &Listed| {
-            Ok(Copies { input: file(name)?, count, density })
+            Ok(Copies { input: file(name)?, count, density: Density::of_number(density) })
         };
         let items = self.items.iter().map(copies).collect::<Result<_, Failure>>()?;
         Ok(Stock { holder, obstacles, items })

@@ -2,8 +2,10 @@
 
 use crate::failure::{Failure, Of};
 use crate::options::numbers;
+use crate::report::density::Density;
 use crate::source::file::Taking;
 use crate::source::input::Input;
+use crate::source::plan::MassUnit;
 use crate::source::solid::Source;
 use crate::words::counted;
 use leafless::exchange::LengthUnit;
@@ -66,13 +68,13 @@ impl Holder {
 pub struct Copies {
     pub input: Input,
     pub count: u32,
-    /// Mass per cubic model unit.
-    pub density: f64,
+    pub density: Density,
 }
 
 impl Copies {
     /// What is meant by a name: `part.stl*30` are thirty copies. A file that is called so is one. Their density is 1.
     pub fn of(name: &OsStr) -> Result<Copies, Failure> {
+        let density = Density::of_number(1.0);
         let counted = || {
             let (file, digits) = name.to_str()?.rsplit_once('*')?;
             (!digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit()))
@@ -85,9 +87,9 @@ impl Copies {
                     let problem = format!("the number of copies must be one from 1 to {most}");
                     Failure::Usage(format!("{}: {problem}", Path::new(name).display()))
                 })?;
-            return Ok(Copies { input: named(OsStr::new(file))?, count, density: 1.0 });
+            return Ok(Copies { input: named(OsStr::new(file))?, count, density });
         }
-        Ok(Copies { input: named(name)?, count: 1, density: 1.0 })
+        Ok(Copies { input: named(name)?, count: 1, density })
     }
 }
 
@@ -126,6 +128,10 @@ pub struct Solids {
     pub items: Vec<Kind>,
     /// The unit of all of which one is known.
     pub unit: Option<LengthUnit>,
+    /// The mass of a cubic model unit of each item, …
+    pub densities: Vec<f64>,
+    /// … and its unit, which is empty if densities are numbers alone.
+    pub mass_unit: MassUnit,
 }
 
 /// How far things are to be apart.
@@ -143,7 +149,7 @@ impl Stock {
     }
 
     /// Gives all items one density, or each its own.
-    pub fn weigh(&mut self, densities: &[f64]) -> Result<(), Failure> {
+    pub fn weigh(&mut self, densities: &[Density]) -> Result<(), Failure> {
         match densities {
             [] => {}
             [density] => self.items.iter_mut().for_each(|copies| copies.density = *density),
@@ -159,8 +165,13 @@ impl Stock {
         Ok(())
     }
 
-    /// Reads all files.
-    pub fn read(&self, orientations: &Orientations, clearances: Clearances) -> Result<Solids, Failure> {
+    /// Reads all files. `unit` is that of the model, if the user tells it.
+    pub fn read(
+        &self,
+        orientations: &Orientations,
+        clearances: Clearances,
+        unit: Option<LengthUnit>,
+    ) -> Result<Solids, Failure> {
         let total: u64 = self.items.iter().map(|copies| u64::from(copies.count)).sum();
         if total > MOST_COPIES.into() {
             let [total, most] = [total, MOST_COPIES.into()].map(crate::words::count);
@@ -168,7 +179,7 @@ impl Stock {
                 "a layout has {most} copies at the most, and these are {total}"
             )));
         }
-        let mut unit = None;
+        let mut unit = unit.map(|unit| (unit, OsString::from("--unit")));
         let (container, holder) = match &self.holder {
             Holder::Box(sides) => (AnySolid::new(Csg::cuboid([0.0; 3], *sides).of(&self.holder)?), None),
             Holder::File(input) => {
@@ -178,20 +189,44 @@ impl Stock {
         };
         let bay = Bay::new(container).of(&self.holder)?;
         let mut bay = bay.with_clearances(clearances.between, clearances.wall).of(&self.holder)?;
-        let (mut obstacles, mut items) = (vec![], vec![]);
+        let mut obstacles = vec![];
         for input in &self.obstacles {
             let (solid, kind) = solid(input, &mut unit)?;
             bay.add_obstacle(solid).of(input)?;
             obstacles.push(kind);
         }
-        for Copies { input, count, density } in &self.items {
+        let mut items = vec![];
+        for Copies { input, count, .. } in &self.items {
             let (solid, kind) = solid(input, &mut unit)?;
             let item = Item::new(solid).and_then(|item| item.with_orientations(orientations.clone()));
-            let item = item.and_then(|item| item.with_count(*count).with_density(*density));
-            item.and_then(|item| bay.add_item(item)).of(input)?;
-            items.push(kind);
+            items.push((item.of(input)?.with_count(*count), kind));
         }
-        Ok(Solids { bay, holder, obstacles, items, unit: unit.map(|(unit, _)| unit) })
+        // (Only now the unit is known.)
+        let unit = unit.map(|(unit, _)| unit);
+        let mut solids = Solids {
+            bay,
+            holder,
+            obstacles,
+            items: vec![],
+            unit,
+            densities: vec![],
+            mass_unit: MassUnit::Unknown,
+        };
+        for (number, ((item, kind), Copies { input, density, .. })) in
+            items.into_iter().zip(&self.items).enumerate()
+        {
+            let refused = |problem| Failure::Usage(format!("--density: {problem}"));
+            let (density, name) = density.of_cube(unit).map_err(refused)?;
+            let mass_unit = if name.is_empty() { MassUnit::Unknown } else { MassUnit::Gram };
+            if number > 0 && mass_unit != solids.mass_unit {
+                return Err(refused("expected a unit for all numbers, or for none".into()));
+            }
+            item.with_density(density).and_then(|item| solids.bay.add_item(item)).of(input)?;
+            solids.items.push(kind);
+            solids.densities.push(density);
+            solids.mass_unit = mass_unit;
+        }
+        Ok(solids)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::place::{Place, Run, block, stl};
 use serde_json::{Value, json};
+use std::io::Cursor;
 
 /// A cube of 10 as a scene, as a mesh and as a solid, a ring, and a slab.
 fn parts() -> Place {
@@ -69,6 +70,13 @@ fn boxes_fill_a_box() {
     let told = layout(&place, "d.json");
     assert_eq!((&told["items"][0]["density"], &told["items"][1]["density"]), (&json!(2.5), &json!(1e-3)));
     place.run("layout --check d.json").good();
+    let steel = "layout box:10,10,20 cube.csg*2 -o d.json -o d.3mf --unit cm --density 7.8g/cm3";
+    let run = place.run(&format!("{steel} --json")).good();
+    holds(&run.json()["mass"], 15_600.0, 1.0);
+    assert_eq!(run.json()["mass_unit"], json!("g"));
+    assert_eq!(place.run("info d.3mf --json").good().json()["unit"], json!("cm"));
+    let run = place.run(steel).good();
+    assert!(run.text().lines().any(|line| line.starts_with("mass") && line.ends_with(" g")), "{run:?}");
 
     // With a distance between them there is less room; what goes in is written.
     let run = place.run("layout box:20,20,20 cube.csg*8 -o some.json --clearance 0.5 --rounds 1");
@@ -79,7 +87,8 @@ fn boxes_fill_a_box() {
     let run = place.run("layout box:21.01,10,10 cube.csg*2 -o two.json --clearance 1 --json").good();
     let [least, most] = ends(&run.json()["smallest_gap"]);
     assert!(least >= 1.0 && most < 1.001, "{run:?}");
-    let run = place.run("layout box:21.01,10,10 cube.csg*2 -o two.json --wall-clearance 0.1 --rounds 1");
+    let run =
+        place.run("layout box:21.01,10,10 cube.csg*2 -o two.json -o two.png --wall-clearance 0.1 --rounds 1");
     left(&run, &["2 copies are left"]);
     assert_eq!(layout(&place, "two.json")["measures"]["centroid"], Value::Null);
     place.run("layout --check two.json").good();
@@ -87,7 +96,19 @@ fn boxes_fill_a_box() {
     // An obstacle takes half of the room.
     let run = place.run("layout box:20,20,10 cube.csg*4 --obstacle slab.csg -o o.json -o o.csg --rounds 1");
     left(&run, &["4 copies are left"]);
-    place.run("layout box:20,20,12 cube.csg*4 --obstacle slab.csg -o o.json -o o.csg").good();
+    place.run("layout box:20,20,12 cube.csg*4 --obstacle slab.csg -o o.json -o o.csg -o o.png").good();
+    // (Blue cubes on a grey slab.)
+    let image = png::Decoder::new(Cursor::new(place.bytes("o.png"))).read_info();
+    let mut image = image.unwrap();
+    let mut pixels = vec![0; image.output_buffer_size().unwrap()];
+    let frame = image.next_frame(&mut pixels).unwrap();
+    assert_eq!((frame.width, frame.height), (1024, 768));
+    let shown = |is_shown: &dyn Fn(&[u8]) -> bool| {
+        pixels.chunks_exact(frame.color_type.samples()).filter(|pixel| is_shown(pixel)).count()
+    };
+    let blue = shown(&|pixel| pixel[2] > 100 && u32::from(pixel[2]) > u32::from(pixel[0]) + 60);
+    let grey = shown(&|pixel| (60..230).contains(&pixel[0]) && pixel[2].abs_diff(pixel[0]) < 30);
+    assert!(blue > 100_000 && grey > 10_000, "{blue} {grey}");
     let told = layout(&place, "o.json");
     assert_eq!(told["obstacles"], json!(["slab.csg"]));
     place.run("layout --check o.json").good();
@@ -420,7 +441,7 @@ fn what_is_refused() {
             1,
             &["inches.3mf: its unit is in, and that of inch.3mf is mm"],
         ),
-        ("box:9,9,9 cube.csg -o a.txt", 2, &["a.txt", ".json, .3mf and .csg"]),
+        ("box:9,9,9 cube.csg -o a.txt", 2, &["a.txt", ".json, .3mf, .csg and .png"]),
         ("box:9,9,9 cube.csg -o cube.csg", 1, &["cube.csg", "not overwritten"]),
         ("box:9,9,9 cube.csg -o none/a.json", 1, &["none"]),
         ("box:9,9,9 cube.csg -o a.json --clearance -1", 2, &["--clearance", "not below 0"]),
@@ -435,6 +456,9 @@ fn what_is_refused() {
         ("box:9,9,9 cube.csg -o a.json --orientations empty.txt", 1, &["empty.txt", "no matrix"]),
         ("box:9,9,9 cube.csg -o a.json --objective most", 2, &["--objective", "balance=x,y,z"]),
         ("box:9,9,9 cube.csg -o a.json --density 0", 2, &["--density", "above 0"]),
+        ("box:9,9,9 cube.csg -o a.json --density 1g/cm3", 2, &["--density", "--unit mm"]),
+        ("box:9,9,9 cube.csg slab.csg -o a.json --unit mm --density 1g/cm3,2", 2, &["--density", "for none"]),
+        ("box:9,9,9 cube.csg -o a.json --unit parsec", 2, &["--unit"]),
         ("box:9,9,9 cube.csg -o a.json --density 1,2", 2, &["--density", "one for each of 1 item, not 2"]),
         ("box:9,9,9 cube.csg slab.csg -o a.json --density 1,nan", 2, &["--density", "above 0"]),
         ("box:9,9,9 cube.csg -o a.json --objective balance=1,2", 2, &["balance=x,y,z"]),

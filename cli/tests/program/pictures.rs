@@ -142,6 +142,30 @@ fn a_plate_with_twenty_bores() {
     }
 }
 
+/// The layout of the documentation: scenes and commands are those of the page, and what the page says is what is told.
+#[test]
+fn parts_in_a_box() {
+    let place = Place::new();
+    let page = std::fs::read_to_string(folder().join("../layout.md")).unwrap();
+    let blocks: Vec<&str> = page.split("```").collect();
+    let scenes = blocks.iter().find_map(|block| block.strip_prefix("openscad\n// ")).unwrap();
+    for scene in scenes.split("// ") {
+        let (name, text) = scene.split_once('\n').unwrap();
+        place.write(name, text);
+        place.run(&format!("mesh {name} -o {}.stl", name.strip_suffix(".csg").unwrap())).good();
+    }
+    let told = blocks.iter().find_map(|block| block.strip_prefix("console\n")).unwrap();
+    let (_, command) = told.split_once("$ leafless ").unwrap();
+    let (command, lines) = command.split_once("tray.png\n").unwrap();
+    let run = place.run(&format!("{}tray.png", command.replace("\\\n", ""))).good();
+    assert!(run.text().contains("placed          27 of 27\n"), "{run:?}");
+    for line in lines.lines() {
+        assert!(run.text().lines().any(|told| told == line), "{line}: {run:?}");
+    }
+    check("layout.png", &place.bytes("tray.png"));
+    place.run("layout --check tray.json").good();
+}
+
 #[test]
 fn the_inside_of_the_gear() {
     let control = Control::default();

@@ -71,7 +71,8 @@ impl Forms {
         }
         let middle = centre(&given.bits)?;
         let volume = given.bits.count() as f64 * fine * fine * fine;
-        let figure = Figure { volume, centre: axes(|k| given.origin[k] + fine * middle[k]) };
+        let centre = axes(|k| given.origin[k] + fine * middle[k]);
+        let figure = Figure { volume, centre, ..Figure::of_box(&item.bounds) };
         Ok(Forms { all, figure })
     }
 }

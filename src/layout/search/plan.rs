@@ -49,11 +49,16 @@ impl Plan {
         let mut random = Random::new(seed.wrapping_add(round.wrapping_mul(0xA076_1D64_78BD_642F)));
         // The first rounds go by size, later ones more and more by chance.
         let spread = if round < LEANS.len() as u64 { 0.0 } else { 0.15 * (1 + (round - 4) % 8) as f64 };
+        // What is long finds no place late, and what is large neither.
+        let size = |figure: &Figure| match round % 2 {
+            0 => figure.volume,
+            _ => figure.longest * figure.longest * figure.longest,
+        };
         let mut keyed = Vec::new();
         for (item, (&count, figure)) in left.iter().zip(figures).enumerate() {
             for _ in 0..count {
                 let factor = libm::exp(2.0 * spread * (random.part() - 0.5));
-                memory::push(&mut keyed, (figure.volume * factor, item))?;
+                memory::push(&mut keyed, (size(figure) * factor, item))?;
             }
         }
         keyed.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));

@@ -10,6 +10,8 @@ use crate::lattice::{Bounds, axes};
 pub(super) struct Figure {
     /// Cubic model units.
     pub(super) volume: f64,
+    /// The longest side of its box (model units).
+    pub(super) longest: f64,
     /// In the item's own coordinates.
     pub(super) centre: [f64; 3],
 }
@@ -17,7 +19,11 @@ pub(super) struct Figure {
 impl Figure {
     pub(super) fn of_box(bounds: &Bounds) -> Figure {
         let sides: [f64; 3] = axes(|k| bounds.max[k] - bounds.min[k]);
-        Figure { volume: sides.iter().product(), centre: axes(|k| 0.5 * (bounds.min[k] + bounds.max[k])) }
+        Figure {
+            volume: sides.iter().product(),
+            longest: sides.iter().fold(0.0, |longest, &side| longest.max(side)),
+            centre: axes(|k| 0.5 * (bounds.min[k] + bounds.max[k])),
+        }
     }
 }
 
