@@ -1,14 +1,16 @@
 //! What a layout weighs, and how much of the container it fills.
 
 use super::Layout;
-use super::item::on_any_frame;
 use super::orientation::stretch;
+use super::proof::{Near, Piece, diagonal};
+use super::relative::Relative;
+use super::wall::block_mesh;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::memory;
-use crate::query::{MassProperties, bounding_box, measure};
-use crate::solid::{AnySolid, Solid};
+use crate::query::{MassProperties, measure};
+use crate::solid::{AnySolid, Csg, MeshSolid, Solid};
 
 /// What is known of everything that is placed, together. All intervals contain the truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,32 +106,48 @@ impl Layout {
 
     /// How far the highest point is above the lower end of the container.
     fn height(&self, control: &Control<'_>) -> Result<Interval, Error> {
-        /// How well it is to be known, as a part of an item.
+        /// How well it is to be known, as a part of the height of the container.
         const PART: f64 = 1e-6;
+        let container = self.container.bounds();
+        let tolerance = PART * (container.max[2] - container.min[2]);
         let mut order = memory::collected(0..self.placed.len())?;
         order
             .sort_unstable_by(|&a, &b| self.boxes[b].max[2].total_cmp(&self.boxes[a].max[2]).then(a.cmp(&b)));
         let mut top: Option<Interval> = None;
         for number in order {
-            let block = &self.boxes[number];
-            if top.is_some_and(|top| block.max[2] <= top.lower) {
+            let most = self.boxes[number].max[2];
+            if let Some(found) = top
+                && most <= found.lower + tolerance
+            {
+                // (Those that follow reach no higher than this one.)
+                top = Some(Interval::between(found.lower, found.upper.max(most)));
                 break;
             }
-            let placed = &self.placed[number];
-            let solid = self.items[placed.item].solid.placed(&placed.placement)?;
-            let frame = Frame::fitted(block.min, block.max, MAX_DEPTH)?;
-            let side = block.max[2] - block.min[2];
-            let found = bounding_box(&on_any_frame(&solid), &frame, PART * side, control)?;
-            let Some([_, max]) = found.corners else { continue };
-            let lower = if found.occupied { max[2].lower } else { f64::NEG_INFINITY };
-            let upper = max[2].upper.min(block.max[2]).max(lower);
+            let own = self.top(number, tolerance, control)?;
             top = Some(match top {
-                Some(top) => Interval::between(top.lower.max(lower), top.upper.max(upper)),
-                None => Interval::between(lower, upper),
+                Some(top) => Interval::between(top.lower.max(own.lower), top.upper.max(own.upper)),
+                None => own,
             });
         }
-        let floor = Interval::exactly(self.container.bounds().min[2]);
+        let floor = Interval::exactly(container.min[2]);
         Ok(top.map_or(ZERO, |top| top.minus(floor)))
+    }
+
+    /// Where the highest point of something placed is, as what lies on the box around it tells.
+    fn top(&self, number: usize, tolerance: f64, control: &Control<'_>) -> Result<Interval, Error> {
+        let (placed, around) = (&self.placed[number], &self.boxes[number]);
+        let piece = &self.pieces[placed.item];
+        let thick = around.max[2] - around.min[2];
+        let mut lid = around.grown(thick);
+        lid.min[2] = around.max[2];
+        let solid = match piece.solid().get::<MeshSolid>() {
+            Some(_) => block_mesh(&lid)?,
+            None => AnySolid::new(Csg::cuboid(lid.min, lid.max)?),
+        };
+        let near = Near::new(diagonal(around), [piece.solid()].into_iter());
+        let lid = Piece::new(&solid, &lid, &near, control)?;
+        let (gap, _) = lid.distance(piece, &Relative::of(&placed.placement), tolerance, control)?;
+        Ok(Interval::exactly(around.max[2]).minus(gap))
     }
 }
 

@@ -7,6 +7,7 @@ use crate::lattice::{Bounds, axes};
 use crate::memory;
 use crate::mesh::{FillRule, MeshMoments, TriangleMesh};
 use crate::solid::{AnySolid, Csg, MeshSolid};
+use alloc::vec::Vec;
 
 /// A block without a container that lies within it. Where the container is a good mesh, the block is one, too, so that triangles tell how far
 /// other meshes are from it.
@@ -30,20 +31,36 @@ fn is_good(mesh: &TriangleMesh, control: &Control<'_>) -> Result<bool, Error> {
 
 /// The triangles of a block, and those of a mesh the other way round.
 fn turned_out(mesh: &TriangleMesh, outer: &Bounds) -> Result<TriangleMesh, Error> {
+    let (mut vertices, mut triangles) = block(outer, mesh.vertices().len(), mesh.triangles().len())?;
+    vertices.extend(mesh.vertices());
+    triangles.extend(mesh.triangles().iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]));
+    TriangleMesh::new(vertices, triangles)?.with_deviation(mesh.displacement())
+}
+
+/// A block as a mesh.
+pub(super) fn block_mesh(bounds: &Bounds) -> Result<AnySolid, Error> {
+    let (vertices, triangles) = block(bounds, 0, 0)?;
+    Ok(AnySolid::new(MeshSolid::new(TriangleMesh::new(vertices, triangles)?, FillRule::NonZero)?))
+}
+
+/// The corners of a block and its triangles, with room for so many more of both.
+fn block(
+    bounds: &Bounds,
+    more_vertices: usize,
+    more_triangles: usize,
+) -> Result<(Vec<[f64; 3]>, Vec<[u32; 3]>), Error> {
     /// The faces of a block between its corners, of which bit k tells the upper one along axis k.
     const FACES: [[u32; 4]; 6] =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
-    let mut vertices = memory::with_capacity(mesh.vertices().len() + 8)?;
-    let mut triangles = memory::with_capacity(mesh.triangles().len() + 12)?;
+    let mut vertices = memory::with_capacity(8 + more_vertices)?;
+    let mut triangles = memory::with_capacity(12 + more_triangles)?;
     for corner in 0..8 {
-        vertices.push(axes(|k| if corner >> k & 1 == 0 { outer.min[k] } else { outer.max[k] }));
+        vertices.push(axes(|k| if corner >> k & 1 == 0 { bounds.min[k] } else { bounds.max[k] }));
     }
     for [a, b, c, d] in FACES {
         triangles.extend([[a, b, c], [a, c, d]]);
     }
-    vertices.extend(mesh.vertices());
-    triangles.extend(mesh.triangles().iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]));
-    TriangleMesh::new(vertices, triangles)?.with_deviation(mesh.displacement())
+    Ok((vertices, triangles))
 }
 
 #[cfg(test)]
