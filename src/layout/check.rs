@@ -159,7 +159,10 @@ impl Layout {
             if nearest.is_some_and(|near| near.gap.upper <= apart) {
                 break;
             }
-            let ask = |fixed: &Piece, seen: &Relative| fixed.distance(piece, seen, tolerance, control);
+            // (Of two that are about as far away, either is the nearest.)
+            let below = nearest.map_or(f64::INFINITY, |near| near.gap.upper - tolerance);
+            let ask =
+                |fixed: &Piece, seen: &Relative| fixed.distance(piece, seen, (tolerance, below), control);
             let (gap, spent) = match other {
                 Beside::Obstacle(k) => ask(&self.obstacles[k], &Relative::of(&own.placement))?,
                 Beside::Placed(k) => {

@@ -146,7 +146,8 @@ impl Layout {
         };
         let near = Near::new(diagonal(around), [piece.solid()].into_iter());
         let lid = Piece::new(&solid, &lid, &near, control)?;
-        let (gap, _) = lid.distance(piece, &Relative::of(&placed.placement), tolerance, control)?;
+        let (gap, _) =
+            lid.distance(piece, &Relative::of(&placed.placement), (tolerance, f64::INFINITY), control)?;
         Ok(Interval::exactly(around.max[2]).minus(gap))
     }
 }

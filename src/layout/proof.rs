@@ -1,16 +1,19 @@
 //! Whether two placed solids are apart, and whether one lies within the container.
 
 use super::relative::Relative;
-use super::wall::wall;
+use super::wall::{wall, wall_of_box};
 use crate::control::Control;
 use crate::error::Error;
 use crate::lattice::exact::{sqrt, two_diff, two_sum};
 use crate::lattice::{Affine, Bounds, Frame, Interval, MAX_DEPTH, axes};
 use crate::query::{Asked, GapVerdict, Overlap, Ready, interference};
-use crate::solid::{AnySolid, Csg, Solid};
+use crate::solid::{AnySolid, Csg, MeshSolid, Solid};
 
 /// Splits that the question about one pair may take.
 pub(super) const PAIR_SPLITS: u64 = 1 << 12;
+
+/// The same of meshes that triangles do not tell apart: they touch, or nearly so, and cells seldom tell more.
+const TOUCH_SPLITS: u64 = 1 << 9;
 
 /// How far, and how closely, solids are looked at.
 #[derive(Debug, Clone, Copy)]
@@ -95,6 +98,9 @@ impl Piece {
             return Ok(Known { verdict, gap, splits });
         }
         // Solids that may touch: exact numbers tell, where there are some.
+        let are_meshes = is_mesh(self.solid()) && is_mesh(other.solid());
+        let most = control.max_splits.map(|most| if are_meshes { most.min(TOUCH_SPLITS) } else { most });
+        let control = &Control { max_splits: most, ..*control };
         let placed = [self.0.solid().placed(places[0])?, other.0.solid().placed(places[1])?];
         let boxes = [self.0.bounds().placed(places[0]), other.0.bounds().placed(places[1])];
         let [Some(own), Some(others)] = boxes else {
@@ -111,18 +117,24 @@ impl Piece {
         })
     }
 
-    /// How far another one is.
+    /// How far another one is, unless that is `below` at least.
     pub(super) fn distance(
         &self,
         other: &Piece,
         seen: &Relative,
-        tolerance: f64,
+        (tolerance, below): (f64, f64),
         control: &Control<'_>,
     ) -> Result<(Interval, u64), Error> {
         let control = &Control { max_splits: control.max_splits.or(Some(PAIR_SPLITS)), ..*control };
-        let found = self.0.compared(&other.0, &seen.placement, Asked::Distance(tolerance), control)?;
+        let below = if below < f64::INFINITY { seen.needed(below.max(0.0)) } else { below };
+        let asked = Asked::Distance { tolerance, below };
+        let found = self.0.compared(&other.0, &seen.placement, asked, control)?;
         Ok((seen.distance(found.distance), found.splits.iter().sum()))
     }
+}
+
+fn is_mesh(solid: &AnySolid) -> bool {
+    solid.get::<MeshSolid>().is_some()
 }
 
 /// What holds everything.
@@ -130,6 +142,8 @@ pub(super) struct Container {
     /// What lies around it, as far as anything placed may reach.
     wall: Piece,
     wall_solid: AnySolid,
+    /// The same as a mesh, for meshes: where it is proven to be a box, and is no mesh.
+    wall_mesh: Option<Piece>,
     solid: AnySolid,
     bounds: Bounds,
     outer: Bounds,
@@ -153,6 +167,7 @@ impl Container {
         let mut container = Container {
             wall,
             wall_solid,
+            wall_mesh: None,
             solid: solid.clone(),
             bounds,
             outer,
@@ -161,6 +176,10 @@ impl Container {
             near: *near,
         };
         container.is_box = container.holds(&bounds, control)?;
+        if container.is_box && !is_mesh(solid) {
+            let wall = wall_of_box(&bounds, &outer)?;
+            container.wall_mesh = Some(Piece::new(&wall, &outer, &Near { reach: 0.0, ..*near }, control)?);
+        }
         Ok(container)
     }
 
@@ -215,13 +234,9 @@ impl Container {
                 Interval::between(0.0, f64::INFINITY),
             );
         }
-        self.wall.is_apart(
-            piece,
-            &Relative::of(placement),
-            [&Affine::IDENTITY, placement],
-            self.clearance,
-            control,
-        )
+        let wall = self.wall_mesh.as_ref().filter(|_| is_mesh(piece.solid())).unwrap_or(&self.wall);
+        let places = [&Affine::IDENTITY, placement];
+        wall.is_apart(piece, &Relative::of(placement), places, self.clearance, control)
     }
 }
 

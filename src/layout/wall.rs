@@ -21,6 +21,13 @@ pub(super) fn wall(container: &AnySolid, outer: &Bounds, control: &Control<'_>) 
     Ok(AnySolid::new(wall))
 }
 
+/// A block without a smaller one in it, as a mesh.
+pub(super) fn wall_of_box(bounds: &Bounds, outer: &Bounds) -> Result<AnySolid, Error> {
+    let (vertices, triangles) = block(bounds, 0, 0)?;
+    let mesh = turned_out(&TriangleMesh::new(vertices, triangles)?, outer)?;
+    Ok(AnySolid::new(MeshSolid::new(mesh, FillRule::Positive)?))
+}
+
 /// Whether the winding number around each point is known to be what the solid says by any rule but the even one: no triangles intersect, and
 /// no body is inside out.
 fn is_good(mesh: &TriangleMesh, control: &Control<'_>) -> Result<bool, Error> {

@@ -111,9 +111,9 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         let off = self.off();
         let steps = budget.saturating_mul(STEPS);
         let enough = match wanted {
-            Goal::Width(tolerance) => Enough {
+            Goal::Width { tolerance, below } => Enough {
                 tolerance: (tolerance - 4.0 * off).max(0.0),
-                lower: f64::INFINITY,
+                lower: (below + off).next_up(),
                 upper: 0.0,
                 steps,
             },
@@ -157,7 +157,7 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
             normals = self.normals(near);
         }
         let is_enough = match wanted {
-            Goal::Width(tolerance) => known.width() <= tolerance,
+            Goal::Width { tolerance, below } => known.width() <= tolerance || known.lower >= below,
             Goal::AtLeast(least) => known.lower >= least || known.upper < least,
         };
         let stop_reason = match (is_enough, is_spent) {

@@ -136,7 +136,7 @@ pub fn clearance<A: Solid, B: Solid>(
     job.check()?;
     let is_mesh = b.motion() == Motion::Vertices;
     let (a, b) = (Proven(a.on(frame, control)?), Proven(b.on(frame, control)?));
-    let found = both_apart((&a, &b), is_mesh, Goal::Width(tolerance), &job)?;
+    let found = both_apart((&a, &b), is_mesh, Goal::width(tolerance), &job)?;
     job.advance(WHOLE);
     Ok(found)
 }
@@ -169,7 +169,7 @@ pub fn clearance_at<A: Solid, B: Solid>(
     control: &Control<'_>,
 ) -> Result<Vec<Clearance>, Error> {
     valid::tolerance("tolerance", tolerance)?;
-    at_each((a, b), own, placements, frame, Goal::Width(tolerance), control)
+    at_each((a, b), own, placements, frame, Goal::width(tolerance), control)
 }
 
 /// Whether no point of `a` is nearer than `least` (model units) to one of `b`. The search ends as soon as that is proven or disproven,
@@ -281,6 +281,8 @@ struct Moved<'m, B: Solid> {
     keeps_surfaces: bool,
     /// Whether what lies outside of the universe does not count.
     is_clipped: bool,
+    /// Whether it is asked how deep solids overlap.
+    asks_depth: bool,
 }
 
 impl<'m, B: Solid> Moved<'m, B> {
@@ -292,7 +294,8 @@ impl<'m, B: Solid> Moved<'m, B> {
     ) -> Result<Self, Error> {
         let keeps_surfaces =
             solid.home().is_some() && classifier.surfaces(control)?.is_some_and(|list| !list.is_empty());
-        Ok(Moved { solid, own, classifier, bounds: solid.bounds(), keeps_surfaces, is_clipped: true })
+        let bounds = solid.bounds();
+        Ok(Moved { solid, own, classifier, bounds, keeps_surfaces, is_clipped: true, asks_depth: true })
     }
 
     /// How far it is from `a` in some place; `boundaries` are those of both solids, if both consist of triangles.
@@ -308,7 +311,7 @@ impl<'m, B: Solid> Moved<'m, B> {
         if self.solid.motion() == Motion::Exact
             && let Some(moved) = self.solid.placed(placement)?
         {
-            return apart(a, &Proven(moved.on(frame, control)?), wanted, job);
+            return apart(a, &Proven(moved.on(frame, control)?), wanted, self.asks_depth, job);
         }
         let around = self.bounds.and_then(|bounds| bounds.placed(placement));
         let moved = Proven(TransformClassifier::new(self.classifier.0.clone(), placement, frame, around));
@@ -319,13 +322,13 @@ impl<'m, B: Solid> Moved<'m, B> {
                     boundaries,
                     placement: Some(placement).filter(|placement| !placement.is_identity()),
                 };
-                apart_by_facets(&pair, (a, &moved), wanted, job)
+                apart_by_facets(&pair, (a, &moved), wanted, self.asks_depth, job)
             }
             _ if self.keeps_surfaces => {
                 let moved = Transform::new(self.solid, self.own, placement).on(frame, control)?;
-                apart(a, &Proven(moved), wanted, job)
+                apart(a, &Proven(moved), wanted, self.asks_depth, job)
             }
-            _ => apart(a, &moved, wanted, job),
+            _ => apart(a, &moved, wanted, self.asks_depth, job),
         }
     }
 }
@@ -355,17 +358,18 @@ fn both_apart<A: Classifier, B: Classifier>(
     match boundaries((a, b), is_mesh, job.control())? {
         Some([own, other]) => {
             let pair = Pair { solids: (a, b), boundaries: [&own, &other], placement: None };
-            apart_by_facets(&pair, (a, b), wanted, job)
+            apart_by_facets(&pair, (a, b), wanted, true, job)
         }
-        None => apart(a, b, wanted, job),
+        None => apart(a, b, wanted, true, job),
     }
 }
 
-/// What is known by triangles; of solids that overlap, how deep they do is found by the cells of `on_frame`.
+/// What is known by triangles; of solids that overlap, how deep they do is found by the cells of `on_frame`, if that is asked for.
 fn apart_by_facets<A: Classifier, B: Classifier, C: Classifier>(
     pair: &Pair<'_, A, B>,
     on_frame: (&A, &C),
     wanted: Goal,
+    asks_depth: bool,
     job: &Job<'_>,
 ) -> Result<Clearance, Error> {
     let (a, b) = on_frame;
@@ -374,7 +378,8 @@ fn apart_by_facets<A: Classifier, B: Classifier, C: Classifier>(
     let ByFacets { mut distance, mut points, normals, mut stop_reason, is_open } =
         pair.distance(wanted, budget, job)?;
     let (mut depth, mut splits) = (0.0, [0; 2]);
-    if matches!(wanted, Goal::Width(_)) && (distance.upper == 0.0 || is_open) {
+    let asks_depth = asks_depth && matches!(wanted, Goal::Width { .. });
+    if asks_depth && (distance.upper == 0.0 || is_open) {
         let mut search = Search::new(a, b, wanted, budget, control)?;
         if let Some((centre, radius)) = depth::common_ball(&mut search, job)? {
             (distance, stop_reason) = (Interval::exactly(0.0), StopReason::Tolerance);
@@ -394,6 +399,7 @@ fn apart<A: Classifier, B: Classifier>(
     a: &A,
     b: &B,
     wanted: Goal,
+    asks_depth: bool,
     job: &Job<'_>,
 ) -> Result<Clearance, Error> {
     let control = job.control();
@@ -408,7 +414,8 @@ fn apart<A: Classifier, B: Classifier>(
         normals = [search.a.normal(reached.nodes[0], p), search.b.normal(reached.nodes[1], q)];
     }
     let mut depth = 0.0;
-    if matches!(wanted, Goal::Width(_))
+    if asks_depth
+        && matches!(wanted, Goal::Width { .. })
         && distance.upper == 0.0
         && let Some((centre, radius)) = depth::common_ball(&mut search, job)?
     {
@@ -420,7 +427,7 @@ fn apart<A: Classifier, B: Classifier>(
     let clipped = search.a.subject.is_clipped() || search.b.subject.is_clipped();
     let distance = if clipped { Interval::between(0.0, distance.upper) } else { distance };
     let is_wide = match wanted {
-        Goal::Width(tolerance) => distance.width() > tolerance,
+        Goal::Width { tolerance, below } => distance.width() > tolerance && distance.lower < below,
         Goal::AtLeast(least) => distance.lower < least && distance.upper >= least,
     };
     let stop_reason = match stop_reason {

@@ -24,8 +24,9 @@ pub(crate) struct Ready {
 pub(crate) enum Asked {
     /// Whether they are at least so far apart (model units), as [`gap_at_least`](crate::query::gap_at_least) finds it.
     AtLeast(f64),
-    /// How far they are apart, within an interval no wider than that (model units), as [`clearance`](crate::clearance) finds it.
-    Distance(f64),
+    /// How far they are apart, within an interval no wider than `tolerance`, unless that is `below` at least (model units), as
+    /// [`clearance`](crate::clearance) finds it.
+    Distance { tolerance: f64, below: f64 },
 }
 
 impl Ready {
@@ -62,7 +63,7 @@ impl Ready {
         &self.bounds
     }
 
-    /// What is known of this solid and another one under a placement.
+    /// What is known of this solid and another one under a placement, but for how deep they overlap.
     pub(crate) fn compared(
         &self,
         other: &Ready,
@@ -72,11 +73,11 @@ impl Ready {
     ) -> Result<Clearance, Error> {
         let wanted = match asked {
             Asked::AtLeast(least) => Goal::AtLeast(least),
-            Asked::Distance(tolerance) => Goal::Width(tolerance),
+            Asked::Distance { tolerance, below } => Goal::Width { tolerance, below },
         };
         let boundaries = self.boundary.as_ref().zip(other.boundary.as_ref()).map(|(a, b)| [a, b]);
         let moved = Moved::new(&other.solid, &other.own, &other.moved, control)?;
-        let moved = Moved { is_clipped: false, ..moved };
+        let moved = Moved { is_clipped: false, asks_depth: false, ..moved };
         let job = &Job::new(control);
         if boundaries.is_none()
             && let Some(around) = other.bounds.placed(placement)

@@ -108,10 +108,17 @@ pub(super) struct Reached {
 /// What is asked for.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Goal {
-    /// An interval that is no wider (model units).
-    Width(f64),
+    /// An interval that is no wider than `tolerance`, unless the distance is `below` at least (model units).
+    Width { tolerance: f64, below: f64 },
     /// Whether the distance is at least that (model units).
     AtLeast(f64),
+}
+
+impl Goal {
+    /// An interval that is no wider (model units), however far the solids are apart.
+    pub(super) fn width(tolerance: f64) -> Goal {
+        Goal::Width { tolerance, below: f64::INFINITY }
+    }
 }
 
 /// Distances in finest cells.
@@ -157,8 +164,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
     ) -> Result<Self, Error> {
         let size = a.frame().cell_size();
         let goal = match wanted {
-            Goal::Width(_) => f64::INFINITY,
-            Goal::AtLeast(distance) => {
+            Goal::Width { below: f64::INFINITY, .. } => f64::INFINITY,
+            Goal::AtLeast(distance) | Goal::Width { below: distance, .. } => {
                 let mut goal = distance / size;
                 while product_down(goal, size) < distance {
                     goal = goal.next_up();
@@ -187,7 +194,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             self.meet(0, [0], 0.0)?;
         }
         // (Whether the solids are as far apart as they should be may be proven without points.)
-        if matches!(self.wanted, Goal::Width(_)) {
+        if matches!(self.wanted, Goal::Width { .. }) {
             let budget = self.left;
             self.plunge(DIVE.min(budget / 4), job)?;
             if self.bounds.reached.is_none() {
@@ -513,7 +520,7 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             return;
         }
         self.bounds.reached = Some(found);
-        let Goal::Width(tolerance) = self.wanted else { return };
+        let Goal::Width { tolerance, .. } = self.wanted else { return };
         // The first distance that is known well enough; what floating point says is off by little at the most.
         let about = found.upper - tolerance / self.a.subject.classifier.frame().cell_size();
         let mut goal = if about > 0.0 { about } else { 0.0 };
@@ -521,14 +528,13 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         while goal < found.upper && !self.is_known(self.between(goal)) {
             goal = (goal + grain).max(goal.next_up());
         }
-        self.bounds.goal = goal.min(found.upper);
+        self.bounds.goal = goal.min(found.upper).min(self.bounds.goal);
     }
 
     fn is_known(&self, distance: Interval) -> bool {
         match self.wanted {
-            Goal::Width(tolerance) => {
-                distance.lower == f64::INFINITY
-                    || self.bounds.reached.is_some() && distance.width() <= tolerance
+            Goal::Width { tolerance, below } => {
+                distance.lower >= below || self.bounds.reached.is_some() && distance.width() <= tolerance
             }
             Goal::AtLeast(least) => distance.lower >= least || distance.upper < least,
         }
