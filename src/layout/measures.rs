@@ -135,11 +135,25 @@ impl Layout {
 
     /// Where the highest point of something placed is, as what lies on the box around it tells.
     fn top(&self, number: usize, tolerance: f64, control: &Control<'_>) -> Result<Interval, Error> {
+        const NOISE: f64 = 1.0 / (1u128 << 100) as f64 / (1u128 << 100) as f64;
         let (placed, around) = (&self.placed[number], &self.boxes[number]);
         let piece = &self.pieces[placed.item];
         let thick = around.max[2] - around.min[2];
         let mut lid = around.grown(thick);
         lid.min[2] = around.max[2];
+        // (Smaller numbers are no coordinates. The lid is wide enough without them, and no lower.)
+        let is_noise = |c: f64| c.abs() < NOISE;
+        lid.min = axes(|k| match lid.min[k] {
+            c if is_noise(c) => {
+                if k == 2 {
+                    NOISE
+                } else {
+                    0.0
+                }
+            }
+            c => c,
+        });
+        lid.max = lid.max.map(|c| if is_noise(c) { 0.0 } else { c });
         let solid = match piece.solid().get::<MeshSolid>() {
             Some(_) => block_mesh(&lid)?,
             None => AnySolid::new(Csg::cuboid(lid.min, lid.max)?),
@@ -148,7 +162,7 @@ impl Layout {
         let lid = Piece::new(&solid, &lid, &near, control)?;
         let (gap, _) =
             lid.distance(piece, &Relative::of(&placed.placement), (tolerance, f64::INFINITY), control)?;
-        Ok(Interval::exactly(around.max[2]).minus(gap))
+        Ok(Interval::exactly(lid.bounds().min[2]).minus(gap))
     }
 }
 

@@ -149,7 +149,7 @@ fn what_the_fuzzer_found_interesting() {
 
 #[test]
 fn layouts_are_proven() {
-    any_bytes(layouts::layouts, 0..12, 60);
+    corpus("layouts", layouts::layouts);
 }
 
 #[test]
