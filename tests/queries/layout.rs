@@ -545,7 +545,44 @@ fn conflicts_are_counted() {
     let found = layout.check(0, &alone()).unwrap();
     assert_eq!((found.conflicts.len(), found.conflict_count), (256, 299));
     assert_eq!(found.conflicts[255].other, Beside::Placed(256));
-    assert!(layout.check_all(&alone()).unwrap().iter().all(|standing| standing.conflict_count == 299));
+    let last = layout.check(299, &alone()).unwrap();
+    assert_eq!((last.conflicts[0].other, last.conflict_count), (Beside::Placed(0), 299));
+}
+
+/// Clearances and items of any size, and limits of memory, end in a layout or in an error that says so.
+#[test]
+fn sizes_of_any_kind() {
+    for clearance in [20.0, 1e6, Bay::FURTHEST] {
+        let items = vec![item(ball(1.0)).with_count(3)];
+        let mut layout = layout(&bay_in(cuboid([6.0; 3]), items, [clearance, 0.0]));
+        let found = layout.search(&SearchOptions::default(), &alone()).unwrap();
+        assert_eq!((found.placed, found.left), (1, 2), "{clearance}");
+    }
+    // What is far too long is left; the rest is placed.
+    let wedge = |length: f64| {
+        let block = Csg::cuboid([0.0; 3], [length; 3]).unwrap();
+        let half = Csg::half_space([1.0, 1.0, -1.0], 0.0).unwrap();
+        item(AnySolid::new(Csg::intersection_of([block, half]).unwrap()))
+    };
+    for length in [40.0, 1e9] {
+        let mut layout = layout(&bay([6.0; 3], vec![wedge(length), wedge(2.0).with_count(4)]));
+        let options = SearchOptions { cells: 24, rounds: 1, ..SearchOptions::default() };
+        let found = layout.search(&options, &alone()).unwrap();
+        assert_eq!((found.placed, found.left), (4, 1), "{length}");
+        assert_proven(&layout);
+    }
+    let mut layout = layout(&bay([6.0; 3], vec![wedge(5.0).with_count(3)]));
+    let options = SearchOptions { cells: 64, ..SearchOptions::default() };
+    for (most, is_enough) in [(1 << 10, false), (1 << 20, false), (1 << 30, true)] {
+        let found = layout.search(&options, &Control { max_bytes: Some(most), ..alone() });
+        match found {
+            Ok(found) => assert!(is_enough && found.placed >= 1, "{most} {found:?}"),
+            Err(Error::TooLarge { limit, .. } | Error::Limit { limit, .. }) => {
+                assert!(!is_enough && limit <= most && layout.placed().is_empty(), "{most} {limit}");
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
 }
 
 #[test]

@@ -25,6 +25,12 @@ pub(super) struct Run {
 }
 
 impl Bits {
+    /// What so many cells take in memory.
+    pub(super) fn bytes(size: [usize; 3]) -> u64 {
+        let rows = (size[1] as u64).saturating_mul(size[2] as u64);
+        rows.saturating_mul(8 * size[0].div_ceil(64) as u64)
+    }
+
     pub(super) fn new(size: [usize; 3]) -> Result<Bits, Error> {
         let words = size[0].div_ceil(64);
         Ok(Bits { size, words, bits: memory::filled(words * size[1] * size[2], 0)? })
@@ -163,6 +169,28 @@ impl Bits {
         }
         Ok(grown)
     }
+
+    /// All cells that are nearer than any `distance`, in cells, to one of these, and some that are a little further away: with larger cells,
+    /// of how many of these each is along an axis, and how many of these lie below the first of these.
+    pub(super) fn grown_far(&self, distance: f64) -> Result<(Bits, usize, usize), Error> {
+        let scale = scale_for(distance);
+        let reach = distance / scale as f64;
+        let pad = libm::ceil(reach) as usize;
+        Ok((self.coarser(scale, [0; 3])?.grown(reach, pad)?, scale, pad * scale))
+    }
+}
+
+/// How many cells at the most a distance is long by which cells are grown. With longer ones larger cells are grown: what that adds is
+/// no more than a sixth of the distance, and the work does not rise with the square of it.
+pub(super) const REACH: f64 = 12.0;
+
+/// How many cells along each axis are taken together, so that a distance of `reach` cells is no longer than [`REACH`] of these.
+pub(super) fn scale_for(reach: f64) -> usize {
+    let mut scale = 1;
+    while reach > REACH * scale as f64 {
+        scale *= 2;
+    }
+    scale
 }
 
 /// The next bit from `at` on that is set, or that is not.
@@ -251,6 +279,40 @@ mod tests {
         assert_eq!(coarse.size, [18, 2, 2]);
         for cell in cells(&bits) {
             assert!(coarse.has(cell.map(|c| (c + 2) / 4)));
+        }
+    }
+
+    #[test]
+    fn what_grows_far_holds_all_that_is_near() {
+        let mut random = Random::new(41);
+        for distance in [0.5, 11.0, 13.0, 30.0] {
+            let mut bits = Bits::new([9, 7, 8]).unwrap();
+            (0..3).for_each(|_| bits.set([random.below(9), random.below(7), random.below(8)]));
+            let (grown, scale, below) = bits.grown_far(distance).unwrap();
+            assert!(distance / scale as f64 <= REACH, "{scale}");
+            let pad = distance as usize + 1;
+            let near = bits.grown(distance, pad).unwrap();
+            let far = bits.grown(1.25 * distance + 2.0, 2 * pad + 2).unwrap();
+            let taken = |at: [isize; 3]| {
+                let own = at.map(|at| (at + below as isize).div_euclid(scale as isize));
+                (0..3).all(|k| (0..grown.size[k] as isize).contains(&own[k]))
+                    && grown.has(own.map(|own| own as usize))
+            };
+            let end = 2 * pad as isize;
+            for z in -end..8 + end {
+                for y in -end..7 + end {
+                    for x in -end..9 + end {
+                        let at = |bits: &Bits, pad: usize| {
+                            let own = [x, y, z].map(|at| at + pad as isize);
+                            (0..3).all(|k| (0..bits.size[k] as isize).contains(&own[k]))
+                                && bits.has(own.map(|own| own as usize))
+                        };
+                        let is_taken = taken([x, y, z]);
+                        assert!(is_taken || !at(&near, pad), "{distance} {x} {y} {z}");
+                        assert!(!is_taken || at(&far, 2 * pad + 2), "{distance} {x} {y} {z}");
+                    }
+                }
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Items as cells, in all their orientations.
 
 use super::super::item::Item;
-use super::bits::Bits;
+use super::bits::{Bits, REACH};
 use super::space::{Halo, Shape};
 use super::tally::Figure;
 use super::voxels::Voxels;
@@ -19,8 +19,10 @@ pub(super) struct Form {
     pub(super) map: Affine,
     pub(super) shape: Shape,
     pub(super) halo: Halo,
-    /// What it takes from others: all cells that are too near to it, and how many of them lie below its own along each axis.
+    /// What it takes from others: all cells that are too near to it, how many of the search each of them is large, and how many of the search
+    /// lie below its own along each axis.
     pub(super) taken: Bits,
+    pub(super) scale: usize,
     pub(super) below: usize,
     /// The lower corner of its cells when it is turned, and the centre of these from there (model units).
     pub(super) origin: [f64; 3],
@@ -34,19 +36,27 @@ pub(super) struct Forms {
 }
 
 impl Forms {
-    /// By cells with the edge `cell`; others are to be `clearance` away.
+    /// By cells of an edge; others are to be `clearance` away. Without maps there are none.
     pub(super) fn of(
         item: &Item,
         maps: &[Affine],
-        cell: f64,
-        clearance: f64,
+        [cell, clearance]: [f64; 2],
         control: &Control<'_>,
     ) -> Result<Forms, Error> {
+        if maps.is_empty() {
+            return Ok(Forms { all: Vec::new(), figure: Figure::of_box(&item.bounds) });
+        }
         let fine = cell / FINER as f64;
         let given = Voxels::of(&item.solid, &item.bounds, fine, None, control)?;
         let mut all: Vec<Form> = Vec::new();
+        let mut bytes = 0;
         for map in maps {
             control.check()?;
+            if let Some(limit) = control.max_bytes
+                && bytes > limit
+            {
+                return Err(Error::Limit { what: "bytes", limit });
+            }
             let voxels = if map.is_monomial() {
                 turned(&given, map, fine)?
             } else {
@@ -57,23 +67,41 @@ impl Forms {
             if all.iter().any(|form| form.shape.size == own.size && form.shape.runs == own.runs) {
                 continue;
             }
-            let pad = (libm::ceil(clearance / fine) as usize).next_multiple_of(FINER);
-            let taken = match clearance {
-                0.0 => shape,
-                _ => voxels.bits.grown(clearance / fine, pad)?.coarser(FINER, [0; 3])?,
+            let reach = clearance / fine;
+            let (taken, scale, below) = if clearance == 0.0 {
+                (shape, 1, 0)
+            } else if reach <= REACH {
+                let pad = (libm::ceil(reach) as usize).next_multiple_of(FINER);
+                (voxels.bits.grown(reach, pad)?.coarser(FINER, [0; 3])?, 1, pad / FINER)
+            } else {
+                shape.grown_far(clearance / cell)?
             };
             let centre = centre(&voxels.bits)?.map(|c| fine * c);
-            let below = pad / FINER;
             memory::push(
                 &mut all,
-                Form { map: *map, shape: own, halo, taken, below, origin: voxels.origin, centre },
+                Form { map: *map, shape: own, halo, taken, scale, below, origin: voxels.origin, centre },
             )?;
+            bytes += all.last().map_or(0, Form::bytes);
         }
         let middle = centre(&given.bits)?;
         let volume = given.bits.count() as f64 * fine * fine * fine;
         let centre = axes(|k| given.origin[k] + fine * middle[k]);
         let figure = Figure { volume, centre, ..Figure::of_box(&item.bounds) };
         Ok(Forms { all, figure })
+    }
+}
+
+impl Forms {
+    /// What they take in memory.
+    pub(super) fn bytes(&self) -> u64 {
+        self.all.iter().map(Form::bytes).sum()
+    }
+}
+
+impl Form {
+    fn bytes(&self) -> u64 {
+        let runs = memory::bytes_of(&self.shape.runs) + self.halo.bytes();
+        (size_of::<Form>() + runs + memory::bytes_of(&self.taken.bits)) as u64
     }
 }
 

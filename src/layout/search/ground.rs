@@ -2,7 +2,7 @@
 
 use super::super::Layout;
 use super::super::proof::diagonal;
-use super::bits::Bits;
+use super::bits::{Bits, REACH, scale_for};
 use super::forms::{FINER, Forms};
 use super::space::Space;
 use super::voxels::{Voxels, outside};
@@ -52,6 +52,11 @@ impl Lattice {
         Lattice { origin, cell, size }
     }
 
+    /// The clearance between items, or what does the same in this container.
+    fn clearance(&self, layout: &Layout) -> f64 {
+        layout.clearance.min(diagonal(layout.container.bounds()) + self.cell)
+    }
+
     /// The forms of all items.
     pub(super) fn forms(
         &self,
@@ -59,9 +64,20 @@ impl Lattice {
         maps: &[Vec<Affine>],
         control: &Control<'_>,
     ) -> Result<Vec<Forms>, Error> {
+        let across = diagonal(layout.container.bounds());
+        let clearance = self.clearance(layout);
         let mut forms = memory::with_capacity(maps.len())?;
+        let mut left = control.max_bytes;
         for (item, maps) in layout.items.iter().zip(maps) {
-            forms.push(Forms::of(item, maps, self.cell, layout.clearance, control)?);
+            let longest = (0..3).map(|k| item.bounds.max[k] - item.bounds.min[k]).fold(0.0, f64::max);
+            // What is longer than the container is across goes in nowhere, and has many cells.
+            let maps = if longest > across { &[] } else { &maps[..] };
+            let own =
+                Forms::of(item, maps, [self.cell, clearance], &Control { max_bytes: left, ..*control })?;
+            if let (Some(left), Some(limit)) = (&mut left, control.max_bytes) {
+                *left = left.checked_sub(own.bytes()).ok_or(Error::Limit { what: "bytes", limit })?;
+            }
+            forms.push(own);
         }
         Ok(forms)
     }
@@ -79,45 +95,55 @@ impl Lattice {
         let mut space = Space::new(self.size, longest)?;
         let container = &layout.container;
         if !container.is_box() {
-            let margin = container.clearance() / self.cell;
+            let across = diagonal(container.bounds());
+            let margin = container.clearance().min(across) / self.cell;
+            let scale = scale_for(margin);
+            let (margin, cell) = (margin / scale as f64, self.cell * scale as f64);
+            let size = self.size.map(|size| size.div_ceil(scale));
             let pad = libm::ceil(margin) as usize;
-            let wall = outside(container.solid(), self.origin, self.cell, self.size, pad, control)?;
+            let wall = outside(container.solid(), self.origin, cell, size, pad, control)?;
             let wall = if pad > 0 { wall.grown(margin, pad)? } else { wall };
-            space.take(&wall, [-(2 * pad as isize); 3], None)?;
+            space.take(&wall, scale, [-((2 * pad * scale) as isize); 3], None)?;
         }
-        let shade = free_along.map(Direction::back);
+        let (shade, clearance) = (free_along.map(Direction::back), self.clearance(layout));
         for obstacle in &layout.obstacles {
-            let (cells, offset) =
-                self.taken(obstacle.solid(), obstacle.bounds(), layout.clearance, control)?;
-            space.take(&cells, offset, shade)?;
+            let (cells, scale, offset) =
+                self.taken(obstacle.solid(), obstacle.bounds(), clearance, control)?;
+            space.take(&cells, scale, offset, shade)?;
         }
         for (placed, block) in layout.placed.iter().zip(&layout.boxes) {
             control.check()?;
             let solid = layout.items[placed.item].solid.placed(&placed.placement)?;
             let bounds = solid.bounds().and_then(|own| own.common(block)).unwrap_or(*block);
-            let (cells, offset) = self.taken(&solid, &bounds, layout.clearance, control)?;
-            space.take(&cells, offset, shade)?;
+            let (cells, scale, offset) = self.taken(&solid, &bounds, clearance, control)?;
+            space.take(&cells, scale, offset, shade)?;
         }
         Ok(space)
     }
 
-    /// The cells that a solid takes from others, and where the first of them is.
+    /// The cells that a solid takes from others, how many of the search each of them is large, and where the first of them is.
     fn taken(
         &self,
         solid: &AnySolid,
         bounds: &Bounds,
         clearance: f64,
         control: &Control<'_>,
-    ) -> Result<(Bits, [isize; 3]), Error> {
+    ) -> Result<(Bits, usize, [isize; 3]), Error> {
         let fine = self.cell / FINER as f64;
-        let reach = clearance / fine;
-        let pad = libm::ceil(reach) as usize;
         let Voxels { bits, origin } = Voxels::of(solid, bounds, fine, Some(self.origin), control)?;
+        let at: [isize; 3] = axes(|k| libm::round((origin[k] - self.origin[k]) / fine) as isize);
+        let reach = clearance / fine;
+        let is_near = reach <= REACH;
+        let pad = if is_near { libm::ceil(reach) as usize } else { 0 };
         let bits = if pad > 0 { bits.grown(reach, pad)? } else { bits };
-        let first: [isize; 3] =
-            axes(|k| libm::round((origin[k] - self.origin[k]) / fine) as isize - pad as isize);
+        let first = at.map(|at| at - pad as isize);
         let low = first.map(|first| first.div_euclid(FINER as isize));
         let beyond: [usize; 3] = axes(|k| (first[k] - low[k] * FINER as isize) as usize);
-        Ok((bits.coarser(FINER, beyond)?, low))
+        let cells = bits.coarser(FINER, beyond)?;
+        if is_near {
+            return Ok((cells, 1, low));
+        }
+        let (grown, scale, below) = cells.grown_far(clearance / self.cell)?;
+        Ok((grown, scale, low.map(|low| low - below as isize)))
     }
 }

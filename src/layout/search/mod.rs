@@ -130,14 +130,15 @@ impl Layout {
     /// triangles of meshes, or by splits of the solids. What could not be proven is not placed. The layout that is kept is the best of all
     /// rounds by what the options are after. A cancel ends the search, and keeps what was best by then; so does a budget.
     ///
-    /// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes. A step takes O(r n² / 64)
+    /// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes for a hundred cells along the
+    /// container, a hundred times as much for five hundred. `control.max_bytes` limits that of the items. A step takes O(r n² / 64)
     /// for n cells along the container, an item of r runs of cells, and each layer that is looked at, which are n a form and round and one
     /// more a step.
     ///
     /// # Errors
     /// [`Error::Argument`] if `rounds` is 0, `cells` is not 0 and not between 4 and 512, an axis is not 0, 1 or 2, or
-    /// a coordinate is not a number; what the solids
-    /// refuse; [`Error::OutOfMemory`]. Then the layout is as it was.
+    /// a coordinate is not a number; [`Error::TooLarge`] and [`Error::Limit`] if the cells of items take more than
+    /// `control.max_bytes`; what the solids refuse; [`Error::OutOfMemory`]. Then the layout is as it was.
     pub fn search(&mut self, options: &SearchOptions, control: &Control<'_>) -> Result<SearchReport, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
         if options.rounds == 0 {

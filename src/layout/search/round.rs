@@ -74,7 +74,7 @@ impl Round<'_> {
                 let number = layout.place(item, &placement)?;
                 let offset = place.at.map(|at| at as isize - form.below as isize);
                 // What comes later must get out, too: nothing goes to where what is there would be in its way.
-                space.take(&form.taken, offset, self.options.free_along.map(Direction::back))?;
+                space.take(&form.taken, form.scale, offset, self.options.free_along.map(Direction::back))?;
                 masses.add(layout, self.figures, &layout.placed[number]);
                 break;
             }

@@ -56,6 +56,11 @@ impl Halo {
         }
         Ok(Halo { runs: around.runs()?, count: around.count() as u32 })
     }
+
+    /// What it takes in memory.
+    pub(super) fn bytes(&self) -> usize {
+        memory::bytes_of(&self.runs)
+    }
 }
 
 impl Space {
@@ -134,29 +139,33 @@ impl Space {
         }
     }
 
-    /// Takes cells that lie at an offset, and, if `shade` is an axis and a sense, all that lie from them on that way.
+    /// Takes cells that lie at an offset, each as large as `scale` of the space along each axis; and, if `shade` is an axis and a sense, all
+    /// that lie from them on that way.
     pub(super) fn take(
         &mut self,
         cells: &Bits,
+        scale: usize,
         offset: [isize; 3],
         shade: Option<(usize, bool)>,
     ) -> Result<(), Error> {
         let [nx, ny, nz] = self.size.map(|size| size as isize);
+        let size = scale as isize;
         for z in 0..cells.size[2] {
             for y in 0..cells.size[1] {
-                let (wy, wz) = (y as isize + offset[1], z as isize + offset[2]);
+                let (wy, wz) = (size * y as isize + offset[1], size * z as isize + offset[2]);
                 let beyond = |at: isize, end: isize, axis: usize| match shade {
                     Some((own, upward)) if own == axis => {
                         if upward {
                             at.max(0)..end
                         } else {
-                            0..(at + 1).clamp(0, end)
+                            0..(at + size).clamp(0, end)
                         }
                     }
-                    _ => at.max(0)..(at + 1).clamp(0, end),
+                    _ => at.max(0)..(at + size).clamp(0, end),
                 };
                 cells.runs_of(y, z, |x, length| {
-                    let (mut from, mut to) = (x as isize + offset[0], (x + length) as isize + offset[0]);
+                    let mut from = size * x as isize + offset[0];
+                    let mut to = from + size * length as isize;
                     match shade {
                         Some((0, true)) => to = nx,
                         Some((0, false)) => from = 0,
@@ -292,7 +301,7 @@ mod tests {
                 for _ in 0..3 {
                     let block = any([5, 3, 2], 3, &mut random);
                     let offset = [0, 1, 2].map(|k| random.below(size[k] + 2) as isize - 2);
-                    space.take(&block, offset, shade).unwrap();
+                    space.take(&block, 1, offset, shade).unwrap();
                     for cell in 0..30 {
                         let cell = [cell % 5, cell / 5 % 3, cell / 15];
                         if !block.has(cell) {

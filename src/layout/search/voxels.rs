@@ -43,6 +43,12 @@ impl Voxels {
             });
         }
         let frame = Frame::new(origin, cell * f64::from(1u32 << depth), depth as u8)?;
+        let needed = Bits::bytes(size);
+        if let Some(limit) = control.max_bytes
+            && needed > limit
+        {
+            return Err(Error::TooLarge { what: "the cells of an item", needed, limit });
+        }
         let mut bits = Bits::new(size)?;
         on_frame(solid, &frame, &mut bits, control)?;
         Ok(Voxels { bits, origin })
