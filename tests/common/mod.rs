@@ -50,6 +50,11 @@ pub fn on_all_processors<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R +
     found.into_iter().map(|(_, result)| result).collect()
 }
 
+/// How often something random is repeated, and how much of what takes long is done: `most` with LEAFLESS_THOROUGH=1, `few` without.
+pub fn repeated<T>(few: T, most: T) -> T {
+    if std::env::var_os("LEAFLESS_THOROUGH").is_some_and(|value| value == "1") { most } else { few }
+}
+
 /// One thread, and nothing else asked for.
 pub fn alone() -> Control<'static> {
     Control::threads(1)
@@ -419,8 +424,10 @@ pub fn shapes(depths: std::ops::RangeInclusive<u8>) -> impl Strategy<Value = Sha
     depths.prop_flat_map(shapes_of)
 }
 
-/// Failures print their shrunk input; nothing is written beside the sources.
+/// So many cases of a property, and without LEAFLESS_THOROUGH=1 a third of them. Failures print their shrunk input; nothing is written
+/// beside the sources.
 pub fn cases(cases: u32) -> ProptestConfig {
+    let cases = repeated(cases.div_ceil(3), cases);
     ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }
 }
 
