@@ -1,7 +1,7 @@
 //! Boundaries of solids that know their surfaces.
 
 use crate::common::surfaces::euler_of_manifold;
-use crate::common::{Random, alone};
+use crate::common::{Random, alone, repeated};
 use leafless::query::{DistanceTo, Obstacle, distances};
 use leafless::surface::{Boundary, boundary};
 use leafless::{
@@ -290,7 +290,7 @@ fn curved_solids() {
         let frame = Frame::around(known.min, known.max, 13).unwrap();
         let volume = measure(&solid, &frame, 1e-3, &alone()).unwrap().volume;
         let mut before = f64::INFINITY;
-        for tolerance in [0.4, 0.1, 0.025] {
+        for tolerance in [0.4, 0.1, repeated(0.05, 0.025)] {
             let found = boundary(&solid, &frame, tolerance, &alone()).unwrap();
             let mesh = found.mesh();
             assert_manifold(mesh, name);
@@ -345,7 +345,7 @@ pub fn random_scene(random: &mut Random) -> Csg {
 /// Scenes of two to five primitives: closed, manifold, no intersecting pair, and the volume.
 #[test]
 fn random_scenes() {
-    check_scenes(0..8);
+    check_scenes(0..repeated(3, 8));
 }
 
 /// `cargo test --release --test surfaces boundary -- --ignored`
@@ -423,8 +423,8 @@ fn stored_octrees() {
 fn threads() {
     let solid = Csg::torus(8.0, 2.0).unwrap().difference(&Csg::ball([8.0, 0.0, 0.0], 3.0).unwrap()).unwrap();
     let frame = Frame::new([-12.3; 3], 25.0, 12).unwrap();
-    let [one, other] =
-        [1, 3].map(|threads| boundary(&solid, &frame, 0.02, &Control::threads(threads)).unwrap());
+    let [one, other] = [1, 3]
+        .map(|threads| boundary(&solid, &frame, repeated(0.08, 0.02), &Control::threads(threads)).unwrap());
     assert_eq!(one.report(), other.report());
     assert_eq!(one.mesh().triangles(), other.mesh().triangles());
     assert_eq!(one.mesh().vertices(), other.mesh().vertices());
@@ -476,7 +476,7 @@ fn refusals() {
 #[test]
 fn meshes() {
     let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
-    let fine = of(&Csg::ball([0.0; 3], 0.5).unwrap(), 10, 1e-4).into_mesh();
+    let fine = of(&Csg::ball([0.0; 3], 0.5).unwrap(), 10, repeated(2e-4, 1e-4)).into_mesh();
     let (count, volume) = (fine.triangles().len(), fine.volume());
     let solid = MeshSolid::new(fine, FillRule::NonZero).unwrap();
     let found = boundary(&solid, &frame, 0.01, &alone()).unwrap();

@@ -1,7 +1,7 @@
 //! Faces of boundaries: polygons, regions, shells, and the surfaces that they lie on.
 
 use crate::boundary::{of, plate, random_scene, turn};
-use crate::common::{Random, alone};
+use crate::common::{Random, alone, repeated};
 use leafless::exchange::{MeshFormat, WriteOptions, read_obj, write_polygons};
 use leafless::mesh::{Polyhedron, PolyhedronArrays};
 use leafless::solid::SurfaceShape;
@@ -245,7 +245,7 @@ fn solids_that_touch_themselves() {
 /// Scenes of two to five primitives: loops closed and paired, areas those of the triangles.
 #[test]
 fn random_scenes_have_faces() {
-    check_scenes(16);
+    check_scenes(repeated(5, 16));
 }
 
 /// `cargo test --release --test surfaces faces -- --ignored`

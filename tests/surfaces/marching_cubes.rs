@@ -2,7 +2,7 @@
 
 use crate::aligned::Aligned;
 use crate::common::surfaces::{components, euler_of_manifold};
-use crate::common::{Dense, Random, alone, cases, lattice_frame, model, shapes};
+use crate::common::{Dense, Random, alone, cases, lattice_frame, model, repeated, shapes};
 use leafless::surface::{Resolve, Snap, marching_cubes_reusing, simple_marching_cubes};
 use leafless::{
     Control, Csg, Error, FillRule, Frame, MeshSolid, Octree, Rule, Solid, Tag, TriangleMesh, build, exchange,
@@ -128,12 +128,12 @@ fn torture(depth: u8, edge: u32, rounds: usize, seed: u64) {
 
 #[test]
 fn random_bitmaps_of_5() {
-    torture(3, 5, 10_000, 1);
+    torture(3, 5, repeated(3_000, 10_000), 1);
 }
 
 #[test]
 fn random_bitmaps_of_8() {
-    torture(3, 8, 2_000, 2);
+    torture(3, 8, repeated(600, 2_000), 2);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Surface nets beside marching cubes, which have the same samples and so the same topology.
 
 use crate::common::surfaces::{components, euler_of_manifold};
-use crate::common::{Dense, Random, alone, cases, shapes};
+use crate::common::{Dense, Random, alone, cases, repeated, shapes};
 use leafless::surface::{Resolve, surface_nets};
 use leafless::{
     AnySolid, Control, Csg, Error, FillRule, Frame, Rule, Tag, TriangleMesh, build, marching_cubes,
@@ -64,7 +64,7 @@ fn random_bits(depth: u8, chance: u64, random: &mut Random) -> Dense {
 #[test]
 fn random_bitmaps() {
     let mut random = Random(21);
-    for round in 0..1500 {
+    for round in 0..repeated(490, 1500) {
         let chance = [128, 30, 226, 80, 176, 8, 248][round % 7];
         let dense = random_bits(2, chance, &mut random);
         check(&surface_nets(dense.octree().view(), None, &alone()).unwrap(), &dense);

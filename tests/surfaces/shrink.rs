@@ -2,7 +2,7 @@
 //! and the published form beside it.
 
 use crate::common::surfaces::{Point, assert_balanced, components, euler_of_manifold, outlines, sample};
-use crate::common::{Dense, Random, alone, cases, lattice_frame, shapes};
+use crate::common::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
 use leafless::surface::{
     Resolve, Snap, coplanar_shrink, coplanar_shrink_solid, published_shrink, published_shrink_solid,
     simple_marching_cubes, simple_marching_cubes_solid,
@@ -85,9 +85,9 @@ fn torture(seed: u64, size: u32, count: usize) {
 
 #[test]
 fn random_bitmaps() {
-    torture(7, 4, 200);
-    torture(8, 5, 150);
-    torture(9, 8, 50);
+    torture(7, 4, repeated(70, 200));
+    torture(8, 5, repeated(49, 150));
+    torture(9, 8, repeated(14, 50));
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Surfaces that touch each other and go over into one another: a ball at the end of a round bar, the round ends of a slot.
 
 use super::boundary::{assert_deviation, assert_manifold, of, turn};
-use crate::common::Random;
 use crate::common::surfaces::euler_of_manifold;
+use crate::common::{Random, repeated};
 use leafless::{Affine, Csg};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -77,7 +77,9 @@ fn cases() -> Vec<Case> {
 fn one_surface_goes_over_into_another() {
     let mut random = Random(39);
     for (name, solid, away_from_curve, euler, volume) in cases() {
-        for (placement, tolerance) in [(Affine::IDENTITY, 0.02), (turn(), 0.02), (turn(), 0.002)] {
+        for (placement, tolerance) in
+            [(Affine::IDENTITY, 0.02), (turn(), 0.02), (turn(), repeated(0.008, 0.002))]
+        {
             let placed = solid.placed(&placement).unwrap();
             let found = of(&placed, 16, tolerance);
             let (mesh, report) = (found.mesh(), found.report());
