@@ -1,6 +1,6 @@
 //! Meshes that lie beside the true boundary, compared with true solids whose formulas are known.
 
-use crate::common::{Random, alone};
+use crate::common::{Random, alone, repeated};
 use crate::shapes::{Soup, block, mesh, prism};
 use leafless::error::MeshError;
 use leafless::mesh::{MeshMoments, MeshReport};
@@ -424,7 +424,8 @@ fn check_ball(random: &mut Random, size: [usize; 2]) {
 #[test]
 fn balls_in_chords_under_any_placement() {
     let mut random = Random(31);
-    for size in [[4, 2], [5, 3], [8, 4], [12, 7], [24, 12]] {
+    // (The coarser they are, the longer they take.)
+    for size in [[4, 2], [5, 3], [8, 4], [12, 7], [24, 12]].into_iter().skip(repeated(2, 0)) {
         check_ball(&mut random, size);
     }
 }

@@ -1,6 +1,6 @@
 //! Rays, boxes and distances that an open mesh answers without cells, beside winding numbers by solid angles and beside cells.
 
-use crate::common::{Random, alone};
+use crate::common::{Random, alone, repeated};
 use crate::descended::Descended;
 use crate::shapes::{self, Soup};
 use leafless::exchange::{MeshOptions, read_mesh};
@@ -452,7 +452,7 @@ fn the_bunny_with_its_holes() {
     let mut random = Random(6);
     let span = length(minus(max, min));
     let (mut rays, mut ends) = (Vec::new(), Vec::new());
-    for k in 0..300 {
+    for k in 0..repeated(90, 300) {
         let to = [0, 1, 2].map(|k: usize| random.between(min[k], max[k]));
         let way = [0; 3].map(|_| random.between(-1.0, 1.0));
         // From afar, from within, and up through the base, where the holes are.
@@ -478,13 +478,15 @@ fn the_bunny_with_its_holes() {
             assert!(by_cells.as_ref().is_none_or(|hit| !is_sure(hit)) || hit.is_some(), "{place}");
         }
     }
+    let ends = &ends[..repeated(30, 100)];
     for to in [DistanceTo::Boundary, DistanceTo::Solid] {
-        let told = distances(own, &frame, &ends[..100], to, 1e-4 * span, &alone()).unwrap();
-        let by_cells = distances(cells, &frame, &ends[..100], to, 1e-4 * span, &alone()).unwrap();
+        let told = distances(own, &frame, ends, to, 1e-4 * span, &alone()).unwrap();
+        let by_cells = distances(cells, &frame, ends, to, 1e-4 * span, &alone()).unwrap();
         for (told, by_cells) in told.iter().zip(&by_cells) {
             assert!(told.distance.common(by_cells.distance).is_some(), "{told:?} {by_cells:?}");
         }
         let direct = told.iter().filter(|told| told.splits == 0 && told.nearest.is_some()).count();
-        assert!(direct > 60, "{direct}");
+        println!("{direct}");
+        assert!(direct > repeated(18, 60), "{direct}");
     }
 }
