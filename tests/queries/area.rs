@@ -1,7 +1,7 @@
 //! The area of a solid's boundary, against formulas and against the areas of smaller cells.
 
 use crate::common::cubes::Plain;
-use crate::common::{Random, Way, alone};
+use crate::common::{Random, Way, alone, repeated};
 use crate::random::Maker;
 use leafless::query::{StopReason, SurfaceArea, surface_area};
 #[allow(dead_code)]
@@ -126,7 +126,7 @@ fn widths_fall_with_the_number_of_splits() {
             let found = surface_area(&solid, &frame(), 0.0, &control).unwrap();
             (found.area.width() / truth, found.splits as f64)
         };
-        let ((coarse, few), (fine, many)) = (width(10_000), width(400_000));
+        let ((coarse, few), (fine, many)) = (width(10_000), width(repeated(100_000, 400_000)));
         if ["cuboid", "wedge", "prism", "octahedron"].contains(&name) {
             assert!(fine < 1e-9, "{name} {fine}");
             continue;
@@ -237,7 +237,8 @@ fn an_extended_tree_has_the_area_of_its_source() {
         let bounds = csg.bounds().unwrap();
         let frame = Frame::around(bounds.min, bounds.max, 20).unwrap();
         let tree = extended(&csg, &frame);
-        for tolerance in [1e-2, 1e-3] {
+        let finest = repeated(4e-3, 1e-3);
+        for tolerance in [1e-2, finest] {
             let [own, source] = [
                 surface_area(&tree, &frame, tolerance, &Control::default()).unwrap(),
                 surface_area(&csg, &frame, tolerance, &Control::default()).unwrap(),
@@ -248,10 +249,10 @@ fn an_extended_tree_has_the_area_of_its_source() {
             assert!(own.splits <= source.splits + source.splits / 10 + 100, "{name} {own:?} {source:?}");
         }
         let other =
-            surface_area(&extended(&csg.complement(), &frame), &frame, 1e-3, &Control::default()).unwrap();
+            surface_area(&extended(&csg.complement(), &frame), &frame, finest, &Control::default()).unwrap();
         holds(&other, truth, name);
         let [one, three] = [alone(), Control::threads(3)]
-            .map(|control| surface_area(&tree, &frame, 1e-3, &control).unwrap());
+            .map(|control| surface_area(&tree, &frame, finest, &control).unwrap());
         assert_eq!(one, three, "{name}");
     }
 }
@@ -261,7 +262,7 @@ fn an_extended_tree_has_the_area_of_its_source() {
 fn faces_in_planes_of_the_lattice_are_counted_once() {
     let frame = Frame::new([-4.0; 3], 8.0, 12).unwrap();
     let mut checked = 0;
-    for seed in 0..400 {
+    for seed in 0..repeated(100, 400) {
         let mut random = Random(seed ^ 0xFACE5);
         let aligned = seed % 4 != 0;
         let mut maker =
@@ -296,7 +297,7 @@ fn faces_in_planes_of_the_lattice_are_counted_once() {
         }
     }
     println!("{checked} areas");
-    assert!(checked > 300);
+    assert!(checked > repeated(75, 300));
 }
 
 /// A surface that vanishes on faces of cells that it crosses, and has different signs on both sides of them.
@@ -365,8 +366,9 @@ fn a_mesh_that_intersects_itself_has_the_area_of_what_it_encloses() {
 #[test]
 fn the_same_for_any_number_of_threads() {
     let (_, solid, _) = primitives().swap_remove(6);
-    let many = surface_area(&solid, &frame(), 1e-3, &Control::default()).unwrap();
-    assert_eq!(surface_area(&solid, &frame(), 1e-3, &alone()).unwrap(), many);
+    let tolerance = repeated(4e-3, 1e-3);
+    let many = surface_area(&solid, &frame(), tolerance, &Control::default()).unwrap();
+    assert_eq!(surface_area(&solid, &frame(), tolerance, &alone()).unwrap(), many);
 }
 
 /// Bounds of the area in a cell by those of cells that are some levels finer, in squares of the cell's half edge.

@@ -1,6 +1,6 @@
 //! Clearance of meshes by their triangles: held against all pairs of triangles, one by one.
 
-use crate::common::{Random, alone, model};
+use crate::common::{Random, alone, model, repeated};
 use leafless::query::{GapVerdict, StopReason, clearance_at, gap_at_least, gap_at_least_at};
 use leafless::{
     Affine, Clearance, Control, Error, FillRule, Frame, MeshSolid, TriangleMesh, clearance, exchange,
@@ -201,7 +201,7 @@ fn check(found: &Clearance, truth: f64, slack: f64, case: &str) {
 fn random_meshes_beside_all_pairs() {
     let mut random = Random(21);
     let (mut apart, mut crossing) = (0, 0);
-    for case in 0..120 {
+    for case in 0..repeated(48, 120) {
         let far = [0.0, 1e3, 1e7][case % 3];
         let middle = [far, -0.5 * far, 0.25 * far];
         let mut lump = || random.between(-0.3, 0.3);
@@ -262,7 +262,7 @@ fn random_meshes_beside_all_pairs() {
             assert_eq!(gaps[0].verdict, verdict, "{name}: {gaps:?}");
         }
     }
-    assert!(apart > 40 && crossing > 10, "{apart} {crossing}");
+    assert!(apart > repeated(16, 40) && crossing > repeated(4, 10), "{apart} {crossing}");
 }
 
 /// A ball in a hollow one is as far from it as the triangles are; one within a solid one is not apart.

@@ -1,6 +1,7 @@
 //! Volume, centroid and inertia of every primitive under random affine placements: the intervals hold the
 //! formulas' values at every depth, after every number of splits, and to every tolerance.
 
+use crate::common::repeated;
 use glam::{DMat3, DVec3};
 use leafless::query::StopReason;
 use leafless::{Affine, Bounds, Control, Csg, Error, Frame, Interval, MassProperties, Solid, measure};
@@ -220,7 +221,7 @@ fn intervals_hold_the_formulas() {
     let mut random = Random(1);
     let control = Control::default();
     for known in primitives() {
-        for round in 0..4 {
+        for round in 0..repeated(2, 4) {
             let (matrix, offset) =
                 if round == 0 { (DMat3::IDENTITY, DVec3::ZERO) } else { random.placement() };
             let placed = known.placed(matrix, offset);
@@ -281,7 +282,7 @@ fn primitives_to_a_hundred_thousandth() {
 fn unions_and_intersections_add_up() {
     let mut random = Random(7);
     let known = primitives();
-    for round in 0..20 {
+    for round in 0..repeated(7, 20) {
         let mut pick = || {
             let (matrix, offset) = random.placement();
             let k = (random.next().abs() * known.len() as f64) as usize % known.len();
