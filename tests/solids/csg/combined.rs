@@ -3,7 +3,7 @@
 use super::extended::{extended, is_given_up, plate, points, through_a_file};
 use super::model::Model;
 use super::oracle::frames;
-use crate::common::{Random, alone};
+use crate::common::{Random, alone, repeated};
 use crate::random::Maker;
 use leafless::op::{difference_of, intersection_of, union_of, xor_of};
 use leafless::{
@@ -309,7 +309,7 @@ fn memory_does_not_grow_with_history() {
     let mut part = fresh.clone();
     let mut random = Random(0x4157);
     let blank = extended(&Csg::cuboid([0.0; 3], [80.0, 60.0, 10.0]).unwrap(), &frame);
-    for round in 0..10_000 {
+    for round in 0..repeated(2_000, 10_000) {
         let to = Affine::translation([random.between(0.0, 80.0), random.between(0.0, 60.0), 0.0]).unwrap();
         let bore = Csg::cylinder(random.between(0.5, 4.0), -1.0, 11.0).unwrap().placed(&to).unwrap();
         let bore = extended(&bore, &frame);
@@ -491,6 +491,10 @@ fn nothing_drops_surfaces_in_silence() {
         tree.view().check().unwrap();
         let cuts = tree.view().cuts().unwrap_or_default();
         assert_eq!(cuts.surfaces, part.view().cuts().unwrap().surfaces, "{name}");
+        // (Of an equal tree the same is told.)
+        if tree == &part && repeated(true, false) {
+            continue;
+        }
         let own = volume(tree);
         assert!(
             own.lower <= truth.upper && own.upper >= truth.lower && own.width() < 2e-4,

@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use super::oracle::frames;
-use crate::common::{Random, alone};
+use crate::common::{Random, alone, repeated};
 use crate::random::Maker;
 use leafless::query::surface_area;
 use leafless::solid::Transform;
@@ -186,6 +186,7 @@ fn any_map(random: &mut Random, frame: &Frame) -> Affine {
 #[test]
 fn no_point_of_what_is_moved_is_told_wrong() {
     let (mut made, mut known) = (0, [0; 3]);
+    let most = repeated(14, 40);
     for seed in 0.. {
         let mut random = Random(seed ^ 0x30DE);
         let frame = frames(6)[random.below(5) as usize];
@@ -211,12 +212,12 @@ fn no_point_of_what_is_moved_is_told_wrong() {
         let points = points_of(&truth, &frame, &mut random);
         known[2] += compared("returned", &returned, &frame, &truth, &points);
         made += 1;
-        if made == 40 {
+        if made == most {
             break;
         }
     }
-    println!("{known:?} of {}", 40 * 1198);
-    assert!(known.iter().all(|&known| known > 5_000), "{known:?}");
+    println!("{known:?} of {}", most * 1198);
+    assert!(known.iter().all(|&known| known > repeated(1_750, 5_000)), "{known:?}");
 }
 
 /// Planes with a width are moved as others are: what is thinner than the tolerance does not vanish.

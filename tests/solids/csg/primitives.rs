@@ -4,6 +4,7 @@
 //! `cargo test --release --test solids csg::primitives -- --ignored`
 
 use crate::common::exact::Exact;
+use crate::common::repeated;
 use leafless::solid::{Fingerprint, HalfSpace, Touch};
 use leafless::{
     Affine, Bounds, Classifier, Control, Csg, Error, Frame, Interval, Membership, Octree, Rule, Solid,
@@ -468,7 +469,7 @@ fn check_all_points(placements: u64, points: u64, seed: u64) {
 
 #[test]
 fn points_never_contradict_cells() {
-    check_all_points(20, 5_000, 1);
+    check_all_points(repeated(8, 20), repeated(3_000, 5_000), 1);
 }
 
 #[test]
