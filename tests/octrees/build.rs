@@ -2,7 +2,9 @@
 
 use crate::common::cubes::{Cubes, Plain};
 use crate::common::exact::Definition;
-use crate::common::{Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, shapes};
+use crate::common::{
+    Dense, Random, Shape, alone, assert_is, cases, lattice_frame, positions, repeated, shapes,
+};
 use leafless::lattice::Cube;
 use leafless::octree::Block;
 use leafless::op::{resolve, union_of};
@@ -605,7 +607,7 @@ impl Worker for Lists {
 
 #[test]
 fn parts_in_scratch_memory_survive_what_the_builder_does() {
-    for depth in 1..=7 {
+    for depth in 1..=repeated(6, 7) {
         let frame = Frame::new([0.1, 0.2, -0.3], 0.77, depth).unwrap();
         let crowd = Crowd::new(40, &frame);
         for rule in RULES {

@@ -4,7 +4,7 @@
 //! cells are FULL and PARTIAL. A resolved octree must never change. A certified one may only become tighter,
 //! and then the line that it had at first stays in the file behind the new one, after `was`.
 
-use crate::common::{Random, alone, model};
+use crate::common::{Random, alone, model, repeated};
 use leafless::octree::Cursor;
 use leafless::solid::{HalfSpace, Transform};
 use leafless::{
@@ -340,7 +340,7 @@ fn nothing_is_built_into_anything_else() {
         .collect();
     let (mut wrong, mut seen) = (String::new(), 0);
     for entry in corpus() {
-        for &depth in &entry.depths {
+        for &depth in entry.depths.iter().filter(|&&depth| depth <= repeated(6, u8::MAX)) {
             for rule in RULES {
                 let (key, value) = line(&entry, depth, rule);
                 let expected = golden.get(&*key).copied().unwrap_or("missing");
@@ -351,6 +351,7 @@ fn nothing_is_built_into_anything_else() {
             }
         }
     }
+    println!("{seen} lines");
     assert!(seen > 300);
     if let Some(path) = std::env::var_os("LEAFLESS_CORPUS") {
         std::fs::write(path, &wrong).unwrap();

@@ -1,7 +1,7 @@
 //! Voxel records, against recursion over dense arrays and against searches without order.
 
 use crate::common;
-use crate::common::{Dense, Random, alone, cases, lattice_frame, shapes};
+use crate::common::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};
 use leafless::attribute::{Attribute, Criterion, Detail, FunctionAttribute, ValueRange};
 use leafless::voxel::{
     LinearCode, Symmetry, Viewpoint, VoxelBoundary, VoxelKind, VoxelOptions, VoxelRecord, VoxelRecords,
@@ -718,7 +718,7 @@ fn depth_orders_hold_for_a_thousand_views() {
         .collect();
     let leaves = view.len() as u64 - view.count(VoxelKind::Refined);
     assert!(leaves > 300 && view.count(VoxelKind::Refined) > 10, "{leaves}");
-    for k in 0..1000 {
+    for k in 0..repeated(300, 1000) {
         let mut at = [(); 3].map(|()| random.between(-1.0, 1.0));
         if k % 5 == 0 {
             at[random.below(3) as usize] = 0.0;
