@@ -9,7 +9,7 @@
 
 use crate::allocator::{most_held, refusing};
 use crate::bodies::{Aligned, Random};
-use crate::common::on_all_processors;
+use crate::common::{on_all_processors, repeated};
 use crate::{bodies, zip};
 use leafless::attribute::{FunctionAttribute, dexel_materials, sample_triangles};
 use leafless::dexel::{DexelEditor, DexelEnds, DexelFormat, DexelNormals};
@@ -719,6 +719,11 @@ fn old_file() -> Vec<u8> {
     file::to_bytes(&compact(ball(14.0, Rule::Certified).view()).unwrap().with_metadata(facts())).unwrap()
 }
 
+/// How many requests further on the next one is refused: each of the first twenty, and then ever fewer.
+fn step(n: u64) -> u64 {
+    repeated(1 + n / 20, 1)
+}
+
 /// What the other tests start in a directory of its own; nothing by itself.
 #[test]
 fn child() {
@@ -733,7 +738,8 @@ fn child() {
     let operations = operations(&directory);
     let (_, operation) = operations.iter().find(|(known, _)| *known == name).unwrap();
     let mut out = 0;
-    for n in first.. {
+    let mut n = first;
+    loop {
         eprintln!("request {n}");
         let (result, refused) = refusing(n, spared, for_good, operation);
         let found = std::fs::read(&path).unwrap();
@@ -754,6 +760,7 @@ fn child() {
             eprintln!("survived {out} of {n}");
             return;
         }
+        n += step(n);
     }
 }
 
@@ -785,7 +792,7 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
             panic!("{name}: {text}")
         };
         assert!(size <= SMALL, "{name}: request {n} is one of {size} bytes and cannot be refused");
-        errors += n - first;
+        errors += text.lines().filter(|line| line.starts_with("request ")).count() as u64 - 1;
         fatal += 1;
         first = if fatal < 3 { n + 1 } else { 2 * n + 1 };
         // What a process leaves behind that was ended.
