@@ -1,5 +1,6 @@
 //! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense arrays.
 
+use crate::common::repeated;
 use crate::{attributes, contacts, direct, layouts, measures, records, surfaces};
 use leafless::attribute::{
     Attribute, Criterion, Detail, FillOptions, MovedAttribute, ScalarType, ValueRange, ValueType,
@@ -137,13 +138,33 @@ fn what_is_no_cell_has_no_children_among_records() {
 
 #[test]
 fn what_the_fuzzer_found_interesting() {
-    corpus("measures", measures::measures);
-    corpus("contacts", contacts::contacts);
     corpus("attributes", attributes::attributes);
     corpus("records", records::records);
     corpus("direct", direct::direct);
+}
+
+#[test]
+fn measures_that_the_fuzzer_found_interesting() {
+    corpus("measures", measures::measures);
+}
+
+#[test]
+fn contacts_that_the_fuzzer_found_interesting() {
+    corpus("contacts", contacts::contacts);
+}
+
+#[test]
+fn layers_that_the_fuzzer_found_interesting() {
     corpus("layers", direct::layers);
+}
+
+#[test]
+fn boundaries_that_the_fuzzer_found_interesting() {
     corpus("boundaries", surfaces::boundaries);
+}
+
+#[test]
+fn contours_that_the_fuzzer_found_interesting() {
     corpus("contours", surfaces::contours);
 }
 
@@ -154,17 +175,17 @@ fn layouts_are_proven() {
 
 #[test]
 fn solids_in_contact() {
-    any_bytes(contacts::contacts, 0..200, 40);
+    any_bytes(contacts::contacts, 0..repeated(70, 200), 40);
 }
 
 #[test]
 fn surfaces_of_expressions_are_closed_and_as_near_as_is_said() {
-    any_bytes(surfaces::boundaries, 0..30, 40);
+    any_bytes(surfaces::boundaries, 0..repeated(10, 30), 40);
 }
 
 #[test]
 fn contours_of_anything_are_closed_and_as_near_as_is_said() {
-    any_bytes(surfaces::contours, 0..30, 40);
+    any_bytes(surfaces::contours, 0..repeated(10, 30), 40);
 }
 
 #[test]
@@ -176,7 +197,7 @@ fn more_surfaces_are_closed_and_as_near_as_is_said() {
 
 #[test]
 fn scenes_of_unit_cells_are_measured() {
-    any_bytes(measures::measures, 0..2000, 160);
+    any_bytes(measures::measures, 0..repeated(700, 2000), 160);
 }
 
 #[test]
@@ -187,7 +208,7 @@ fn more_scenes_of_unit_cells_are_measured() {
 
 #[test]
 fn attributes_are_filled_in_and_carried() {
-    any_bytes(attributes::attributes, 0..3000, 120);
+    any_bytes(attributes::attributes, 0..repeated(1000, 3000), 120);
 }
 
 #[test]
@@ -198,7 +219,7 @@ fn more_attributes_are_filled_in_and_carried() {
 
 #[test]
 fn any_arrays_are_records_or_refused() {
-    any_bytes(records::records, 0..4000, 200);
+    any_bytes(records::records, 0..repeated(1300, 4000), 200);
 }
 
 #[test]
@@ -209,7 +230,7 @@ fn more_arrays_are_records_or_refused() {
 
 #[test]
 fn meshes_answer_rays_points_and_distances() {
-    any_bytes(direct::direct, 0..2000, 160);
+    any_bytes(direct::direct, 0..repeated(700, 2000), 160);
 }
 
 #[test]
