@@ -486,7 +486,6 @@ fn the_bunny_with_its_holes() {
             assert!(told.distance.common(by_cells.distance).is_some(), "{told:?} {by_cells:?}");
         }
         let direct = told.iter().filter(|told| told.splits == 0 && told.nearest.is_some()).count();
-        println!("{direct}");
         assert!(direct > repeated(18, 60), "{direct}");
     }
 }

@@ -351,7 +351,6 @@ fn nothing_is_built_into_anything_else() {
             }
         }
     }
-    println!("{seen} lines");
     assert!(seen > 300);
     if let Some(path) = std::env::var_os("LEAFLESS_CORPUS") {
         std::fs::write(path, &wrong).unwrap();
