@@ -50,12 +50,11 @@ pub(super) fn block_mesh(bounds: &Bounds) -> Result<AnySolid, Error> {
     Ok(AnySolid::new(MeshSolid::new(TriangleMesh::new(vertices, triangles)?, FillRule::NonZero)?))
 }
 
+/// Corners, and triangles between them.
+type Parts = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
 /// The corners of a block and its triangles, with room for so many more of both.
-fn block(
-    bounds: &Bounds,
-    more_vertices: usize,
-    more_triangles: usize,
-) -> Result<(Vec<[f64; 3]>, Vec<[u32; 3]>), Error> {
+fn block(bounds: &Bounds, more_vertices: usize, more_triangles: usize) -> Result<Parts, Error> {
     /// The faces of a block between its corners, of which bit k tells the upper one along axis k.
     const FACES: [[u32; 4]; 6] =
         [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
