@@ -28,6 +28,7 @@ mod cube_moments;
 pub(crate) mod exact;
 mod frame;
 mod interval;
+mod interval_text;
 mod inverse;
 mod moments;
 pub(crate) mod morton;

@@ -4,7 +4,7 @@ use crate::failure::{Failure, Of};
 use crate::making::part;
 use crate::sink::{self, Output};
 use crate::source::input::Input;
-use crate::words::{count, counted, measured, seconds};
+use crate::words::{count, counted, seconds};
 use clap::Args;
 use leafless::{
     Control, FillRule, Frame, Membership, MeshSolid, Octree, Rule, TriangleMesh, build, difference, exchange,
@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shares = [Membership::Inside, Membership::Outside, Membership::Undecided].map(share);
     let volume = mapped.statistics().volume();
     sink::print(
-        format!("\nOf the points {}.\nCertified volume: {} mm³.\n", shares.join(", "), measured(volume))
+        format!("\nOf the points {}.\nCertified volume: {} mm³.\n", shares.join(", "), volume)
             .as_bytes(),
     )
 }

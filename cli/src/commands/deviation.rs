@@ -9,7 +9,7 @@ use crate::sink::print_told;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::Source;
-use crate::words::{count, measured, number, put_line};
+use crate::words::{count, number, put_line};
 use clap::Args;
 use leafless::lattice::MAX_DEPTH;
 use leafless::query::{OneWay, StopReason, Within};
@@ -211,7 +211,7 @@ fn text(found: &Deviation, report: &Report) -> String {
         if distance.lower == f64::INFINITY {
             "there is nothing to be near to".into()
         } else {
-            measured(distance)
+            distance.to_string()
         }
     };
     if let Some(verdict) = report.verdict {

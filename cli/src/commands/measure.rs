@@ -13,7 +13,7 @@ use crate::source::input::Input;
 use crate::source::moved::frame_of;
 use crate::source::placing::image;
 use crate::source::solid::{Source, evaluations};
-use crate::words::{count, measured, number, put_line};
+use crate::words::{count, number, put_line};
 use clap::Args;
 use leafless::lattice::MAX_DEPTH;
 use leafless::mesh::MeshMoments;
@@ -395,22 +395,22 @@ fn text(
     let Found { mass, surface, extent, inexact, .. } = found;
     let mut text = String::new();
     let mut line = |name: &str, value: String| put_line(&mut text, name, &value);
-    line("volume", measured(mass.volume));
+    line("volume", mass.volume.to_string());
     if let Some(weight) = found.weight {
-        line("mass", format!("{} {unit}", measured(weight)).trim_end().to_owned());
+        line("mass", format!("{} {unit}", weight).trim_end().to_owned());
     }
     let area = match is_known(surface) {
         true if found.area_displacement > 0.0 && found.is_stated => format!(
             "{}, of the mesh: the true boundary lies beside it by {} or less, and may have any area",
-            measured(surface.area),
+            surface.area,
             number(found.area_displacement)
         ),
         true if found.area_displacement > 0.0 => format!(
             "{}, of the mesh with hair cracks closed: vertices were moved by {} or less",
-            measured(surface.area),
+            surface.area,
             number(found.area_displacement)
         ),
-        true => measured(surface.area),
+        true => surface.area.to_string(),
         false if is_stored => "not known: a file does not tell what its surface is like between cells".into(),
         false => match inexact {
             Some(Some(reason)) => format!("not known: {reason}"),
@@ -423,7 +423,7 @@ fn text(
     }
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         if let Some(centroid) = mass.centroid {
-            line(&format!("centroid {name}"), measured(centroid[axis]));
+            line(&format!("centroid {name}"), centroid[axis].to_string());
         }
     }
     for (name, tensor) in
@@ -432,7 +432,7 @@ fn text(
         for (i, j, axes) in
             [(0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 1, "xy"), (0, 2, "xz"), (1, 2, "yz")]
         {
-            line(&format!("{name} {axes}"), measured(tensor[i][j]));
+            line(&format!("{name} {axes}"), tensor[i][j].to_string());
         }
     }
     if let Some([min, max]) = extent.corners {
@@ -442,8 +442,8 @@ fn text(
             let wall = |is_wall: bool| {
                 if is_wall && mass.clipped { ", where the cube ends that is looked at" } else { "" }
             };
-            line(&format!("least {name}"), measured(min[axis]) + wall(min[axis].lower <= start));
-            line(&format!("greatest {name}"), measured(max[axis]) + wall(max[axis].upper >= end));
+            line(&format!("least {name}"), min[axis].to_string() + wall(min[axis].lower <= start));
+            line(&format!("greatest {name}"), max[axis].to_string() + wall(max[axis].upper >= end));
         }
     }
     if let Some(curves) = curves.and_then(Curves::text) {

@@ -7,7 +7,7 @@ use crate::report::bounds::Volume;
 use crate::sink;
 use crate::source::input::Input;
 use crate::source::values::find;
-use crate::words::{measured, number};
+use crate::words::number;
 use clap::Args;
 use leafless::attribute::{ChannelSummary, MaterialProperties, materials};
 use leafless::{Bounds, Interval, Octree};
@@ -141,12 +141,12 @@ fn all(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<String, 
     for k in components {
         let _ = writeln!(text, "least           {}{unit}", number(least[k]));
         let _ = writeln!(text, "greatest        {}{unit}", number(greatest[k]));
-        let _ = writeln!(text, "mean            {}{unit}", measured(mean[k]));
-        let _ = writeln!(text, "integral        {}", measured(integral[k]));
+        let _ = writeln!(text, "mean            {}{unit}", mean[k]);
+        let _ = writeln!(text, "integral        {}", integral[k]);
     }
-    let _ = writeln!(text, "volume          {}", measured(volume));
+    let _ = writeln!(text, "volume          {}", volume);
     if volume_without.upper > 0.0 {
-        let _ = writeln!(text, "without value   {}", measured(volume_without));
+        let _ = writeln!(text, "without value   {}", volume_without);
     }
     Ok(text)
 }
@@ -181,17 +181,17 @@ fn each(arguments: &Arguments, input: &Input, octree: &Octree) -> Result<String,
     for material in &found {
         let value: Vec<String> = material.value.iter().map(|&x| number(x)).collect();
         let _ = writeln!(text, "value           {}", value.join(" "));
-        let _ = writeln!(text, "  volume        {}", measured(material.volume.interval()));
+        let _ = writeln!(text, "  volume        {}", material.volume.interval());
         if let Some(centroid) = &material.centroid {
-            let place: Vec<String> = centroid.iter().map(|x| measured(x.interval())).collect();
+            let place: Vec<String> = centroid.iter().map(|x| x.interval().to_string()).collect();
             let _ = writeln!(text, "  centroid      {}", place.join(", "));
         }
         if let Some(mass) = &material.mass {
-            let _ = writeln!(text, "  mass          {}", measured(mass.interval()));
+            let _ = writeln!(text, "  mass          {}", mass.interval());
         }
     }
     if let Some(mass) = mass {
-        let _ = writeln!(text, "mass            {}", measured(mass));
+        let _ = writeln!(text, "mass            {}", mass);
     }
     Ok(text)
 }

@@ -8,7 +8,7 @@ use crate::sink::print_told;
 use crate::source::file::Taking;
 use crate::source::input::Input;
 use crate::source::solid::Source;
-use crate::words::{count, measured, number};
+use crate::words::{count, number};
 use clap::Args;
 use leafless::lattice::MAX_DEPTH;
 use leafless::query::{CellsIn, cells_in, volume_in};
@@ -167,7 +167,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             cells.full.text(),
             cells.upper.text(),
             number(frame.cell_size()),
-            measured(volume),
+            volume,
         )
     })
 }

@@ -8,7 +8,7 @@ use crate::progress::watched;
 use crate::source::input::Input;
 use crate::source::mesh::openness;
 use crate::source::solid::{Shape, Source, cells_of};
-use crate::words::{measured, short};
+use crate::words::short;
 use clap::{Args, ValueEnum};
 use leafless::attribute::{Attribute, Channel, Criterion, Detail};
 use leafless::error::MeshError;
@@ -395,7 +395,7 @@ fn extent_text([low, high]: [Interval; 2]) -> String {
     let ends = [(high.lower - low.upper).max(0.0), high.upper - low.lower];
     let length = Interval::new(ends[0], ends[1]).unwrap_or(Interval::ALL);
     let is_sure = length.upper - length.lower <= 1e-6 * length.upper;
-    if is_sure { short(0.5 * length.lower + 0.5 * length.upper) } else { measured(length) }
+    if is_sure { short(0.5 * length.lower + 0.5 * length.upper) } else { length.to_string() }
 }
 
 /// Where the legend of a picture of this size will lie, and the scale of a slice that is seen along its normal; `None` if there

@@ -1,6 +1,6 @@
 //! What is told of what is known: volumes as intervals, what cells prove, and why a search ended.
 
-use crate::words::{measured, number};
+use crate::words::number;
 use leafless::query::{GapVerdict, Overlap, StopReason};
 use leafless::{Interval, Proof};
 use serde::Serialize;
@@ -50,7 +50,7 @@ impl Range {
             (None, None) => "unknown".into(),
             (lower, upper) => {
                 let (lower, upper) = (lower.unwrap_or(0.0), upper.unwrap_or(f64::INFINITY));
-                measured(Interval::new(lower, upper).unwrap_or(Interval::ALL))
+                Interval::new(lower, upper).unwrap_or(Interval::ALL).to_string()
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::report::bounds::gap_word;
 use crate::source::plan::{Ends, Measures, Other, Plan, name_of};
-use crate::words::{count, counted, measured, number, put_line, seconds};
+use crate::words::{count, counted, number, put_line, seconds};
 use leafless::Interval;
 use leafless::layout::{SearchEnd, SearchReport, Standing};
 use leafless::query::GapVerdict;
@@ -78,7 +78,7 @@ impl Found {
             put_line(&mut text, "", &format!("{} {}", of(item.placed, item.count), item.name));
         }
         let Measures { filled_part, height, mass, mass_unit, centroid, smallest_gap, .. } = &self.measures;
-        let told = |ends: &Ends| measured(ends.interval());
+        let told = |ends: &Ends| ends.interval().to_string();
         put_line(&mut text, "filled", &format!("{} of the container's volume", told(filled_part)));
         put_line(&mut text, "height", &told(height));
         put_line(&mut text, "mass", format!("{} {}", told(mass), mass_unit.name()).trim_end());
@@ -208,7 +208,7 @@ impl Checked {
                 (true, false) => "is too near to",
                 (false, _) => "be too near to",
             };
-            let gap = measured(gap.interval());
+            let gap = gap.interval().to_string();
             let least = number(least);
             // (Writing to memory does not fail.)
             let _ = writeln!(

@@ -4,7 +4,7 @@ use crate::failure::{Failure, Of};
 use crate::report::bounds::Volume;
 use crate::source::input::Input;
 use crate::source::mesh::{fill_name, format_name, frame_around, in_words, openness};
-use crate::words::{count, counted, measured, number, put_line, short, table};
+use crate::words::{count, counted, number, put_line, short, table};
 use leafless::exchange::{LengthUnit, MeshFile};
 use leafless::lattice::MAX_DEPTH;
 use leafless::mesh::{DefectKind, IntersectingPair, MeshDefect, MeshReport};
@@ -222,7 +222,7 @@ impl Info {
             (Some(volume), None) => line("volume", number(volume)),
             (Some(volume), Some(by_rule)) => {
                 line("volume", format!("{}, the sum of signed volumes", number(volume)));
-                line("", format!("{}, by the rule ({})", measured(by_rule.interval()), self.rule));
+                line("", format!("{}, by the rule ({})", by_rule.interval(), self.rule));
             }
         }
         for (name, value) in [

@@ -3,7 +3,7 @@
 use crate::report::bounds::{Proven, Volume};
 use crate::report::channel::ChannelInfo;
 use crate::report::cuts::Cuts;
-use crate::words::{count, ends, measured, number, put_line, table};
+use crate::words::{count, number, put_line, table};
 use leafless::octree::Statistics;
 use leafless::{Interval, Octree, Tag};
 use serde::Serialize;
@@ -125,7 +125,7 @@ impl Info {
         line("proven", self.proof.text());
         line("volume", self.volume_text());
         if let Some(of_cells) = &self.volume_of_cells {
-            line("volume of cells", measured(of_cells.interval()));
+            line("volume of cells", of_cells.interval().to_string());
         }
         if let Some(cuts) = &self.cuts {
             line("surfaces", cuts.text());
@@ -145,7 +145,7 @@ impl Info {
         }
         let rows = (self.levels.iter())
             .map(|level| {
-                let [from, to] = ends(Interval::new(level.lower, level.upper).unwrap());
+                let [from, to] = Interval::new(level.lower, level.upper).unwrap().bounds_text();
                 [level.level.to_string(), count(level.nodes), from, to]
             })
             .collect::<Vec<_>>();
@@ -182,7 +182,7 @@ impl Info {
 
     /// The volume in words.
     pub fn volume_text(&self) -> String {
-        measured(self.volume.interval())
+        self.volume.interval().to_string()
     }
 }
 

@@ -1,0 +1,142 @@
+"""A solid-modelling kernel: certified, closed and exact Booleans on leaf-free octrees.
+
+Everything that has a shape is a `Solid`: an expression of half-spaces (`Csg`), a triangle mesh (`Mesh`), a stored octree
+(`Octree`), an array of samples (`Volume`), a shape of your own (`Shape`). Any of them can be asked about points, rays and distances in
+arrays of NumPy, measured, compared, built into an octree, and made a mesh.
+
+Answers are proven. A point is INSIDE, OUTSIDE or UNDECIDED; a volume or a distance is an interval that contains the truth, and
+becomes as narrow as you ask for.
+
+>>> plate = Csg.cuboid([0, 0, 0], [80, 60, 10])
+>>> bore = Csg.cylinder_between([20, 30, -1], [20, 30, 11], 8)
+>>> part = plate - bore
+>>> measure(part, tolerance=1e-6).volume
+45989.3798 ± 0.0048
+>>> part.contains([[1, 1, 1], [20, 30, 5]])
+array([1, 0], dtype=uint8)
+
+Long work takes the keyword arguments `threads` (0: all processors), `max_bytes`, `max_nodes`, `max_splits` and `progress` (a
+function of the part done, a bar of tqdm, or True); Ctrl-C interrupts it. No result depends on the number of threads.
+"""
+
+from ._answers import Cells, DexelRays, Distances, Membership, RayHits, Tag, VoxelKind
+from ._errors import (
+    ArgumentError,
+    CancelledError,
+    Error,
+    FormatError,
+    FrameMismatchError,
+    LimitError,
+    MeshError,
+)
+from ._files import map, open, save
+from ._intervals import Intervals
+from ._leafless import (
+    Affine,
+    BoundingBox,
+    Channel,
+    Clearance,
+    Csg,
+    Deviation,
+    Frame,
+    Gap,
+    Interference,
+    Interval,
+    LazyOctree,
+    MassProperties,
+    Mesh,
+    Octree,
+    Picture,
+    Proof,
+    Shape,
+    Solid,
+    SurfaceArea,
+    SurfaceReport,
+    TriDexel,
+    Volume,
+    VoxelRecords,
+    bounding_box,
+    build,
+    clearance,
+    deviation,
+    dexelize,
+    gap_at_least,
+    interference,
+    measure,
+    render,
+    simplify,
+    surface,
+    surface_area,
+)
+
+__version__ = "0.0.1"
+
+INSIDE = Membership.INSIDE
+OUTSIDE = Membership.OUTSIDE
+UNDECIDED = Membership.UNDECIDED
+
+EMPTY = Tag.EMPTY
+FULL = Tag.FULL
+PARTIAL = Tag.PARTIAL
+
+__all__ = [
+    "EMPTY",
+    "FULL",
+    "INSIDE",
+    "OUTSIDE",
+    "PARTIAL",
+    "UNDECIDED",
+    "Affine",
+    "ArgumentError",
+    "BoundingBox",
+    "CancelledError",
+    "Cells",
+    "Channel",
+    "Clearance",
+    "Csg",
+    "Deviation",
+    "DexelRays",
+    "Distances",
+    "Error",
+    "FormatError",
+    "Frame",
+    "FrameMismatchError",
+    "Gap",
+    "Interference",
+    "Interval",
+    "Intervals",
+    "LazyOctree",
+    "LimitError",
+    "MassProperties",
+    "Membership",
+    "Mesh",
+    "MeshError",
+    "Octree",
+    "Picture",
+    "Proof",
+    "RayHits",
+    "Shape",
+    "Solid",
+    "SurfaceArea",
+    "SurfaceReport",
+    "Tag",
+    "TriDexel",
+    "Volume",
+    "VoxelKind",
+    "VoxelRecords",
+    "bounding_box",
+    "build",
+    "clearance",
+    "deviation",
+    "dexelize",
+    "gap_at_least",
+    "interference",
+    "map",
+    "measure",
+    "open",
+    "render",
+    "save",
+    "simplify",
+    "surface",
+    "surface_area",
+]

@@ -1,0 +1,112 @@
+"""What batches of questions are answered with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from ._intervals import Intervals
+
+
+class Membership(IntEnum):
+    """Whether a point lies inside. UNDECIDED is neither true nor false, so compare: `answer == INSIDE`."""
+
+    OUTSIDE = 0
+    INSIDE = 1
+    UNDECIDED = 2
+
+    def __bool__(self) -> bool:
+        if self is Membership.UNDECIDED:
+            raise ValueError("the answer is UNDECIDED: compare it with INSIDE or OUTSIDE")
+        return self is Membership.INSIDE
+
+
+class Tag(IntEnum):
+    """What is known of a cell."""
+
+    EMPTY = 0
+    BRANCH = 1
+    PARTIAL = 2
+    FULL = 3
+
+
+class VoxelKind(IntEnum):
+    """What a voxel is."""
+
+    OUTSIDE = 0
+    INSIDE = 1
+    BOUNDARY = 2
+    REFINED = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Distances:
+    """How far points are from a solid."""
+
+    #: The distances, one interval a point.
+    distance: Intervals
+    #: Points of the boundary that are as near, shape (n, 3); NaN where none is known.
+    nearest: np.ndarray[Any, Any]
+    #: The numbers of triangles or surfaces there; −1 where none is known.
+    surface: np.ndarray[Any, Any]
+    #: Where the interval is wider than the tolerance.
+    undecided: np.ndarray[Any, Any]
+
+    def __len__(self) -> int:
+        return len(self.distance)
+
+
+@dataclass(frozen=True, eq=False)
+class RayHits:
+    """Where rays first meet a solid."""
+
+    #: Whether anything stopped a ray.
+    hit: np.ndarray[Any, Any]
+    #: Before the lower end a ray is proven outside, at the upper end inside; infinite without a hit.
+    distance: Intervals
+    #: Outward normals at the hits, shape (n, 3); NaN without a hit.
+    normal: np.ndarray[Any, Any]
+    #: The numbers of triangles that were hit; −1 where none is known.
+    surface: np.ndarray[Any, Any]
+
+    def __len__(self) -> int:
+        return len(self.hit)
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Cells of an octree."""
+
+    #: Their levels, 0 for the universe.
+    level: np.ndarray[Any, Any]
+    #: Their indices along x, y and z in cells of that level, shape (n, 3).
+    at: np.ndarray[Any, Any]
+    #: Their tags.
+    tag: np.ndarray[Any, Any]
+
+    def __len__(self) -> int:
+        return len(self.level)
+
+
+@dataclass(frozen=True, eq=False)
+class DexelRays:
+    """Intervals of a tri-dexel model along an axis."""
+
+    #: The index of the ray on the other two axes, the lower axis first, shape (n, 2).
+    ray: np.ndarray[Any, Any]
+    #: Where intervals begin.
+    start: np.ndarray[Any, Any]
+    #: Where they end.
+    end: np.ndarray[Any, Any]
+    #: What they are made of.
+    material: np.ndarray[Any, Any]
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+
+for _kind in (Membership, Tag, VoxelKind, Distances, RayHits, Cells, DexelRays):
+    _kind.__module__ = "leafless"

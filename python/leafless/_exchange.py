@@ -1,0 +1,39 @@
+"""To and from the arrays of other packages."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+def indices(faces: Any) -> Any:
+    """An array of integers, refused if it holds anything else."""
+    faces = np.asarray(faces)
+    if faces.size == 0:
+        return np.zeros((0, 3), np.int64)
+    if faces.dtype.kind not in "iu":
+        raise TypeError(f"faces: must be whole numbers, not {faces.dtype}")
+    return faces
+
+
+def samples(array: Any, axes_reversed: bool) -> tuple[Any, str, tuple[int, int, int]]:
+    """An array of which x varies fastest, what it holds, and how many samples it has along x, y and z."""
+    array = np.asarray(array)
+    if array.ndim != 3:
+        raise ValueError(f"array: must have three axes, not {array.ndim}")
+    # In the order z, y, x the last axis varies fastest in memory, as NumPy likes it.
+    reversed_ = array if axes_reversed else array.transpose()
+    kind = reversed_.dtype.newbyteorder("=").name
+    z, y, x = reversed_.shape
+    reversed_ = np.require(reversed_, reversed_.dtype.newbyteorder("="), ["C", "A"])
+    if kind == "bool":
+        reversed_ = reversed_.view(np.uint8)
+    return reversed_, kind, (x, y, z)
+
+
+def to_trimesh(mesh: Any) -> Any:
+    """The mesh as one of trimesh."""
+    import trimesh
+
+    return trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)

@@ -1,0 +1,84 @@
+"""Files: paths, and URLs of fsspec."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from . import _leafless
+
+
+def _url(path: Any) -> str | None:
+    return path if isinstance(path, str) and "://" in path else None
+
+
+def _fsspec() -> Any:
+    try:
+        import fsspec
+    except ImportError as error:
+        raise ImportError("URLs need fsspec: pip install fsspec") from error
+    return fsspec
+
+
+def open(path: Any, **taking: Any) -> Any:
+    """Reads a file, whatever it is: an `Octree` or a `TriDexel` (.lfl), a `Mesh` (STL, OBJ, PLY, OFF, 3MF), a `Csg` (.csg) or a `Volume`
+    (NRRD, MetaImage).
+
+    `path` is a path, or a URL of any kind that fsspec knows. Of meshes, `fill` says what is inside ("nonzero", "positive", "evenodd"),
+    `unit` what the numbers mean ("mm", "in"), `to_unit` what they are converted to, and `scale` multiplies them; of volumes, `threshold`
+    says which samples are inside.
+
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "ball.lfl")
+    >>> save(build(Csg.ball([0, 0, 0], 1), depth=5), path)
+    >>> open(path).frame.depth
+    5
+    """
+    url = _url(path)
+    if url is None:
+        return _leafless.open_path(os.fspath(path), **taking)
+    with _fsspec().open(url, "rb") as file:
+        return _leafless.open_bytes(file.read(), url.rsplit("/", 1)[-1], **taking)
+
+
+def map(path: Any, *, verify: bool = False) -> Any:
+    """The octree or the tri-dexel model in a file, mapped: nothing is copied, and only what is asked for is ever read, so that it takes
+    microseconds whatever the size. The pages are shared with all processes that map the file.
+
+    The file may be replaced or removed, but must not be made shorter or written to as long as the object is there. Of a file that is
+    damaged, answers may be wrong; `verify=True` looks for damage first, and reads all of it.
+
+    A mapped object is pickled by its path and its checksum.
+
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "ball.lfl")
+    >>> save(build(Csg.ball([0, 0, 0], 1), depth=5), path)
+    >>> map(path).contains([0, 0, 0])
+    <Membership.INSIDE: 1>
+    """
+    return _leafless.map_path(os.fspath(path), verify=verify)
+
+
+def save(object: Any, path: Any) -> None:
+    """Writes an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd) or a `Picture` (.png).
+
+    `path` is a path, or a URL of any kind that fsspec can write to. A file at a path is replaced as a whole: at any moment there is the
+    old one or the new one.
+
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "block.stl")
+    >>> save(surface(Csg.cuboid([0, 0, 0], [3, 2, 1])), path)
+    >>> open(path)
+    <Mesh: 8 vertices, 12 triangles>
+    """
+    url = _url(path)
+    if url is None:
+        _leafless.save_path(object, os.fspath(path))
+        return
+    data = _leafless.save_bytes(object, url.rsplit("/", 1)[-1])
+    with _fsspec().open(url, "wb") as file:
+        file.write(data)
+
+
+for _function in (open, map, save):
+    _function.__module__ = "leafless"

@@ -1,0 +1,84 @@
+"""Arrays of intervals."""
+
+from __future__ import annotations
+
+from typing import Any, Iterator
+
+import numpy as np
+
+from ._leafless import Interval
+
+
+class Intervals:
+    """An array of intervals: two arrays of one shape, between which the truth lies.
+
+    >>> bounds = Intervals([1.0, 2.0], [1.5, 2.0])
+    >>> bounds[0], bounds.width
+    (1 to 1.5, array([0.5, 0. ]))
+    >>> bounds.contain([1.2, 3.0])
+    array([ True, False])
+    """
+
+    __slots__ = ("lower", "upper")
+
+    def __init__(self, lower: Any, upper: Any) -> None:
+        self.lower = np.asarray(lower, dtype=np.float64)
+        self.upper = np.asarray(upper, dtype=np.float64)
+        if self.lower.shape != self.upper.shape:
+            raise ValueError("lower and upper must have one shape")
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of both arrays."""
+        return self.lower.shape
+
+    @property
+    def middle(self) -> Any:
+        """The numbers half-way between the ends; where both ends are infinite, that infinity."""
+        with np.errstate(invalid="ignore"):
+            return np.where(self.lower == self.upper, self.lower, 0.5 * self.lower + 0.5 * self.upper)
+
+    @property
+    def width(self) -> Any:
+        """How far apart the ends are."""
+        with np.errstate(invalid="ignore"):
+            return np.where(self.lower == self.upper, 0.0, self.upper - self.lower)
+
+    def contain(self, values: Any) -> Any:
+        """Where values lie in their intervals: an array of booleans."""
+        values = np.asarray(values)
+        return (self.lower <= values) & (values <= self.upper)
+
+    def __getitem__(self, index: Any) -> Any:
+        lower, upper = self.lower[index], self.upper[index]
+        if np.ndim(lower) == 0:
+            return Interval(float(lower), float(upper))
+        return Intervals(lower, upper)
+
+    def __len__(self) -> int:
+        return len(self.lower)
+
+    def __iter__(self) -> Iterator[Any]:
+        for index in range(len(self)):
+            yield self[index]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Intervals):
+            return NotImplemented
+        return np.array_equal(self.lower, other.lower) and np.array_equal(self.upper, other.upper)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        if self.lower.size > 24:
+            return f"<Intervals of shape {self.shape}>"
+        return f"Intervals({self._text(())})"
+
+    def _text(self, place: tuple[int, ...]) -> str:
+        if len(place) == len(self.shape):
+            return repr(Interval(float(self.lower[place]), float(self.upper[place])))
+        inner = (self._text((*place, index)) for index in range(self.shape[len(place)]))
+        return f"[{', '.join(inner)}]"
+
+
+Intervals.__module__ = "leafless"

@@ -1,0 +1,215 @@
+//! Affine maps, which place solids.
+
+use crate::arrays::{self, doubles, triple};
+use crate::error::{OrRaise, refused};
+use leafless::Affine as Inner;
+use pyo3::prelude::*;
+
+/// A map of space that moves, turns or stretches: a 3×4 or 4×4 matrix, whose numbers are taken as they are.
+///
+/// `map @ solid` is the solid moved by it, and `first @ second` the map that does what `second` does, and then `first`. Where a
+/// placement is asked for, any matrix of NumPy will do.
+///
+/// >>> turned = Affine.translation([10, 0, 0]) @ Affine.rotation([0, 0, 1], 90)
+/// >>> turned([1, 0, 0])
+/// array([10.,  1.,  0.])
+///
+/// Quarter turns are exact:
+///
+/// >>> Affine.rotation([0, 0, 1], 90).matrix[0]
+/// array([ 0., -1.,  0.,  0.])
+#[pyclass(frozen, eq, from_py_object, module = "leafless")]
+#[derive(Clone, Copy, PartialEq)]
+pub struct Affine(pub Inner);
+
+#[pymethods]
+impl Affine {
+    /// Operators of NumPy leave this class alone.
+    #[classattr]
+    #[allow(non_upper_case_globals)]
+    const __array_ufunc__: Option<u8> = None;
+
+    /// The map of a matrix of 3×4 numbers, [M | t], or 4×4.
+    #[new]
+    fn new(matrix: &Bound<'_, PyAny>) -> PyResult<Affine> {
+        affine(matrix, "matrix").map(Affine)
+    }
+
+    /// The map that moves nothing.
+    #[staticmethod]
+    fn identity() -> Affine {
+        Affine(Inner::IDENTITY)
+    }
+
+    /// Moves everything by `offset`.
+    #[staticmethod]
+    fn translation(offset: &Bound<'_, PyAny>) -> PyResult<Affine> {
+        Inner::translation(triple(offset, "offset")?).or_raise(offset.py()).map(Affine)
+    }
+
+    /// Turns by an angle in degrees around an axis through the origin, or through the point `about`: counter-clockwise as seen
+    /// from where the axis points to.
+    #[staticmethod]
+    #[pyo3(signature = (axis, degrees, about=None))]
+    fn rotation(axis: &Bound<'_, PyAny>, degrees: f64, about: Option<&Bound<'_, PyAny>>) -> PyResult<Affine> {
+        let py = axis.py();
+        let direction = triple(axis, "axis")?;
+        let length = direction.iter().map(|c| c * c).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite() && degrees.is_finite()) {
+            return Err(refused(py, "axis", "must not be zero, and all numbers must be finite"));
+        }
+        let [x, y, z] = direction.map(|c| c / length);
+        let (sin, cos) = quarter(degrees);
+        let rest = 1.0 - cos;
+        let turn = [
+            [x * x * rest + cos, x * y * rest - z * sin, x * z * rest + y * sin],
+            [y * x * rest + z * sin, y * y * rest + cos, y * z * rest - x * sin],
+            [z * x * rest - y * sin, z * y * rest + x * sin, z * z * rest + cos],
+        ];
+        let at = match about {
+            Some(about) => triple(about, "about")?,
+            None => [0.0; 3],
+        };
+        let rows = turn.map(|row| {
+            let moved: f64 = (0..3).map(|k| row[k] * at[k]).sum();
+            [row[0], row[1], row[2], moved]
+        });
+        let rows = [0, 1, 2].map(|i| {
+            let [a, b, c, moved] = rows[i];
+            // Numbers that are rounding and nothing else are zero.
+            [a, b, c, at[i] - moved].map(|entry: f64| if entry.abs() < 1e-18 { 0.0 } else { entry })
+        });
+        Inner::new(rows).or_raise(py).map(Affine)
+    }
+
+    /// Stretches by a factor, or by one for each axis.
+    #[staticmethod]
+    fn scale(factor: &Bound<'_, PyAny>) -> PyResult<Affine> {
+        let factors = match factor.extract::<f64>() {
+            Ok(factor) => [factor; 3],
+            Err(_) => triple(factor, "factor")?,
+        };
+        let [x, y, z] = factors;
+        let rows = [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]];
+        Inner::new(rows).or_raise(factor.py()).map(Affine)
+    }
+
+    /// The 4×4 matrix.
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let [a, b, c] = *self.0.rows();
+        Ok(arrays::rows(py, vec![a, b, c, [0.0, 0.0, 0.0, 1.0]])?.into_any())
+    }
+
+    /// The map that moves everything back, rounded.
+    fn inverse(&self, py: Python<'_>) -> PyResult<Affine> {
+        self.0.inverse().or_raise(py).map(Affine)
+    }
+
+    /// Where the map moves a point, or points of shape (n, 3).
+    fn __call__<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let rows = arrays::Rows::of(points, "points")?;
+        let moved = rows.list().iter().map(|&point| self.0.apply(point)).collect();
+        arrays::one_or_all(arrays::rows(points.py(), moved)?.into_any(), rows.is_one)
+    }
+
+    fn __matmul__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = other.py();
+        if crate::solid::is_solid(other) {
+            return other.call_method1("placed", (*self,));
+        }
+        match affine(other, "placement") {
+            Ok(first) => Ok(Affine(after(&self.0, &first).or_raise(py)?).into_pyobject(py)?.into_any()),
+            Err(_) => Ok(py.NotImplemented().into_bound(py)),
+        }
+    }
+
+    fn __rmatmul__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = other.py();
+        match affine(other, "placement") {
+            Ok(second) => Ok(Affine(after(&second, &self.0).or_raise(py)?).into_pyobject(py)?.into_any()),
+            Err(_) => Ok(py.NotImplemented().into_bound(py)),
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Affine({:?})", self.0.rows())
+    }
+
+    fn __hash__(&self) -> u64 {
+        self.0.rows().iter().flatten().fold(0, |hash: u64, x| hash.rotate_left(13) ^ x.to_bits())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>,))> {
+        Ok((slf.get_type().into_any(), (slf.get().matrix(slf.py())?,)))
+    }
+}
+
+/// Sine and cosine of an angle in degrees, exact for quarter turns.
+fn quarter(degrees: f64) -> (f64, f64) {
+    match degrees.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => degrees.to_radians().sin_cos(),
+    }
+}
+
+/// The map that does what `first` does, and then `second`; rounded.
+pub fn after(second: &Inner, first: &Inner) -> Result<Inner, leafless::Error> {
+    let (a, b) = (second.rows(), first.rows());
+    Inner::new([0, 1, 2].map(|i| {
+        [0, 1, 2, 3].map(|j| {
+            let sum: f64 = (0..3).map(|k| a[i][k] * b[k][j]).sum();
+            if j == 3 { sum + a[i][3] } else { sum }
+        })
+    }))
+}
+
+/// A map from an object of this class or from a matrix.
+pub fn affine(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Inner> {
+    if let Ok(known) = given.cast::<Affine>() {
+        return Ok(known.get().0);
+    }
+    let array = doubles(given, name)?;
+    match many(&array, name)?.as_slice() {
+        &[one] if numpy::PyUntypedArrayMethods::ndim(&array) == 2 => Ok(one),
+        _ => Err(refused(given.py(), name, "must be one matrix")),
+    }
+}
+
+/// Maps from one matrix, from an array of shape (n, 4, 4) or (n, 3, 4), or from a list of maps.
+pub fn affines(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Inner>> {
+    if given.cast::<Affine>().is_ok() {
+        return Ok(vec![affine(given, name)?]);
+    }
+    if let Ok(list) = given.cast::<pyo3::types::PySequence>()
+        && list.len()? > 0
+        && list.get_item(0)?.cast::<Affine>().is_ok()
+    {
+        return list.try_iter()?.map(|one| affine(&one?, name)).collect();
+    }
+    many(&doubles(given, name)?, name)
+}
+
+fn many(array: &Bound<'_, numpy::PyArrayDyn<f64>>, name: &str) -> PyResult<Vec<Inner>> {
+    use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+    let py = array.py();
+    let high = match *array.shape() {
+        [high @ (3 | 4), 4] | [_, high @ (3 | 4), 4] => high,
+        ref shape => {
+            return Err(refused(py, name, format!("must be a matrix of 3×4 or 4×4 numbers, not of shape {shape:?}")));
+        }
+    };
+    let numbers = array.readonly();
+    let numbers = numbers.as_slice()?;
+    let one = |matrix: &[f64]| {
+        if high == 4 && matrix[12..] != [0.0, 0.0, 0.0, 1.0] {
+            return Err(refused(py, name, "the last row of a 4×4 matrix must be 0, 0, 0, 1"));
+        }
+        let row = |i: usize| [0, 1, 2, 3].map(|j| matrix[4 * i + j]);
+        Inner::new([row(0), row(1), row(2)]).or_raise(py)
+    };
+    numbers.chunks_exact(4 * high).map(one).collect()
+}

@@ -1,0 +1,90 @@
+//! On which frame solids are asked, if nobody says.
+
+use crate::error::{OrRaise, refused};
+use crate::frame::Frame;
+use crate::solid::Given;
+use leafless::lattice::MAX_DEPTH;
+use leafless::{Affine, Bounds, Error, Frame as Inner, Solid as _};
+use pyo3::prelude::*;
+
+/// What a caller says of the frame.
+#[derive(Clone, Copy, Default)]
+pub struct Wish {
+    /// The frame.
+    pub frame: Option<Frame>,
+    /// Its depth.
+    pub depth: Option<u8>,
+}
+
+impl Wish {
+    /// The frame to ask a solid on: the wished one, that of an octree or of a volume's voxels, or one around the solid, which is
+    /// `deepest` deep where nothing limits the depth.
+    pub fn of(&self, py: Python<'_>, solid: &Given, deepest: u8) -> PyResult<Inner> {
+        let deepest = self.depth.unwrap_or(deepest);
+        if let Some(Frame(frame)) = self.frame {
+            return self.depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py);
+        }
+        match solid.own {
+            // Cells that keep surfaces are large, and say little.
+            Some(own) if solid.keeps_surfaces => own.with_depth(deepest).or_raise(py),
+            Some(own) => self.depth.map_or(Ok(own), |depth| own.with_depth(depth)).or_raise(py),
+            None => fitted(py, &bounds(py, solid)?, deepest),
+        }
+    }
+
+    /// The frame to ask two solids on, the second under placements: of one of them its own, as often doubled as it takes, or one
+    /// around both.
+    pub fn of_both(
+        &self,
+        py: Python<'_>,
+        [a, b]: [&Given; 2],
+        placements: &[Affine],
+        deepest: u8,
+    ) -> PyResult<Inner> {
+        let deepest = self.depth.unwrap_or(deepest);
+        if let Some(Frame(frame)) = self.frame {
+            return self.depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py);
+        }
+        let (mut all, second) = (bounds(py, a)?, bounds(py, b)?);
+        for placement in placements {
+            let Some(moved) = second.placed(placement) else {
+                return Err(refused(py, "placement", "moves the solid too far"));
+            };
+            all = all.hull(&moved);
+        }
+        match a.own {
+            Some(own) => {
+                let own = if a.keeps_surfaces || self.depth.is_some() { own.with_depth(deepest) } else { Ok(own) };
+                own.and_then(|own| doubled(own, &all)).or_raise(py)
+            }
+            None => fitted(py, &all, deepest),
+        }
+    }
+}
+
+fn fitted(py: Python<'_>, Bounds { min, max }: &Bounds, depth: u8) -> PyResult<Inner> {
+    Inner::fitted(*min, *max, depth).or_raise(py)
+}
+
+/// A box that holds a solid, or all that is known of it.
+pub fn bounds(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
+    match (solid.shape.bounds(), solid.own) {
+        (Some(bounds), _) => Ok(bounds),
+        (None, Some(own)) => Ok(Bounds::of(&own)),
+        (None, None) => Err(refused(py, "frame", "must be given: no bounds of the solid are known")),
+    }
+}
+
+/// A frame doubled until it holds a box: its cells stay whole.
+fn doubled(mut frame: Inner, all: &Bounds) -> Result<Inner, Error> {
+    while !all.is_within(&frame) && frame.depth() < MAX_DEPTH {
+        let (origin, edge) = (frame.origin(), frame.edge());
+        // Towards the side where more is missing.
+        let grown = [0, 1, 2].map(|axis| {
+            let above = all.max[axis] - (origin[axis] + edge) >= origin[axis] - all.min[axis];
+            if above { origin[axis] } else { origin[axis] - edge }
+        });
+        frame = Inner::new(grown, 2.0 * edge, frame.depth() + 1)?;
+    }
+    Ok(frame)
+}

@@ -1,0 +1,221 @@
+//! Values inside of solids.
+
+use crate::arrays;
+use crate::ask::Wish;
+use crate::error::{OrRaise, carried, refused};
+use crate::frame::{Frame, corners};
+use crate::interval::{Interval, intervals};
+use crate::octree::Octree;
+use crate::solid::given;
+use crate::volume::Volume;
+use crate::work::Limits;
+use leafless::attribute::{
+    Attribute, Channel as Inner, ConstantAttribute, Detail, FillOptions, Interpolation, ScalarType, ValueType,
+    VolumeAttribute, fill_channel,
+};
+use leafless::{Bounds, Error};
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Values inside of a solid (a temperature, a colour, a material), in a tree of its own, where equal neighbours share one value.
+///
+/// >>> part = build(Csg.cuboid([0, 0, 0], [8, 8, 8]), Frame([0, 0, 0], 8, 3))
+/// >>> heat = Channel.fill(lambda points: 20 + 3 * points[:, 2], part)
+/// >>> part = part.with_channel("heat", heat)
+/// >>> part.channel("heat").values_at([[1.5, 1.5, 1.5]])
+/// array([24.5])
+#[pyclass(frozen, module = "leafless")]
+pub struct Channel(pub Inner);
+
+/// A function of Python that has values at points.
+struct Function {
+    function: Py<PyAny>,
+    components: usize,
+}
+
+impl Attribute for Function {
+    fn components(&self) -> usize {
+        self.components
+    }
+
+    fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error> {
+        let found = Python::attach(|py| {
+            let points = arrays::rows(py, points.to_vec())?;
+            read(&self.function.bind(py).call1((points,))?, values.len())
+        });
+        let (found, components) = found.map_err(carried)?;
+        if components != self.components {
+            let problem = format!("values: {components} numbers a point, and {} before", self.components);
+            return Err(carried(PyValueError::new_err(problem)));
+        }
+        for (value, found) in values.iter_mut().zip(found.chunks_exact(components)) {
+            let mut numbers = [0.0; 4];
+            numbers[..components].copy_from_slice(found);
+            *value = (!found.iter().any(|number| number.is_nan())).then_some(numbers);
+        }
+        Ok(())
+    }
+}
+
+/// Values of points, and how many numbers each has.
+fn read(found: &Bound<'_, PyAny>, count: usize) -> PyResult<(Vec<f64>, usize)> {
+    let array: Bound<'_, PyArrayDyn<f64>> = arrays::doubles(found, "values")?;
+    let components = match *array.shape() {
+        [n] if n == count => 1,
+        [n, components @ 1..=4] if n == count => components,
+        ref shape => {
+            return Err(PyValueError::new_err(format!(
+                "values: must return an array of the shape ({count},) or ({count}, m) with 1 to 4 numbers, not {shape:?}"
+            )));
+        }
+    };
+    Ok((array.readonly().as_slice()?.to_vec(), components))
+}
+
+#[pymethods]
+impl Channel {
+    /// The values of a function, of a volume's samples, or one value everywhere.
+    ///
+    /// A function gets points (shape (n, 3)) and returns values of shape (n,) or (n, components), NaN where there is none; it is
+    /// asked at the centres of cells that belong to the solid. Without a solid, give a frame. `depth` may differ from the
+    /// solid's, and `cell` ends cells at that edge, whatever the values. `dtype` is "uint8", "uint16", "uint32" or "float32".
+    #[staticmethod]
+    #[pyo3(signature = (values, solid=None, *, frame=None, depth=None, cell=None, dtype="float32", nearest=false, **limits))]
+    #[allow(clippy::too_many_arguments)]
+    fn fill(
+        values: &Bound<'_, PyAny>,
+        solid: Option<&Bound<'_, PyAny>>,
+        frame: Option<Frame>,
+        depth: Option<u8>,
+        cell: Option<f64>,
+        dtype: &str,
+        nearest: bool,
+        limits: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Channel> {
+        let py = values.py();
+        let limits = Limits::of(limits)?;
+        let octree = match solid {
+            None => None,
+            Some(solid) => match solid.cast::<Octree>() {
+                Ok(octree) => Some(octree.get().octree.clone()),
+                Err(_) => return Err(refused(py, "solid", "must be an Octree; build makes one")),
+            },
+        };
+        let frame = match (solid, frame) {
+            (Some(solid), None) => Wish { frame: None, depth }.of(py, &given(solid, "solid")?, 8)?,
+            (_, Some(Frame(frame))) => depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py)?,
+            (None, None) => return Err(refused(py, "frame", "must be given without a solid")),
+        };
+        let scalars = [ScalarType::U8, ScalarType::U16, ScalarType::U32, ScalarType::F32];
+        let names = ["uint8", "uint16", "uint32", "float32"];
+        let Some(scalar) = names.iter().position(|name| *name == dtype).map(|i| scalars[i]) else {
+            return Err(refused(py, "dtype", format!("must be one of {}", names.join(", "))));
+        };
+        let attribute: Box<dyn Attribute + Send> = if let Ok(volume) = values.cast::<Volume>() {
+            let way = if nearest { Interpolation::Nearest } else { Interpolation::Trilinear };
+            Box::new(VolumeAttribute::new(volume.get().volume.clone(), way))
+        } else if values.is_callable() {
+            // How many numbers a value has, a first point tells.
+            let probe = arrays::rows(py, vec![Bounds::of(&frame).min])?;
+            let (_, components) = read(&values.call1((probe,))?, 1)?;
+            Box::new(Function { function: values.clone().unbind(), components })
+        } else {
+            let value: Vec<f64> = match values.extract::<f64>() {
+                Ok(value) => vec![value],
+                Err(_) => arrays::doubles(values, "values")?.call_method0("tolist")?.extract()?,
+            };
+            Box::new(ConstantAttribute::new(&value).or_raise(py)?)
+        };
+        let value_type = ValueType::new(scalar, attribute.components() as u8).or_raise(py)?;
+        let detail = cell.map(Detail::uniform).transpose().or_raise(py)?;
+        let channel = limits.run(py, |control| {
+            let solid = octree.as_ref().map(|octree| octree.view());
+            fill_channel(&*attribute, &FillOptions { value_type, frame, solid, detail }, control)
+        })?;
+        Ok(Channel(channel))
+    }
+
+    /// Its name, if an octree has it.
+    #[getter]
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    /// Where it lies.
+    #[getter]
+    fn frame(&self) -> Frame {
+        Frame(*self.0.frame())
+    }
+
+    /// How many numbers a value has.
+    #[getter]
+    fn components(&self) -> usize {
+        self.0.value_type().components()
+    }
+
+    /// Bytes that it takes.
+    #[getter]
+    fn nbytes(&self) -> u64 {
+        self.0.bytes()
+    }
+
+    /// The values at points (shape (n, 3)): shape (n,), or (n, components) for several; NaN where there is none.
+    fn values_at<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = points.py();
+        let rows = arrays::Rows::of(points, "points")?;
+        let list = rows.list();
+        let mut found = vec![None; list.len()];
+        let view = self.0.view().or_raise(py)?;
+        py.detach(|| view.values_at(list, &mut found));
+        let components = self.components();
+        let numbers = found.iter().flat_map(|value| value.unwrap_or([f64::NAN; 4]).into_iter().take(components));
+        let numbers: Vec<f64> = numbers.collect();
+        let shape = if components == 1 { vec![list.len()] } else { vec![list.len(), components] };
+        arrays::one_or_all(arrays::array(py, numbers, &shape)?.into_any(), rows.is_one)
+    }
+
+    /// Least, greatest, mean and integral of the values in an octree, or in a box: a dictionary of arrays and intervals; `None` where
+    /// nothing has a value.
+    #[pyo3(signature = (solid=None, *, bounds=None, **limits))]
+    fn summary<'py>(
+        &self,
+        py: Python<'py>,
+        solid: Option<&Octree>,
+        bounds: Option<&Bound<'py, PyAny>>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let limits = Limits::of(limits)?;
+        let bounds = match bounds {
+            None => None,
+            Some(bounds) => {
+                let [min, max] = corners(bounds, "bounds")?;
+                Some(Bounds { min, max })
+            }
+        };
+        let (view, solid) = (self.0.view().or_raise(py)?, solid.map(|solid| solid.octree.view()));
+        let found = limits.run(py, |control| view.summary(solid, bounds.as_ref(), control))?;
+        let Some(found) = found else { return Ok(None) };
+        let count = self.components();
+        let numbers = |all: [f64; 4]| arrays::array(py, all[..count].to_vec(), &[count]);
+        let told = PyDict::new(py);
+        told.set_item("least", numbers(found.least)?)?;
+        told.set_item("greatest", numbers(found.greatest)?)?;
+        told.set_item("mean", intervals(py, found.mean[..count].iter().copied(), &[count])?)?;
+        told.set_item("integral", intervals(py, found.integral[..count].iter().copied(), &[count])?)?;
+        told.set_item("volume", Interval(found.volume))?;
+        told.set_item("volume_without", Interval(found.volume_without))?;
+        Ok(Some(told))
+    }
+
+    fn __repr__(&self) -> String {
+        let kind = self.0.value_type();
+        format!("<Channel: {} × {}, {} values>", kind.components(), kind.scalar().name(), self.0.value_count())
+    }
+
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(pyo3::exceptions::PyTypeError::new_err("a Channel is pickled with the octree that has it"))
+    }
+}
+

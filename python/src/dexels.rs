@@ -1,0 +1,273 @@
+//! Tri-dexel models.
+
+use crate::arrays;
+use crate::ask::Wish;
+use crate::error::{OrRaise, refused};
+use crate::frame::Frame;
+use crate::from_package;
+use crate::mesh::Mesh;
+use crate::octree::Octree;
+use crate::solid::{Given, Solid, given};
+use crate::words;
+use crate::work::Limits;
+use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
+use leafless::op::{DexelOptions, octree_from_dexel_ends, octree_from_dexels};
+use leafless::surface::{DexelSolid, dual_contouring_dexels, marching_cubes_dexels};
+use leafless::{AnySolid, FillRule, Rule, TriDexel as Inner};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::path::PathBuf;
+
+/// The depth of a model that nobody tells: 256 rays along each axis of a face.
+const DEPTH: u8 = 8;
+
+/// A solid as intervals along the rays of a lattice, whose ends are far finer than cells.
+///
+/// `|`, `&`, `-`, `^` and `~` merge the intervals of models on one frame. Rays see nothing of what lies between them, so that a model
+/// proves nothing: `solid()` is the surface that marching cubes makes of it.
+///
+/// >>> model = dexelize(Csg.ball([0, 0, 0], 1), depth=6)
+/// >>> round(model.volume(), 3)
+/// 4.19
+#[pyclass(frozen, module = "leafless")]
+pub struct TriDexel {
+    pub model: Inner,
+    /// The file that it is mapped from, with the checksum of its header.
+    pub mapped: Option<(PathBuf, u64)>,
+}
+
+impl TriDexel {
+    pub fn new(model: Inner) -> TriDexel {
+        TriDexel { model, mapped: None }
+    }
+
+    fn combined<'py>(
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+        combine: impl FnOnce(&Inner, &leafless::Control<'_>) -> Result<Inner, leafless::Error> + Send,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<TriDexel>() else { return Ok(py.NotImplemented().into_bound(py)) };
+        let other = &other.get().model;
+        TriDexel::new(Limits::default().run(py, |control| combine(other, control))?).into_bound_py_any(py)
+    }
+}
+
+#[pymethods]
+impl TriDexel {
+    /// The model of a file's bytes.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<TriDexel> {
+        leafless::file::dexels::from_bytes(data).or_raise(py).map(TriDexel::new)
+    }
+
+    /// The bytes of its file.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &leafless::file::dexels::to_bytes(&self.model).or_raise(py)?))
+    }
+
+    /// The lattice: rays run through the centres of its finest cells.
+    #[getter]
+    fn frame(&self) -> Frame {
+        Frame(*self.model.frame())
+    }
+
+    /// Along which axes rays run: any of "x", "y" and "z".
+    #[getter]
+    fn directions(&self) -> String {
+        let has = self.model.view().directions();
+        ["x", "y", "z"].into_iter().zip(has).filter_map(|(name, has)| has.then_some(name)).collect()
+    }
+
+    /// How many intervals there are.
+    #[getter]
+    fn interval_count(&self) -> u64 {
+        self.model.view().interval_count()
+    }
+
+    /// Bytes that the arrays take.
+    #[getter]
+    fn nbytes(&self) -> u64 {
+        self.model.view().bytes()
+    }
+
+    /// The volume by the rays along an axis (cubic model units): no bound, but the sum of intervals.
+    #[pyo3(signature = (axis=2))]
+    fn volume(&self, py: Python<'_>, axis: usize) -> PyResult<f64> {
+        match self.model.view().statistics(axis) {
+            Some(statistics) => Ok(statistics.volume),
+            None => Err(refused(py, "axis", "must be one along which rays run: 0, 1 or 2 for x, y and z")),
+        }
+    }
+
+    /// The intervals along an axis as arrays: `ray` (indices of the ray on the other two axes, the lower first) of shape (n, 2),
+    /// `start` and `end` (coordinates) of shape (n,), and `material` of shape (n,).
+    fn rays<'py>(&self, py: Python<'py>, axis: usize) -> PyResult<Bound<'py, PyAny>> {
+        let Some(rays) = self.model.view().rays(axis) else {
+            return Err(refused(py, "axis", "must be one along which rays run: 0, 1 or 2 for x, y and z"));
+        };
+        let count = rays.interval_count() as usize;
+        let (mut ray, mut start, mut end, mut material) = (
+            Vec::with_capacity(count),
+            Vec::with_capacity(count),
+            Vec::with_capacity(count),
+            Vec::with_capacity(count),
+        );
+        let [first, second] = rays.window();
+        for at in second.flat_map(|v| first.clone().map(move |u| [u, v])) {
+            for dexel in rays.dexels(at) {
+                ray.push(at);
+                start.push(dexel.start.at);
+                end.push(dexel.end.at);
+                material.push(dexel.material);
+            }
+        }
+        let count = start.len();
+        from_package!(py, "leafless._answers", "DexelRays")?.call1((
+            arrays::rows(py, ray)?,
+            arrays::array(py, start, &[count])?,
+            arrays::array(py, end, &[count])?,
+            arrays::array(py, material, &[count])?,
+        ))
+    }
+
+    /// The surface: by dual contouring, with sharp edges, if the model keeps normals, else by marching cubes.
+    #[pyo3(signature = (**limits))]
+    fn surface<'py>(
+        &self,
+        py: Python<'py>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Mesh>> {
+        let view = self.model.view();
+        let (mesh, _) = Limits::of(limits)?.run(py, |control| match view.format().normals {
+            DexelNormals::None => marching_cubes_dexels(view, control),
+            DexelNormals::Bits16 | DexelNormals::Bits32 => dual_contouring_dexels(view, control),
+        })?;
+        Mesh::bound(py, mesh, FillRule::NonZero, None, None)
+    }
+
+    /// The solid inside of the surface that marching cubes finds, which is taken for the truth.
+    #[pyo3(signature = (**limits))]
+    fn solid<'py>(
+        &self,
+        py: Python<'py>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Solid>> {
+        let view = self.model.view();
+        let solid = Limits::of(limits)?.run(py, |control| DexelSolid::new(view, control))?;
+        Bound::new(py, Solid::new(Given::new(AnySolid::new(solid.as_truth()))))
+    }
+
+    /// The octree of the samples that rays decide; with `by_ends=True` cells in which rays begin or end stay undecided.
+    #[pyo3(signature = (*, by_ends=false, **limits))]
+    fn to_octree<'py>(
+        &self,
+        py: Python<'py>,
+        by_ends: bool,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        let view = self.model.view();
+        let octree = Limits::of(limits)?.run(py, |control| {
+            if by_ends { octree_from_dexel_ends(view, control) } else { octree_from_dexels(view, control) }
+        })?;
+        Octree::bound(py, octree)
+    }
+
+    fn __or__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let own = &self.model;
+        TriDexel::combined(other.py(), other, |other, control| own.view().union(other.view(), control))
+    }
+
+    fn __and__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let own = &self.model;
+        TriDexel::combined(other.py(), other, |other, control| own.view().intersection(other.view(), control))
+    }
+
+    fn __sub__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let own = &self.model;
+        TriDexel::combined(other.py(), other, |other, control| own.view().difference(other.view(), control))
+    }
+
+    fn __xor__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let own = &self.model;
+        TriDexel::combined(other.py(), other, |other, control| own.view().xor(other.view(), control))
+    }
+
+    fn __invert__(&self, py: Python<'_>) -> PyResult<TriDexel> {
+        let view = self.model.view();
+        Ok(TriDexel::new(Limits::default().run(py, |control| view.complement(control))?))
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+        let py = other.py();
+        match other.cast::<TriDexel>() {
+            Ok(other) => (self.model == other.get().model).into_py_any(py),
+            Err(_) => Ok(py.NotImplemented()),
+        }
+    }
+
+    fn __hash__(&self) -> u64 {
+        crate::frame::hash(self.model.frame()) ^ self.model.view().interval_count()
+    }
+
+    fn __repr__(&self) -> String {
+        let (depth, count) = (self.model.frame().depth(), self.interval_count());
+        format!("<TriDexel: depth {depth}, directions {}, {count} intervals>", self.directions())
+    }
+
+    /// By the bytes of its file; of a mapped one by the path and a checksum.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        match &self.mapped {
+            Some((path, checksum)) => {
+                let again = from_package!(py, "leafless._pickle", "mapped")?;
+                Ok((again, (path, *checksum).into_bound_py_any(py)?))
+            }
+            None => {
+                let again = from_package!(py, "leafless._pickle", "tridexel")?;
+                Ok((again, (self.to_bytes(py)?,).into_bound_py_any(py)?))
+            }
+        }
+    }
+}
+
+/// A tri-dexel model of a solid: where the rays through the centres of cells run inside.
+///
+/// `normals` keeps the surface's normals at the ends, in 16 or 32 bits, so that surfaces have sharp edges; `surfaces` the numbers of
+/// the source's surfaces; `doubles` stores ends as doubles.
+#[pyfunction]
+#[pyo3(signature = (
+    solid, frame=None, *, depth=None, directions="xyz", rule="sampled", normals=0, surfaces=false, doubles=false, **limits
+))]
+#[allow(clippy::too_many_arguments)]
+pub fn dexelize(
+    solid: &Bound<'_, PyAny>,
+    frame: Option<Frame>,
+    depth: Option<u8>,
+    directions: &str,
+    rule: &str,
+    normals: u8,
+    surfaces: bool,
+    doubles: bool,
+    limits: Option<&Bound<'_, PyDict>>,
+) -> PyResult<TriDexel> {
+    let py = solid.py();
+    let limits = Limits::of(limits)?;
+    let rule: Rule = words::value(py, rule)?;
+    if !directions.chars().all(|axis| "xyz".contains(axis)) {
+        return Err(refused(py, "directions", "must be some of the letters x, y and z"));
+    }
+    let normals = match normals {
+        0 => DexelNormals::None,
+        16 => DexelNormals::Bits16,
+        32 => DexelNormals::Bits32,
+        _ => return Err(refused(py, "normals", "must be 0, 16 or 32 bits")),
+    };
+    let ends = if doubles { DexelEnds::Double } else { DexelEnds::Fixed };
+    let format = DexelFormat { ends, normals, surfaces, ..DexelFormat::default() };
+    let directions = ['x', 'y', 'z'].map(|axis| directions.contains(axis));
+    let options = DexelOptions { directions, format, rule };
+    let solid = given(solid, "solid")?;
+    let frame = Wish { frame, depth }.of(py, &solid, DEPTH)?;
+    let model = limits.run(py, |control| leafless::dexelize(&solid.shape, &frame, &options, control))?;
+    Ok(TriDexel::new(model))
+}

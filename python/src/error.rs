@@ -1,0 +1,85 @@
+//! Errors of the library as exceptions of Python, and exceptions that pass through the library.
+
+use crate::from_package;
+use leafless::Error;
+use pyo3::exceptions::{PyMemoryError, PyOSError};
+use pyo3::prelude::*;
+use std::sync::atomic::{AtomicI32, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+
+/// Exceptions of shapes written in Python, with the codes under which the library hands them on.
+static RAISED: Mutex<Vec<(i32, PyErr)>> = Mutex::new(Vec::new());
+
+/// Most exceptions that are kept: of threads that fail at one time only the first is asked for again.
+const MOST_RAISED: usize = 64;
+
+/// The library's error that stands for an exception, until [`raised`] turns it back.
+pub fn carried(error: PyErr) -> Error {
+    static NEXT: AtomicI32 = AtomicI32::new(1);
+    let code = NEXT.fetch_add(1, Relaxed);
+    let mut kept = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.len() == MOST_RAISED {
+        kept.remove(0);
+    }
+    kept.push((code, error));
+    Error::Callback { code }
+}
+
+/// The exception of an error: the one that a function in Python raised, or one with the library's message.
+pub fn raised(py: Python<'_>, error: Error) -> PyErr {
+    if let Error::Callback { code } = error {
+        let mut kept = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(place) = kept.iter().position(|(own, _)| *own == code) {
+            return kept.remove(place).1;
+        }
+    }
+    let message = error.to_string();
+    let class = match error.cause() {
+        Error::OutOfMemory => return PyMemoryError::new_err(message),
+        Error::Io(cause) => {
+            return match cause.raw_os_error() {
+                // Python makes of the number the class that fits, such as FileNotFoundError.
+                Some(code) => PyOSError::new_err((code, message)),
+                None => PyOSError::new_err(message),
+            };
+        }
+        Error::Argument { .. } => from_package!(py, "leafless._errors", "ArgumentError"),
+        Error::FrameMismatch { .. } => from_package!(py, "leafless._errors", "FrameMismatchError"),
+        Error::Limit { .. } | Error::TooLarge { .. } => from_package!(py, "leafless._errors", "LimitError"),
+        Error::Cancelled => from_package!(py, "leafless._errors", "CancelledError"),
+        Error::Format(_)
+        | Error::Damaged(_)
+        | Error::DamagedRays { .. }
+        | Error::MeshFile(_)
+        | Error::Package(_)
+        | Error::VolumeFile(_)
+        | Error::Scene(_) => from_package!(py, "leafless._errors", "FormatError"),
+        Error::Mesh(_) | Error::Polyhedron(_) => from_package!(py, "leafless._errors", "MeshError"),
+        _ => from_package!(py, "leafless._errors", "Error"),
+    };
+    match class.and_then(|class| class.call1((message,))) {
+        Ok(exception) => PyErr::from_value(exception),
+        Err(error) => error,
+    }
+}
+
+/// Results of the library as results of Python.
+pub trait OrRaise<T> {
+    /// What was found, or the exception of the error.
+    fn or_raise(self, py: Python<'_>) -> PyResult<T>;
+}
+
+impl<T> OrRaise<T> for Result<T, Error> {
+    fn or_raise(self, py: Python<'_>) -> PyResult<T> {
+        self.map_err(|error| raised(py, error))
+    }
+}
+
+/// An exception about an argument, in the library's manner.
+pub fn refused(py: Python<'_>, name: &str, problem: impl std::fmt::Display) -> PyErr {
+    let class = from_package!(py, "leafless._errors", "ArgumentError");
+    match class.and_then(|class| class.call1((format!("{name}: {problem}"),))) {
+        Ok(exception) => PyErr::from_value(exception),
+        Err(error) => error,
+    }
+}

@@ -1,0 +1,310 @@
+//! Files: Leafless's own, and those of other programs.
+
+use crate::csg::Csg;
+use crate::dexels::TriDexel;
+use crate::error::{OrRaise, refused};
+use crate::mesh::Mesh;
+use crate::octree::Octree;
+use crate::picture::Picture;
+use crate::volume::{Volume, band};
+use crate::words;
+use crate::work::Limits;
+use leafless::error::FormatError;
+use leafless::exchange::{
+    self, LengthUnit, MeshFile, MeshFormat, MeshOptions, NrrdEncoding, VolumeFile, VolumeFormat, WriteOptions,
+};
+use leafless::file::{self, dexels};
+use leafless::lattice::MAX_DEPTH;
+use leafless::scene::{is_scene, read_scene};
+use leafless::{Error, Frame};
+use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::io::{Read as _, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Bytes of a file's header, and where its checksum stands, which covers those of all sections.
+const HEADER: usize = 128;
+const CHECKSUM: std::ops::Range<usize> = 124..128;
+
+/// What files are taken for.
+#[derive(Clone, Copy)]
+enum Content {
+    Solid,
+    Volume,
+    Mesh,
+    Scene,
+}
+
+/// What the bytes of a file are: the content decides where it tells, then the name.
+fn content(bytes: &[u8], name: &Path) -> Option<Content> {
+    let extension = name.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    if bytes.starts_with(&file::MAGIC) || extension == "lfl" {
+        Some(Content::Solid)
+    } else if VolumeFormat::detect(bytes).is_some() {
+        Some(Content::Volume)
+    } else if MeshFormat::detect(bytes, None).is_some() {
+        Some(Content::Mesh)
+    } else if is_scene(bytes) || ["csg", "scad"].iter().any(|scene| extension.eq_ignore_ascii_case(scene)) {
+        Some(Content::Scene)
+    } else {
+        MeshFormat::from_extension(extension).map(|_| Content::Mesh)
+    }
+}
+
+/// How meshes and volumes in files are taken: `fill`, `unit`, `to_unit`, `scale`, `threshold`.
+struct Taking<'py> {
+    fill: leafless::FillRule,
+    options: MeshOptions,
+    threshold: Option<Bound<'py, PyAny>>,
+}
+
+impl<'py> Taking<'py> {
+    fn of(py: Python<'py>, given: Option<&Bound<'py, PyDict>>) -> PyResult<Taking<'py>> {
+        let mut taking =
+            Taking { fill: leafless::FillRule::NonZero, options: MeshOptions::default(), threshold: None };
+        for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
+            if value.is_none() {
+                continue;
+            }
+            let unit = || value.extract::<String>()?.parse::<LengthUnit>().or_raise(py);
+            match name.extract::<&str>()? {
+                "fill" => taking.fill = words::value(py, value.extract::<&str>()?)?,
+                "unit" => taking.options.unit = Some(unit()?),
+                "to_unit" => taking.options.target = Some(unit()?),
+                "scale" => taking.options.scale = value.extract()?,
+                "threshold" => taking.threshold = Some(value),
+                name => return Err(PyTypeError::new_err(format!("unexpected keyword argument '{name}'"))),
+            }
+        }
+        Ok(taking)
+    }
+}
+
+/// The object in the bytes of a file. `name` tells the format where the content does not, and is what errors name; other files
+/// that it names lie in `folder`.
+#[pyfunction]
+#[pyo3(signature = (data, name, folder=None, **taking))]
+pub fn open_bytes<'py>(
+    py: Python<'py>,
+    data: &[u8],
+    name: PathBuf,
+    folder: Option<PathBuf>,
+    taking: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let taking = Taking::of(py, taking)?;
+    let of_file = |error: Error| error.of_file(&name);
+    match content(data, &name) {
+        Some(Content::Solid) => solid(py, data).or_raise(py)?.into_object(py, None),
+        Some(Content::Volume) => {
+            let found = Limits::default().run(py, |_| exchange::read_volume(data, None).map_err(of_file))?;
+            volume(py, found, &taking)
+        }
+        Some(Content::Mesh) => {
+            let options = &taking.options;
+            let found = Limits::default().run(py, |_| exchange::read_mesh(data, options).map_err(of_file))?;
+            mesh(py, found, &taking)
+        }
+        Some(Content::Scene) => {
+            let text = std::str::from_utf8(data).map_err(|_| refused(py, "data", "is no text in UTF-8"))?;
+            scene(py, text, folder.as_deref(), &name)
+        }
+        None => Err(unknown(py, &name)),
+    }
+}
+
+fn unknown(py: Python<'_>, name: &Path) -> PyErr {
+    let kinds = "a solid (.lfl), nor a mesh (STL, OBJ, PLY, OFF, 3MF), nor a scene (.csg), nor a volume (NRRD, MetaImage)";
+    let name = name.display();
+    refused(py, "path", format!("{name}: neither the content nor the name is that of {kinds}"))
+}
+
+/// The object in the file at a path.
+#[pyfunction]
+#[pyo3(signature = (path, **taking))]
+pub fn open_path<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    taking: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let taken = Taking::of(py, taking)?;
+    let (bytes, content) = Limits::default().run(py, |_| {
+        let bytes = exchange::read_whole(&path).map_err(|error| error.of_file(&path))?;
+        let content = content(&bytes, &path);
+        Ok((bytes, content))
+    })?;
+    if let Some(Content::Solid) = content {
+        let found = solid(py, &bytes).map_err(|error| error.of_file(&path)).or_raise(py)?;
+        return found.into_object(py, None);
+    }
+    if let Some(Content::Volume) = content {
+        // Samples may lie in a file beside the header.
+        let found = Limits::default().run(py, |_| exchange::open_volume(&path))?;
+        return volume(py, found, &taken);
+    }
+    let folder = path.parent().map(Path::to_path_buf);
+    open_bytes(py, &bytes, path, folder, taking)
+}
+
+/// A stored solid.
+enum Stored {
+    Octree(leafless::Octree),
+    TriDexel(leafless::TriDexel),
+}
+
+impl Stored {
+    fn into_object(self, py: Python<'_>, mapped: Option<(PathBuf, u64)>) -> PyResult<Bound<'_, PyAny>> {
+        match self {
+            Stored::Octree(octree) => Ok(Octree::of_file(py, octree, mapped)?.into_any()),
+            Stored::TriDexel(model) => TriDexel { model, mapped }.into_bound_py_any(py),
+        }
+    }
+}
+
+/// The solid of one kind, or of the other if it is no file of the first.
+fn either(
+    octree: impl FnOnce() -> Result<leafless::Octree, Error>,
+    model: impl FnOnce() -> Result<leafless::TriDexel, Error>,
+) -> Result<Stored, Error> {
+    match octree() {
+        Err(error) if matches!(error.cause(), Error::Format(FormatError::OtherModel { .. })) => {
+            model().map(Stored::TriDexel)
+        }
+        found => found.map(Stored::Octree),
+    }
+}
+
+fn solid(py: Python<'_>, bytes: &[u8]) -> Result<Stored, Error> {
+    py.detach(|| either(|| file::from_bytes(bytes), || dexels::from_bytes(bytes)))
+}
+
+/// The solid in a Leafless file, mapped: nothing is copied, and only what is asked for is ever read. The file may be replaced, but
+/// must not be shortened or written to as long as the object is there. `verify=True` looks for damage first, which reads all of it; `checksum`
+/// refuses the file if it is another than the one with this checksum.
+#[pyfunction]
+#[pyo3(name = "map_path", signature = (path, *, verify=false, checksum=None))]
+pub fn map_path<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    verify: bool,
+    checksum: Option<u64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let path = std::path::absolute(&path).map_err(|error| Error::Io(error).of_file(&path)).or_raise(py)?;
+    let found = py.detach(|| {
+        let found = either(
+            // SAFETY: that the file is not shortened or written to is what `leafless.map` asks of its callers.
+            #[allow(unsafe_code)]
+            || unsafe { if verify { file::map_verified(&path) } else { file::map(&path) } },
+            // SAFETY: as above.
+            #[allow(unsafe_code)]
+            || unsafe { if verify { dexels::map_verified(&path) } else { dexels::map(&path) } },
+        )?;
+        let mut header = [0; HEADER];
+        let read = std::fs::File::open(&path).and_then(|mut file| file.read_exact(&mut header));
+        read.map_err(|error| Error::Io(error).of_file(&path))?;
+        let own = header[CHECKSUM].iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte));
+        Ok((found, own))
+    });
+    let (found, own) = found.or_raise(py)?;
+    if checksum.is_some_and(|checksum| checksum != own) {
+        let path = path.display();
+        return Err(refused(py, "checksum", format!("{path} is not the file that it was")));
+    }
+    found.into_object(py, Some((path, own)))
+}
+
+fn mesh<'py>(py: Python<'py>, found: MeshFile, taking: &Taking<'py>) -> PyResult<Bound<'py, PyAny>> {
+    let unit = found.unit.map(|unit| unit.to_string());
+    Ok(Mesh::bound(py, found.mesh, taking.fill, unit, None)?.into_any())
+}
+
+fn volume<'py>(py: Python<'py>, found: VolumeFile, taking: &Taking<'py>) -> PyResult<Bound<'py, PyAny>> {
+    let (band, told) = band(taking.threshold.as_ref(), found.kind.half_range())?;
+    let (samples, grid) = (found.samples, found.grid);
+    let volume = Limits::default().run(py, |control| leafless::Volume::new(samples, &grid, band, control))?;
+    let volume = Bound::new(py, Volume::initial(volume, false, false, told)?)?.into_any();
+    match found.placement {
+        None => Ok(volume),
+        // Axes that are not x, y and z make an expression of it.
+        Some(placement) => volume.call_method1("placed", (crate::affine::Affine(placement),)),
+    }
+}
+
+/// The solid of a scene.
+pub fn scene<'py>(
+    py: Python<'py>,
+    text: &str,
+    folder: Option<&Path>,
+    name: &Path,
+) -> PyResult<Bound<'py, PyAny>> {
+    let whole = Limits::default().run(py, |_| {
+        let scene = read_scene(text, folder).map_err(|error| error.of_file(name))?;
+        let (min, max) = scene.bounds()?.unwrap_or(([0.0; 3], [1.0; 3]));
+        // Octrees in it lie on a frame; all else can be asked on any.
+        let frame = Frame::fitted(min, max, MAX_DEPTH).or_else(|_| Frame::new([0.0; 3], 1.0, MAX_DEPTH))?;
+        scene.solid(&frame)
+    })?;
+    let recipe = (text, folder.map(Path::to_path_buf)).into_pyobject(py)?;
+    Ok(Csg::made(py, whole, "from_scene", recipe)?.into_any())
+}
+
+/// Writes an object to the file at a path, whose name tells the format: at any moment there is the old file or the new one.
+#[pyfunction]
+pub fn save_path(object: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {
+    let py = object.py();
+    if let Ok(octree) = object.cast::<Octree>() {
+        let octree = octree.get().octree.clone();
+        return Limits::default().run(py, |_| file::save(&octree, &path));
+    }
+    if let Ok(model) = object.cast::<TriDexel>() {
+        let model = model.get().model.clone();
+        return Limits::default().run(py, |_| dexels::save(&model, &path));
+    }
+    let bytes = save_bytes(object, path.clone())?;
+    let bytes = bytes.as_bytes();
+    Limits::default().run(py, |_| file::replace(&path, |file| Ok(file.write_all(bytes)?)))
+}
+
+/// The bytes of the file that an object is saved in, in the format that the name tells.
+#[pyfunction]
+pub fn save_bytes<'py>(object: &Bound<'py, PyAny>, name: PathBuf) -> PyResult<Bound<'py, PyBytes>> {
+    let py = object.py();
+    let extension = name.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
+    let wrong = |kinds: &str| {
+        let name = name.display();
+        Err(refused(py, "path", format!("{name}: the name must end in {kinds}")))
+    };
+    let bytes = if let Ok(octree) = object.cast::<Octree>() {
+        return if extension == "lfl" { octree.get().to_bytes(py) } else { wrong(".lfl") };
+    } else if let Ok(model) = object.cast::<TriDexel>() {
+        if extension != "lfl" {
+            return wrong(".lfl");
+        }
+        dexels::to_bytes(&model.get().model).or_raise(py)?
+    } else if let Ok(mesh) = object.cast::<Mesh>() {
+        let Some(format) = MeshFormat::from_extension(&extension) else {
+            return wrong(".stl, .obj, .ply, .off or .3mf");
+        };
+        let own = mesh.get();
+        let mut options = WriteOptions::default();
+        options.unit = own.unit.as_deref().and_then(|unit| unit.parse().ok());
+        options.deviation = own.deviation();
+        Limits::default().run(py, |_| exchange::write_mesh(&own.mesh, format, &options))?
+    } else if let Ok(volume) = object.cast::<Volume>() {
+        if extension != "nrrd" {
+            return wrong(".nrrd");
+        }
+        let volume = volume.get().volume.clone();
+        Limits::default()
+            .run(py, |_| exchange::write_nrrd(volume.samples(), volume.grid(), NrrdEncoding::Gzip))?
+    } else if let Ok(picture) = object.cast::<Picture>() {
+        return if extension == "png" { picture.get().to_png(py) } else { wrong(".png") };
+    } else {
+        let kind = object.get_type().name()?;
+        return Err(PyTypeError::new_err(format!(
+            "a {kind} has no file of its own: build makes an Octree of a solid, and surface a Mesh"
+        )));
+    };
+    Ok(PyBytes::new(py, &bytes))
+}

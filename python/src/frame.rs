@@ -1,0 +1,117 @@
+//! Where an octree lies, and how deep it may go.
+
+use crate::arrays::triple;
+use crate::error::{OrRaise, refused};
+use leafless::Frame as Inner;
+use pyo3::prelude::*;
+
+/// A cube in model space, the *universe*, and how often it may be halved: the lattice of an octree.
+///
+/// >>> frame = Frame([0, 0, 0], 128.0, depth=10)
+/// >>> frame.cells, frame.cell_size
+/// (1024, 0.125)
+/// >>> Frame.around([[0, 0, 0], [80, 60, 10]], depth=10).edge >= 80
+/// True
+#[pyclass(frozen, eq, from_py_object, module = "leafless")]
+#[derive(Clone, Copy, PartialEq)]
+pub struct Frame(pub Inner);
+
+#[pymethods]
+impl Frame {
+    /// The cube with the lower corner `origin` and the length `edge` (model units), in 2^`depth` cells along each axis, `depth`
+    /// from 1 to 20.
+    #[new]
+    #[pyo3(signature = (origin, edge, depth))]
+    fn new(origin: &Bound<'_, PyAny>, edge: f64, depth: u8) -> PyResult<Frame> {
+        let py = origin.py();
+        Inner::new(triple(origin, "origin")?, edge, depth).or_raise(py).map(Frame)
+    }
+
+    /// A cube around bounds (lower and upper corner), somewhat larger than these.
+    #[staticmethod]
+    #[pyo3(signature = (bounds, depth=20))]
+    fn around(bounds: &Bound<'_, PyAny>, depth: u8) -> PyResult<Frame> {
+        let [min, max] = corners(bounds, "bounds")?;
+        Inner::around(min, max, depth).or_raise(bounds.py()).map(Frame)
+    }
+
+    /// A cube around bounds whose planes are round numbers, as near as the bounds allow: for parts with round dimensions,
+    /// whose plane faces then lie in planes of the lattice.
+    #[staticmethod]
+    #[pyo3(signature = (bounds, depth=20))]
+    fn fitted(bounds: &Bound<'_, PyAny>, depth: u8) -> PyResult<Frame> {
+        let [min, max] = corners(bounds, "bounds")?;
+        Inner::fitted(min, max, depth).or_raise(bounds.py()).map(Frame)
+    }
+
+    /// A cube around bounds with finest cells of the edge `cell`.
+    #[staticmethod]
+    fn with_cells(bounds: &Bound<'_, PyAny>, cell: f64) -> PyResult<Frame> {
+        let [min, max] = corners(bounds, "bounds")?;
+        Inner::with_cells(min, max, cell).or_raise(bounds.py()).map(Frame)
+    }
+
+    /// The same cube with another depth.
+    fn with_depth(&self, py: Python<'_>, depth: u8) -> PyResult<Frame> {
+        self.0.with_depth(depth).or_raise(py).map(Frame)
+    }
+
+    /// The lower corner (model units).
+    #[getter]
+    fn origin(&self) -> (f64, f64, f64) {
+        self.0.origin().into()
+    }
+
+    /// The length of an edge (model units).
+    #[getter]
+    fn edge(&self) -> f64 {
+        self.0.edge()
+    }
+
+    /// How often the cube may be halved.
+    #[getter]
+    fn depth(&self) -> u8 {
+        self.0.depth()
+    }
+
+    /// Finest cells along an edge: 2^depth.
+    #[getter]
+    fn cells(&self) -> u32 {
+        self.0.cells()
+    }
+
+    /// The edge of a finest cell (model units).
+    #[getter]
+    fn cell_size(&self) -> f64 {
+        self.0.cell_size()
+    }
+
+    fn __repr__(&self) -> String {
+        let [x, y, z] = self.0.origin();
+        format!("Frame(({x:?}, {y:?}, {z:?}), {:?}, depth={})", self.0.edge(), self.0.depth())
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash(&self.0)
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> (Py<PyAny>, ((f64, f64, f64), f64, u8)) {
+        let frame = slf.get();
+        (slf.get_type().into_any().unbind(), (frame.origin(), frame.edge(), frame.depth()))
+    }
+}
+
+/// A lower and an upper corner.
+pub fn corners(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 2]> {
+    let rows = crate::arrays::Rows::of(given, name)?;
+    match *rows.list() {
+        [min, max] => Ok([min, max]),
+        _ => Err(refused(given.py(), name, "must be a lower and an upper corner")),
+    }
+}
+
+/// A hash of a frame: equal frames have equal ones.
+pub fn hash(frame: &Inner) -> u64 {
+    let numbers = frame.origin().into_iter().chain([frame.edge()]);
+    numbers.fold(frame.depth().into(), |hash: u64, x| hash.rotate_left(13) ^ (x + 0.0).to_bits())
+}

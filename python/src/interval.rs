@@ -1,0 +1,135 @@
+//! Intervals that contain the truth.
+
+use crate::arrays;
+use crate::error::refused;
+use crate::from_package;
+use leafless::Interval as Bounds;
+use pyo3::basic::CompareOp;
+use pyo3::prelude::*;
+
+/// Two numbers between which the truth lies: proven.
+///
+/// It prints the digits that mean something, and `in` asks whether a number is possible.
+///
+/// >>> volume = Interval(171000.0, 172000.0)
+/// >>> volume
+/// 171500 ± 510
+/// >>> 171234.5 in volume, volume.lower, volume.upper
+/// (True, 171000.0, 172000.0)
+///
+/// Comparisons with numbers hold for all that the interval contains, so that `volume < 2e5` is a proof, and both
+/// `volume < 171500` and `volume > 171500` are false:
+///
+/// >>> volume < 2e5, volume < 171500, volume > 171500
+/// (True, False, False)
+#[pyclass(frozen, from_py_object, module = "leafless")]
+#[derive(Clone, Copy)]
+pub struct Interval(pub Bounds);
+
+#[pymethods]
+impl Interval {
+    /// The interval from `lower` to `upper`; of one number that number.
+    #[new]
+    #[pyo3(signature = (lower, upper=None))]
+    fn new(py: Python<'_>, lower: f64, upper: Option<f64>) -> PyResult<Interval> {
+        let upper = upper.unwrap_or(lower);
+        let known = Bounds::new(lower, upper);
+        known.map(Interval).ok_or_else(|| refused(py, "upper", "must be a number that is not below lower"))
+    }
+
+    /// Nothing below is possible.
+    #[getter]
+    fn lower(&self) -> f64 {
+        self.0.lower
+    }
+
+    /// Nothing above is possible.
+    #[getter]
+    fn upper(&self) -> f64 {
+        self.0.upper
+    }
+
+    /// How far apart the ends are.
+    #[getter]
+    fn width(&self) -> f64 {
+        self.0.width()
+    }
+
+    /// The number half-way between the ends.
+    #[getter]
+    fn middle(&self) -> f64 {
+        0.5 * self.0.lower + 0.5 * self.0.upper
+    }
+
+    fn __contains__(&self, value: f64) -> bool {
+        self.0.contains(value)
+    }
+
+    /// Lower and upper, so that `low, high = interval` works.
+    fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let Bounds { .. } = slf.get().0;
+        let ends = (slf.get().0.lower, slf.get().0.upper).into_pyobject(slf.py())?;
+        ends.call_method0("__iter__")
+    }
+
+    fn __richcmp__(&self, other: &Bound<'_, PyAny>, order: CompareOp) -> PyResult<Py<PyAny>> {
+        let py = other.py();
+        let own = self.0;
+        let answer = if let Ok(other) = other.cast::<Interval>() {
+            let other = other.get().0;
+            match order {
+                CompareOp::Eq => own == other,
+                CompareOp::Ne => own != other,
+                CompareOp::Lt => own.upper < other.lower,
+                CompareOp::Le => own.upper <= other.lower,
+                CompareOp::Gt => own.lower > other.upper,
+                CompareOp::Ge => own.lower >= other.upper,
+            }
+        } else if let Ok(value) = other.extract::<f64>() {
+            match order {
+                CompareOp::Eq | CompareOp::Ne => return Ok(py.NotImplemented()),
+                CompareOp::Lt => own.upper < value,
+                CompareOp::Le => own.upper <= value,
+                CompareOp::Gt => own.lower > value,
+                CompareOp::Ge => own.lower >= value,
+            }
+        } else {
+            return Ok(py.NotImplemented());
+        };
+        Ok(answer.into_pyobject(py)?.to_owned().into_any().unbind())
+    }
+
+    fn __hash__(&self) -> u64 {
+        self.0.lower.to_bits() ^ self.0.upper.to_bits().rotate_left(32)
+    }
+
+    fn __repr__(&self) -> String {
+        self.0.to_string()
+    }
+
+    fn __format__(&self, spec: &str) -> PyResult<String> {
+        if spec.is_empty() {
+            return Ok(self.0.to_string());
+        }
+        Python::attach(|py| {
+            let format = from_package!(py, "builtins", "format")?;
+            let end = |value: f64| format.call1((value, spec))?.extract::<String>();
+            Ok(format!("{} to {}", end(self.0.lower)?, end(self.0.upper)?))
+        })
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyAny>, (f64, f64))> {
+        Ok((slf.get_type().into_any().unbind(), (slf.get().0.lower, slf.get().0.upper)))
+    }
+}
+
+/// Intervals in an array of a shape, as the package's class `Intervals` has them.
+pub fn intervals<'py>(
+    py: Python<'py>,
+    all: impl IntoIterator<Item = Bounds>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyAny>> {
+    let (lower, upper) = all.into_iter().map(|interval| (interval.lower, interval.upper)).unzip();
+    let ends = (arrays::array::<f64>(py, lower, shape)?, arrays::array::<f64>(py, upper, shape)?);
+    from_package!(py, "leafless._intervals", "Intervals")?.call1(ends)
+}

@@ -1,0 +1,153 @@
+//! Octrees that are split on demand.
+
+use crate::arrays::triple;
+use crate::ask::Wish;
+use crate::error::refused;
+use crate::frame::{Frame, corners};
+use crate::interval::Interval;
+use crate::octree::Octree;
+use crate::solid::given;
+use crate::work::Limits;
+use leafless::lattice::MAX_DEPTH;
+use leafless::op::{Refinement, Zone};
+use leafless::query::Membership;
+use leafless::solid::Prepared;
+use leafless::{LazyOctree as Inner, Solid as _};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// An octree that is split where somebody asks, and remembers.
+///
+/// >>> lazy = LazyOctree(Csg.ball([0, 0, 0], 1))
+/// >>> lazy.refine(level=4)
+/// True
+/// >>> lazy.refine(level=12, point=[0, 0, 1])
+/// True
+/// >>> lazy.freeze()
+/// <Octree: depth 20, 345 nodes, volume 3.063 to 5.329>
+#[pyclass(frozen, module = "leafless")]
+pub struct LazyOctree {
+    lazy: Mutex<Inner<Prepared>>,
+}
+
+impl LazyOctree {
+    fn lock(&self) -> MutexGuard<'_, Inner<Prepared>> {
+        self.lazy.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl LazyOctree {
+    /// An octree of which only the universe is known; or, with the octree that `freeze` made of the same solid, what that one knew.
+    #[new]
+    #[pyo3(signature = (solid, frame=None, *, resume=None))]
+    fn new(
+        solid: &Bound<'_, PyAny>,
+        frame: Option<Frame>,
+        resume: Option<&Octree>,
+    ) -> PyResult<LazyOctree> {
+        let py = solid.py();
+        let given = given(solid, "solid")?;
+        let frame = match (frame, resume) {
+            (None, Some(known)) => *known.octree.frame(),
+            (frame, _) => Wish { frame, depth: None }.of(py, &given, MAX_DEPTH)?,
+        };
+        let shape = given.shape;
+        let lazy = Limits::default().run(py, |control| match resume {
+            Some(known) => Inner::resume(&known.octree, shape, &frame, control),
+            None => {
+                shape.on(&frame, control)?;
+                Inner::new(shape, &frame)
+            }
+        })?;
+        Ok(LazyOctree { lazy: Mutex::new(lazy) })
+    }
+
+    /// Splits undecided cells down to a level: all of them, or those in a box (`bounds`), around a `point`, or along a `ray` (origin and
+    /// direction). True if all is done; false if a limit came first (`max_splits`, `max_nodes`, `max_bytes`), and then what was
+    /// found is kept.
+    #[pyo3(signature = (level=None, *, bounds=None, point=None, ray=None, **limits))]
+    fn refine(
+        &self,
+        py: Python<'_>,
+        level: Option<u8>,
+        bounds: Option<&Bound<'_, PyAny>>,
+        point: Option<&Bound<'_, PyAny>>,
+        ray: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+        limits: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<bool> {
+        let zone = match (bounds, point, ray) {
+            (None, None, None) => Zone::Whole,
+            (Some(bounds), None, None) => {
+                let [min, max] = corners(bounds, "bounds")?;
+                Zone::Box { min, max }
+            }
+            (None, Some(point), None) => Zone::Point(triple(point, "point")?),
+            (None, None, Some((origin, direction))) => Zone::Ray {
+                origin: triple(&origin, "origin")?,
+                direction: triple(&direction, "direction")?,
+                from: 0.0,
+                to: f64::INFINITY,
+            },
+            _ => return Err(refused(py, "bounds", "must be the only zone: bounds, point or ray")),
+        };
+        let limits = Limits::of(limits)?;
+        let done = limits.run(py, |control| {
+            let mut lazy = self.lock();
+            let level = level.unwrap_or(lazy.frame().depth());
+            lazy.refine(&zone, level, control)
+        })?;
+        Ok(done == Refinement::Done)
+    }
+
+    /// What is known of points (shape (n, 3)), without splitting.
+    fn contains<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = points.py();
+        let rows = crate::arrays::Rows::of(points, "points")?;
+        let list = rows.list();
+        let answers: Vec<Membership> = py.detach(|| {
+            let lazy = self.lock();
+            list.iter().map(|&point| lazy.contains(point)).collect()
+        });
+        crate::solid::memberships(py, &answers, rows.is_one)
+    }
+
+    /// Where it lies.
+    #[getter]
+    fn frame(&self, py: Python<'_>) -> Frame {
+        py.detach(|| Frame(*self.lock().frame()))
+    }
+
+    /// How many cells were split.
+    #[getter]
+    fn splits(&self, py: Python<'_>) -> u64 {
+        py.detach(|| self.lock().splits())
+    }
+
+    /// Between which numbers the volume lies, as far as cells were split.
+    #[getter]
+    fn volume(&self, py: Python<'_>) -> Interval {
+        Interval(py.detach(|| self.lock().statistics().volume()))
+    }
+
+    /// What is known, as an octree. It remembers the solid, and can be taken up again.
+    #[pyo3(signature = (**limits))]
+    fn freeze<'py>(
+        &self,
+        py: Python<'py>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        let octree = Limits::of(limits)?.run(py, |control| self.lock().freeze(control))?;
+        Octree::bound(py, octree)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let (splits, volume) = py.detach(|| {
+            let lazy = self.lock();
+            (lazy.splits(), lazy.statistics().volume())
+        });
+        format!("<LazyOctree: {splits} splits, volume {volume}>")
+    }
+}
+

@@ -1,0 +1,240 @@
+//! Triangle meshes.
+
+use crate::arrays::{self, Rows, layout, required, shown};
+use crate::error::{OrRaise, refused};
+use crate::from_package;
+use crate::solid::{Given, Solid};
+use crate::surface::SurfaceReport;
+use crate::words;
+use crate::work::Limits;
+use leafless::{Affine, AnySolid, FillRule, MeshSolid, TriangleMesh};
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+
+/// A triangle mesh, and the solid that it encloses.
+///
+/// Any mesh is a solid. Of a closed one it is exact what is inside. Of one with holes, fins or turned facets the winding number
+/// decides, by the fill rule: "nonzero" (at least ½ in magnitude), "positive" or "evenodd".
+///
+/// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+/// >>> mesh = Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+/// >>> mesh.is_closed, 1 / 6 in measure(mesh).volume
+/// (True, True)
+///
+/// `vertices` and `faces` are arrays that trimesh, meshio, PyVista and Open3D take as they are.
+#[pyclass(extends = Solid, frozen, module = "leafless")]
+pub struct Mesh {
+    pub mesh: Arc<TriangleMesh>,
+    pub fill: FillRule,
+    /// The unit of its numbers, if a file told it.
+    pub unit: Option<String>,
+    /// How it was made of a solid.
+    surface: Option<SurfaceReport>,
+}
+
+impl Mesh {
+    /// A mesh as an object.
+    pub fn bound(
+        py: Python<'_>,
+        mesh: impl Into<Arc<TriangleMesh>>,
+        fill: FillRule,
+        unit: Option<String>,
+        surface: Option<SurfaceReport>,
+    ) -> PyResult<Bound<'_, Mesh>> {
+        let solid = MeshSolid::new(mesh, fill).or_raise(py)?;
+        Mesh::of_solid(py, solid, fill, unit, surface)
+    }
+
+    fn of_solid(
+        py: Python<'_>,
+        solid: MeshSolid,
+        fill: FillRule,
+        unit: Option<String>,
+        surface: Option<SurfaceReport>,
+    ) -> PyResult<Bound<'_, Mesh>> {
+        let mesh = solid.mesh().clone();
+        let given = Given::new(AnySolid::new(solid));
+        let mesh = Mesh { mesh, fill, unit, surface };
+        Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(mesh))
+    }
+
+    /// How far the true boundary may lie from it, if that is known.
+    pub fn deviation(&self) -> Option<f64> {
+        self.surface.map(|report| report.deviation).filter(|deviation| deviation.is_finite())
+    }
+
+    /// The mesh in another place.
+    pub fn placed<'py>(&self, py: Python<'py>, placement: &Affine) -> PyResult<Bound<'py, Mesh>> {
+        let solid = MeshSolid::new(self.mesh.clone(), self.fill).or_raise(py)?;
+        let moved = solid.placed(placement).or_raise(py)?;
+        Mesh::of_solid(py, moved, self.fill, self.unit.clone(), None)
+    }
+}
+
+#[pymethods]
+impl Mesh {
+    /// A mesh from vertices (shape (n, 3)) and triangles (indices of shape (m, 3), counter-clockwise as seen from outside). Equal
+    /// vertices become one, and triangles without area are dropped.
+    #[new]
+    #[pyo3(signature = (vertices, faces, *, fill="nonzero"))]
+    fn new(
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        fill: &str,
+    ) -> PyResult<PyClassInitializer<Mesh>> {
+        let py = vertices.py();
+        let fill = words::value(py, fill)?;
+        let vertices = Rows::of(vertices, "vertices")?;
+        let faces = indices(faces)?;
+        let list = vertices.list();
+        let mesh = Limits::default().run_here(py, |_| {
+            let mut own = Vec::new();
+            own.try_reserve_exact(list.len()).map_err(|_| leafless::Error::OutOfMemory)?;
+            own.extend_from_slice(list);
+            TriangleMesh::new(own, faces)
+        })?;
+        let solid = MeshSolid::new(mesh, fill).or_raise(py)?;
+        let mesh = solid.mesh().clone();
+        let given = Given::new(AnySolid::new(solid));
+        let mesh = Mesh { mesh, fill, unit: None, surface: None };
+        Ok(PyClassInitializer::from(Solid::new(given)).add_subclass(mesh))
+    }
+
+    /// A mesh of trimesh, or of anything else that has `vertices` and `faces`.
+    #[staticmethod]
+    #[pyo3(signature = (mesh, *, fill="nonzero"))]
+    fn from_trimesh<'py>(mesh: &Bound<'py, PyAny>, fill: &str) -> PyResult<Bound<'py, PyAny>> {
+        let arguments = (mesh.getattr("vertices")?, mesh.getattr("faces")?);
+        let fill_rule = PyDict::new(mesh.py());
+        fill_rule.set_item("fill", fill)?;
+        mesh.py().get_type::<Mesh>().call(arguments, Some(&fill_rule))
+    }
+
+    /// The mesh as one of trimesh, which must be installed.
+    fn to_trimesh<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        from_package!(slf.py(), "leafless._exchange", "to_trimesh")?.call1((slf,))
+    }
+
+    /// The vertices, shape (n, 3): a view of the library's own memory.
+    #[getter]
+    fn vertices<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let list = slf.get().mesh.vertices();
+        shown(slf.as_any(), list.as_flattened(), layout([list.len(), 3], false))
+    }
+
+    /// The triangles, as indices of shape (m, 3): a view of the library's own memory.
+    #[getter]
+    fn faces<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let list = slf.get().mesh.triangles();
+        shown(slf.as_any(), list.as_flattened(), layout([list.len(), 3], false))
+    }
+
+    /// The rule that says what is inside.
+    #[getter]
+    fn fill(&self) -> &'static str {
+        words::word(self.fill)
+    }
+
+    /// The unit of the numbers, if a file told it.
+    #[getter]
+    fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
+    }
+
+    /// Whether the triangles have no open edge.
+    #[getter]
+    fn is_closed(&self, py: Python<'_>) -> PyResult<bool> {
+        Ok(self.mesh.report().or_raise(py)?.is_closed())
+    }
+
+    /// How the mesh was made of a solid, if `surface` or `simplify` did.
+    #[getter]
+    fn surface_report(&self) -> Option<SurfaceReport> {
+        self.surface
+    }
+
+    /// What is wrong with the mesh, if anything is: counts of bodies, open edges, turned facets and the like, as a dictionary.
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let report = self.mesh.report().or_raise(py)?;
+        let told = PyDict::new(py);
+        let counts = [
+            ("triangles", report.triangles),
+            ("vertices", report.vertices),
+            ("bodies", report.bodies),
+            ("open_bodies", report.open_bodies),
+            ("inside_out_bodies", report.inside_out_bodies),
+            ("overlapping_bodies", report.overlapping_bodies),
+            ("boundary_edges", report.boundary_edges),
+            ("boundary_loops", report.boundary_loops),
+            ("misoriented_edges", report.misoriented_edges),
+            ("non_manifold_edges", report.non_manifold_edges),
+            ("duplicate", report.duplicate),
+            ("opposite", report.opposite),
+            ("flat", report.flat),
+            ("degenerate", report.degenerate),
+            ("welded", report.welded),
+        ];
+        for (name, count) in counts {
+            told.set_item(name, count)?;
+        }
+        told.set_item("is_closed", report.is_closed())?;
+        told.set_item("is_manifold", report.is_manifold())?;
+        Ok(told)
+    }
+
+    /// The names of the values that triangles or their corners bear, as colours and materials of a file are.
+    #[getter]
+    fn attributes(&self) -> Vec<String> {
+        self.mesh.attributes().iter().map(|attribute| attribute.name().to_owned()).collect()
+    }
+
+    /// The values of an attribute at the corners of triangles: shape (m, 3, components), NaN where there is none.
+    fn attribute<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let Some(attribute) = self.mesh.attribute(name) else {
+            return Err(refused(py, "name", format!("no attribute is called '{name}'")));
+        };
+        let (count, components) = (self.mesh.triangles().len(), attribute.components());
+        let mut values = Vec::with_capacity(count * 3 * components);
+        for (triangle, corner) in (0..count).flat_map(|triangle| (0..3).map(move |corner| (triangle, corner))) {
+            let value = attribute.value(triangle, corner).unwrap_or([f64::NAN; 4]);
+            values.extend_from_slice(&value[..components]);
+        }
+        Ok(arrays::array(py, values, &[count, 3, components])?.into_any())
+    }
+
+    fn __len__(&self) -> usize {
+        self.mesh.triangles().len()
+    }
+
+    fn __repr__(&self) -> String {
+        let (vertices, triangles) = (self.mesh.vertices().len(), self.mesh.triangles().len());
+        format!("<Mesh: {vertices} vertices, {triangles} triangles>")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let again = from_package!(slf.py(), "leafless._pickle", "mesh")?;
+        let arguments = (Mesh::vertices(slf)?, Mesh::faces(slf)?, slf.get().fill());
+        Ok((again, arguments.into_bound_py_any(slf.py())?))
+    }
+}
+
+/// Triples of indices, of integers of any type.
+fn indices(given: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 3]>> {
+    let py = given.py();
+    let array = required::<i64>(&from_package!(py, "leafless._exchange", "indices")?.call1((given,))?, "int64", "faces")?;
+    let &[_, 3] = array.shape() else {
+        return Err(refused(py, "faces", format!("must have the shape (n, 3), not {:?}", array.shape())));
+    };
+    let list = array.readonly();
+    let index = |&index: &i64| {
+        let problem = || refused(py, "faces", format!("{index} is not the index of a vertex"));
+        u32::try_from(index).map_err(|_| problem())
+    };
+    list.as_slice()?
+        .chunks_exact(3)
+        .map(|corners| Ok([index(&corners[0])?, index(&corners[1])?, index(&corners[2])?]))
+        .collect()
+}

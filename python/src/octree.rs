@@ -1,0 +1,434 @@
+//! Octrees, and how they are built.
+
+use crate::arrays;
+use crate::ask::Wish;
+use crate::channel::Channel;
+use crate::error::{OrRaise, refused};
+use crate::frame::{Frame, corners};
+use crate::from_package;
+use crate::interval::Interval;
+use crate::solid::{Given, Solid, given};
+use crate::voxels::VoxelRecords;
+use crate::words;
+use crate::work::Limits;
+use leafless::octree::CellFilter;
+use leafless::{AnySolid, Metadata, Octree as Inner, Rule, SurfaceOptions, Tag, build_extended};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::path::PathBuf;
+
+/// The depth of an octree that nobody tells.
+const DEPTH: u8 = 9;
+
+/// What cells prove.
+#[pyclass(frozen, eq, get_all, module = "leafless")]
+#[derive(Clone, Copy, PartialEq)]
+pub struct Proof {
+    /// Whether FULL cells are proven to lie inside.
+    full: bool,
+    /// Whether EMPTY cells are proven to lie outside.
+    empty: bool,
+    /// How far surfaces were moved before (model units).
+    displacement: f64,
+}
+
+#[pymethods]
+impl Proof {
+    fn __bool__(&self) -> bool {
+        self.full && self.empty
+    }
+
+    fn __repr__(&self) -> String {
+        let word = |yes: bool| if yes { "True" } else { "False" };
+        let (full, empty) = (word(self.full), word(self.empty));
+        format!("Proof(full={full}, empty={empty}, displacement={:?})", self.displacement)
+    }
+}
+
+impl From<leafless::Proof> for Proof {
+    fn from(proof: leafless::Proof) -> Proof {
+        Proof { full: proof.full, empty: proof.empty, displacement: proof.displacement() }
+    }
+}
+
+/// A stored solid: the cells of a cube that are EMPTY (outside), FULL (inside) or PARTIAL (not decided), of which only those that
+/// are cut take memory.
+///
+/// >>> octree = build(Csg.ball([0, 0, 0], 1), depth=6)
+/// >>> octree.contains([[0, 0, 0], [2, 0, 0]])
+/// array([1, 0], dtype=uint8)
+/// >>> 4.18879 in octree.volume
+/// True
+///
+/// On one frame, `|`, `&`, `-`, `^` and `~` are exact set algebra of cells: `a - b == a & ~b` holds bit by bit.
+#[pyclass(extends = Solid, frozen, module = "leafless")]
+pub struct Octree {
+    pub octree: Inner,
+    /// The file that it is mapped from, with the checksum of its header.
+    pub mapped: Option<(PathBuf, u64)>,
+}
+
+impl Octree {
+    pub fn bound(py: Python<'_>, octree: Inner) -> PyResult<Bound<'_, Octree>> {
+        Octree::of_file(py, octree, None)
+    }
+
+    pub fn of_file(
+        py: Python<'_>,
+        octree: Inner,
+        mapped: Option<(PathBuf, u64)>,
+    ) -> PyResult<Bound<'_, Octree>> {
+        let keeps_surfaces = octree.view().cuts().is_some();
+        let given = Given { keeps_surfaces, ..Given::new(AnySolid::new(octree.clone())) };
+        Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(Octree { octree, mapped }))
+    }
+}
+
+#[pymethods]
+impl Octree {
+    /// The octree of a file's bytes.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<Octree>> {
+        let octree = leafless::file::from_bytes(data).or_raise(py)?;
+        Ok(Octree::bound(py, octree)?.unbind())
+    }
+
+    /// The bytes of its file, the same wherever and however it was built.
+    pub fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = Limits::default().run_here(py, |_| leafless::file::to_bytes(&self.octree))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Where it lies.
+    #[getter]
+    fn frame(&self) -> Frame {
+        Frame(*self.octree.frame())
+    }
+
+    /// What its cells prove of the solid that it was made of.
+    #[getter]
+    fn proof(&self) -> Proof {
+        self.octree.proof().into()
+    }
+
+    /// Between which numbers the volume of the cells lies (cubic model units). `measure` knows more of an octree that keeps its
+    /// surfaces.
+    #[getter]
+    fn volume(&self) -> Interval {
+        Interval(self.octree.statistics().volume())
+    }
+
+    /// How many nodes are stored.
+    #[getter]
+    fn node_count(&self) -> u64 {
+        self.octree.statistics().nodes()
+    }
+
+    /// Bytes that the arrays take, in memory or where a file is mapped.
+    #[getter]
+    fn nbytes(&self) -> u64 {
+        self.octree.bytes()
+    }
+
+    /// Whether cells keep the surfaces that cross them.
+    #[getter]
+    fn keeps_surfaces(&self) -> bool {
+        self.octree.view().cuts().is_some()
+    }
+
+    /// Level by level, a list of dictionaries: `level`, `nodes`, `empty`, `full`, `partial` (cells that end there), and `volume`, an
+    /// interval of what the cells down to that level tell.
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let statistics = self.octree.statistics();
+        statistics
+            .levels()
+            .iter()
+            .map(|level| {
+                let told = PyDict::new(py);
+                told.set_item("level", level.level)?;
+                let counts = [
+                    ("nodes", level.nodes),
+                    ("empty", level.empty),
+                    ("full", level.full),
+                    ("partial", level.partial),
+                ];
+                for (name, count) in counts {
+                    told.set_item(name, count)?;
+                }
+                told.set_item("volume", Interval(level.volume))?;
+                Ok(told)
+            })
+            .collect()
+    }
+
+    /// What its file says of it, such as `name` and `units`.
+    #[getter]
+    fn metadata<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let told = PyDict::new(py);
+        for (key, value) in self.octree.metadata().iter() {
+            told.set_item(key, value)?;
+        }
+        Ok(told)
+    }
+
+    /// The same octree with other metadata: a dictionary of texts.
+    fn with_metadata<'py>(&self, py: Python<'py>, metadata: &Bound<'py, PyDict>) -> PyResult<Bound<'py, Octree>> {
+        let mut told = Metadata::new();
+        for (key, value) in metadata.iter() {
+            told.insert(key.extract::<String>()?, value.extract::<String>()?);
+        }
+        Octree::bound(py, self.octree.with_metadata(told))
+    }
+
+    /// Cells that end, as arrays: `level` and `tag` (`Tag`) of shape (n,), and `at` (indices along x, y and z in cells of that level)
+    /// of shape (n, 3). `tags` says which: any of "empty", "partial", "full".
+    ///
+    /// >>> cells = build(Csg.cuboid([0, 0, 0], [1, 1, 1]), Frame([0, 0, 0], 2, 1)).cells("full")
+    /// >>> cells.level, cells.at
+    /// (array([1], dtype=uint8), array([[0, 0, 0]], dtype=uint32))
+    #[pyo3(signature = (*tags))]
+    fn cells<'py>(&self, py: Python<'py>, tags: Vec<String>) -> PyResult<Bound<'py, PyAny>> {
+        let filter = match tags.as_slice() {
+            [] => CellFilter::leaves(),
+            tags => {
+                let tags: Vec<Tag> = tags.iter().map(|tag| words::value(py, tag)).collect::<PyResult<_>>()?;
+                CellFilter::tags(&tags)
+            }
+        };
+        let (level, tag, at) = Limits::default().run(py, |control| {
+            let (mut levels, mut tags, mut places) = (Vec::new(), Vec::new(), Vec::new());
+            for (i, found) in self.octree.view().cells(filter).enumerate() {
+                if i % (1 << 16) == 0 {
+                    if control.is_cancelled() {
+                        return Err(leafless::Error::Cancelled);
+                    }
+                    levels.try_reserve(1 << 16).map_err(|_| leafless::Error::OutOfMemory)?;
+                    tags.try_reserve(1 << 16).map_err(|_| leafless::Error::OutOfMemory)?;
+                    places.try_reserve(1 << 16).map_err(|_| leafless::Error::OutOfMemory)?;
+                }
+                levels.push(found.cell.level);
+                tags.push(found.tag as u8);
+                places.push(found.cell.at);
+            }
+            Ok((levels, tags, places))
+        })?;
+        let count = level.len();
+        from_package!(py, "leafless._answers", "Cells")?.call1((
+            arrays::array(py, level, &[count])?,
+            arrays::array(py, at.into_flattened(), &[count, 3])?,
+            arrays::array(py, tag, &[count])?,
+        ))
+    }
+
+    /// The tag of the finest cell with these indices along x, y and z.
+    fn tag_at<'py>(&self, py: Python<'py>, at: [u32; 3]) -> PyResult<Bound<'py, PyAny>> {
+        from_package!(py, "leafless._answers", "Tag")?.call1((self.octree.view().tag_at(at) as u8,))
+    }
+
+    /// The cells of a level as a volume, indexed [x, y, z]: an array of booleans, true where cells are FULL, or with `outer=True`
+    /// where they are not EMPTY. By default all of the finest level; a box of it by its first cell and the first beyond.
+    #[pyo3(signature = (level=None, *, first=None, end=None, outer=false, **limits))]
+    fn bitmap<'py>(
+        &self,
+        py: Python<'py>,
+        level: Option<u8>,
+        first: Option<[u32; 3]>,
+        end: Option<[u32; 3]>,
+        outer: bool,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let limits = Limits::of(limits)?;
+        let level = level.unwrap_or(self.octree.frame().depth());
+        let side = 1u32.checked_shl(level.into()).unwrap_or(0);
+        let (first, end) = (first.unwrap_or_default(), end.unwrap_or([side; 3]));
+        let view = self.octree.view();
+        let size = [0, 1, 2].map(|axis| end[axis].saturating_sub(first[axis]) as usize);
+        let words = view.bitmap_words(level, first, end).or_raise(py)? as usize;
+        let bits = limits.run(py, |control| {
+            let zeros = || {
+                let mut all = Vec::new();
+                all.try_reserve_exact(words).map_err(|_| leafless::Error::OutOfMemory)?;
+                all.resize(words, 0u64);
+                Ok::<_, leafless::Error>(all)
+            };
+            let mut inner = zeros()?;
+            let mut upper = if outer { Some(zeros()?) } else { None };
+            view.bitmap(level, first, end, &mut inner, upper.as_deref_mut(), control)?;
+            let words = upper.unwrap_or(inner);
+            let mut bits: Vec<bool> = Vec::new();
+            bits.try_reserve_exact(size.iter().product()).map_err(|_| leafless::Error::OutOfMemory)?;
+            let row = size[0].div_ceil(64);
+            for row in words.chunks_exact(row.max(1)) {
+                bits.extend((0..size[0]).map(|x| row[x / 64] >> (x % 64) & 1 != 0));
+            }
+            Ok(bits)
+        })?;
+        let flat = arrays::array(py, bits, &[size.iter().product()])?;
+        let order = PyDict::new(py);
+        order.set_item("order", "F")?;
+        flat.call_method("reshape", (size.to_vec(),), Some(&order))
+    }
+
+    /// How a box (lower and upper corner) lies to the solid: "inside", "outside", "crossing" or "undecided".
+    fn classify_box<'py>(&self, bounds: &Bound<'py, PyAny>) -> PyResult<&'static str> {
+        use leafless::query::Region;
+        let py = bounds.py();
+        let [min, max] = corners(bounds, "bounds")?;
+        Ok(match self.octree.classify_box(min, max).or_raise(py)? {
+            Region::Outside => "outside",
+            Region::Inside => "inside",
+            Region::Crossing => "crossing",
+            Region::Undecided => "undecided",
+        })
+    }
+
+    /// The names of its channels.
+    #[getter]
+    fn channels(&self) -> Vec<String> {
+        self.octree.channels().iter().map(|channel| channel.name().to_owned()).collect()
+    }
+
+    /// A channel, by its name.
+    fn channel(&self, py: Python<'_>, name: &str) -> PyResult<Channel> {
+        match self.octree.channel(name) {
+            Some(channel) => Ok(Channel(channel.clone())),
+            None => Err(refused(py, "name", format!("no channel is called '{name}'"))),
+        }
+    }
+
+    /// The same octree with a channel more, or with another one of that name.
+    fn with_channel<'py>(&self, py: Python<'py>, name: &str, channel: &Channel) -> PyResult<Bound<'py, Octree>> {
+        Octree::bound(py, self.octree.with_channel(channel.0.with_name(name)).or_raise(py)?)
+    }
+
+    /// The octree of cells alone, to a depth: surfaces that it keeps decide them, and `rule` what is undecided there, as in `build`.
+    #[pyo3(signature = (depth=None, *, rule="certified", **limits))]
+    fn plain<'py>(
+        &self,
+        py: Python<'py>,
+        depth: Option<u8>,
+        rule: &str,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        let rule: Rule = words::value(py, rule)?;
+        let depth = depth.unwrap_or(if self.keeps_surfaces() { DEPTH } else { self.octree.frame().depth() });
+        let found =
+            Limits::of(limits)?.run(py, |control| leafless::op::plain(&self.octree, depth, rule, control))?;
+        Octree::bound(py, found)
+    }
+
+    /// Its voxels as records, sorted by code; with the values of a channel at their centres.
+    #[pyo3(signature = (channel=None, *, boundary_depth=None, outside=false, **limits))]
+    fn voxels(
+        &self,
+        py: Python<'_>,
+        channel: Option<&Channel>,
+        boundary_depth: Option<u8>,
+        outside: bool,
+        limits: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<VoxelRecords> {
+        let limits = Limits::of(limits)?;
+        let mut options = leafless::voxel::VoxelOptions::new().outside(outside);
+        if let Some(depth) = boundary_depth {
+            options = options.boundary_depth(depth);
+        }
+        let attribute = channel.map(|channel| &channel.0 as &dyn leafless::attribute::Attribute);
+        let view = self.octree.view();
+        let records =
+            limits.run(py, |control| leafless::voxel::VoxelRecords::of(view, &options, attribute, control))?;
+        Ok(VoxelRecords(records))
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+        let py = other.py();
+        match other.cast::<Octree>() {
+            Ok(other) => Ok((self.octree == other.get().octree).into_pyobject(py)?.to_owned().into_any().unbind()),
+            Err(_) => Ok(py.NotImplemented()),
+        }
+    }
+
+    fn __hash__(&self) -> u64 {
+        crate::frame::hash(self.octree.frame()) ^ self.octree.statistics().nodes()
+    }
+
+    fn __repr__(&self) -> String {
+        let frame = self.octree.frame();
+        let (depth, nodes) = (frame.depth(), self.octree.statistics().nodes());
+        format!("<Octree: depth {depth}, {nodes} nodes, volume {}>", self.octree.statistics().volume())
+    }
+
+    /// By the bytes of its file; of a mapped one by the path and a checksum, which costs nothing.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = slf.py();
+        match &slf.get().mapped {
+            Some((path, checksum)) => {
+                let again = from_package!(py, "leafless._pickle", "mapped")?;
+                Ok((again, (path, *checksum).into_bound_py_any(py)?))
+            }
+            None => {
+                let again = from_package!(py, "leafless._pickle", "octree")?;
+                Ok((again, (slf.get().to_bytes(py)?,).into_bound_py_any(py)?))
+            }
+        }
+    }
+}
+
+/// An octree of a solid: cells are split until they are decided, or the frame's depth is reached.
+///
+/// `rule` says what becomes of cells that are undecided at the finest level: "certified" keeps the doubt, so that every answer is
+/// proven; "sampled" asks at their centres; "inner" and "outer" call them EMPTY or FULL. `surfaces=True` keeps the surfaces that cross
+/// undecided cells, of expressions exactly, so that a small octree is as exact as the solid; a number keeps layers around a
+/// mesh's surface that are at most as thick (model units).
+///
+/// Without a frame it is a cube around the solid with the given depth (9 if none is given); with a frame, the depth may differ from the
+/// frame's.
+///
+/// >>> block = build(Csg.cuboid([0, 0, 0], [3, 2, 1]), depth=5)
+/// >>> block.volume, bool(block.proof)
+/// (6, True)
+#[pyfunction]
+#[pyo3(signature = (solid, frame=None, *, depth=None, rule="certified", surfaces=None, **limits))]
+pub fn build<'py>(
+    solid: &Bound<'py, PyAny>,
+    frame: Option<&Bound<'py, PyAny>>,
+    depth: Option<u8>,
+    rule: &str,
+    surfaces: Option<&Bound<'py, PyAny>>,
+    limits: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, Octree>> {
+    let py = solid.py();
+    let limits = Limits::of(limits)?;
+    let rule: Rule = words::value(py, rule)?;
+    let frame = match frame {
+        // An octree tells its frame.
+        Some(like) => match like.cast::<Octree>() {
+            Ok(octree) => Some(octree.get().frame()),
+            Err(_) => Some(like.extract::<Frame>()?),
+        },
+        None => None,
+    };
+    let solid = given(solid, "solid")?;
+    let surfaces = match surfaces {
+        None => None,
+        Some(kept) => match kept.extract::<bool>() {
+            Ok(false) => None,
+            Ok(true) => Some(SurfaceOptions { tolerance: None }),
+            Err(_) => Some(SurfaceOptions { tolerance: Some(kept.extract()?) }),
+        },
+    };
+    let deepest = match &surfaces {
+        None => DEPTH,
+        Some(options) => options.frame(&crate::ask::bounds(py, &solid)?).or_raise(py)?.depth(),
+    };
+    let frame = Wish { frame, depth }.of(py, &solid, deepest)?;
+    if surfaces.is_some() && rule != Rule::Certified {
+        return Err(refused(py, "rule", "must be 'certified' with surfaces, which decide what cells do not"));
+    }
+    let octree = limits.run(py, |control| match &surfaces {
+        Some(options) => build_extended(&solid.shape, &frame, options, control),
+        None => leafless::build(&solid.shape, &frame, rule, control),
+    })?;
+    Octree::bound(py, octree)
+}
+

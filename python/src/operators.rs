@@ -1,0 +1,82 @@
+//! Set operations and placements of solids of all kinds.
+
+use crate::affine::affine;
+use crate::csg::Csg;
+use crate::error::OrRaise;
+use crate::mesh::Mesh;
+use crate::octree::Octree;
+use crate::solid::{Solid, given, is_solid};
+use crate::work::Limits;
+use leafless::{Csg as Expression, complement as complement_of, difference, intersection, union, xor};
+use pyo3::prelude::*;
+
+/// What two solids are combined by.
+#[derive(Clone, Copy)]
+pub enum Operator {
+    Union,
+    Intersection,
+    Difference,
+    Xor,
+}
+
+/// An expression of what an object is.
+pub fn expression(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Expression> {
+    match object.cast::<Csg>() {
+        Ok(csg) => Ok(csg.get().expression.clone()),
+        Err(_) => Ok(Expression::solid(given(object, name)?.any().clone())),
+    }
+}
+
+/// Two solids as one: of octrees the octree, of all else an expression.
+pub fn combined<'py>(
+    operator: Operator,
+    a: &Bound<'py, Solid>,
+    b: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = a.py();
+    if !is_solid(b) {
+        return Ok(py.NotImplemented().into_bound(py));
+    }
+    if let (Ok(a), Ok(b)) = (a.cast::<Octree>(), b.cast::<Octree>()) {
+        let (a, b) = (a.get().octree.view(), b.get().octree.view());
+        let combine = match operator {
+            Operator::Union => union,
+            Operator::Intersection => intersection,
+            Operator::Difference => difference,
+            Operator::Xor => xor,
+        };
+        let found = Limits::default().run(py, |control| combine(a, b, control))?;
+        return Ok(Octree::bound(py, found)?.into_any());
+    }
+    let parts = [expression(a, "self")?, expression(b, "other")?];
+    let (name, whole) = match operator {
+        Operator::Union => ("union_of", Expression::union_of(parts)),
+        Operator::Intersection => ("intersection_of", Expression::intersection_of(parts)),
+        Operator::Difference => ("difference_of", parts[0].difference(&parts[1])),
+        Operator::Xor => ("xor_of", Expression::xor_of(parts)),
+    };
+    Ok(Csg::made(py, whole.or_raise(py)?, name, (a, b))?.into_any())
+}
+
+/// What a solid leaves of space; of an octree, of its universe and of what lies around.
+pub fn complement<'py>(solid: &Bound<'py, Solid>) -> PyResult<Bound<'py, PyAny>> {
+    let py = solid.py();
+    if let Ok(own) = solid.cast::<Octree>() {
+        let view = own.get().octree.view();
+        let found = Limits::default().run(py, |control| complement_of(view, control))?;
+        return Ok(Octree::bound(py, found)?.into_any());
+    }
+    let whole = expression(solid, "self")?.complement();
+    Ok(Csg::made(py, whole, "complement_of", (solid,))?.into_any())
+}
+
+/// A solid in another place.
+pub fn placed<'py>(solid: &Bound<'py, Solid>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let py = solid.py();
+    let map = affine(placement, "placement")?;
+    if let Ok(mesh) = solid.cast::<Mesh>() {
+        return Ok(mesh.get().placed(py, &map)?.into_any());
+    }
+    let whole = expression(solid, "self")?.placed(&map).or_raise(py)?;
+    Ok(Csg::made(py, whole, "placed_of", (solid, crate::affine::Affine(map)))?.into_any())
+}

@@ -1,0 +1,182 @@
+//! Pictures.
+
+use crate::arrays::{layout, shown};
+use crate::ask::{self, Wish};
+use crate::error::{OrRaise, refused};
+use crate::octree::Octree;
+use crate::solid::{Given, given, is_solid};
+use crate::work::Limits;
+use leafless::exchange::write_png;
+use leafless::render::{
+    self as pictures, Camera, Clip, FIELD_OF_VIEW, Finish, Layer, OctreeLayer, Outline, Shot, SliceLayer, SlicePlane,
+    SolidLayer,
+};
+use leafless::{Bounds, Solid as _};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+
+/// From where one looks if nobody says: azimuth and elevation in degrees.
+const FROM: [f64; 2] = [30.0, 25.0];
+
+/// Colours of several solids, so that the colour-blind can tell them apart (Okabe and Ito 2002).
+const COLOURS: [[u8; 3]; 6] =
+    [[178, 187, 196], [230, 159, 0], [86, 180, 233], [0, 158, 115], [204, 121, 167], [213, 94, 0]];
+
+/// The depth of a solid's cells in a section.
+const CELLS: u8 = 7;
+
+/// A picture: an array `rgba` of shape (height, width, 4), and `depth` of shape (height, width), infinite where nothing is seen.
+///
+/// Notebooks show it; `save` writes a PNG.
+#[pyclass(frozen, module = "leafless")]
+pub struct Picture(pub pictures::Picture);
+
+#[pymethods]
+impl Picture {
+    /// Red, green, blue (sRGB) and opacity of each pixel, the upper row first.
+    #[getter]
+    fn rgba<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let picture = &slf.get().0;
+        let shape = [picture.height() as usize, picture.width() as usize, 4];
+        shown(slf.as_any(), picture.colours().as_flattened(), layout(shape, false))
+    }
+
+    /// How far away what is seen lies along the line of sight.
+    #[getter]
+    fn depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let picture = &slf.get().0;
+        let shape = [picture.height() as usize, picture.width() as usize];
+        shown(slf.as_any(), picture.depths(), layout(shape, false))
+    }
+
+    /// The bytes of a PNG file.
+    pub fn to_png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &py.detach(|| write_png(&self.0)).or_raise(py)?))
+    }
+
+    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.to_png(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Picture: {} × {} pixels>", self.0.width(), self.0.height())
+    }
+}
+
+/// Takes a picture of solids.
+///
+/// One looks from an azimuth and an elevation in degrees, `view`; `colours` are triples or quadruples of 0 to 255, one for each solid;
+/// `clip` keeps what lies within planes a x + b y + c z + d ≥ 0, rows of four numbers; `slice` is one such plane a x + b y + c z + d = 0,
+/// and shows the cells of the first solid in it: EMPTY light blue, FULL blue, PARTIAL orange. `cells=True` shows octrees by their cells.
+///
+/// >>> render(Csg.ball([0, 0, 0], 1), size=(320, 240))
+/// <Picture: 320 × 240 pixels>
+#[pyfunction]
+#[pyo3(signature = (
+    *solids, size=(640, 480), view=(FROM[0], FROM[1]), colours=None, clip=None, slice=None, edges=true, cells=false,
+    background=(255, 255, 255, 255), samples=4, **limits
+))]
+#[allow(clippy::too_many_arguments)]
+pub fn render(
+    solids: &Bound<'_, PyTuple>,
+    size: (u32, u32),
+    view: (f64, f64),
+    colours: Option<Vec<Vec<u8>>>,
+    clip: Option<&Bound<'_, PyAny>>,
+    slice: Option<[f64; 4]>,
+    edges: bool,
+    cells: bool,
+    background: (u8, u8, u8, u8),
+    samples: u32,
+    limits: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Picture> {
+    let (py, limits) = (solids.py(), Limits::of(limits)?);
+    let mut scene = Vec::new();
+    for (i, object) in solids.iter().enumerate() {
+        if !is_solid(&object) {
+            return Err(refused(py, "solids", "must be solids"));
+        }
+        let colour = match colours.as_ref().map(|all| all.get(i).map(Vec::as_slice)) {
+            None => COLOURS[i % COLOURS.len()].to_vec(),
+            Some(Some(own @ ([_, _, _] | [_, _, _, _]))) => own.to_vec(),
+            Some(_) => return Err(refused(py, "colours", "must be three or four numbers for each solid")),
+        };
+        let colour = [colour[0], colour[1], colour[2], colour.get(3).copied().unwrap_or(255)];
+        let stored = object.cast::<Octree>().ok().map(|octree| octree.get().octree.clone());
+        let solid = given(&object, "solids")?;
+        let frame = Wish::default().of(py, &solid, if slice.is_some() { CELLS } else { 20 })?;
+        scene.push((solid, stored, frame, colour));
+    }
+    let mut points = Vec::new();
+    for (solid, ..) in &scene {
+        let known = tight(py, solid)?;
+        points.extend(known.corners());
+    }
+    if points.is_empty() {
+        return Err(refused(py, "solids", "must be one at least"));
+    }
+    let aspect = f64::from(size.0) / f64::from(size.1.max(1));
+    let camera = match slice {
+        None => Camera::fitted(&points, [view.0, view.1], Some(FIELD_OF_VIEW), aspect),
+        // From above the plane.
+        Some([a, b, c, _]) => {
+            let flat = (a * a + b * b).sqrt();
+            let from = [a.atan2(-b).to_degrees(), c.atan2(flat).to_degrees()];
+            let from = if flat == 0.0 { [0.0, if c < 0.0 { -90.0 } else { 90.0 }] } else { from };
+            Camera::fitted(&points, from, None, aspect)
+        }
+    };
+    let mut shot = Shot::new(camera.or_raise(py)?, size.into());
+    shot.background = background.into();
+    shot.samples = samples;
+    if let Some(planes) = clip {
+        let planes = crate::arrays::doubles(planes, "clip")?.call_method1("reshape", ((-1, 4),))?;
+        let planes: Vec<[f64; 4]> = planes.call_method0("tolist")?.extract()?;
+        let mut kept = Clip::new();
+        for plane in planes {
+            kept = kept.plane(plane).or_raise(py)?;
+        }
+        shot.clip = kept;
+    }
+    let plane = slice.map(|[a, b, c, d]| SlicePlane::new([a, b, c], d)).transpose().or_raise(py)?;
+    let picture = limits.run(py, |control| {
+        let mut layers: Vec<Box<dyn Layer + '_>> = Vec::new();
+        for (solid, stored, frame, colour) in &scene {
+            let edges = if edges { Some(Outline::default()) } else { None };
+            let finish = Finish { colour: *colour, edges, faces: cells, ..Finish::default() };
+            layers.push(match (plane, stored) {
+                (Some(plane), Some(octree)) => Box::new(SliceLayer::new(octree.view(), plane)),
+                (Some(plane), None) => Box::new(SliceLayer::of_solid(&solid.shape, frame, plane)),
+                (None, Some(octree)) => Box::new(OctreeLayer::new(octree.view(), finish)),
+                (None, None) => Box::new(SolidLayer::new(&solid.shape, frame, Finish { faces: false, ..finish })),
+            });
+            if plane.is_some() {
+                break;
+            }
+        }
+        let layers: Vec<&dyn Layer> = layers.iter().map(|layer| &**layer).collect();
+        pictures::render(&shot, &layers, control)
+    })?;
+    Ok(Picture(picture))
+}
+
+/// A box around a solid.
+fn tight(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
+    match (solid.own, solid.shape.bounds()) {
+        // The universe of an octree may be much larger than what is in it.
+        (Some(own), _) => {
+            let (shape, coarse) = (&solid.shape, own);
+            let found = py.detach(|| {
+                let control = leafless::Control { max_splits: Some(2000), threads: 1, ..Default::default() };
+                leafless::bounding_box(shape, &coarse, 0.01 * coarse.edge(), &control)
+            });
+            let corners = found.or_raise(py)?.corners;
+            Ok(corners.map_or(Bounds::of(&own), |[low, high]| Bounds {
+                min: low.map(|x| x.lower),
+                max: high.map(|x| x.upper),
+            }))
+        }
+        (None, _) => ask::bounds(py, solid),
+    }
+}
+

@@ -1,0 +1,204 @@
+//! Shapes whose methods are written in Python.
+
+use crate::arrays;
+use crate::error::carried;
+use crate::solid::{Given, Solid};
+use leafless::solid::GradientRange;
+use leafless::{AnySolid, Bounds, Callback, Error, Interval, Tag, Verdict};
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::sync::Arc;
+
+/// A solid of your own: a subclass with one of these methods or both, which get arrays of many cells or points at once.
+///
+/// - `classify(boxes)` gets boxes of shape (n, 2, 3), lower and upper corners, and returns n tags: EMPTY or FULL where that is proven for
+///   all of a box, else PARTIAL.
+/// - `distance(points)` gets points of shape (n, 3), and returns n numbers whose magnitude is at most the distance from the
+///   surface, negative inside; 0 says nothing.
+///
+/// And, if you like:
+///
+/// - `inside(points)` returns n booleans: the sampled rule needs it.
+/// - `gradient(boxes)` bounds a function f over the boxes, where the solid is f ≤ 0: a pair of arrays of shape (n, 2), which hold the
+///   value in the middle of each box, and (n, 3, 2), the derivatives in all of it. Measures need far fewer cells with it. NaN says
+///   nothing.
+/// - `bounds`, an attribute or a property: a lower and an upper corner between which all of the shape lies.
+///
+/// The methods are called from several threads, one at a time. Exceptions in them end the work, and come out of it.
+///
+/// >>> import numpy as np
+/// >>> class Ball(Shape):
+/// ...     bounds = [[-1, -1, -1], [1, 1, 1]]
+/// ...     def distance(self, points):
+/// ...         return np.linalg.norm(points, axis=1) * (1 - 1e-15) - 1
+/// >>> 4.18879 in build(Ball(), depth=5).volume
+/// True
+#[pyclass(extends = Solid, subclass, frozen, module = "leafless")]
+pub struct Shape;
+
+#[pymethods]
+impl Shape {
+    #[new]
+    #[pyo3(signature = (*_arguments, **_named))]
+    fn new(
+        _arguments: &Bound<'_, PyTuple>,
+        _named: Option<&Bound<'_, PyDict>>,
+    ) -> PyClassInitializer<Shape> {
+        PyClassInitializer::from(Solid::of_python()).add_subclass(Shape)
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        Ok(format!("<{}>", slf.get_type().name()?))
+    }
+
+    /// As any object of a class of its own: by the class and the attributes.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = slf.py();
+        let again = crate::from_package!(py, "leafless._pickle", "shape")?;
+        let arguments = PyTuple::new(py, [slf.get_type()])?.into_any();
+        Ok((again, arguments, slf.getattr("__dict__").unwrap_or_else(|_| PyDict::new(py).into_any())))
+    }
+}
+
+/// The methods of a shape, called from wherever the library is.
+struct Methods(Py<PyAny>);
+
+/// Numbers of an array of one size.
+fn numbers(array: &Bound<'_, PyAny>, kind: &str, name: &str, shape: &[usize]) -> PyResult<Vec<f64>> {
+    let array: Bound<'_, PyArrayDyn<f64>> = arrays::required(array, kind, name)?;
+    if array.shape() != shape {
+        return Err(PyValueError::new_err(format!(
+            "{name}: must return an array of the shape {shape:?}, not {:?}",
+            array.shape()
+        )));
+    }
+    Ok(array.readonly().as_slice()?.to_vec())
+}
+
+impl Methods {
+    fn call<R>(
+        &self,
+        name: &str,
+        argument: impl for<'py> FnOnce(Python<'py>) -> PyResult<Bound<'py, PyAny>>,
+        take: impl for<'py> FnOnce(Bound<'py, PyAny>) -> PyResult<R>,
+    ) -> Result<R, Error> {
+        Python::attach(|py| {
+            let called = self.0.bind(py).call_method1(name, (argument(py)?,))?;
+            take(called)
+        })
+        .map_err(carried)
+    }
+
+    fn classify(&self, boxes: &[[[f64; 3]; 2]], verdicts: &mut [Verdict<()>]) -> Result<(), Error> {
+        let tags = self.call("classify", |py| boxes_of(py, boxes), |tags| {
+            numbers(&tags, "float64", "classify", &[boxes.len()])
+        })?;
+        for (verdict, tag) in verdicts.iter_mut().zip(tags) {
+            *verdict = if tag == f64::from(Tag::Empty as u8) {
+                Verdict::Empty
+            } else if tag == f64::from(Tag::Full as u8) {
+                Verdict::Full
+            } else if tag == f64::from(Tag::Partial as u8) {
+                Verdict::Partial(())
+            } else {
+                let problem = format!("classify: {tag} is none of the tags EMPTY, PARTIAL and FULL");
+                return Err(carried(PyValueError::new_err(problem)));
+            };
+        }
+        Ok(())
+    }
+
+    fn distance(&self, points: &[[f64; 3]], distances: &mut [f64]) -> Result<(), Error> {
+        let found = self.call("distance", |py| points_of(py, points), |found| {
+            numbers(&found, "float64", "distance", &[points.len()])
+        })?;
+        distances.copy_from_slice(&found);
+        Ok(())
+    }
+
+    fn inside(&self, points: &[[f64; 3]], inside: &mut [bool]) -> Result<(), Error> {
+        let found = self.call("inside", |py| points_of(py, points), |found| {
+            numbers(&found, "float64", "inside", &[points.len()])
+        })?;
+        for (inside, found) in inside.iter_mut().zip(found) {
+            *inside = found != 0.0;
+        }
+        Ok(())
+    }
+
+    fn gradient(&self, min: [f64; 3], max: [f64; 3]) -> Result<Option<GradientRange>, Error> {
+        self.call("gradient", |py| boxes_of(py, &[[min, max]]), |found| {
+            let (value, gradient): (Bound<'_, PyAny>, Bound<'_, PyAny>) = found.extract()?;
+            let value = numbers(&value, "float64", "gradient", &[1, 2])?;
+            let gradient = numbers(&gradient, "float64", "gradient", &[1, 3, 2])?;
+            let range = |ends: &[f64]| Interval::new(ends[0], ends[1]);
+            let ranges = (range(&value), range(&gradient[..2]), range(&gradient[2..4]), range(&gradient[4..]));
+            Ok(match ranges {
+                (Some(value), Some(x), Some(y), Some(z)) => Some(GradientRange { value, gradient: [x, y, z] }),
+                _ => None,
+            })
+        })
+    }
+}
+
+fn boxes_of<'py>(py: Python<'py>, boxes: &[[[f64; 3]; 2]]) -> PyResult<Bound<'py, PyAny>> {
+    let numbers = boxes.as_flattened().as_flattened().to_vec();
+    Ok(arrays::array(py, numbers, &[boxes.len(), 2, 3])?.into_any())
+}
+
+fn points_of<'py>(py: Python<'py>, points: &[[f64; 3]]) -> PyResult<Bound<'py, PyAny>> {
+    Ok(arrays::rows(py, points.to_vec())?.into_any())
+}
+
+/// The solid of an object whose methods are written in Python.
+pub fn given(object: &Bound<'_, PyAny>) -> PyResult<Given> {
+    let has = |name: &str| object.get_type().hasattr(name);
+    let (classifies, measures) = (has("classify")?, has("distance")?);
+    if !classifies && !measures {
+        return Err(PyTypeError::new_err(format!(
+            "{} must have a method classify(boxes) or distance(points)",
+            object.get_type().name()?
+        )));
+    }
+    let methods = Arc::new(Methods(object.clone().unbind()));
+    let own = || methods.clone();
+    let (one, many) = (own(), own());
+    let mut callback = Callback::new(move |min, max| {
+        let mut verdict = [Verdict::Partial(())];
+        if classifies {
+            one.classify(&[[min, max]], &mut verdict)?;
+        }
+        let [verdict] = verdict;
+        Ok(verdict)
+    });
+    if classifies {
+        callback = callback.with_classify_many(move |boxes, verdicts| {
+            let boxes: &[[[f64; 3]; 2]] = boxes;
+            many.classify(boxes, verdicts)
+        });
+    }
+    if measures {
+        let methods = own();
+        callback = callback.with_distance(move |points, distances| methods.distance(points, distances));
+    }
+    if has("inside")? {
+        let methods = own();
+        callback = callback.with_contains_many(move |points, inside| methods.inside(points, inside));
+    }
+    if has("gradient")? {
+        let methods = own();
+        callback = callback.with_gradient(move |min, max, _| methods.gradient(min, max));
+    }
+    // The class of all solids has a property of that name, which asks here.
+    let py = object.py();
+    let inherited = py.get_type::<Solid>().getattr("bounds")?;
+    if !object.get_type().getattr("bounds")?.is(&inherited) {
+        let [min, max] = crate::frame::corners(&object.getattr("bounds")?, "bounds")?;
+        let bounds = Bounds::new(min, max);
+        let bounds = bounds.ok_or_else(|| PyValueError::new_err("bounds: the lower corner must come first"))?;
+        callback = callback.with_bounds(bounds);
+    }
+    Ok(Given { calls_python: true, ..Given::new(AnySolid::new(callback)) })
+}

@@ -1,0 +1,305 @@
+//! What has a shape: the class of all solids, and the questions that arrays of points and rays put to any of them.
+
+use crate::arrays::{self, Rows};
+use crate::ask::Wish;
+use crate::error::refused;
+use crate::frame::Frame;
+use crate::from_package;
+use crate::interval::intervals;
+use crate::operators::{self, Operator};
+use crate::shape;
+use crate::words;
+use crate::work::Limits;
+use leafless::lattice::MAX_DEPTH;
+use leafless::query::{DistanceTo, Obstacle, PointDistance, distances};
+use leafless::solid::Prepared;
+use leafless::{AnySolid, Frame as Inner, Membership, Ray, Solid as _, cast_rays, contains};
+use pyo3::exceptions::{PyNotImplementedError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Questions that are answered on the calling thread: more of them may take longer than anybody wants to wait for Ctrl-C.
+const FEW_POINTS: usize = 4096;
+const FEW_RAYS: usize = 256;
+const FEW_DISTANCES: usize = 16;
+
+/// How exact distances are if nobody says, as a part of the frame.
+const TOLERANCE: f64 = 1e-6;
+
+/// A solid as the library sees it.
+#[derive(Clone)]
+pub struct Given {
+    /// The solid, which remembers the frame that it was asked on last.
+    pub shape: Prepared,
+    /// The frame of an octree, or of a volume's voxels.
+    pub own: Option<Inner>,
+    /// Whether the cells of an octree keep surfaces.
+    pub keeps_surfaces: bool,
+    /// Whether questions call functions of Python.
+    pub calls_python: bool,
+}
+
+impl Given {
+    pub fn new(solid: AnySolid) -> Given {
+        let own = solid.home();
+        Given { shape: Prepared::new(solid), own, keeps_surfaces: false, calls_python: false }
+    }
+
+    /// The solid itself.
+    pub fn any(&self) -> &AnySolid {
+        self.shape.solid()
+    }
+}
+
+/// Anything that has a shape. `Csg`, `Mesh`, `Octree` and `Volume` are solids, and so is a subclass of `Shape` of your own.
+///
+/// Operators combine any two solids: `a | b` (union), `a & b` (intersection), `a - b` (difference), `a ^ b` (symmetric
+/// difference) and `~a` (complement). Two octrees make an octree, at once and exactly; any others an expression (`Csg`), which
+/// splits nothing before it is asked. `map @ a` is `a` moved by an `Affine` or a matrix.
+#[pyclass(subclass, frozen, module = "leafless")]
+pub struct Solid {
+    /// Nothing for shapes of Python, which come with the object itself.
+    given: Option<Given>,
+}
+
+impl Solid {
+    pub fn new(given: Given) -> Solid {
+        Solid { given: Some(given) }
+    }
+
+    /// The base of a shape whose methods are written in Python.
+    pub fn of_python() -> Solid {
+        Solid { given: None }
+    }
+}
+
+/// Whether an object is a solid.
+pub fn is_solid(object: &Bound<'_, PyAny>) -> bool {
+    object.cast::<Solid>().is_ok()
+}
+
+/// The solid that an object is.
+pub fn given(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Given> {
+    let Ok(solid) = object.cast::<Solid>() else {
+        let kind = object.get_type().name()?;
+        return Err(PyTypeError::new_err(format!(
+            "{name}: must be a solid (Csg, Mesh, Octree, Volume, Shape), not {kind}"
+        )));
+    };
+    match &solid.get().given {
+        Some(given) => Ok(given.clone()),
+        None => shape::given(object),
+    }
+}
+
+#[pymethods]
+impl Solid {
+    /// Operators of NumPy leave this class alone.
+    #[classattr]
+    #[allow(non_upper_case_globals)]
+    const __array_ufunc__: Option<u8> = None;
+
+    /// A box that holds the solid, as an array of its lower and its upper corner; `None` if none is known. It may be larger than
+    /// the solid; `bounding_box` proves how large that is.
+    #[getter]
+    fn bounds<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let bounds = given(slf, "self")?.shape.bounds();
+        let array = bounds.map(|bounds| arrays::rows(slf.py(), vec![bounds.min, bounds.max]));
+        Ok(array.transpose()?.map(Bound::into_any))
+    }
+
+    /// Whether points (shape (n, 3), model units) lie inside: an array of `Membership`, for one point a `Membership`. A point that
+    /// lies in an undecided cell of an octree is UNDECIDED, and so is one of which nothing is known because it lies outside of the frame; on the boundary both answers are right.
+    ///
+    /// >>> ball = Csg.ball([0, 0, 0], 1)
+    /// >>> ball.contains([[0, 0, 0.999], [0, 0, 1.001]])
+    /// array([1, 0], dtype=uint8)
+    /// >>> ball.contains([0, 0, 0])
+    /// <Membership.INSIDE: 1>
+    #[pyo3(signature = (points, *, frame=None, **limits))]
+    fn contains<'py>(
+        slf: &Bound<'py, Self>,
+        points: &Bound<'py, PyAny>,
+        frame: Option<Frame>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let (limits, points) = (Limits::of(limits)?, Rows::of(points, "points")?);
+        let solid = given(slf, "self")?;
+        let frame = Wish { frame, depth: None }.of(py, &solid, MAX_DEPTH)?;
+        let list = points.list();
+        let mut answers = vec![Membership::Undecided; list.len()];
+        limits.run_if(list.len() > FEW_POINTS || solid.calls_python, py, |control| {
+            contains(&solid.shape, &frame, list, &mut answers, control)
+        })?;
+        // What lies beyond the frame, and beyond the box that holds the solid, is proven outside.
+        if let Some(bounds) = solid.shape.bounds() {
+            let is_beyond = |axis: usize, x: f64| x < bounds.min[axis] || x > bounds.max[axis];
+            for (answer, point) in answers.iter_mut().zip(list) {
+                if *answer == Membership::Undecided && (0..3).any(|axis| is_beyond(axis, point[axis])) {
+                    *answer = Membership::Outside;
+                }
+            }
+        }
+        memberships(py, &answers, points.is_one)
+    }
+
+    /// How far points (shape (n, 3), model units) are from the boundary, negative inside: intervals that contain the truth, no wider
+    /// than `tolerance` where that can be had. `to` may also be "solid" (0 inside) or "complement" (0 outside). An answer has
+    /// `distance` (`Intervals`), `nearest` (points of the boundary, NaN where none is known), `surface` (numbers of triangles or
+    /// surfaces there, −1 where none is known), and `undecided` (where the interval is wider than the tolerance).
+    ///
+    /// >>> found = Csg.ball([0, 0, 0], 1).distances([[3, 0, 4], [0, 0.5, 0]], tolerance=1e-9)
+    /// >>> found.distance.middle.round(6)
+    /// array([ 4. , -0.5])
+    #[pyo3(signature = (points, *, to="boundary", tolerance=None, frame=None, **limits))]
+    fn distances<'py>(
+        slf: &Bound<'py, Self>,
+        points: &Bound<'py, PyAny>,
+        to: &str,
+        tolerance: Option<f64>,
+        frame: Option<Frame>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let (limits, points) = (Limits::of(limits)?, Rows::of(points, "points")?);
+        let to: DistanceTo = words::value(py, to)?;
+        let solid = given(slf, "self")?;
+        let frame = Wish { frame, depth: None }.of(py, &solid, MAX_DEPTH)?;
+        let tolerance = tolerance.unwrap_or(TOLERANCE * frame.edge());
+        let list = points.list();
+        let found = limits.run_if(list.len() > FEW_DISTANCES || solid.calls_python, py, |control| {
+            distances(&solid.shape, &frame, list, to, tolerance, control)
+        })?;
+        distances_found(py, &found, tolerance)
+    }
+
+    /// Where rays first meet the solid. Origins and directions have the shape (n, 3) or (3,), and one of them may be for all;
+    /// distances count multiples of a direction's length. `on="inner"` stops rays where the solid is proven to be, `on="outer"`
+    /// where it may be. An answer has `hit` (whether anything stopped a ray), `distance` (`Intervals`: before the lower end the ray
+    /// is proven outside, at the upper end inside; infinite without a hit), `normal` and `surface` (numbers of triangles, −1 where
+    /// none is known).
+    ///
+    /// >>> hits = Csg.ball([0, 0, 0], 1).rays([[-2, 0.6, 0], [-2, 2, 0]], [1, 0, 0])
+    /// >>> hits.hit, 1.2 in hits.distance[0]
+    /// (array([ True, False]), True)
+    #[pyo3(signature = (origins, directions, *, on="inner", last=f64::INFINITY, frame=None, **limits))]
+    fn rays<'py>(
+        slf: &Bound<'py, Self>,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        on: &str,
+        last: f64,
+        frame: Option<Frame>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = slf.py();
+        let limits = Limits::of(limits)?;
+        let on: Obstacle = words::value(py, on)?;
+        let (origins, directions) = (Rows::of(origins, "origins")?, Rows::of(directions, "directions")?);
+        let solid = given(slf, "self")?;
+        let frame = Wish { frame, depth: None }.of(py, &solid, MAX_DEPTH)?;
+        let count = match (origins.list().len(), directions.list().len()) {
+            (n, m) if n == m => n,
+            (n, _) if directions.is_one => n,
+            (_, m) if origins.is_one => m,
+            _ => return Err(refused(py, "directions", "must be as many as origins")),
+        };
+        let (from, along) = (origins.list(), directions.list());
+        let at = |list: &[[f64; 3]], i: usize| if list.len() == 1 { list[0] } else { list[i] };
+        let found = limits.run_if(count > FEW_RAYS || solid.calls_python, py, |control| {
+            let mut rays = Vec::new();
+            rays.try_reserve_exact(count).map_err(|_| leafless::Error::OutOfMemory)?;
+            for i in 0..count {
+                rays.push(Ray::new(at(from, i), at(along, i))?.until(last)?);
+            }
+            cast_rays(&solid.shape, &frame, &rays, on, control)
+        })?;
+        let unknown = leafless::Interval::exactly(f64::INFINITY);
+        let hit = arrays::array(py, found.iter().map(Option::is_some).collect(), &[count])?;
+        let distance = intervals(py, found.iter().map(|hit| hit.map_or(unknown, |hit| hit.t)), &[count])?;
+        let normal = found.iter().map(|hit| hit.map_or([f64::NAN; 3], |hit| hit.normal)).collect();
+        let surface = found.iter().map(|hit| number(hit.and_then(|hit| hit.surface))).collect();
+        let answer = from_package!(py, "leafless._answers", "RayHits")?;
+        answer.call1((hit, distance, arrays::rows(py, normal)?, arrays::array(py, surface, &[count])?))
+    }
+
+    /// The solid moved by a map: a mesh stays a mesh, all else becomes an expression. Meshes and expressions are moved exactly; of
+    /// octrees, cells blur by about one unless they are moved by whole cells or quarter turns.
+    fn placed<'py>(slf: &Bound<'py, Self>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        operators::placed(slf, placement)
+    }
+
+    fn __or__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        operators::combined(Operator::Union, slf, other)
+    }
+
+    fn __and__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        operators::combined(Operator::Intersection, slf, other)
+    }
+
+    fn __sub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        operators::combined(Operator::Difference, slf, other)
+    }
+
+    fn __xor__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        operators::combined(Operator::Xor, slf, other)
+    }
+
+    fn __invert__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        operators::complement(slf)
+    }
+
+    fn __matmul__<'py>(slf: &Bound<'py, Self>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let _ = (slf, placement);
+        Err(PyTypeError::new_err("a placement stands before the solid: placement @ solid"))
+    }
+
+    fn __rmatmul__<'py>(slf: &Bound<'py, Self>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        operators::placed(slf, placement)
+    }
+
+    /// A picture, for notebooks.
+    fn _repr_png_<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        // What cannot be shown is told in words.
+        match from_package!(slf.py(), "leafless._leafless", "render")?.call1((slf,)) {
+            Ok(picture) => picture.call_method0("_repr_png_").map(Some),
+            Err(_) => Ok(None),
+        }
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
+        let kind = slf.get_type().name()?;
+        Err(PyNotImplementedError::new_err(format!("a {kind} cannot be pickled")))
+    }
+}
+
+/// Answers about points.
+pub fn memberships<'py>(py: Python<'py>, answers: &[Membership], is_one: bool) -> PyResult<Bound<'py, PyAny>> {
+    if let (&[answer], true) = (answers, is_one) {
+        return from_package!(py, "leafless._answers", "Membership")?.call1((answer as u8,));
+    }
+    let codes = answers.iter().map(|&answer| answer as u8).collect();
+    Ok(arrays::array::<u8>(py, codes, &[answers.len()])?.into_any())
+}
+
+/// The number of a surface, or −1.
+fn number(surface: Option<u32>) -> i64 {
+    surface.map_or(-1, i64::from)
+}
+
+fn distances_found<'py>(py: Python<'py>, found: &[PointDistance], tolerance: f64) -> PyResult<Bound<'py, PyAny>> {
+    let count = found.len();
+    let distance = intervals(py, found.iter().map(|found| found.distance), &[count])?;
+    let nearest = found.iter().map(|found| found.nearest.map_or([f64::NAN; 3], |near| near.point)).collect();
+    let surface = found.iter().map(|found| number(found.nearest.and_then(|near| near.surface))).collect();
+    // (Of what is proven not to be there, both ends are infinite, and the width is no number.)
+    let undecided = found.iter().map(|found| found.distance.width() > tolerance).collect();
+    from_package!(py, "leafless._answers", "Distances")?.call1((
+        distance,
+        arrays::rows(py, nearest)?,
+        arrays::array(py, surface, &[count])?,
+        arrays::array(py, undecided, &[count])?,
+    ))
+}
+

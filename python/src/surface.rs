@@ -1,0 +1,179 @@
+//! Surfaces as triangle meshes.
+
+use crate::ask::{self, Wish};
+use crate::error::refused;
+use crate::frame::Frame;
+use crate::mesh::Mesh;
+use crate::octree::Octree;
+use crate::solid::given;
+use crate::work::Limits;
+use leafless::surface::{self as surfaces, Resolve, Snap, VertexPlacement};
+use leafless::{Error, FillRule, TriangleMesh, marching_cubes};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Depths that nobody tells, of cells that end by themselves, of those that one vertex must do for, and of equal ones.
+const DEEP: u8 = 14;
+const FINE: u8 = 12;
+const EQUAL: u8 = 8;
+
+/// The tolerance that nobody tells, as a part of the longest extent.
+const TOLERANCE: f64 = 1e-3;
+
+/// Where coplanar shrink puts vertices.
+const SNAP: Snap = Snap::Fat;
+
+/// How a mesh was made of a solid.
+#[pyclass(frozen, get_all, from_py_object, module = "leafless")]
+#[derive(Clone, Copy)]
+pub struct SurfaceReport {
+    /// "faces", "adaptive", "cubes", "nets", "shrink" or "simplify".
+    method: &'static str,
+    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the mesh (model units):
+    /// proven. Infinite if nothing is known.
+    pub deviation: f64,
+    /// Pairs of triangles that intersect each other, where the method counts them.
+    intersecting_pairs: u64,
+}
+
+#[pymethods]
+impl SurfaceReport {
+    fn __repr__(&self) -> String {
+        let SurfaceReport { method, deviation, intersecting_pairs } = self;
+        format!("<SurfaceReport: {method}, deviation {deviation:.3e}, {intersecting_pairs} intersecting pairs>")
+    }
+}
+
+/// What `surface` may make.
+#[derive(Clone, Copy, PartialEq)]
+enum Method {
+    Any,
+    Faces,
+    Adaptive,
+    Cubes,
+    Nets,
+    Shrink,
+}
+
+/// The surface of a solid as a closed triangle mesh.
+///
+/// By `method`: "faces" for solids that know their surfaces (expressions, octrees that keep them) and for meshes: plane faces as they
+/// are, sharp edges, few triangles; "adaptive" for any solid: few triangles where it is flat; "cubes" (marching cubes), "nets" (surface nets,
+/// of octrees) and "shrink" (coplanar shrink) in cells of one size, 2^`depth` to an axis. Without a method it is the first of these that
+/// suits; of an octree of cells alone, marching cubes.
+///
+/// `tolerance` (model units; by default a thousandth of the longest side) is how far "faces" and "adaptive" may be from the solid;
+/// `mesh.surface_report.deviation` is what is proven of that. `resolve` says what undecided cells of an octree count as: "outer" or "inner".
+///
+/// >>> mesh = surface(Csg.cuboid([0, 0, 0], [3, 2, 1]))
+/// >>> len(mesh.faces), mesh.surface_report.method
+/// (12, 'faces')
+#[pyfunction]
+#[pyo3(signature = (solid, *, tolerance=None, method=None, resolve=None, frame=None, depth=None, **limits))]
+pub fn surface<'py>(
+    solid: &Bound<'py, PyAny>,
+    tolerance: Option<f64>,
+    method: Option<&str>,
+    resolve: Option<&str>,
+    frame: Option<Frame>,
+    depth: Option<u8>,
+    limits: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, Mesh>> {
+    let (py, limits) = (solid.py(), Limits::of(limits)?);
+    let method = match method {
+        None => Method::Any,
+        Some("faces") => Method::Faces,
+        Some("adaptive") => Method::Adaptive,
+        Some("cubes") => Method::Cubes,
+        Some("nets") => Method::Nets,
+        Some("shrink") => Method::Shrink,
+        Some(other) => {
+            let problem = format!("must be one of 'faces', 'adaptive', 'cubes', 'nets', 'shrink', not '{other}'");
+            return Err(refused(py, "method", problem));
+        }
+    };
+    let resolve = match resolve {
+        None | Some("outer") => Resolve::Outer,
+        Some("inner") => Resolve::Inner,
+        Some(_) => return Err(refused(py, "resolve", "must be 'outer' or 'inner'")),
+    };
+    let stored = solid.cast::<Octree>().ok().map(|octree| octree.get().octree.clone());
+    let stored = stored.filter(|octree| octree.view().cuts().is_none());
+    let solid = given(solid, "solid")?;
+    let wish = Wish { frame, depth };
+    if let Some(octree) = stored.filter(|_| !matches!(method, Method::Faces | Method::Adaptive)) {
+        let mesh = limits.run(py, |control| match method {
+            Method::Nets => surfaces::surface_nets(octree.view(), Some(resolve), control),
+            Method::Shrink => surfaces::coplanar_shrink(octree.view(), SNAP, Some(resolve), control),
+            _ => marching_cubes(octree.view(), Some(resolve), control),
+        })?;
+        let method = match method {
+            Method::Nets => "nets",
+            Method::Shrink => "shrink",
+            _ => "cubes",
+        };
+        return made(py, mesh, SurfaceReport { method, deviation: f64::INFINITY, intersecting_pairs: 0 });
+    }
+    if let Method::Cubes | Method::Shrink | Method::Nets = method {
+        let frame = wish.of(py, &solid, EQUAL)?;
+        let name = if method == Method::Shrink { "shrink" } else { "cubes" };
+        let mesh = limits.run(py, |control| match method {
+            Method::Nets => {
+                let octree = leafless::build(&solid.shape, &frame, leafless::Rule::Sampled, control)?;
+                surfaces::surface_nets(octree.view(), Some(resolve), control)
+            }
+            Method::Shrink => {
+                surfaces::coplanar_shrink_solid(&solid.shape, &frame, SNAP, control)
+            }
+            _ => surfaces::marching_cubes_solid(&solid.shape, &frame, VertexPlacement::Crossing, control),
+        })?;
+        let method = if method == Method::Nets { "nets" } else { name };
+        return made(py, mesh, SurfaceReport { method, deviation: f64::INFINITY, intersecting_pairs: 0 });
+    }
+    let bounds = ask::bounds(py, &solid)?;
+    let longest = (0..3).map(|axis| bounds.max[axis] - bounds.min[axis]).fold(0.0, f64::max);
+    let tolerance = tolerance.unwrap_or(TOLERANCE * longest);
+    let (deep, fine) = (wish.of(py, &solid, DEEP)?, wish.of(py, &solid, FINE)?);
+    let (mesh, report) = limits.run(py, |control| {
+        if method != Method::Adaptive {
+            match surfaces::boundary(&solid.shape, &deep, tolerance, control) {
+                Ok(found) => {
+                    let report = found.report();
+                    let (deviation, intersecting_pairs) = (report.deviation, report.intersecting_pairs);
+                    let report = SurfaceReport { method: "faces", deviation, intersecting_pairs };
+                    return Ok((found.into_mesh(), report));
+                }
+                // Of what is not bounded by surfaces the other method makes one.
+                Err(Error::Argument { name, .. }) if method == Method::Any && name != "tolerance" => {}
+                Err(error) => return Err(error),
+            }
+        }
+        let found = surfaces::contour(&solid.shape, &fine, tolerance, control)?;
+        let report = found.report();
+        let (deviation, intersecting_pairs) = (report.deviation, report.intersecting_pairs);
+        let report = SurfaceReport { method: "adaptive", deviation, intersecting_pairs };
+        Ok((found.into_mesh(), report))
+    })?;
+    made(py, mesh, report)
+}
+
+/// A mesh with fewer triangles, no point of which is further than `tolerance` (model units) from the given one, nor the other way
+/// round: proven, for open meshes, too.
+#[pyfunction]
+#[pyo3(signature = (mesh, tolerance, **limits))]
+pub fn simplify<'py>(
+    mesh: &Bound<'py, Mesh>,
+    tolerance: f64,
+    limits: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, Mesh>> {
+    let (py, own) = (mesh.py(), mesh.get());
+    let found = Limits::of(limits)?.run(py, |control| surfaces::simplify(&own.mesh, tolerance, control))?;
+    let report = found.report();
+    let (deviation, intersecting_pairs) = (report.deviation, report.intersecting_pairs);
+    let report = SurfaceReport { method: "simplify", deviation, intersecting_pairs };
+    Mesh::bound(py, found.into_mesh(), own.fill, own.unit.clone(), Some(report))
+}
+
+fn made(py: Python<'_>, mesh: TriangleMesh, report: SurfaceReport) -> PyResult<Bound<'_, Mesh>> {
+    Mesh::bound(py, mesh, FillRule::NonZero, None, Some(report))
+}

@@ -1,0 +1,246 @@
+//! Arrays of samples as solids.
+
+use crate::arrays::{self, layout, shown, triple};
+use crate::error::{OrRaise, refused};
+use crate::frame::Frame;
+use crate::from_package;
+use crate::solid::{Given, Solid};
+use crate::work::Limits;
+use leafless::solid::{Band, SampleArray, Samples, VoxelGrid};
+use leafless::{AnySolid, Volume as Inner};
+use numpy::{Element, PyArray3, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::sync::Arc;
+
+/// A 3-D array of samples as a solid: its voxels with values in a band.
+///
+/// The array is indexed [x, y, z], or with `order="zyx"` [z, y, x], as SimpleITK and tifffile have them. It may hold booleans, uint8,
+/// uint16, int16 or float32. An array of which x varies fastest in memory is not copied (that is "zyx" in NumPy's default order, and
+/// "xyz" in Fortran's), and must not be changed as long as the volume is there.
+///
+/// A voxel is inside if its sample is at least `threshold`, or at least the first and at most the second of two. The lower corner of
+/// the first voxel lies at `origin`.
+///
+/// >>> import numpy as np
+/// >>> x, y, z = np.mgrid[-10:11, -10:11, -10:11]
+/// >>> ball = Volume(100 - (x**2 + y**2 + z**2).astype(np.float32), 0)
+/// >>> build(ball, rule="sampled").volume
+/// 4169
+#[pyclass(extends = Solid, frozen, module = "leafless")]
+pub struct Volume {
+    pub volume: Inner<'static>,
+    /// Booleans lie in memory as bytes.
+    is_boolean: bool,
+    axes_reversed: bool,
+    threshold: (f64, Option<f64>),
+}
+
+/// An array of NumPy that a volume reads.
+struct Held<T> {
+    /// Dropped with the interpreter attached, or when it is next.
+    _array: Py<PyAny>,
+    start: *const T,
+    length: usize,
+}
+
+// SAFETY: numbers that nobody changes can be read from any thread. (Reference counts are left to Python.)
+#[allow(unsafe_code)]
+unsafe impl<T: Sync> Send for Held<T> {}
+// SAFETY: as above.
+#[allow(unsafe_code)]
+unsafe impl<T: Sync> Sync for Held<T> {}
+
+impl<T> AsRef<[T]> for Held<T> {
+    fn as_ref(&self) -> &[T] {
+        // SAFETY: the memory is that of the array, which is kept alive, lies there as one piece, and is not changed: the class says so.
+        #[allow(unsafe_code)]
+        unsafe {
+            std::slice::from_raw_parts(self.start, self.length)
+        }
+    }
+}
+
+/// The samples of an array of which x varies fastest.
+fn held<'py, T: Element + Sync + Copy>(array: &Bound<'py, PyAny>) -> PyResult<SampleArray<'static, T>> {
+    let array = array.cast::<PyArray3<T>>()?;
+    let held = Held { _array: array.clone().into_any().unbind(), start: array.data().cast_const(), length: array.len() };
+    Ok(SampleArray::Shared(Arc::new(held)))
+}
+
+/// Which values are inside.
+pub fn band(given: Option<&Bound<'_, PyAny>>, middle: f64) -> PyResult<(Band, (f64, Option<f64>))> {
+    let Some(given) = given else { return Ok((Band::at_least(middle).unwrap_or_else(|_| unreachable!()), (middle, None))) };
+    let py = given.py();
+    let told = match given.extract::<f64>() {
+        Ok(low) => (low, None),
+        Err(_) => match given.extract::<(f64, f64)>() {
+            Ok((low, high)) => (low, Some(high)),
+            Err(_) => return Err(refused(py, "threshold", "must be one number, or a least and a greatest one")),
+        },
+    };
+    let band = match told {
+        (low, None) => Band::at_least(low),
+        (f64::NEG_INFINITY, Some(high)) => Band::at_most(high),
+        (low, Some(high)) => Band::between(low, high),
+    };
+    Ok((band.or_raise(py)?, told))
+}
+
+impl Volume {
+    pub fn initial(volume: Inner<'static>, is_boolean: bool, axes_reversed: bool, threshold: (f64, Option<f64>)) -> PyResult<PyClassInitializer<Volume>> {
+        let own = volume.grid().frame().ok();
+        let given = Given { own, ..Given::new(AnySolid::new(volume.clone())) };
+        let volume = Volume { volume, is_boolean, axes_reversed, threshold };
+        Ok(PyClassInitializer::from(Solid::new(given)).add_subclass(volume))
+    }
+}
+
+#[pymethods]
+impl Volume {
+    #[new]
+    #[pyo3(signature = (array, threshold=None, *, origin=None, spacing=None, order="xyz", **limits))]
+    fn new(
+        array: &Bound<'_, PyAny>,
+        threshold: Option<&Bound<'_, PyAny>>,
+        origin: Option<&Bound<'_, PyAny>>,
+        spacing: Option<&Bound<'_, PyAny>>,
+        order: &str,
+        limits: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<PyClassInitializer<Volume>> {
+        let py = array.py();
+        let limits = Limits::of(limits)?;
+        let axes_reversed = match order {
+            "xyz" => false,
+            "zyx" => true,
+            _ => return Err(refused(py, "order", "must be 'xyz' or 'zyx'")),
+        };
+        let origin = origin.map_or(Ok([0.0; 3]), |origin| triple(origin, "origin"))?;
+        let spacing = match spacing {
+            None => [1.0; 3],
+            Some(all) => all.extract::<f64>().map_or_else(|_| triple(all, "spacing"), |one| Ok([one; 3]))?,
+        };
+        let reading = from_package!(py, "leafless._exchange", "samples")?.call1((array, axes_reversed))?;
+        let reading = reading.cast_into::<PyTuple>()?;
+        let (array, kind): (Bound<'_, PyAny>, String) = (reading.get_item(0)?, reading.get_item(1)?.extract()?);
+        let extents: [u32; 3] = reading.get_item(2)?.extract()?;
+        let (samples, middle) = match &*kind {
+            "bool" => (Samples::U8(held(&array)?), 0.5),
+            "uint8" => (Samples::U8(held(&array)?), 127.5),
+            "uint16" => (Samples::U16(held(&array)?), 32767.5),
+            "int16" => (Samples::I16(held(&array)?), 0.0),
+            "float32" => (Samples::F32(held(&array)?), 0.5),
+            _ => {
+                return Err(PyTypeError::new_err(format!(
+                    "array: must hold bool, uint8, uint16, int16 or float32, not {kind}; astype(numpy.float32) rounds it"
+                )));
+            }
+        };
+        let (band, told) = band(threshold, middle)?;
+        let grid = VoxelGrid::new(extents, origin, spacing).or_raise(py)?;
+        let volume = limits.run(py, |control| Inner::new(samples, &grid, band, control))?;
+        Volume::initial(volume, kind == "bool", axes_reversed, told)
+    }
+
+    /// The samples, indexed as they were given: a view of the memory that the volume reads.
+    #[getter]
+    fn array<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let own = slf.get();
+        let mut extents = own.volume.grid().extents().map(|extent| extent as usize);
+        if own.axes_reversed {
+            extents.reverse();
+        }
+        let shape = || layout(extents, !own.axes_reversed);
+        let owner = slf.as_any();
+        match own.volume.samples() {
+            Samples::U8(values) if own.is_boolean => {
+                shown(owner, values.values(), shape())?.call_method1("view", ("bool",))
+            }
+            Samples::U8(values) => shown(owner, values.values(), shape()),
+            Samples::U16(values) => shown(owner, values.values(), shape()),
+            Samples::I16(values) => shown(owner, values.values(), shape()),
+            Samples::F32(values) => shown(owner, values.values(), shape()),
+            Samples::Bits(words) => {
+                let (row, [x, y, z]) = (own.volume.grid().words(), own.volume.grid().extents().map(|n| n as usize));
+                let lines = words.values().chunks_exact(row).take(y * z);
+                let bits: Vec<bool> =
+                    lines.flat_map(|line| (0..x).map(move |i| line[i / 64] >> (i % 64) & 1 != 0)).collect();
+                let order = PyDict::new(slf.py());
+                order.set_item("order", if own.axes_reversed { "C" } else { "F" })?;
+                let flat = arrays::array(slf.py(), bits, &[x * y * z])?;
+                flat.call_method("reshape", (extents.to_vec(),), Some(&order))
+            }
+        }
+    }
+
+    /// The lower corner of the first voxel.
+    #[getter]
+    fn origin(&self) -> (f64, f64, f64) {
+        self.volume.grid().corner().into()
+    }
+
+    /// The edges of a voxel.
+    #[getter]
+    fn spacing(&self) -> (f64, f64, f64) {
+        self.volume.grid().spacing().into()
+    }
+
+    /// The least sample inside; and the greatest, or `None`.
+    #[getter]
+    fn threshold(&self) -> (f64, Option<f64>) {
+        self.threshold
+    }
+
+    /// "xyz" or "zyx": how `array` is indexed.
+    #[getter]
+    fn order(&self) -> &'static str {
+        if self.axes_reversed { "zyx" } else { "xyz" }
+    }
+
+    /// A frame whose finest cells are the voxels, if these are cubes.
+    #[getter]
+    fn frame(&self, py: Python<'_>) -> PyResult<Frame> {
+        self.volume.grid().frame().or_raise(py).map(Frame)
+    }
+
+    /// The same samples with another threshold, without reading them again.
+    #[pyo3(signature = (threshold, **limits))]
+    fn with_threshold(
+        &self,
+        threshold: &Bound<'_, PyAny>,
+        limits: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Py<Volume>> {
+        let py = threshold.py();
+        let (band, told) = band(Some(threshold), 0.5)?;
+        let volume = Limits::of(limits)?.run(py, |control| self.volume.with_band(band, control))?;
+        Py::new(py, Volume::initial(volume, self.is_boolean, self.axes_reversed, told)?)
+    }
+
+    /// The value between samples at points (shape (n, 3)): NaN beyond the grid.
+    fn values_at<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let rows = arrays::Rows::of(points, "points")?;
+        let values: Vec<f64> =
+            rows.list().iter().map(|&point| self.volume.value_at(point).unwrap_or(f64::NAN)).collect();
+        let count = values.len();
+        arrays::one_or_all(arrays::array(points.py(), values, &[count])?.into_any(), rows.is_one)
+    }
+
+    fn __repr__(&self) -> String {
+        let [x, y, z] = self.volume.grid().extents();
+        let told = match self.threshold {
+            (low, None) => format!("at least {low}"),
+            (low, Some(high)) => format!("{low} to {high}"),
+        };
+        format!("<Volume: {x} × {y} × {z} voxels, {told}>")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let py = slf.py();
+        let own = slf.get();
+        let again = from_package!(py, "leafless._pickle", "volume")?;
+        let arguments = (Volume::array(slf)?, own.threshold, own.origin(), own.spacing(), own.order());
+        Ok((again, arguments.into_bound_py_any(py)?))
+    }
+}

@@ -1,0 +1,88 @@
+//! What the library's enumerations are called in Python.
+
+use crate::error::refused;
+use leafless::query::{DistanceTo, GapVerdict, Obstacle, Overlap, StopReason, Within};
+use leafless::{FillRule, Rule, Tag};
+use pyo3::prelude::*;
+
+/// An enumeration whose values are words.
+pub trait Word: Copy + 'static {
+    /// The parameter that takes it.
+    const NAME: &'static str;
+    /// All words, with their values.
+    const ALL: &'static [(&'static str, Self)];
+}
+
+/// The value of a word.
+pub fn value<W: Word>(py: Python<'_>, word: &str) -> PyResult<W> {
+    match W::ALL.iter().find(|(own, _)| *own == word) {
+        Some(&(_, value)) => Ok(value),
+        None => {
+            let words: Vec<_> = W::ALL.iter().map(|(own, _)| format!("'{own}'")).collect();
+            Err(refused(py, W::NAME, format!("must be one of {}, not '{word}'", words.join(", "))))
+        }
+    }
+}
+
+/// The word of a value.
+pub fn word<W: Word + PartialEq>(value: W) -> &'static str {
+    W::ALL.iter().find(|(_, own)| *own == value).map_or("unknown", |(word, _)| word)
+}
+
+macro_rules! words {
+    ($($kind:ty as $name:literal { $($word:literal => $value:expr),* $(,)? })*) => {$(
+        impl Word for $kind {
+            const NAME: &'static str = $name;
+            const ALL: &'static [(&'static str, $kind)] = &[$(($word, $value)),*];
+        }
+    )*};
+}
+
+words! {
+    Rule as "rule" {
+        "certified" => Rule::Certified,
+        "sampled" => Rule::Sampled,
+        "inner" => Rule::Inner,
+        "outer" => Rule::Outer,
+    }
+    FillRule as "fill" {
+        "nonzero" => FillRule::NonZero,
+        "positive" => FillRule::Positive,
+        "evenodd" => FillRule::EvenOdd,
+    }
+    DistanceTo as "to" {
+        "boundary" => DistanceTo::Boundary,
+        "solid" => DistanceTo::Solid,
+        "complement" => DistanceTo::Complement,
+    }
+    Obstacle as "on" {
+        "outer" => Obstacle::Upper,
+        "inner" => Obstacle::Full,
+    }
+    Tag as "tag" {
+        "empty" => Tag::Empty,
+        "branch" => Tag::Branch,
+        "partial" => Tag::Partial,
+        "full" => Tag::Full,
+    }
+    StopReason as "stop_reason" {
+        "tolerance" => StopReason::Tolerance,
+        "budget" => StopReason::Budget,
+        "exhausted" => StopReason::Exhausted,
+    }
+    Overlap as "verdict" {
+        "disjoint" => Overlap::Disjoint,
+        "overlapping" => Overlap::Overlapping,
+        "undecided" => Overlap::Undecided,
+    }
+    GapVerdict as "verdict" {
+        "yes" => GapVerdict::Yes,
+        "no" => GapVerdict::No,
+        "undecided" => GapVerdict::Undecided,
+    }
+    Within as "within" {
+        "yes" => Within::Yes,
+        "no" => Within::No,
+        "undecided" => Within::Undecided,
+    }
+}

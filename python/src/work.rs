@@ -1,0 +1,139 @@
+//! Long work: the interpreter is released, Ctrl-C interrupts, progress is reported, limits hold.
+
+use crate::error::{OrRaise, raised};
+use crate::from_package;
+use leafless::{Control, Error};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::thread;
+use std::time::Duration;
+
+/// How long work goes on before signals and progress are looked at again.
+const GLANCE: Duration = Duration::from_millis(50);
+
+/// Bytes of the stack of the thread that works, as much as a main thread has.
+const STACK: usize = 8 << 20;
+
+/// The keyword arguments that all long work takes: `threads`, `max_nodes`, `max_bytes`, `max_splits`, `progress`.
+#[derive(Default)]
+pub struct Limits {
+    threads: usize,
+    max_nodes: Option<u64>,
+    max_bytes: Option<u64>,
+    pub max_splits: Option<u64>,
+    progress: Option<Py<PyAny>>,
+}
+
+impl Limits {
+    /// Takes them from keyword arguments, and refuses any other.
+    pub fn of(given: Option<&Bound<'_, PyDict>>) -> PyResult<Limits> {
+        let mut limits = Limits::default();
+        for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
+            if value.is_none() {
+                continue;
+            }
+            match name.extract::<&str>()? {
+                "threads" => limits.threads = value.extract()?,
+                "max_nodes" => limits.max_nodes = Some(value.extract()?),
+                "max_bytes" => limits.max_bytes = Some(value.extract()?),
+                "max_splits" => limits.max_splits = Some(value.extract()?),
+                "progress" => {
+                    let reporter = from_package!(value.py(), "leafless._progress", "reporter")?;
+                    limits.progress = Some(reporter.call1((value,))?.unbind());
+                }
+                name => return Err(PyTypeError::new_err(format!("unexpected keyword argument '{name}'"))),
+            }
+        }
+        Ok(limits)
+    }
+
+    fn control<'a>(&self, cancel: Option<&'a AtomicBool>, progress: Option<&'a (dyn Fn(f64) + Sync)>) -> Control<'a> {
+        let &Limits { threads, max_nodes, max_bytes, max_splits, .. } = self;
+        Control { threads, max_nodes, max_bytes, max_splits, cancel, progress }
+    }
+
+    /// Does work that may take long, in a thread of its own. This thread waits for signals, which cancel the work, and
+    /// calls the function that progress is reported to.
+    pub fn run<R: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Control<'_>) -> Result<R, Error> + Send,
+    ) -> PyResult<R> {
+        let (cancel, done) = (AtomicBool::new(false), AtomicU64::new(0));
+        let report = |part: f64| done.store(part.to_bits(), Relaxed);
+        let progress: Option<&(dyn Fn(f64) + Sync)> = self.progress.is_some().then_some(&report);
+        let control = self.control(Some(&cancel), progress);
+        let (found, stopped) = py.detach(|| -> PyResult<_> {
+            let (waiting, control) = (thread::current(), &control);
+            thread::scope(|scope| {
+                let worker = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || {
+                    let found = work(control);
+                    waiting.unpark();
+                    found
+                })?;
+                let (mut told, mut stopped) = (0, None);
+                while !worker.is_finished() {
+                    thread::park_timeout(GLANCE);
+                    if stopped.is_none() && !worker.is_finished() {
+                        stopped = Python::attach(|py| self.glance(py, &done, &mut told)).err();
+                        if stopped.is_some() {
+                            cancel.store(true, Relaxed);
+                        }
+                    }
+                }
+                match worker.join() {
+                    Ok(found) => Ok((found, stopped)),
+                    Err(panic) => std::panic::resume_unwind(panic),
+                }
+            })
+        })?;
+        match (found, stopped) {
+            (Err(Error::Cancelled), Some(stopped)) => Err(stopped),
+            (found, stopped) => {
+                let found = found.or_raise(py)?;
+                if let Some(stopped) = stopped {
+                    return Err(stopped);
+                }
+                if let Some(progress) = &self.progress {
+                    progress.call1(py, (1.0,))?;
+                }
+                Ok(found)
+            }
+        }
+    }
+
+    /// Looks for signals, and reports what is done since the last time.
+    fn glance(&self, py: Python<'_>, done: &AtomicU64, told: &mut u64) -> PyResult<()> {
+        py.check_signals()?;
+        let now = done.load(Relaxed);
+        if let Some(progress) = &self.progress
+            && now != *told
+        {
+            *told = now;
+            progress.call1(py, (f64::from_bits(now).min(1.0),))?;
+        }
+        Ok(())
+    }
+
+    /// Does work that is known to be short on this thread, with the interpreter released.
+    pub fn run_here<R: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Control<'_>) -> Result<R, Error> + Send,
+    ) -> PyResult<R> {
+        let control = self.control(None, None);
+        py.detach(|| work(&control)).map_err(|error| raised(py, error))
+    }
+
+    /// Does work in the one way or the other.
+    pub fn run_if<R: Send>(
+        &self,
+        long: bool,
+        py: Python<'_>,
+        work: impl FnOnce(&Control<'_>) -> Result<R, Error> + Send,
+    ) -> PyResult<R> {
+        if long || self.progress.is_some() { self.run(py, work) } else { self.run_here(py, work) }
+    }
+}
