@@ -199,7 +199,11 @@ fn many(array: &Bound<'_, numpy::PyArrayDyn<f64>>, name: &str) -> PyResult<Vec<I
     let high = match *array.shape() {
         [high @ (3 | 4), 4] | [_, high @ (3 | 4), 4] => high,
         ref shape => {
-            return Err(refused(py, name, format!("must be a matrix of 3×4 or 4×4 numbers, not of shape {shape:?}")));
+            return Err(refused(
+                py,
+                name,
+                format!("must be a matrix of 3×4 or 4×4 numbers, not of shape {shape:?}"),
+            ));
         }
     };
     let numbers = array.readonly();

@@ -4,8 +4,7 @@ use crate::error::refused;
 use crate::from_package;
 use numpy::ndarray::{ArrayView, Dimension, ShapeBuilder, StrideShape};
 use numpy::{
-    Element, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray2,
-    PyUntypedArrayMethods,
+    Element, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods,
 };
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -37,7 +36,11 @@ impl<'py> Rows<'py> {
             // An empty list has one axis.
             [0] => array.reshape([0, 3])?,
             shape => {
-                return Err(refused(given.py(), name, format!("must have the shape (n, 3) or (3,), not {shape:?}")));
+                return Err(refused(
+                    given.py(),
+                    name,
+                    format!("must have the shape (n, 3) or (3,), not {shape:?}"),
+                ));
             }
         };
         Ok(Rows { array: rows.readonly(), is_one: is_one && rows.shape()[0] == 1 })
@@ -86,7 +89,11 @@ pub fn triple(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
 }
 
 /// An array of a shape, which has the list for its memory.
-pub fn array<'py, T: Element>(py: Python<'py>, list: Vec<T>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+pub fn array<'py, T: Element>(
+    py: Python<'py>,
+    list: Vec<T>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     PyArray1::from_vec(py, list).reshape(shape)
 }
 

@@ -27,7 +27,11 @@ impl Wish {
         match solid.own {
             // Cells that keep surfaces are large, and say little.
             Some(own) if solid.keeps_surfaces => own.with_depth(deepest).or_raise(py),
-            Some(own) => self.depth.map_or(Ok(own), |depth| own.with_depth(depth)).or_raise(py),
+            Some(own) => {
+                let own = self.depth.map_or(Ok(own), |depth| own.with_depth(depth)).or_raise(py)?;
+                // An expression may reach beyond the octree in it.
+                solid.shape.bounds().map_or(Ok(own), |all| doubled(own, &all)).or_raise(py)
+            }
             None => fitted(py, &bounds(py, solid)?, deepest),
         }
     }
@@ -54,7 +58,8 @@ impl Wish {
         }
         match a.own {
             Some(own) => {
-                let own = if a.keeps_surfaces || self.depth.is_some() { own.with_depth(deepest) } else { Ok(own) };
+                let own =
+                    if a.keeps_surfaces || self.depth.is_some() { own.with_depth(deepest) } else { Ok(own) };
                 own.and_then(|own| doubled(own, &all)).or_raise(py)
             }
             None => fitted(py, &all, deepest),
@@ -75,16 +80,22 @@ pub fn bounds(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
     }
 }
 
-/// A frame doubled until it holds a box: its cells stay whole.
+/// Most doublings of a frame.
+const DOUBLINGS: u32 = 64;
+
+/// A frame doubled until it holds a box: its cells stay whole, as long as there is a depth for them.
 fn doubled(mut frame: Inner, all: &Bounds) -> Result<Inner, Error> {
-    while !all.is_within(&frame) && frame.depth() < MAX_DEPTH {
+    for _ in 0..DOUBLINGS {
+        if all.is_within(&frame) {
+            break;
+        }
         let (origin, edge) = (frame.origin(), frame.edge());
         // Towards the side where more is missing.
         let grown = [0, 1, 2].map(|axis| {
             let above = all.max[axis] - (origin[axis] + edge) >= origin[axis] - all.min[axis];
             if above { origin[axis] } else { origin[axis] - edge }
         });
-        frame = Inner::new(grown, 2.0 * edge, frame.depth() + 1)?;
+        frame = Inner::new(grown, 2.0 * edge, (frame.depth() + 1).min(MAX_DEPTH))?;
     }
     Ok(frame)
 }

@@ -10,8 +10,8 @@ use crate::solid::given;
 use crate::volume::Volume;
 use crate::work::Limits;
 use leafless::attribute::{
-    Attribute, Channel as Inner, ConstantAttribute, Detail, FillOptions, Interpolation, ScalarType, ValueType,
-    VolumeAttribute, fill_channel,
+    Attribute, Channel as Inner, ConstantAttribute, Detail, FillOptions, Interpolation, ScalarType,
+    ValueType, VolumeAttribute, fill_channel,
 };
 use leafless::{Bounds, Error};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
@@ -105,7 +105,9 @@ impl Channel {
         };
         let frame = match (solid, frame) {
             (Some(solid), None) => Wish { frame: None, depth }.of(py, &given(solid, "solid")?, 8)?,
-            (_, Some(Frame(frame))) => depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py)?,
+            (_, Some(Frame(frame))) => {
+                depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py)?
+            }
             (None, None) => return Err(refused(py, "frame", "must be given without a solid")),
         };
         let scalars = [ScalarType::U8, ScalarType::U16, ScalarType::U32, ScalarType::F32];
@@ -170,7 +172,8 @@ impl Channel {
         let view = self.0.view().or_raise(py)?;
         py.detach(|| view.values_at(list, &mut found));
         let components = self.components();
-        let numbers = found.iter().flat_map(|value| value.unwrap_or([f64::NAN; 4]).into_iter().take(components));
+        let numbers =
+            found.iter().flat_map(|value| value.unwrap_or([f64::NAN; 4]).into_iter().take(components));
         let numbers: Vec<f64> = numbers.collect();
         let shape = if components == 1 { vec![list.len()] } else { vec![list.len(), components] };
         arrays::one_or_all(arrays::array(py, numbers, &shape)?.into_any(), rows.is_one)
@@ -211,11 +214,15 @@ impl Channel {
 
     fn __repr__(&self) -> String {
         let kind = self.0.value_type();
-        format!("<Channel: {} × {}, {} values>", kind.components(), kind.scalar().name(), self.0.value_count())
+        format!(
+            "<Channel: {} × {}, {} values>",
+            kind.components(),
+            kind.scalar().name(),
+            self.0.value_count()
+        )
     }
 
     fn __reduce__(&self) -> PyResult<()> {
         Err(pyo3::exceptions::PyTypeError::new_err("a Channel is pickled with the octree that has it"))
     }
 }
-

@@ -36,7 +36,8 @@ impl Csg {
         arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error: Into<PyErr>>,
     ) -> PyResult<Bound<'py, Csg>> {
         let given = Given::new(AnySolid::new(expression.clone()));
-        let csg = Csg { expression, recipe: (name, arguments.into_pyobject(py).map_err(Into::into)?.unbind()) };
+        let csg =
+            Csg { expression, recipe: (name, arguments.into_pyobject(py).map_err(Into::into)?.unbind()) };
         Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(csg))
     }
 }
@@ -149,7 +150,8 @@ impl Csg {
     #[staticmethod]
     fn prism<'py>(polygon: &Bound<'py, PyAny>, low: f64, high: f64) -> PyResult<Bound<'py, Csg>> {
         let py = polygon.py();
-        let corners: Vec<[f64; 2]> = arrays::doubles(polygon, "polygon")?.call_method0("tolist")?.extract()?;
+        let corners: Vec<[f64; 2]> =
+            arrays::doubles(polygon, "polygon")?.call_method0("tolist")?.extract()?;
         made!(py, Expression::prism(&corners, low, high), "prism", corners, low, high)
     }
 
@@ -193,7 +195,10 @@ impl Csg {
     /// What the first solid contains, and none of the others.
     #[staticmethod]
     #[pyo3(signature = (first, *others))]
-    fn difference_of<'py>(first: &Bound<'py, PyAny>, others: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, Csg>> {
+    fn difference_of<'py>(
+        first: &Bound<'py, PyAny>,
+        others: &Bound<'py, PyTuple>,
+    ) -> PyResult<Bound<'py, Csg>> {
         let py = first.py();
         let away = Expression::union_of(all(others)?).or_raise(py)?;
         let whole = expression(first, "first")?.difference(&away).or_raise(py)?;
@@ -217,10 +222,7 @@ impl Csg {
 
     /// A solid moved by a map, as `placement @ solid`.
     #[staticmethod]
-    fn placed_of<'py>(
-        solid: &Bound<'py, PyAny>,
-        placement: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, Csg>> {
+    fn placed_of<'py>(solid: &Bound<'py, PyAny>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let map = crate::affine::affine(placement, "placement")?;
         let moved = expression(solid, "solid")?.placed(&map);
         made!(solid.py(), moved, "placed_of", solid, crate::affine::Affine(map))
@@ -258,4 +260,3 @@ impl Csg {
 fn all(solids: &Bound<'_, PyTuple>) -> PyResult<Vec<Expression>> {
     solids.iter().map(|solid| expression(&solid, "solids")).collect()
 }
-

@@ -270,7 +270,8 @@ pub fn save_path(object: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {
 #[pyfunction]
 pub fn save_bytes<'py>(object: &Bound<'py, PyAny>, name: PathBuf) -> PyResult<Bound<'py, PyBytes>> {
     let py = object.py();
-    let extension = name.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
+    let extension =
+        name.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
     let wrong = |kinds: &str| {
         let name = name.display();
         Err(refused(py, "path", format!("{name}: the name must end in {kinds}")))

@@ -42,11 +42,7 @@ impl LazyOctree {
     /// An octree of which only the universe is known; or, with the octree that `freeze` made of the same solid, what that one knew.
     #[new]
     #[pyo3(signature = (solid, frame=None, *, resume=None))]
-    fn new(
-        solid: &Bound<'_, PyAny>,
-        frame: Option<Frame>,
-        resume: Option<&Octree>,
-    ) -> PyResult<LazyOctree> {
+    fn new(solid: &Bound<'_, PyAny>, frame: Option<Frame>, resume: Option<&Octree>) -> PyResult<LazyOctree> {
         let py = solid.py();
         let given = given(solid, "solid")?;
         let frame = match (frame, resume) {
@@ -150,4 +146,3 @@ impl LazyOctree {
         format!("<LazyOctree: {splits} splits, volume {volume}>")
     }
 }
-

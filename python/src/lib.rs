@@ -7,6 +7,7 @@
 //! and `picture` are questions; `files` reads and writes.
 
 mod affine;
+mod anywhere;
 mod arrays;
 mod ask;
 mod channel;
@@ -53,9 +54,7 @@ mod _leafless {
     #[pymodule_export]
     use super::lazy::LazyOctree;
     #[pymodule_export]
-    use super::measures::{
-        BoundingBox, MassProperties, SurfaceArea, bounding_box, measure, surface_area,
-    };
+    use super::measures::{BoundingBox, MassProperties, SurfaceArea, bounding_box, measure, surface_area};
     #[pymodule_export]
     use super::mesh::Mesh;
     #[pymodule_export]
@@ -91,4 +90,3 @@ macro_rules! from_package {
     }};
 }
 pub(crate) use from_package;
-

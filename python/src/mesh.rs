@@ -198,7 +198,8 @@ impl Mesh {
         };
         let (count, components) = (self.mesh.triangles().len(), attribute.components());
         let mut values = Vec::with_capacity(count * 3 * components);
-        for (triangle, corner) in (0..count).flat_map(|triangle| (0..3).map(move |corner| (triangle, corner))) {
+        for (triangle, corner) in (0..count).flat_map(|triangle| (0..3).map(move |corner| (triangle, corner)))
+        {
             let value = attribute.value(triangle, corner).unwrap_or([f64::NAN; 4]);
             values.extend_from_slice(&value[..components]);
         }
@@ -224,7 +225,11 @@ impl Mesh {
 /// Triples of indices, of integers of any type.
 fn indices(given: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 3]>> {
     let py = given.py();
-    let array = required::<i64>(&from_package!(py, "leafless._exchange", "indices")?.call1((given,))?, "int64", "faces")?;
+    let array = required::<i64>(
+        &from_package!(py, "leafless._exchange", "indices")?.call1((given,))?,
+        "int64",
+        "faces",
+    )?;
     let &[_, 3] = array.shape() else {
         return Err(refused(py, "faces", format!("must have the shape (n, 3), not {:?}", array.shape())));
     };

@@ -61,6 +61,10 @@ impl From<leafless::Proof> for Proof {
 /// >>> 4.18879 in octree.volume
 /// True
 ///
+/// The methods `contains`, `distances` and `rays` ask the cells, whatever these prove. Functions (`measure`, `interference` and the others) ask
+/// what is proven of the solid that the octree was made of, which is little if it was built by another rule than "certified"; `as_truth`
+/// takes the cells for the truth.
+///
 /// On one frame, `|`, `&`, `-`, `^` and `~` are exact set algebra of cells: `a - b == a & ~b` holds bit by bit.
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct Octree {
@@ -137,6 +141,12 @@ impl Octree {
         self.octree.view().cuts().is_some()
     }
 
+    /// The same octree, whose cells are taken for the truth: what is called proven of it is so of the cells, and of the solid that they
+    /// were made of only as far as these are right.
+    fn as_truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Octree>> {
+        Octree::bound(py, self.octree.with_proof(leafless::Proof::CERTIFIED))
+    }
+
     /// Level by level, a list of dictionaries: `level`, `nodes`, `empty`, `full`, `partial` (cells that end there), and `volume`, an
     /// interval of what the cells down to that level tell.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
@@ -173,7 +183,11 @@ impl Octree {
     }
 
     /// The same octree with other metadata: a dictionary of texts.
-    fn with_metadata<'py>(&self, py: Python<'py>, metadata: &Bound<'py, PyDict>) -> PyResult<Bound<'py, Octree>> {
+    fn with_metadata<'py>(
+        &self,
+        py: Python<'py>,
+        metadata: &Bound<'py, PyDict>,
+    ) -> PyResult<Bound<'py, Octree>> {
         let mut told = Metadata::new();
         for (key, value) in metadata.iter() {
             told.insert(key.extract::<String>()?, value.extract::<String>()?);
@@ -298,7 +312,12 @@ impl Octree {
     }
 
     /// The same octree with a channel more, or with another one of that name.
-    fn with_channel<'py>(&self, py: Python<'py>, name: &str, channel: &Channel) -> PyResult<Bound<'py, Octree>> {
+    fn with_channel<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        channel: &Channel,
+    ) -> PyResult<Bound<'py, Octree>> {
         Octree::bound(py, self.octree.with_channel(channel.0.with_name(name)).or_raise(py)?)
     }
 
@@ -335,15 +354,17 @@ impl Octree {
         }
         let attribute = channel.map(|channel| &channel.0 as &dyn leafless::attribute::Attribute);
         let view = self.octree.view();
-        let records =
-            limits.run(py, |control| leafless::voxel::VoxelRecords::of(view, &options, attribute, control))?;
+        let records = limits
+            .run(py, |control| leafless::voxel::VoxelRecords::of(view, &options, attribute, control))?;
         Ok(VoxelRecords(records))
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
         let py = other.py();
         match other.cast::<Octree>() {
-            Ok(other) => Ok((self.octree == other.get().octree).into_pyobject(py)?.to_owned().into_any().unbind()),
+            Ok(other) => {
+                Ok((self.octree == other.get().octree).into_pyobject(py)?.to_owned().into_any().unbind())
+            }
             Err(_) => Ok(py.NotImplemented()),
         }
     }
@@ -431,4 +452,3 @@ pub fn build<'py>(
     })?;
     Octree::bound(py, octree)
 }
-

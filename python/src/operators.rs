@@ -1,6 +1,7 @@
 //! Set operations and placements of solids of all kinds.
 
 use crate::affine::affine;
+use crate::anywhere::anywhere;
 use crate::csg::Csg;
 use crate::error::OrRaise;
 use crate::mesh::Mesh;
@@ -23,7 +24,7 @@ pub enum Operator {
 pub fn expression(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Expression> {
     match object.cast::<Csg>() {
         Ok(csg) => Ok(csg.get().expression.clone()),
-        Err(_) => Ok(Expression::solid(given(object, name)?.any().clone())),
+        Err(_) => Ok(Expression::solid(anywhere(given(object, name)?.any()))),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Two solids: whether they overlap, how far apart they are, and how far their boundaries differ.
 
 use crate::affine::affines;
+use crate::anywhere::anywhere;
 use crate::arrays;
 use crate::ask::Wish;
 use crate::error::OrRaise;
@@ -10,7 +11,7 @@ use crate::solid::{Given, given};
 use crate::words;
 use crate::work::Limits;
 use leafless::query::{self, clearance_at, gap_at_least_at, interference_at};
-use leafless::{Affine, Bounds, Control, Error, Frame as Inner, Solid as _};
+use leafless::{Affine, AnySolid, Bounds, Control, Error, Frame as Inner, Solid as _};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -212,7 +213,9 @@ impl Pair {
         let (a, b) = (given(a, "a")?, given(b, "b")?);
         let is_one = match placements {
             None => true,
-            Some(given) => given.cast::<crate::affine::Affine>().is_ok() || crate::affine::affine(given, "").is_ok(),
+            Some(given) => {
+                given.cast::<crate::affine::Affine>().is_ok() || crate::affine::affine(given, "").is_ok()
+            }
         };
         let placements = placements.map(|given| affines(given, "placements")).transpose()?;
         let places = placements.as_deref().unwrap_or(&[Affine::IDENTITY]);
@@ -229,33 +232,31 @@ impl Pair {
         Ok(Pair { a, b, placements, is_one, frame, own, limits })
     }
 
-    /// A solid as it is asked on the common frame: an octree of another universe by its cells.
-    fn on_frame(&self, solid: &Given) -> Result<leafless::AnySolid, Error> {
-        match solid.own {
-            Some(own) if !own.same_universe(&self.frame) => Ok(leafless::AnySolid::new(
-                leafless::solid::Transform::new(solid.any().clone(), &own, &Affine::IDENTITY),
-            )),
-            _ => Ok(leafless::AnySolid::new(solid.shape.clone())),
-        }
+    /// A solid that stays where it is: it remembers the frame, or can be asked on any.
+    fn still(&self, solid: &Given) -> AnySolid {
+        if solid.own.is_some() { anywhere(solid.any()) } else { AnySolid::new(solid.shape.clone()) }
     }
 
     /// The answers at all places.
     fn ask<'py, T: Send, W: Send>(
         &self,
         py: Python<'py>,
-        here: impl FnOnce(&leafless::AnySolid, &leafless::AnySolid, &Control<'_>) -> Result<T, Error> + Send,
-        there: impl FnOnce(&leafless::AnySolid, &leafless::AnySolid, &[Affine], &Control<'_>) -> Result<Vec<T>, Error>
-        + Send,
+        here: impl FnOnce(&AnySolid, &AnySolid, &Control<'_>) -> Result<T, Error> + Send,
+        there: impl FnOnce(&AnySolid, &AnySolid, &[Affine], &Control<'_>) -> Result<Vec<T>, Error> + Send,
         wrap: impl Fn(T) -> W,
     ) -> PyResult<Bound<'py, PyAny>>
     where
         W: IntoPyObject<'py>,
     {
         let found = self.limits.run(py, |control| {
-            let a = self.on_frame(&self.a)?;
             match &self.placements {
-                None => Ok(vec![here(&a, &self.on_frame(&self.b)?, control)?]),
-                Some(places) => there(&a, self.b.any(), places, control),
+                None => Ok(vec![here(&self.still(&self.a), &self.still(&self.b), control)?]),
+                Some(places) => {
+                    // Octrees on their own frames are compared as such.
+                    let is_home = self.a.own.is_none_or(|own| own.same_universe(&self.frame));
+                    let a = if is_home { self.a.any().clone() } else { anywhere(self.a.any()) };
+                    there(&a, self.b.any(), places, control)
+                }
             }
         })?;
         let mut answers = Vec::with_capacity(found.len());
@@ -379,7 +380,7 @@ pub fn deviation(
     let frame = pair.frame;
     let tolerance = tolerance.unwrap_or(1e-4 * frame.edge());
     let found = pair.limits.run(py, |control| {
-        let (a, b) = (pair.on_frame(&pair.a)?, pair.on_frame(&pair.b)?);
+        let (a, b) = (pair.still(&pair.a), pair.still(&pair.b));
         query::deviation(&a, &b, &frame, tolerance, control)
     })?;
     Ok(Deviation(found))

@@ -8,8 +8,8 @@ use crate::solid::{Given, given, is_solid};
 use crate::work::Limits;
 use leafless::exchange::write_png;
 use leafless::render::{
-    self as pictures, Camera, Clip, FIELD_OF_VIEW, Finish, Layer, OctreeLayer, Outline, Shot, SliceLayer, SlicePlane,
-    SolidLayer,
+    self as pictures, Camera, Clip, FIELD_OF_VIEW, Finish, Layer, OctreeLayer, Outline, Shot, SliceLayer,
+    SlicePlane, SolidLayer,
 };
 use leafless::{Bounds, Solid as _};
 use pyo3::prelude::*;
@@ -148,7 +148,9 @@ pub fn render(
                 (Some(plane), Some(octree)) => Box::new(SliceLayer::new(octree.view(), plane)),
                 (Some(plane), None) => Box::new(SliceLayer::of_solid(&solid.shape, frame, plane)),
                 (None, Some(octree)) => Box::new(OctreeLayer::new(octree.view(), finish)),
-                (None, None) => Box::new(SolidLayer::new(&solid.shape, frame, Finish { faces: false, ..finish })),
+                (None, None) => {
+                    Box::new(SolidLayer::new(&solid.shape, frame, Finish { faces: false, ..finish }))
+                }
             });
             if plane.is_some() {
                 break;
@@ -179,4 +181,3 @@ fn tight(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
         (None, _) => ask::bounds(py, solid),
     }
 }
-

@@ -42,10 +42,7 @@ pub struct Shape;
 impl Shape {
     #[new]
     #[pyo3(signature = (*_arguments, **_named))]
-    fn new(
-        _arguments: &Bound<'_, PyTuple>,
-        _named: Option<&Bound<'_, PyDict>>,
-    ) -> PyClassInitializer<Shape> {
+    fn new(_arguments: &Bound<'_, PyTuple>, _named: Option<&Bound<'_, PyDict>>) -> PyClassInitializer<Shape> {
         PyClassInitializer::from(Solid::of_python()).add_subclass(Shape)
     }
 
@@ -54,7 +51,9 @@ impl Shape {
     }
 
     /// As any object of a class of its own: by the class and the attributes.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let py = slf.py();
         let again = crate::from_package!(py, "leafless._pickle", "shape")?;
         let arguments = PyTuple::new(py, [slf.get_type()])?.into_any();
@@ -92,9 +91,11 @@ impl Methods {
     }
 
     fn classify(&self, boxes: &[[[f64; 3]; 2]], verdicts: &mut [Verdict<()>]) -> Result<(), Error> {
-        let tags = self.call("classify", |py| boxes_of(py, boxes), |tags| {
-            numbers(&tags, "float64", "classify", &[boxes.len()])
-        })?;
+        let tags = self.call(
+            "classify",
+            |py| boxes_of(py, boxes),
+            |tags| numbers(&tags, "float64", "classify", &[boxes.len()]),
+        )?;
         for (verdict, tag) in verdicts.iter_mut().zip(tags) {
             *verdict = if tag == f64::from(Tag::Empty as u8) {
                 Verdict::Empty
@@ -111,17 +112,21 @@ impl Methods {
     }
 
     fn distance(&self, points: &[[f64; 3]], distances: &mut [f64]) -> Result<(), Error> {
-        let found = self.call("distance", |py| points_of(py, points), |found| {
-            numbers(&found, "float64", "distance", &[points.len()])
-        })?;
+        let found = self.call(
+            "distance",
+            |py| points_of(py, points),
+            |found| numbers(&found, "float64", "distance", &[points.len()]),
+        )?;
         distances.copy_from_slice(&found);
         Ok(())
     }
 
     fn inside(&self, points: &[[f64; 3]], inside: &mut [bool]) -> Result<(), Error> {
-        let found = self.call("inside", |py| points_of(py, points), |found| {
-            numbers(&found, "float64", "inside", &[points.len()])
-        })?;
+        let found = self.call(
+            "inside",
+            |py| points_of(py, points),
+            |found| numbers(&found, "float64", "inside", &[points.len()]),
+        )?;
         for (inside, found) in inside.iter_mut().zip(found) {
             *inside = found != 0.0;
         }
@@ -129,17 +134,24 @@ impl Methods {
     }
 
     fn gradient(&self, min: [f64; 3], max: [f64; 3]) -> Result<Option<GradientRange>, Error> {
-        self.call("gradient", |py| boxes_of(py, &[[min, max]]), |found| {
-            let (value, gradient): (Bound<'_, PyAny>, Bound<'_, PyAny>) = found.extract()?;
-            let value = numbers(&value, "float64", "gradient", &[1, 2])?;
-            let gradient = numbers(&gradient, "float64", "gradient", &[1, 3, 2])?;
-            let range = |ends: &[f64]| Interval::new(ends[0], ends[1]);
-            let ranges = (range(&value), range(&gradient[..2]), range(&gradient[2..4]), range(&gradient[4..]));
-            Ok(match ranges {
-                (Some(value), Some(x), Some(y), Some(z)) => Some(GradientRange { value, gradient: [x, y, z] }),
-                _ => None,
-            })
-        })
+        self.call(
+            "gradient",
+            |py| boxes_of(py, &[[min, max]]),
+            |found| {
+                let (value, gradient): (Bound<'_, PyAny>, Bound<'_, PyAny>) = found.extract()?;
+                let value = numbers(&value, "float64", "gradient", &[1, 2])?;
+                let gradient = numbers(&gradient, "float64", "gradient", &[1, 3, 2])?;
+                let range = |ends: &[f64]| Interval::new(ends[0], ends[1]);
+                let ranges =
+                    (range(&value), range(&gradient[..2]), range(&gradient[2..4]), range(&gradient[4..]));
+                Ok(match ranges {
+                    (Some(value), Some(x), Some(y), Some(z)) => {
+                        Some(GradientRange { value, gradient: [x, y, z] })
+                    }
+                    _ => None,
+                })
+            },
+        )
     }
 }
 
@@ -197,7 +209,8 @@ pub fn given(object: &Bound<'_, PyAny>) -> PyResult<Given> {
     if !object.get_type().getattr("bounds")?.is(&inherited) {
         let [min, max] = crate::frame::corners(&object.getattr("bounds")?, "bounds")?;
         let bounds = Bounds::new(min, max);
-        let bounds = bounds.ok_or_else(|| PyValueError::new_err("bounds: the lower corner must come first"))?;
+        let bounds =
+            bounds.ok_or_else(|| PyValueError::new_err("bounds: the lower corner must come first"))?;
         callback = callback.with_bounds(bounds);
     }
     Ok(Given { calls_python: true, ..Given::new(AnySolid::new(callback)) })

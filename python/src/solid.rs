@@ -6,6 +6,7 @@ use crate::error::refused;
 use crate::frame::Frame;
 use crate::from_package;
 use crate::interval::intervals;
+use crate::octree::Octree;
 use crate::operators::{self, Operator};
 use crate::shape;
 use crate::words;
@@ -13,7 +14,7 @@ use crate::work::Limits;
 use leafless::lattice::MAX_DEPTH;
 use leafless::query::{DistanceTo, Obstacle, PointDistance, distances};
 use leafless::solid::Prepared;
-use leafless::{AnySolid, Frame as Inner, Membership, Ray, Solid as _, cast_rays, contains};
+use leafless::{AnySolid, Control, Frame as Inner, Membership, Proof, Ray, Solid as _, cast_rays, contains};
 use pyo3::exceptions::{PyNotImplementedError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -92,6 +93,16 @@ pub fn given(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Given> {
     }
 }
 
+/// The solid that an object is; of an octree the cells, whatever they prove of the solid that it was made of.
+fn of_cells(object: &Bound<'_, Solid>) -> PyResult<Given> {
+    match object.cast::<Octree>() {
+        Ok(octree) if !octree.get().octree.proof().is_certified() => {
+            Ok(Given::new(AnySolid::new(octree.get().octree.with_proof(Proof::CERTIFIED))))
+        }
+        _ => given(object, "self"),
+    }
+}
+
 #[pymethods]
 impl Solid {
     /// Operators of NumPy leave this class alone.
@@ -125,13 +136,21 @@ impl Solid {
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let (limits, points) = (Limits::of(limits)?, Rows::of(points, "points")?);
-        let solid = given(slf, "self")?;
-        let frame = Wish { frame, depth: None }.of(py, &solid, MAX_DEPTH)?;
+        let solid = of_cells(slf)?;
         let list = points.list();
         let mut answers = vec![Membership::Undecided; list.len()];
-        limits.run_if(list.len() > FEW_POINTS || solid.calls_python, py, |control| {
-            contains(&solid.shape, &frame, list, &mut answers, control)
-        })?;
+        let long = list.len() > FEW_POINTS || solid.calls_python;
+        match slf.cast::<Octree>() {
+            Ok(octree) if frame.is_none() && !solid.keeps_surfaces => {
+                let view = octree.get().octree.view();
+                limits.run_if(long, py, |_| view.contains_many(list, &mut answers))?;
+            }
+            _ => {
+                let frame = Wish { frame, depth: None }.of(py, &solid, MAX_DEPTH)?;
+                let ask = |control: &Control<'_>| contains(&solid.shape, &frame, list, &mut answers, control);
+                limits.run_if(long, py, ask)?;
+            }
+        }
         // What lies beyond the frame, and beyond the box that holds the solid, is proven outside.
         if let Some(bounds) = solid.shape.bounds() {
             let is_beyond = |axis: usize, x: f64| x < bounds.min[axis] || x > bounds.max[axis];
@@ -164,7 +183,7 @@ impl Solid {
         let py = slf.py();
         let (limits, points) = (Limits::of(limits)?, Rows::of(points, "points")?);
         let to: DistanceTo = words::value(py, to)?;
-        let solid = given(slf, "self")?;
+        let solid = of_cells(slf)?;
         let frame = Wish { frame, depth: None }.of(py, &solid, MAX_DEPTH)?;
         let tolerance = tolerance.unwrap_or(TOLERANCE * frame.edge());
         let list = points.list();
@@ -197,7 +216,7 @@ impl Solid {
         let limits = Limits::of(limits)?;
         let on: Obstacle = words::value(py, on)?;
         let (origins, directions) = (Rows::of(origins, "origins")?, Rows::of(directions, "directions")?);
-        let solid = given(slf, "self")?;
+        let solid = of_cells(slf)?;
         let frame = Wish { frame, depth: None }.of(py, &solid, MAX_DEPTH)?;
         let count = match (origins.list().len(), directions.list().len()) {
             (n, m) if n == m => n,
@@ -255,7 +274,10 @@ impl Solid {
         Err(PyTypeError::new_err("a placement stands before the solid: placement @ solid"))
     }
 
-    fn __rmatmul__<'py>(slf: &Bound<'py, Self>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn __rmatmul__<'py>(
+        slf: &Bound<'py, Self>,
+        placement: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         operators::placed(slf, placement)
     }
 
@@ -275,7 +297,11 @@ impl Solid {
 }
 
 /// Answers about points.
-pub fn memberships<'py>(py: Python<'py>, answers: &[Membership], is_one: bool) -> PyResult<Bound<'py, PyAny>> {
+pub fn memberships<'py>(
+    py: Python<'py>,
+    answers: &[Membership],
+    is_one: bool,
+) -> PyResult<Bound<'py, PyAny>> {
     if let (&[answer], true) = (answers, is_one) {
         return from_package!(py, "leafless._answers", "Membership")?.call1((answer as u8,));
     }
@@ -288,7 +314,11 @@ fn number(surface: Option<u32>) -> i64 {
     surface.map_or(-1, i64::from)
 }
 
-fn distances_found<'py>(py: Python<'py>, found: &[PointDistance], tolerance: f64) -> PyResult<Bound<'py, PyAny>> {
+fn distances_found<'py>(
+    py: Python<'py>,
+    found: &[PointDistance],
+    tolerance: f64,
+) -> PyResult<Bound<'py, PyAny>> {
     let count = found.len();
     let distance = intervals(py, found.iter().map(|found| found.distance), &[count])?;
     let nearest = found.iter().map(|found| found.nearest.map_or([f64::NAN; 3], |near| near.point)).collect();
@@ -302,4 +332,3 @@ fn distances_found<'py>(py: Python<'py>, found: &[PointDistance], tolerance: f64
         arrays::array(py, undecided, &[count])?,
     ))
 }
-

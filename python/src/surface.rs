@@ -40,7 +40,9 @@ pub struct SurfaceReport {
 impl SurfaceReport {
     fn __repr__(&self) -> String {
         let SurfaceReport { method, deviation, intersecting_pairs } = self;
-        format!("<SurfaceReport: {method}, deviation {deviation:.3e}, {intersecting_pairs} intersecting pairs>")
+        format!(
+            "<SurfaceReport: {method}, deviation {deviation:.3e}, {intersecting_pairs} intersecting pairs>"
+        )
     }
 }
 
@@ -88,7 +90,8 @@ pub fn surface<'py>(
         Some("nets") => Method::Nets,
         Some("shrink") => Method::Shrink,
         Some(other) => {
-            let problem = format!("must be one of 'faces', 'adaptive', 'cubes', 'nets', 'shrink', not '{other}'");
+            let problem =
+                format!("must be one of 'faces', 'adaptive', 'cubes', 'nets', 'shrink', not '{other}'");
             return Err(refused(py, "method", problem));
         }
     };
@@ -122,9 +125,7 @@ pub fn surface<'py>(
                 let octree = leafless::build(&solid.shape, &frame, leafless::Rule::Sampled, control)?;
                 surfaces::surface_nets(octree.view(), Some(resolve), control)
             }
-            Method::Shrink => {
-                surfaces::coplanar_shrink_solid(&solid.shape, &frame, SNAP, control)
-            }
+            Method::Shrink => surfaces::coplanar_shrink_solid(&solid.shape, &frame, SNAP, control),
             _ => surfaces::marching_cubes_solid(&solid.shape, &frame, VertexPlacement::Crossing, control),
         })?;
         let method = if method == Method::Nets { "nets" } else { name };

@@ -66,19 +66,27 @@ impl<T> AsRef<[T]> for Held<T> {
 /// The samples of an array of which x varies fastest.
 fn held<'py, T: Element + Sync + Copy>(array: &Bound<'py, PyAny>) -> PyResult<SampleArray<'static, T>> {
     let array = array.cast::<PyArray3<T>>()?;
-    let held = Held { _array: array.clone().into_any().unbind(), start: array.data().cast_const(), length: array.len() };
+    let held = Held {
+        _array: array.clone().into_any().unbind(),
+        start: array.data().cast_const(),
+        length: array.len(),
+    };
     Ok(SampleArray::Shared(Arc::new(held)))
 }
 
 /// Which values are inside.
 pub fn band(given: Option<&Bound<'_, PyAny>>, middle: f64) -> PyResult<(Band, (f64, Option<f64>))> {
-    let Some(given) = given else { return Ok((Band::at_least(middle).unwrap_or_else(|_| unreachable!()), (middle, None))) };
+    let Some(given) = given else {
+        return Ok((Band::at_least(middle).unwrap_or_else(|_| unreachable!()), (middle, None)));
+    };
     let py = given.py();
     let told = match given.extract::<f64>() {
         Ok(low) => (low, None),
         Err(_) => match given.extract::<(f64, f64)>() {
             Ok((low, high)) => (low, Some(high)),
-            Err(_) => return Err(refused(py, "threshold", "must be one number, or a least and a greatest one")),
+            Err(_) => {
+                return Err(refused(py, "threshold", "must be one number, or a least and a greatest one"));
+            }
         },
     };
     let band = match told {
@@ -90,7 +98,12 @@ pub fn band(given: Option<&Bound<'_, PyAny>>, middle: f64) -> PyResult<(Band, (f
 }
 
 impl Volume {
-    pub fn initial(volume: Inner<'static>, is_boolean: bool, axes_reversed: bool, threshold: (f64, Option<f64>)) -> PyResult<PyClassInitializer<Volume>> {
+    pub fn initial(
+        volume: Inner<'static>,
+        is_boolean: bool,
+        axes_reversed: bool,
+        threshold: (f64, Option<f64>),
+    ) -> PyResult<PyClassInitializer<Volume>> {
         let own = volume.grid().frame().ok();
         let given = Given { own, ..Given::new(AnySolid::new(volume.clone())) };
         let volume = Volume { volume, is_boolean, axes_reversed, threshold };
@@ -124,7 +137,8 @@ impl Volume {
         };
         let reading = from_package!(py, "leafless._exchange", "samples")?.call1((array, axes_reversed))?;
         let reading = reading.cast_into::<PyTuple>()?;
-        let (array, kind): (Bound<'_, PyAny>, String) = (reading.get_item(0)?, reading.get_item(1)?.extract()?);
+        let (array, kind): (Bound<'_, PyAny>, String) =
+            (reading.get_item(0)?, reading.get_item(1)?.extract()?);
         let extents: [u32; 3] = reading.get_item(2)?.extract()?;
         let (samples, middle) = match &*kind {
             "bool" => (Samples::U8(held(&array)?), 0.5),
@@ -163,7 +177,8 @@ impl Volume {
             Samples::I16(values) => shown(owner, values.values(), shape()),
             Samples::F32(values) => shown(owner, values.values(), shape()),
             Samples::Bits(words) => {
-                let (row, [x, y, z]) = (own.volume.grid().words(), own.volume.grid().extents().map(|n| n as usize));
+                let (row, [x, y, z]) =
+                    (own.volume.grid().words(), own.volume.grid().extents().map(|n| n as usize));
                 let lines = words.values().chunks_exact(row).take(y * z);
                 let bits: Vec<bool> =
                     lines.flat_map(|line| (0..x).map(move |i| line[i / 64] >> (i % 64) & 1 != 0)).collect();

@@ -45,7 +45,11 @@ impl VoxelRecords {
                     [_] => 1,
                     [_, components] => components,
                     ref shape => {
-                        return Err(refused(py, "values", format!("must have the shape (n,) or (n, m), not {shape:?}")));
+                        return Err(refused(
+                            py,
+                            "values",
+                            format!("must have the shape (n,) or (n, m), not {shape:?}"),
+                        ));
                     }
                 };
                 (components, values.readonly().as_slice()?.to_vec())
@@ -109,7 +113,8 @@ impl VoxelRecords {
     fn depth_order<'py>(&self, eye: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let (py, eye) = (eye.py(), arrays::triple(eye, "eye")?);
         let view = self.0.view();
-        let order = Limits::default().run(py, |control| view.depth_order(&Viewpoint::Perspective(eye), control))?;
+        let order =
+            Limits::default().run(py, |control| view.depth_order(&Viewpoint::Perspective(eye), control))?;
         let count = order.len();
         Ok(arrays::array(py, order, &[count])?.into_any())
     }
@@ -136,4 +141,3 @@ impl VoxelRecords {
         format!("<VoxelRecords: {}>", self.0.view().len())
     }
 }
-

@@ -49,7 +49,11 @@ impl Limits {
         Ok(limits)
     }
 
-    fn control<'a>(&self, cancel: Option<&'a AtomicBool>, progress: Option<&'a (dyn Fn(f64) + Sync)>) -> Control<'a> {
+    fn control<'a>(
+        &self,
+        cancel: Option<&'a AtomicBool>,
+        progress: Option<&'a (dyn Fn(f64) + Sync)>,
+    ) -> Control<'a> {
         let &Limits { threads, max_nodes, max_bytes, max_splits, .. } = self;
         Control { threads, max_nodes, max_bytes, max_splits, cancel, progress }
     }

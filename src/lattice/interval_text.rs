@@ -121,6 +121,7 @@ fn round_to(x: f64, digits: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::string::ToString;
 
     #[test]
     fn intervals_have_the_digits_that_mean_something() {

@@ -7,8 +7,8 @@ use leafless::query::{StopReason, SurfaceArea, surface_area};
 #[allow(dead_code)]
 use leafless::solid::{Ask, AskWhole, HalfSpace};
 use leafless::{
-    Affine, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Rule, Solid,
-    SurfaceOptions, Tolerance, TriangleMesh, Verdict, Worker, build, build_extended,
+    Affine, AnySolid, Cell, Classifier, Control, Csg, Error, FillRule, Frame, Interval, MeshSolid, Rule,
+    Solid, SurfaceOptions, Tolerance, TriangleMesh, Verdict, Worker, build, build_extended,
 };
 use std::f64::consts::PI;
 
@@ -457,4 +457,34 @@ fn cells_have_the_area_of_finer_cells() {
 #[ignore = "a minute"]
 fn a_million_cells_have_the_area_of_finer_cells() {
     cells_agree(1_000_000);
+}
+
+/// The cube from 0 to `edge`.
+fn cube(edge: f64) -> TriangleMesh {
+    let corner = |k: usize| [k & 1, k >> 1 & 1, k >> 2].map(|upper| upper as f64 * edge);
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    TriangleMesh::new((0..8).map(corner).collect(), triangles).unwrap()
+}
+
+#[test]
+fn what_fills_the_universe_has_the_area_of_its_walls() {
+    let control = Control { max_splits: Some(3000), ..Control::default() };
+    let frame = Frame::new([0.0; 3], 4.0, 20).unwrap();
+    let block = Csg::cuboid([0.0; 3], [4.0; 3]).unwrap();
+    let around = Csg::cuboid([-1.0; 3], [9.0; 3]).unwrap();
+    let mesh = AnySolid::new(MeshSolid::new(cube(4.0), FillRule::NonZero).unwrap());
+    let of_mesh = Csg::solid(mesh.clone());
+    let solids = [
+        ("half-spaces", AnySolid::new(block.clone())),
+        ("a mesh", mesh),
+        ("a mesh in a block", AnySolid::new(Csg::intersection_of([of_mesh.clone(), around]).unwrap())),
+        ("a mesh and nothing", AnySolid::new(Csg::union_of([of_mesh, Csg::empty()]).unwrap())),
+        ("an octree", AnySolid::new(build(&block, &frame, Rule::Certified, &control).unwrap())),
+    ];
+    for (name, solid) in solids {
+        let found = surface_area(&solid, &frame, 1e-6, &control).unwrap();
+        assert!(found.area.contains(96.0), "{name}: {found:?}");
+        assert!(found.area.width() < 1e-3, "{name}: {found:?}");
+    }
 }

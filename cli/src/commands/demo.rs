@@ -103,8 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let shares = [Membership::Inside, Membership::Outside, Membership::Undecided].map(share);
     let volume = mapped.statistics().volume();
     sink::print(
-        format!("\nOf the points {}.\nCertified volume: {} mm³.\n", shares.join(", "), volume)
-            .as_bytes(),
+        format!("\nOf the points {}.\nCertified volume: {} mm³.\n", shares.join(", "), volume).as_bytes(),
     )
 }
 

@@ -65,15 +65,18 @@ impl MeshPart {
 }
 
 impl MeshOnFrame {
-    /// Whether no triangle lies in a plane between cells. Exact.
+    /// Whether no triangle lies in a plane between cells, or in a face of the universe. Exact.
     pub(super) fn has_no_triangle_in_planes(&self) -> bool {
         let frame = &self.placed.frame;
-        self.roots.iter().all(|&triangle| {
-            let [a, b, c] = self.placed.original(triangle);
+        let near = -1..=i64::from(frame.cells()) + 1;
+        // Those in a face of the universe cross none of its cells.
+        (0..self.placed.count()).all(|triangle| {
+            let corners = self.placed.original(triangle);
             (0..3).all(|axis| {
-                let plane = floor(frame.scaled(axis, a[axis]) + 0.5);
-                let is_flat = a[axis] == b[axis] && b[axis] == c[axis];
-                !is_flat || frame.side(axis, a[axis], 2 * plane) != 0
+                let [a, b, c] = corners.map(|corner| corner[axis]);
+                let plane = floor(frame.scaled(axis, a) + 0.5);
+                let is_flat = a == b && b == c;
+                !is_flat || !near.contains(&plane) || frame.side(axis, a, 2 * plane) != 0
             })
         })
     }

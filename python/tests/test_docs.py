@@ -1,0 +1,47 @@
+"""Examples in docstrings run, and everything public has a docstring."""
+
+import doctest
+import inspect
+
+import pytest
+
+import leafless
+
+
+def documented():
+    yield "leafless", leafless
+    for name in leafless.__all__:
+        thing = getattr(leafless, name)
+        yield name, thing
+        if inspect.isclass(thing):
+            for inner, member in vars(thing).items():
+                if not inner.startswith("_"):
+                    yield f"{name}.{inner}", member
+
+
+def is_constant(thing):
+    return isinstance(thing, (leafless.Membership, leafless.Tag, leafless.VoxelKind))
+
+
+THINGS = [(name, thing) for name, thing in documented() if not is_constant(thing)]
+EXAMPLES = [(name, thing) for name, thing in THINGS if isinstance(thing.__doc__, str) and ">>>" in thing.__doc__]
+
+
+@pytest.mark.parametrize("name, thing", EXAMPLES, ids=[name for name, _ in EXAMPLES])
+def test_examples_run(name, thing):
+    test = doctest.DocTestParser().get_doctest(thing.__doc__, dict(vars(leafless)), name, None, 0)
+    report = []
+    results = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test, out=report.append)
+    assert results.attempted > 0 and results.failed == 0, "".join(report)
+
+
+@pytest.mark.parametrize("name, thing", THINGS, ids=[name for name, _ in THINGS])
+def test_everything_is_documented(name, thing):
+    # (Fields of answers are told beside them, in the source.)
+    if type(thing).__name__ in ("member_descriptor", "property") and name.split(".")[0] in ("Intervals",):
+        return
+    assert thing.__doc__ and thing.__doc__.strip(), name
+
+
+def test_examples_are_many():
+    assert len(EXAMPLES) >= 25

@@ -1,0 +1,161 @@
+"""Files of all kinds, URLs, mapped files, pickles."""
+
+import multiprocessing
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import leafless as lf
+from conftest import PLATE_VOLUME
+
+
+@pytest.fixture
+def octree(plate):
+    return lf.build(plate, depth=6)
+
+
+def test_octrees(octree, tmp_path):
+    path = tmp_path / "plate.lfl"
+    lf.save(octree, path)
+    for again in (lf.open(path), lf.map(path), lf.map(str(path), verify=True), lf.open(str(path))):
+        assert again == octree and again.to_bytes() == path.read_bytes()
+    named = octree.with_metadata({"name": "a plate", "units": "mm"})
+    lf.save(named, path)
+    assert lf.open(path).metadata == {"name": "a plate", "units": "mm"}
+
+
+def test_models(plate, tmp_path):
+    model = lf.dexelize(plate, depth=5, normals=32)
+    lf.save(model, tmp_path / "model.lfl")
+    assert lf.open(tmp_path / "model.lfl") == model and lf.map(tmp_path / "model.lfl") == model
+
+
+@pytest.mark.parametrize("extension", ["stl", "obj", "ply", "off", "3mf"])
+def test_meshes(plate, tmp_path, extension):
+    mesh = lf.surface(plate)
+    path = tmp_path / f"plate.{extension}"
+    lf.save(mesh, path)
+    again = lf.open(path)
+    assert len(again) == len(mesh) and again.is_closed
+    assert abs(lf.measure(again).volume.middle - PLATE_VOLUME) < 0.05
+    inches = lf.open(path, unit="in", to_unit="mm", fill="positive")
+    assert inches.unit == "mm" and inches.fill == "positive"
+    assert np.isclose(np.ptp(inches.vertices[:, 0]), 25.4 * 8)
+    with pytest.raises(lf.Error):
+        lf.open(path, unit="parsec")
+    with pytest.raises(TypeError, match="colour"):
+        lf.open(path, colour="red")
+
+
+def test_scenes(tmp_path, tetrahedron):
+    (tmp_path / "part.csg").write_text("difference() { cube([4, 4, 4]); translate([2, 2, -1]) cylinder(h = 9, r = 1); }")
+    part = lf.open(tmp_path / "part.csg")
+    assert 64 - 4 * np.pi in lf.measure(part, tolerance=1e-4).volume
+    lf.save(tetrahedron, tmp_path / "t.stl")
+    (tmp_path / "with.csg").write_text('import("t.stl");')
+    whole = lf.open(tmp_path / "with.csg")
+    assert whole.contains([0.1, 0.1, 0.1]) == lf.INSIDE
+    assert pickle.loads(pickle.dumps(whole)).contains([0.1, 0.1, 0.1]) == lf.INSIDE
+    (tmp_path / "bad.csg").write_text("cube([1, 2, 3);")
+    with pytest.raises(lf.FormatError, match="bad.csg"):
+        lf.open(tmp_path / "bad.csg")
+
+
+def test_volumes(tmp_path):
+    samples = np.asfortranarray(np.random.default_rng(0).integers(0, 1000, (5, 6, 7)).astype(np.uint16))
+    volume = lf.Volume(samples, 500, origin=[1, 2, 3], spacing=[0.5, 0.5, 0.5])
+    lf.save(volume, tmp_path / "scan.nrrd")
+    again = lf.open(tmp_path / "scan.nrrd", threshold=500)
+    assert (again.array == samples).all() and again.spacing == (0.5, 0.5, 0.5) and np.allclose(again.origin, [1, 2, 3])
+    assert lf.build(again, rule="sampled") == lf.build(volume, rule="sampled")
+
+
+def test_pictures(plate, tmp_path):
+    lf.save(lf.render(plate, size=(32, 32)), tmp_path / "plate.png")
+    assert (tmp_path / "plate.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_urls(octree, tetrahedron):
+    pytest.importorskip("fsspec")
+    lf.save(octree, "memory://some/plate.lfl")
+    assert lf.open("memory://some/plate.lfl") == octree
+    lf.save(tetrahedron, "memory://some/t.ply")
+    assert len(lf.open("memory://some/t.ply")) == 4
+    with pytest.raises(FileNotFoundError):
+        lf.open("memory://nowhere/t.ply")
+
+
+def test_what_is_wrong_is_told(octree, tmp_path):
+    with pytest.raises(FileNotFoundError, match="nothing.lfl"):
+        lf.open(tmp_path / "nothing.lfl")
+    with pytest.raises(FileNotFoundError):
+        lf.map(tmp_path / "nothing.lfl")
+    with pytest.raises(OSError):
+        lf.save(octree, tmp_path / "no" / "folder.lfl")
+    with pytest.raises(OSError):
+        lf.open(tmp_path)
+    path = tmp_path / "plate.lfl"
+    lf.save(octree, path)
+    whole = path.read_bytes()
+    for damaged in (whole[:-1], whole[:100], b"", bytes(whole[:300]) + bytes([whole[300] ^ 1]) + whole[301:]):
+        (tmp_path / "damaged.lfl").write_bytes(damaged)
+        with pytest.raises(lf.FormatError, match="damaged.lfl"):
+            lf.open(tmp_path / "damaged.lfl")
+        with pytest.raises(lf.FormatError):
+            lf.Octree.from_bytes(damaged)
+        with pytest.raises(lf.FormatError):
+            lf.map(tmp_path / "damaged.lfl", verify=True)
+    (tmp_path / "what.txt").write_text("Hello, world.")
+    with pytest.raises(lf.ArgumentError, match="neither"):
+        lf.open(tmp_path / "what.txt")
+    with pytest.raises(lf.ArgumentError, match=r"\.stl"):
+        lf.save(lf.surface(octree), tmp_path / "mesh.xyz")
+    with pytest.raises(TypeError, match="build makes"):
+        lf.save(lf.Csg.ball([0, 0, 0], 1), tmp_path / "ball.lfl")
+    assert lf.open(path) == octree
+
+
+def test_failed_saves_leave_the_old_file(octree, tmp_path):
+    path = tmp_path / "mesh.stl"
+    path.write_text("old")
+    with pytest.raises(TypeError):
+        lf.save(lf.Csg.ball([0, 0, 0], 1), path)
+    assert path.read_text() == "old" and [entry.name for entry in tmp_path.iterdir()] == ["mesh.stl"]
+
+
+def test_mapped_files_are_pickled_by_their_path(octree, tmp_path):
+    path = tmp_path / "plate.lfl"
+    lf.save(octree, path)
+    mapped = lf.map(path)
+    data = pickle.dumps(mapped)
+    assert len(data) < 400 and pickle.loads(data) == octree
+    assert len(pickle.dumps(octree)) > len(octree.to_bytes())
+    # Another file in its place is refused.
+    lf.save(~octree, path)
+    with pytest.raises(lf.ArgumentError, match="checksum"):
+        pickle.loads(data)
+    # What is mapped stays what it was.
+    assert mapped == octree
+
+
+def ask(solid, points):
+    return solid.contains(points)
+
+
+def test_other_processes(octree, plate, tmp_path):
+    path = tmp_path / "plate.lfl"
+    lf.save(octree, path)
+    points = np.random.default_rng(0).uniform(0, 8, (100, 3))
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        for solid in (octree, lf.map(path), plate):
+            assert (pool.apply(ask, (solid, points)) == solid.contains(points)).all()
+
+
+def test_models_of_the_real_world(models):
+    part = lf.open(models / "plate_holes.STL")
+    assert part.is_closed and lf.measure(part).exact
+    octree = lf.build(part, depth=8)
+    assert lf.measure(part).volume.middle in octree.volume
+    assert Path(models, "plate_holes.STL").stat().st_size > 84

@@ -1,0 +1,103 @@
+"""Two solids: overlap, distance, deviation; surfaces; one by one and under many placements."""
+
+import numpy as np
+import pytest
+
+import leafless as lf
+from conftest import PLATE_VOLUME
+
+
+def kinds(csg):
+    """A solid in all its forms."""
+    return [csg, lf.surface(csg, tolerance=1e-4), lf.build(csg, depth=7), lf.build(csg, surfaces=True)]
+
+
+BLOCK = lf.Csg.cuboid([0, 0, 0], [2, 2, 2])
+
+
+@pytest.mark.parametrize("a", kinds(BLOCK), ids=repr)
+@pytest.mark.parametrize("b", kinds(lf.Csg.cuboid([3, 0, 0], [5, 2, 2])), ids=repr)
+def test_blocks_apart(a, b):
+    apart = lf.interference(a, b)
+    assert apart.verdict == "disjoint" and 0 in apart.volume and apart.ball is None and not apart.clipped
+    near = lf.clearance(a, b, tolerance=0.05, max_splits=5000)
+    assert 1 in near.distance and near.points.shape == (2, 3)
+    assert lf.gap_at_least(a, b, 0.5).verdict == "yes" and lf.gap_at_least(a, b, 1.5).verdict == "no"
+    places = [lf.Affine.translation([x, 0, 0]) for x in (0.5, 0, -0.5, -1.5)]
+    found = lf.interference(a, b, places)
+    assert [one.verdict for one in found] == ["disjoint"] * 3 + ["overlapping"]
+    (center, radius) = found[3].ball
+    assert radius > 0 and 1.5 <= center[0] <= 2 and found[3].volume.upper >= 2
+    distances = lf.clearance(a, b, np.stack([place.matrix for place in places]), tolerance=0.05, max_splits=5000)
+    assert all(truth in one.distance for truth, one in zip((1.5, 1, 0.5, 0), distances))
+    gaps = [one.verdict for one in lf.gap_at_least(a, b, 0.75, places, max_splits=5000)]
+    # (Of a mesh beside cells it may take more to see that they overlap.)
+    assert gaps[:3] == ["yes", "yes", "no"] and gaps[3] in ("no", "undecided")
+
+
+def test_one_placement_has_one_answer():
+    moved = lf.Affine.translation([1, 0, 0])
+    one = lf.interference(BLOCK, BLOCK, moved, tolerance=1e-3)
+    assert one.verdict == "overlapping" and 4 in one.volume and one.volume.width <= 1e-3
+    assert lf.interference(BLOCK, BLOCK, moved.matrix).verdict == "overlapping"
+    assert isinstance(lf.interference(BLOCK, BLOCK, [moved]), list)
+    with pytest.raises(lf.ArgumentError, match="placements"):
+        lf.interference(BLOCK, BLOCK, np.eye(2))
+
+
+def test_contact_is_not_overlap():
+    pin, bore = lf.Csg.cylinder(2, -5, 5), lf.Csg.cuboid([-9, -9, 0], [9, 9, 1]) - lf.Csg.cylinder(2, -1, 2)
+    assert lf.interference(pin, bore).verdict == "disjoint"
+    assert lf.clearance(pin, bore).distance.upper < 1e-4
+    assert lf.interference(lf.Csg.cylinder(2.0005, -5, 5), bore).verdict == "overlapping"
+
+
+def test_deviation():
+    found = lf.deviation(BLOCK, lf.Csg.cuboid([0, 0, 0], [2, 2, 2.1]), tolerance=0.01)
+    assert 0.1 in found.distance and found.within(0.2) == "yes" and found.within(0.05) == "no"
+    assert found.points.shape == (2, 3) and found.a_to_b.upper >= 0.1 and found.b_to_a.upper >= 0.1
+
+
+@pytest.mark.parametrize("method", [None, "faces", "adaptive", "cubes", "nets", "shrink"])
+def test_surfaces(plate, method):
+    mesh = lf.surface(plate, method=method, depth=6 if method in ("cubes", "nets", "shrink") else None)
+    assert mesh.is_closed
+    report = mesh.surface_report
+    assert report.method == (method or "faces")
+    volume = lf.measure(mesh).volume.middle
+    assert abs(volume - PLATE_VOLUME) < (0.05 if report.deviation < 1 else 8)
+    if np.isfinite(report.deviation):
+        assert report.deviation <= 0.0081 and lf.deviation(mesh, plate, tolerance=1e-3).distance.lower <= report.deviation
+    few = lf.simplify(mesh, 0.05)
+    assert len(few) <= len(mesh) and few.surface_report.deviation <= 0.05
+
+
+def test_surfaces_of_octrees(plate):
+    octree = lf.build(plate, depth=6)
+    inner, outer = (lf.measure(lf.surface(octree, resolve=resolve)).volume.middle for resolve in ("inner", "outer"))
+    assert inner < PLATE_VOLUME < outer
+    sampled = lf.build(plate, depth=6, rule="sampled")
+    assert lf.surface(sampled).is_closed and lf.surface(sampled, method="nets").is_closed
+    kept = lf.build(plate, surfaces=True)
+    assert lf.surface(kept).surface_report.method == "faces"
+    for wrong in ({"method": "magic"}, {"resolve": "both"}, {"tolerance": -1}):
+        with pytest.raises(lf.ArgumentError):
+            lf.surface(plate, **wrong)
+
+
+def test_pictures(plate):
+    whole = lf.render(plate, lf.Csg.ball([4, 3, 2], 1), size=(80, 60), colours=[(255, 0, 0), (0, 0, 255, 128)])
+    red = (whole.rgba[..., 0] > 150) & (whole.rgba[..., 1] < 100)
+    assert red.mean() > 0.1 and whole.to_png().startswith(b"\x89PNG")
+    open_ = lf.render(plate, size=(80, 60), clip=[[-1, 0, 0, 4]])
+    assert np.isfinite(open_.depth).sum() < np.isfinite(whole.depth).sum()
+    section = lf.render(lf.build(plate, depth=5), size=(80, 60), slice=(0, 0, 1, -0.4))
+    blue = (section.rgba[..., 2] > 150) & (section.rgba[..., 0] < 40)
+    assert 0.1 < blue.mean() < 0.9
+    again = lf.render(plate, lf.Csg.ball([4, 3, 2], 1), size=(80, 60), colours=[(255, 0, 0), (0, 0, 255, 128)], threads=1)
+    assert (again.rgba == whole.rgba).all()
+    for wrong in ({"size": (0, 9)}, {"colours": [(1, 2)]}, {"samples": 5}, {"clip": [[0, 0, 0, 1]]}):
+        with pytest.raises(ValueError):
+            lf.render(plate, **wrong)
+    with pytest.raises(lf.ArgumentError):
+        lf.render()
