@@ -6,6 +6,7 @@ use crate::frame::Frame;
 use crate::mesh::Mesh;
 use crate::octree::Octree;
 use crate::solid::given;
+use crate::volume::Volume;
 use crate::work::Limits;
 use leafless::surface::{self as surfaces, Resolve, Snap, VertexPlacement};
 use leafless::{Error, FillRule, TriangleMesh, marching_cubes};
@@ -62,7 +63,8 @@ enum Method {
 /// By `method`: "faces" for solids that know their surfaces (expressions, octrees that keep them) and for meshes: plane faces as they
 /// are, sharp edges, few triangles; "adaptive" for any solid: few triangles where it is flat; "cubes" (marching cubes), "nets" (surface nets,
 /// of octrees) and "shrink" (coplanar shrink) in cells of one size, 2^`depth` to an axis. Without a method it is the first of these that
-/// suits; of an octree of cells alone, marching cubes.
+/// suits; of an octree of cells alone, and of a volume, marching cubes. A volume's samples tell where they pass the threshold, voxel by
+/// voxel.
 ///
 /// `tolerance` (model units; by default a thousandth of the longest side) is how far "faces" and "adaptive" may be from the solid;
 /// `mesh.surface_report.deviation` is what is proven of that. `resolve` says what undecided cells of an octree count as: "outer" or "inner".
@@ -100,6 +102,16 @@ pub fn surface<'py>(
         Some("inner") => Resolve::Inner,
         Some(_) => return Err(refused(py, "resolve", "must be 'outer' or 'inner'")),
     };
+    let samples = solid.cast::<Volume>().ok().map(|volume| volume.get().volume.clone());
+    if let Some(volume) = samples.filter(|_| matches!(method, Method::Any | Method::Cubes) && depth.is_none())
+    {
+        let mesh = limits.run(py, |control| surfaces::marching_cubes_volume(&volume, control))?;
+        return made(
+            py,
+            mesh,
+            SurfaceReport { method: "cubes", deviation: f64::INFINITY, intersecting_pairs: 0 },
+        );
+    }
     let stored = solid.cast::<Octree>().ok().map(|octree| octree.get().octree.clone());
     let stored = stored.filter(|octree| octree.view().cuts().is_none());
     let solid = given(solid, "solid")?;

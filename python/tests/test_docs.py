@@ -2,6 +2,8 @@
 
 import doctest
 import inspect
+import re
+from pathlib import Path
 
 import pytest
 
@@ -45,3 +47,16 @@ def test_everything_is_documented(name, thing):
 
 def test_examples_are_many():
     assert len(EXAMPLES) >= 25
+
+
+PAGES = [Path(__file__).parent.parent.parent / "docs" / "python.md", Path(__file__).parent.parent / "README.md"]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_pages_run(page):
+    blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    report = []
+    test = doctest.DocTestParser().get_doctest("".join(blocks), {}, page.name, str(page), 0)
+    options = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
+    results = doctest.DocTestRunner(optionflags=options).run(test, out=report.append)
+    assert results.attempted > 2 and results.failed == 0, "".join(report)

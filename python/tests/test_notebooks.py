@@ -1,0 +1,33 @@
+"""The notebooks run from the first cell to the last one; what they assert holds."""
+
+from pathlib import Path
+
+import pytest
+
+nbformat = pytest.importorskip("nbformat")
+nbclient = pytest.importorskip("nbclient")
+pytest.importorskip("ipykernel")
+
+FOLDER = Path(__file__).parent.parent / "notebooks"
+NAMES = ["from_an_stl_to_proven_answers", "labels_for_learning"]
+
+
+def test_all_notebooks_are_known():
+    assert sorted(path.stem for path in FOLDER.glob("*.ipynb")) == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_notebook_runs(name, tmp_path):
+    if name == "labels_for_learning":
+        pytest.importorskip("trimesh")
+        pytest.importorskip("rtree")
+    notebook = nbformat.read(FOLDER / f"{name}.ipynb", 4)
+    before = [kinds(cell) for cell in notebook.cells]
+    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    # The kinds of outputs are those that are shown.
+    assert [kinds(cell) for cell in notebook.cells] == before and any(before)
+
+
+def kinds(cell):
+    outputs = cell.get("outputs", [])
+    return sorted({kind for output in outputs for kind in output.get("data", {"text": ""})})
