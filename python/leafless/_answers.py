@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ._intervals import Intervals
 
@@ -49,11 +49,11 @@ class Distances:
     #: The distances, one interval a point.
     distance: Intervals
     #: Points of the boundary that are as near, shape (n, 3); NaN where none is known.
-    nearest: np.ndarray[Any, Any]
+    nearest: npt.NDArray[np.float64]
     #: The numbers of triangles or surfaces there; −1 where none is known.
-    surface: np.ndarray[Any, Any]
+    surface: npt.NDArray[np.int64]
     #: Where the interval is wider than the tolerance.
-    undecided: np.ndarray[Any, Any]
+    undecided: npt.NDArray[np.bool_]
 
     def __len__(self) -> int:
         return len(self.distance)
@@ -64,13 +64,13 @@ class RayHits:
     """Where rays first meet a solid."""
 
     #: Whether anything stopped a ray.
-    hit: np.ndarray[Any, Any]
+    hit: npt.NDArray[np.bool_]
     #: Before the lower end a ray is proven outside, at the upper end inside; infinite without a hit.
     distance: Intervals
     #: Outward normals at the hits, shape (n, 3); NaN without a hit.
-    normal: np.ndarray[Any, Any]
+    normal: npt.NDArray[np.float64]
     #: The numbers of triangles that were hit; −1 where none is known.
-    surface: np.ndarray[Any, Any]
+    surface: npt.NDArray[np.int64]
 
     def __len__(self) -> int:
         return len(self.hit)
@@ -81,11 +81,11 @@ class Cells:
     """Cells of an octree."""
 
     #: Their levels, 0 for the universe.
-    level: np.ndarray[Any, Any]
+    level: npt.NDArray[np.uint8]
     #: Their indices along x, y and z in cells of that level, shape (n, 3).
-    at: np.ndarray[Any, Any]
+    at: npt.NDArray[np.uint32]
     #: Their tags.
-    tag: np.ndarray[Any, Any]
+    tag: npt.NDArray[np.uint8]
 
     def __len__(self) -> int:
         return len(self.level)
@@ -96,13 +96,13 @@ class DexelRays:
     """Intervals of a tri-dexel model along an axis."""
 
     #: The index of the ray on the other two axes, the lower axis first, shape (n, 2).
-    ray: np.ndarray[Any, Any]
+    ray: npt.NDArray[np.uint32]
     #: Where intervals begin.
-    start: np.ndarray[Any, Any]
+    start: npt.NDArray[np.float64]
     #: Where they end.
-    end: np.ndarray[Any, Any]
+    end: npt.NDArray[np.float64]
     #: What they are made of.
-    material: np.ndarray[Any, Any]
+    material: npt.NDArray[np.uint32]
 
     def __len__(self) -> int:
         return len(self.start)

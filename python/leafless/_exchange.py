@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from ._leafless import Mesh
 
 
-def indices(faces: Any) -> Any:
+def indices(faces: npt.ArrayLike) -> npt.NDArray[np.integer[Any]]:
     """An array of integers, refused if it holds anything else."""
     faces = np.asarray(faces)
     if faces.size == 0:
@@ -17,7 +21,7 @@ def indices(faces: Any) -> Any:
     return faces
 
 
-def samples(array: Any, axes_reversed: bool) -> tuple[Any, str, tuple[int, int, int]]:
+def samples(array: npt.ArrayLike, axes_reversed: bool) -> tuple[npt.NDArray[Any], str, tuple[int, int, int]]:
     """An array of which x varies fastest, what it holds, and how many samples it has along x, y and z."""
     array = np.asarray(array)
     if array.ndim != 3:
@@ -32,8 +36,8 @@ def samples(array: Any, axes_reversed: bool) -> tuple[Any, str, tuple[int, int, 
     return reversed_, kind, (x, y, z)
 
 
-def to_trimesh(mesh: Any) -> Any:
+def to_trimesh(mesh: Mesh) -> Any:
     """The mesh as one of trimesh."""
-    import trimesh
+    import trimesh  # type: ignore[import, unused-ignore]
 
     return trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)

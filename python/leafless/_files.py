@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _leafless
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
-def _url(path: Any) -> str | None:
+    from ._leafless import Csg, Mesh, Octree, Picture, Taking, TriDexel, Volume
+
+
+def _url(path: str | os.PathLike[str]) -> str | None:
     return path if isinstance(path, str) and "://" in path else None
 
 
 def _fsspec() -> Any:
     try:
-        import fsspec
+        import fsspec  # type: ignore[import, unused-ignore]
     except ImportError as error:
         raise ImportError("URLs need fsspec: pip install fsspec") from error
     return fsspec
 
 
-def open(path: Any, **taking: Any) -> Any:
+def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | TriDexel | Mesh | Csg | Volume:
     """Reads a file, whatever it is: an `Octree` or a `TriDexel` (.lfl), a `Mesh` (STL, OBJ, PLY, OFF, 3MF), a `Csg` (.csg) or a `Volume`
     (NRRD, MetaImage).
 
@@ -41,7 +46,7 @@ def open(path: Any, **taking: Any) -> Any:
         return _leafless.open_bytes(file.read(), url.rsplit("/", 1)[-1], **taking)
 
 
-def map(path: Any, *, verify: bool = False) -> Any:
+def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDexel:
     """The octree or the tri-dexel model in a file, mapped: nothing is copied, and only what is asked for is ever read, so that it takes
     microseconds whatever the size. The pages are shared with all processes that map the file.
 
@@ -59,7 +64,7 @@ def map(path: Any, *, verify: bool = False) -> Any:
     return _leafless.map_path(os.fspath(path), verify=verify)
 
 
-def save(object: Any, path: Any) -> None:
+def save(object: Octree | TriDexel | Mesh | Volume | Picture, path: str | os.PathLike[str]) -> None:
     """Writes an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd) or a `Picture` (.png).
 
     `path` is a path, or a URL of any kind that fsspec can write to. A file at a path is replaced as a whole: at any moment there is the

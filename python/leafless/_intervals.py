@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterator
+from typing import Any, Iterator, SupportsIndex, overload
 
 import numpy as np
+import numpy.typing as npt
 
 from ._leafless import Interval
 
@@ -21,7 +22,10 @@ class Intervals:
 
     __slots__ = ("lower", "upper")
 
-    def __init__(self, lower: Any, upper: Any) -> None:
+    lower: npt.NDArray[np.float64]
+    upper: npt.NDArray[np.float64]
+
+    def __init__(self, lower: npt.ArrayLike, upper: npt.ArrayLike) -> None:
         self.lower = np.asarray(lower, dtype=np.float64)
         self.upper = np.asarray(upper, dtype=np.float64)
         if self.lower.shape != self.upper.shape:
@@ -33,23 +37,28 @@ class Intervals:
         return self.lower.shape
 
     @property
-    def middle(self) -> Any:
+    def middle(self) -> npt.NDArray[np.float64]:
         """The numbers half-way between the ends; where both ends are infinite, that infinity."""
         with np.errstate(invalid="ignore"):
             return np.where(self.lower == self.upper, self.lower, 0.5 * self.lower + 0.5 * self.upper)
 
     @property
-    def width(self) -> Any:
+    def width(self) -> npt.NDArray[np.float64]:
         """How far apart the ends are."""
         with np.errstate(invalid="ignore"):
             return np.where(self.lower == self.upper, 0.0, self.upper - self.lower)
 
-    def contain(self, values: Any) -> Any:
+    def contain(self, values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Where values lie in their intervals: an array of booleans."""
         values = np.asarray(values)
         return (self.lower <= values) & (values <= self.upper)
 
-    def __getitem__(self, index: Any) -> Any:
+    # Whether an axis is left, and with it an array, depends on how many there are.
+    @overload
+    def __getitem__(self, index: slice | list[int] | list[bool] | npt.NDArray[Any]) -> Intervals: ...
+    @overload
+    def __getitem__(self, index: SupportsIndex | tuple[Any, ...]) -> Any: ...
+    def __getitem__(self, index: Any) -> Interval | Intervals:
         lower, upper = self.lower[index], self.upper[index]
         if np.ndim(lower) == 0:
             return Interval(float(lower), float(upper))

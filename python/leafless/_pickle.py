@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ._leafless import Csg, Mesh, Octree, TriDexel, Volume, map_path
+import numpy as np
+import numpy.typing as npt
+
+from ._leafless import Csg, Mesh, Octree, Shape, TriDexel, Volume, map_path
+
+if TYPE_CHECKING:
+    from ._leafless import _Fill, _Order, _Samples, _Triple
 
 
 def csg(name: str, arguments: tuple[Any, ...]) -> Csg:
@@ -12,7 +18,7 @@ def csg(name: str, arguments: tuple[Any, ...]) -> Csg:
     return made
 
 
-def mesh(vertices: Any, faces: Any, fill: str) -> Mesh:
+def mesh(vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.uint32], fill: _Fill) -> Mesh:
     return Mesh(vertices, faces, fill=fill)
 
 
@@ -24,16 +30,18 @@ def tridexel(data: bytes) -> TriDexel:
     return TriDexel.from_bytes(data)
 
 
-def mapped(path: str, checksum: int) -> Any:
+def mapped(path: str, checksum: int) -> Octree | TriDexel:
     """The solid in a file that must be the one that was mapped."""
     return map_path(path, checksum=checksum)
 
 
-def volume(array: Any, threshold: Any, origin: Any, spacing: Any, order: str) -> Volume:
+def volume(
+    array: _Samples, threshold: tuple[float, float | None], origin: _Triple, spacing: _Triple, order: _Order
+) -> Volume:
     low, high = threshold
     band = low if high is None else (low, high)
     return Volume(array, band, origin=origin, spacing=spacing, order=order)
 
 
-def shape(kind: type) -> Any:
+def shape(kind: type[Shape]) -> Shape:
     return kind.__new__(kind)

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import TYPE_CHECKING, Any, Callable
+
+if TYPE_CHECKING:
+    from ._leafless import ProgressBar
 
 
-def reporter(progress: Any) -> Callable[[float], Any]:
+def reporter(progress: Callable[[float], object] | ProgressBar | bool) -> Callable[[float], object]:
     """A function of the part done (0 to 1): the one given, one that moves a bar of tqdm, or for True a bar that is made here."""
     if progress is True:
-        from tqdm.auto import tqdm
+        from tqdm.auto import tqdm  # type: ignore[import, unused-ignore]
 
         progress = tqdm(total=100, unit="%", bar_format="{l_bar}{bar}| {elapsed}<{remaining}")
     if hasattr(progress, "update") and hasattr(progress, "total"):
+        bar: Any = progress
 
         def move(part: float) -> None:
-            total = progress.total or 1
-            progress.update(part * total - progress.n)
+            total = bar.total or 1
+            bar.update(part * total - bar.n)
             if part == 1:
-                progress.refresh()
+                bar.refresh()
 
         return move
     if callable(progress):
-        return progress  # type: ignore[no-any-return]
+        return progress
     raise TypeError("progress: must be a function of the part done, a bar of tqdm, or True")
