@@ -22,7 +22,7 @@ def indices(faces: npt.ArrayLike) -> npt.NDArray[np.integer[Any]]:
 
 
 def samples(array: npt.ArrayLike, axes_reversed: bool) -> tuple[npt.NDArray[Any], str, tuple[int, int, int]]:
-    """An array of which x varies fastest, what it holds, and how many samples it has along x, y and z."""
+    """The array with x varying fastest, the name of its type, and the numbers of samples along x, y and z."""
     array = np.asarray(array)
     if array.ndim != 3:
         raise ValueError(f"array: must have three axes, not {array.ndim}")

@@ -236,21 +236,21 @@ class Solid:
     @property
     def bounds(self) -> ArrayLike | None: ...
     @overload
-    def contains(self, points: _Point, *, frame: Frame | None = None, **limits: Unpack[Limits]) -> Membership: ...
+    def contains(self, points: _Point, *, frame: Frame | Octree | None = None, **limits: Unpack[Limits]) -> Membership: ...
     @overload
     def contains(
-        self, points: _Points, *, frame: Frame | None = None, **limits: Unpack[Limits]
+        self, points: _Points, *, frame: Frame | Octree | None = None, **limits: Unpack[Limits]
     ) -> npt.NDArray[np.uint8]: ...
     # An array holds one point, and the answer is a `Membership`, or many, and it is an array. No type says which.
     @overload
-    def contains(self, points: ArrayLike, *, frame: Frame | None = None, **limits: Unpack[Limits]) -> Any: ...
+    def contains(self, points: ArrayLike, *, frame: Frame | Octree | None = None, **limits: Unpack[Limits]) -> Any: ...
     def distances(
         self,
         points: ArrayLike,
         *,
         to: Literal["boundary", "solid", "complement"] = "boundary",
         tolerance: float | None = None,
-        frame: Frame | None = None,
+        frame: Frame | Octree | None = None,
         **limits: Unpack[Limits],
     ) -> Distances: ...
     def rays(
@@ -260,7 +260,7 @@ class Solid:
         *,
         on: Literal["outer", "inner"] = "inner",
         last: float = ...,
-        frame: Frame | None = None,
+        frame: Frame | Octree | None = None,
         **limits: Unpack[Limits],
     ) -> RayHits: ...
     def placed(self, placement: Affine | ArrayLike) -> Csg | Mesh: ...
@@ -497,10 +497,10 @@ class Shape(Solid):
 
 @final
 class LazyOctree:
-    def __new__(cls, solid: Solid, frame: Frame | None = None, *, resume: Octree | None = None) -> Self: ...
+    def __new__(cls, solid: Solid, frame: Frame | Octree | None = None, *, resume: Octree | None = None) -> Self: ...
     def refine(
         self,
-        level: int | None = None,
+        level: int,
         *,
         bounds: ArrayLike | None = None,
         point: ArrayLike | None = None,
@@ -529,7 +529,7 @@ class Channel:
         values: Callable[[_Doubles], ArrayLike] | Volume | ArrayLike,
         solid: Octree | None = None,
         *,
-        frame: Frame | None = None,
+        frame: Frame | Octree | None = None,
         depth: int | None = None,
         cell: float | None = None,
         dtype: Literal["uint8", "uint16", "uint32", "float32"] = "float32",
@@ -737,7 +737,7 @@ def build(
 ) -> Octree: ...
 def dexelize(
     solid: Solid,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     *,
     depth: int | None = None,
     directions: str = "xyz",
@@ -753,7 +753,7 @@ def surface(
     tolerance: float | None = None,
     method: _Method | None = None,
     resolve: Literal["outer", "inner"] | None = None,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> Mesh: ...
@@ -763,7 +763,7 @@ def measure(
     *,
     tolerance: float = 1e-3,
     absolute: float = 0.0,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> MassProperties: ...
@@ -772,7 +772,7 @@ def surface_area(
     *,
     tolerance: float = 1e-2,
     absolute: float = 0.0,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> SurfaceArea: ...
@@ -780,7 +780,7 @@ def bounding_box(
     solid: Solid,
     *,
     tolerance: float | None = None,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> BoundingBox: ...
@@ -793,7 +793,7 @@ def interference(
     placements: Affine | None = None,
     *,
     tolerance: float = ...,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> Interference: ...
@@ -804,7 +804,7 @@ def interference(
     placements: Sequence[Affine],
     *,
     tolerance: float = ...,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> list[Interference]: ...
@@ -815,7 +815,7 @@ def interference(
     placements: ArrayLike,
     *,
     tolerance: float = ...,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> Any: ...
@@ -826,7 +826,7 @@ def clearance(
     placements: Affine | None = None,
     *,
     tolerance: float | None = None,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> Clearance: ...
@@ -837,7 +837,7 @@ def clearance(
     placements: Sequence[Affine],
     *,
     tolerance: float | None = None,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> list[Clearance]: ...
@@ -848,7 +848,7 @@ def clearance(
     placements: ArrayLike,
     *,
     tolerance: float | None = None,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> Any: ...
@@ -859,7 +859,7 @@ def gap_at_least(
     least: float,
     placements: Affine | None = None,
     *,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> Gap: ...
@@ -870,7 +870,7 @@ def gap_at_least(
     least: float,
     placements: Sequence[Affine],
     *,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> list[Gap]: ...
@@ -881,7 +881,7 @@ def gap_at_least(
     least: float,
     placements: ArrayLike,
     *,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> Any: ...
@@ -890,7 +890,7 @@ def deviation(
     b: Solid,
     *,
     tolerance: float | None = None,
-    frame: Frame | None = None,
+    frame: Frame | Octree | None = None,
     depth: int | None = None,
     **limits: Unpack[Limits],
 ) -> Deviation: ...

@@ -190,7 +190,11 @@ pub fn affines(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Inner>> {
     {
         return list.try_iter()?.map(|one| affine(&one?, name)).collect();
     }
-    many(&doubles(given, name)?, name)
+    let array = doubles(given, name)?;
+    if numpy::PyUntypedArrayMethods::len(&array) == 0 {
+        return Ok(Vec::new());
+    }
+    many(&array, name)
 }
 
 fn many(array: &Bound<'_, numpy::PyArrayDyn<f64>>, name: &str) -> PyResult<Vec<Inner>> {

@@ -1,17 +1,34 @@
-//! On which frame solids are asked, if nobody says.
+//! The frame that a question uses by default.
 
 use crate::error::{OrRaise, refused};
 use crate::frame::Frame;
+use crate::octree::Octree;
 use crate::solid::Given;
 use leafless::lattice::MAX_DEPTH;
 use leafless::{Affine, Bounds, Error, Frame as Inner, Solid as _};
+use pyo3::Borrowed;
 use pyo3::prelude::*;
+
+/// A frame, given as such or by an octree that has it.
+#[derive(Clone, Copy)]
+pub struct FrameLike(pub Inner);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for FrameLike {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<FrameLike> {
+        match given.cast::<Octree>() {
+            Ok(octree) => Ok(FrameLike(*octree.get().octree.frame())),
+            Err(_) => Ok(FrameLike(given.extract::<Frame>()?.0)),
+        }
+    }
+}
 
 /// What a caller says of the frame.
 #[derive(Clone, Copy, Default)]
 pub struct Wish {
     /// The frame.
-    pub frame: Option<Frame>,
+    pub frame: Option<FrameLike>,
     /// Its depth.
     pub depth: Option<u8>,
 }
@@ -21,7 +38,7 @@ impl Wish {
     /// `deepest` deep where nothing limits the depth.
     pub fn of(&self, py: Python<'_>, solid: &Given, deepest: u8) -> PyResult<Inner> {
         let deepest = self.depth.unwrap_or(deepest);
-        if let Some(Frame(frame)) = self.frame {
+        if let Some(FrameLike(frame)) = self.frame {
             return self.depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py);
         }
         match solid.own {
@@ -46,7 +63,7 @@ impl Wish {
         deepest: u8,
     ) -> PyResult<Inner> {
         let deepest = self.depth.unwrap_or(deepest);
-        if let Some(Frame(frame)) = self.frame {
+        if let Some(FrameLike(frame)) = self.frame {
             return self.depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py);
         }
         let (mut all, second) = (bounds(py, a)?, bounds(py, b)?);

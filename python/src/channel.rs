@@ -1,7 +1,7 @@
 //! Values inside of solids.
 
 use crate::arrays;
-use crate::ask::Wish;
+use crate::ask::{FrameLike, Wish};
 use crate::error::{OrRaise, carried, refused};
 use crate::frame::{Frame, corners};
 use crate::interval::{Interval, intervals};
@@ -87,7 +87,7 @@ impl Channel {
     fn fill(
         values: &Bound<'_, PyAny>,
         solid: Option<&Bound<'_, PyAny>>,
-        frame: Option<Frame>,
+        frame: Option<FrameLike>,
         depth: Option<u8>,
         cell: Option<f64>,
         dtype: &str,
@@ -105,7 +105,7 @@ impl Channel {
         };
         let frame = match (solid, frame) {
             (Some(solid), None) => Wish { frame: None, depth }.of(py, &given(solid, "solid")?, 8)?,
-            (_, Some(Frame(frame))) => {
+            (_, Some(FrameLike(frame))) => {
                 depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py)?
             }
             (None, None) => return Err(refused(py, "frame", "must be given without a solid")),

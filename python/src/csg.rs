@@ -116,7 +116,7 @@ impl Csg {
         made!(py, Expression::cylinder_between(a, b, radius), "cylinder_between", a, b, radius)
     }
 
-    /// The frustum of a cone around the z axis: its radii at the lower and at the upper height, of which one may be 0.
+    /// The frustum of a cone around the z axis: its radii at the lower and at the upper height. One of them may be 0.
     #[staticmethod]
     fn frustum(py: Python<'_>, bottom: f64, top: f64, low: f64, high: f64) -> PyResult<Bound<'_, Csg>> {
         made!(py, Expression::frustum(bottom, top, low, high), "frustum", bottom, top, low, high)

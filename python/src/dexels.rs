@@ -1,7 +1,7 @@
 //! Tri-dexel models.
 
 use crate::arrays;
-use crate::ask::Wish;
+use crate::ask::{FrameLike, Wish};
 use crate::error::{OrRaise, refused};
 use crate::frame::Frame;
 use crate::from_package;
@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::PathBuf;
 
-/// The depth of a model that nobody tells: 256 rays along each axis of a face.
+/// The default depth of a model: 256 rays along each axis of a face.
 const DEPTH: u8 = 8;
 
 /// A solid as intervals along the rays of a lattice, whose ends are far finer than cells.
@@ -241,7 +241,7 @@ impl TriDexel {
 #[allow(clippy::too_many_arguments)]
 pub fn dexelize(
     solid: &Bound<'_, PyAny>,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     directions: &str,
     rule: &str,

@@ -288,9 +288,8 @@ pub fn save_bytes<'py>(object: &Bound<'py, PyAny>, name: PathBuf) -> PyResult<Bo
             return wrong(".stl, .obj, .ply, .off or .3mf");
         };
         let own = mesh.get();
-        let mut options = WriteOptions::default();
-        options.unit = own.unit.as_deref().and_then(|unit| unit.parse().ok());
-        options.deviation = own.deviation();
+        let unit = own.unit.as_deref().and_then(|unit| unit.parse().ok());
+        let options = WriteOptions { unit, deviation: own.deviation(), ..WriteOptions::default() };
         Limits::default().run(py, |_| exchange::write_mesh(&own.mesh, format, &options))?
     } else if let Ok(volume) = object.cast::<Volume>() {
         if extension != "nrrd" {

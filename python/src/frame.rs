@@ -3,6 +3,7 @@
 use crate::arrays::triple;
 use crate::error::{OrRaise, refused};
 use leafless::Frame as Inner;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 /// A cube in model space, the *universe*, and how often it may be halved: the lattice of an octree.
@@ -95,9 +96,10 @@ impl Frame {
         hash(&self.0)
     }
 
-    fn __reduce__(slf: &Bound<'_, Self>) -> (Py<PyAny>, ((f64, f64, f64), f64, u8)) {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let frame = slf.get();
-        (slf.get_type().into_any().unbind(), (frame.origin(), frame.edge(), frame.depth()))
+        let arguments = (frame.origin(), frame.edge(), frame.depth());
+        Ok((slf.get_type().into_any(), arguments.into_bound_py_any(slf.py())?))
     }
 }
 

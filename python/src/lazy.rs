@@ -1,7 +1,7 @@
 //! Octrees that are split on demand.
 
 use crate::arrays::triple;
-use crate::ask::Wish;
+use crate::ask::{FrameLike, Wish};
 use crate::error::refused;
 use crate::frame::{Frame, corners};
 use crate::interval::Interval;
@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// An octree that is split where somebody asks, and remembers.
+/// An octree that splits the cells you ask about, and remembers them.
 ///
 /// >>> lazy = LazyOctree(Csg.ball([0, 0, 0], 1))
 /// >>> lazy.refine(level=4)
@@ -39,10 +39,14 @@ impl LazyOctree {
 
 #[pymethods]
 impl LazyOctree {
-    /// An octree of which only the universe is known; or, with the octree that `freeze` made of the same solid, what that one knew.
+    /// An octree that knows its universe only. With `resume`, it begins with what a frozen octree of the same solid knows.
     #[new]
     #[pyo3(signature = (solid, frame=None, *, resume=None))]
-    fn new(solid: &Bound<'_, PyAny>, frame: Option<Frame>, resume: Option<&Octree>) -> PyResult<LazyOctree> {
+    fn new(
+        solid: &Bound<'_, PyAny>,
+        frame: Option<FrameLike>,
+        resume: Option<&Octree>,
+    ) -> PyResult<LazyOctree> {
         let py = solid.py();
         let given = given(solid, "solid")?;
         let frame = match (frame, resume) {
@@ -63,11 +67,11 @@ impl LazyOctree {
     /// Splits undecided cells down to a level: all of them, or those in a box (`bounds`), around a `point`, or along a `ray` (origin and
     /// direction). True if all is done; false if a limit came first (`max_splits`, `max_nodes`, `max_bytes`), and then what was
     /// found is kept.
-    #[pyo3(signature = (level=None, *, bounds=None, point=None, ray=None, **limits))]
+    #[pyo3(signature = (level, *, bounds=None, point=None, ray=None, **limits))]
     fn refine(
         &self,
         py: Python<'_>,
-        level: Option<u8>,
+        level: u8,
         bounds: Option<&Bound<'_, PyAny>>,
         point: Option<&Bound<'_, PyAny>>,
         ray: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
@@ -89,11 +93,7 @@ impl LazyOctree {
             _ => return Err(refused(py, "bounds", "must be the only zone: bounds, point or ray")),
         };
         let limits = Limits::of(limits)?;
-        let done = limits.run(py, |control| {
-            let mut lazy = self.lock();
-            let level = level.unwrap_or(lazy.frame().depth());
-            lazy.refine(&zone, level, control)
-        })?;
+        let done = limits.run(py, |control| self.lock().refine(&zone, level, control))?;
         Ok(done == Refinement::Done)
     }
 

@@ -1,7 +1,6 @@
 //! Volumes, areas and boxes, as intervals that contain the truth.
 
-use crate::ask::Wish;
-use crate::frame::Frame;
+use crate::ask::{FrameLike, Wish};
 use crate::interval::{Interval, intervals};
 use crate::octree::Proof;
 use crate::solid::given;
@@ -174,7 +173,7 @@ pub fn measure(
     solid: &Bound<'_, PyAny>,
     tolerance: f64,
     absolute: f64,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<MassProperties> {
@@ -195,7 +194,7 @@ pub fn surface_area(
     solid: &Bound<'_, PyAny>,
     tolerance: f64,
     absolute: f64,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<SurfaceArea> {
@@ -216,7 +215,7 @@ pub fn surface_area(
 pub fn bounding_box(
     solid: &Bound<'_, PyAny>,
     tolerance: Option<f64>,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<BoundingBox> {

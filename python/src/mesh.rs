@@ -16,8 +16,8 @@ use std::sync::Arc;
 
 /// A triangle mesh, and the solid that it encloses.
 ///
-/// Any mesh is a solid. Of a closed one it is exact what is inside. Of one with holes, fins or turned facets the winding number
-/// decides, by the fill rule: "nonzero" (at least ½ in magnitude), "positive" or "evenodd".
+/// Any mesh is a solid. For a closed mesh, the inside is exact. For a mesh with holes, fins or turned facets, the winding number
+/// decides by the fill rule: "nonzero" (at least ½ in magnitude), "positive" or "evenodd".
 ///
 /// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 /// >>> mesh = Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])

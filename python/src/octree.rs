@@ -1,7 +1,7 @@
 //! Octrees, and how they are built.
 
 use crate::arrays;
-use crate::ask::Wish;
+use crate::ask::{FrameLike, Wish};
 use crate::channel::Channel;
 use crate::error::{OrRaise, refused};
 use crate::frame::{Frame, corners};
@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::path::PathBuf;
 
-/// The depth of an octree that nobody tells.
+/// The default depth of an octree.
 const DEPTH: u8 = 9;
 
 /// What cells prove.
@@ -52,8 +52,8 @@ impl From<leafless::Proof> for Proof {
     }
 }
 
-/// A stored solid: the cells of a cube that are EMPTY (outside), FULL (inside) or PARTIAL (not decided), of which only those that
-/// are cut take memory.
+/// A stored solid. Each cell of a cube is EMPTY (outside), FULL (inside) or PARTIAL (not decided). Only cells that are cut take
+/// memory.
 ///
 /// >>> octree = build(Csg.ball([0, 0, 0], 1), depth=6)
 /// >>> octree.contains([[0, 0, 0], [2, 0, 0]])
@@ -195,8 +195,9 @@ impl Octree {
         Octree::bound(py, self.octree.with_metadata(told))
     }
 
-    /// Cells that end, as arrays: `level` and `tag` (`Tag`) of shape (n,), and `at` (indices along x, y and z in cells of that level)
-    /// of shape (n, 3). `tags` says which: any of "empty", "partial", "full".
+    /// Cells as arrays: `level` of shape (n,), `at` (indices along x, y and z in cells of that level) of shape (n, 3), and `tag` (`Tag`) of
+    /// shape (n,). `tags` chooses among "empty", "partial", "full" and "branch" (cells that are cut). Without it, all cells that are not
+    /// cut are listed.
     ///
     /// >>> cells = build(Csg.cuboid([0, 0, 0], [1, 1, 1]), Frame([0, 0, 0], 2, 1)).cells("full")
     /// >>> cells.level, cells.at
@@ -206,7 +207,8 @@ impl Octree {
         let filter = match tags.as_slice() {
             [] => CellFilter::leaves(),
             tags => {
-                let tags: Vec<Tag> = tags.iter().map(|tag| words::value(py, tag)).collect::<PyResult<_>>()?;
+                let tags: Vec<Tag> =
+                    tags.iter().map(|tag| words::value_of(py, "tags", tag)).collect::<PyResult<_>>()?;
                 CellFilter::tags(&tags)
             }
         };
@@ -397,13 +399,14 @@ impl Octree {
 
 /// An octree of a solid: cells are split until they are decided, or the frame's depth is reached.
 ///
-/// `rule` says what becomes of cells that are undecided at the finest level: "certified" keeps the doubt, so that every answer is
-/// proven; "sampled" asks at their centres; "inner" and "outer" call them EMPTY or FULL. `surfaces=True` keeps the surfaces that cross
-/// undecided cells, of expressions exactly, so that a small octree is as exact as the solid; a number keeps layers around a
-/// mesh's surface that are at most as thick (model units).
+/// `rule` says what becomes of cells that are undecided at the finest level. "certified" keeps the doubt, so every answer is
+/// proven. "sampled" asks at the centres of cells. "inner" calls undecided cells EMPTY, "outer" calls them FULL.
 ///
-/// Without a frame it is a cube around the solid with the given depth (9 if none is given); with a frame, the depth may differ from the
-/// frame's.
+/// `surfaces=True` keeps the surfaces that cross undecided cells. For an expression these are exact: the octree is small, and as exact as
+/// the solid. A number keeps layers around a mesh's surface instead, at most that thick (model units).
+///
+/// `frame` is a `Frame`, or an octree whose frame is used. Without it, the frame is a cube around the solid. `depth` replaces the frame's
+/// depth; a cube around the solid has the depth 9 by default.
 ///
 /// >>> block = build(Csg.cuboid([0, 0, 0], [3, 2, 1]), depth=5)
 /// >>> block.volume, bool(block.proof)
@@ -412,7 +415,7 @@ impl Octree {
 #[pyo3(signature = (solid, frame=None, *, depth=None, rule="certified", surfaces=None, **limits))]
 pub fn build<'py>(
     solid: &Bound<'py, PyAny>,
-    frame: Option<&Bound<'py, PyAny>>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     rule: &str,
     surfaces: Option<&Bound<'py, PyAny>>,
@@ -421,14 +424,6 @@ pub fn build<'py>(
     let py = solid.py();
     let limits = Limits::of(limits)?;
     let rule: Rule = words::value(py, rule)?;
-    let frame = match frame {
-        // An octree tells its frame.
-        Some(like) => match like.cast::<Octree>() {
-            Ok(octree) => Some(octree.get().frame()),
-            Err(_) => Some(like.extract::<Frame>()?),
-        },
-        None => None,
-    };
     let solid = given(solid, "solid")?;
     let surfaces = match surfaces {
         None => None,

@@ -28,7 +28,7 @@ pub fn expression(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Expression>
     }
 }
 
-/// Two solids as one: of octrees the octree, of all else an expression.
+/// Two solids combined: two octrees make an octree, any other pair an expression.
 pub fn combined<'py>(
     operator: Operator,
     a: &Bound<'py, Solid>,
@@ -59,7 +59,7 @@ pub fn combined<'py>(
     Ok(Csg::made(py, whole.or_raise(py)?, name, (a, b))?.into_any())
 }
 
-/// What a solid leaves of space; of an octree, of its universe and of what lies around.
+/// The complement of a solid. The complement of an octree is an octree.
 pub fn complement<'py>(solid: &Bound<'py, Solid>) -> PyResult<Bound<'py, PyAny>> {
     let py = solid.py();
     if let Ok(own) = solid.cast::<Octree>() {

@@ -3,9 +3,8 @@
 use crate::affine::affines;
 use crate::anywhere::anywhere;
 use crate::arrays;
-use crate::ask::Wish;
+use crate::ask::{FrameLike, Wish};
 use crate::error::OrRaise;
-use crate::frame::Frame;
 use crate::interval::Interval;
 use crate::solid::{Given, given};
 use crate::words;
@@ -16,13 +15,13 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-/// The depth to which two solids are looked at, if nobody says.
+/// The default depth of the frame for two solids.
 const DEPTH: u8 = 16;
 
-/// Splits for each answer, if nobody says.
+/// The default number of splits for each answer.
 const SPLITS: u64 = 100_000;
 
-/// The tolerance of distances, if nobody says, as a part of the frame.
+/// The default tolerance of distances, as a part of the frame.
 const TOLERANCE: f64 = 1e-6;
 
 /// Whether two solids overlap.
@@ -238,16 +237,13 @@ impl Pair {
     }
 
     /// The answers at all places.
-    fn ask<'py, T: Send, W: Send>(
+    fn ask<'py, T: Send, W: IntoPyObject<'py>>(
         &self,
         py: Python<'py>,
         here: impl FnOnce(&AnySolid, &AnySolid, &Control<'_>) -> Result<T, Error> + Send,
         there: impl FnOnce(&AnySolid, &AnySolid, &[Affine], &Control<'_>) -> Result<Vec<T>, Error> + Send,
         wrap: impl Fn(T) -> W,
-    ) -> PyResult<Bound<'py, PyAny>>
-    where
-        W: IntoPyObject<'py>,
-    {
+    ) -> PyResult<Bound<'py, PyAny>> {
         let found = self.limits.run(py, |control| {
             match &self.placements {
                 None => Ok(vec![here(&self.still(&self.a), &self.still(&self.b), control)?]),
@@ -289,7 +285,7 @@ pub fn interference<'py>(
     b: &Bound<'py, PyAny>,
     placements: Option<&Bound<'py, PyAny>>,
     tolerance: f64,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -316,7 +312,7 @@ pub fn clearance<'py>(
     b: &Bound<'py, PyAny>,
     placements: Option<&Bound<'py, PyAny>>,
     tolerance: Option<f64>,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -342,7 +338,7 @@ pub fn gap_at_least<'py>(
     b: &Bound<'py, PyAny>,
     least: f64,
     placements: Option<&Bound<'py, PyAny>>,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -367,7 +363,7 @@ pub fn deviation(
     a: &Bound<'_, PyAny>,
     b: &Bound<'_, PyAny>,
     tolerance: Option<f64>,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Deviation> {

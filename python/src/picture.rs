@@ -15,7 +15,7 @@ use leafless::{Bounds, Solid as _};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-/// From where one looks if nobody says: azimuth and elevation in degrees.
+/// The default direction of view: azimuth and elevation in degrees.
 const FROM: [f64; 2] = [30.0, 25.0];
 
 /// Colours of several solids, so that the colour-blind can tell them apart (Okabe and Ito 2002).
@@ -27,7 +27,7 @@ const CELLS: u8 = 7;
 
 /// A picture: an array `rgba` of shape (height, width, 4), and `depth` of shape (height, width), infinite where nothing is seen.
 ///
-/// Notebooks show it; `save` writes a PNG.
+/// Notebooks show it. `leafless.save(picture, "part.png")` writes a PNG.
 #[pyclass(frozen, module = "leafless")]
 pub struct Picture(pub pictures::Picture);
 

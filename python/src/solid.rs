@@ -1,9 +1,8 @@
 //! What has a shape: the class of all solids, and the questions that arrays of points and rays put to any of them.
 
 use crate::arrays::{self, Rows};
-use crate::ask::Wish;
+use crate::ask::{FrameLike, Wish};
 use crate::error::refused;
-use crate::frame::Frame;
 use crate::from_package;
 use crate::interval::intervals;
 use crate::octree::Octree;
@@ -24,7 +23,7 @@ const FEW_POINTS: usize = 4096;
 const FEW_RAYS: usize = 256;
 const FEW_DISTANCES: usize = 16;
 
-/// How exact distances are if nobody says, as a part of the frame.
+/// The default tolerance of distances, as a part of the frame.
 const TOLERANCE: f64 = 1e-6;
 
 /// A solid as the library sees it.
@@ -119,8 +118,9 @@ impl Solid {
         Ok(array.transpose()?.map(Bound::into_any))
     }
 
-    /// Whether points (shape (n, 3), model units) lie inside: an array of `Membership`, for one point a `Membership`. A point that
-    /// lies in an undecided cell of an octree is UNDECIDED, and so is one of which nothing is known because it lies outside of the frame; on the boundary both answers are right.
+    /// Whether points lie inside. `points` has the shape (n, 3), in model units; the answer is an array of `Membership`. A single point
+    /// has a single answer. A point in an undecided cell of an octree is UNDECIDED, and so is a point outside of the frame about which
+    /// nothing is known. On the boundary both answers are right.
     ///
     /// >>> ball = Csg.ball([0, 0, 0], 1)
     /// >>> ball.contains([[0, 0, 0.999], [0, 0, 1.001]])
@@ -131,7 +131,7 @@ impl Solid {
     fn contains<'py>(
         slf: &Bound<'py, Self>,
         points: &Bound<'py, PyAny>,
-        frame: Option<Frame>,
+        frame: Option<FrameLike>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
@@ -163,10 +163,12 @@ impl Solid {
         memberships(py, &answers, points.is_one)
     }
 
-    /// How far points (shape (n, 3), model units) are from the boundary, negative inside: intervals that contain the truth, no wider
-    /// than `tolerance` where that can be had. `to` may also be "solid" (0 inside) or "complement" (0 outside). An answer has
-    /// `distance` (`Intervals`), `nearest` (points of the boundary, NaN where none is known), `surface` (numbers of triangles or
-    /// surfaces there, −1 where none is known), and `undecided` (where the interval is wider than the tolerance).
+    /// Signed distances of points from the boundary, negative inside, as intervals that contain the truth. `points` has the shape (n, 3),
+    /// in model units. An interval is no wider than `tolerance` where that is possible; the default is a millionth of the frame.
+    /// `to="solid"` measures to the solid (0 inside), `to="complement"` to what is not solid (0 outside).
+    ///
+    /// The answer is a `Distances`: `distance` (`Intervals`), `nearest` (points of the boundary), `surface` (numbers of triangles or surfaces
+    /// there) and `undecided` (where the interval is wider than the tolerance).
     ///
     /// >>> found = Csg.ball([0, 0, 0], 1).distances([[3, 0, 4], [0, 0.5, 0]], tolerance=1e-9)
     /// >>> found.distance.middle.round(6)
@@ -177,7 +179,7 @@ impl Solid {
         points: &Bound<'py, PyAny>,
         to: &str,
         tolerance: Option<f64>,
-        frame: Option<Frame>,
+        frame: Option<FrameLike>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
@@ -193,11 +195,12 @@ impl Solid {
         distances_found(py, &found, tolerance)
     }
 
-    /// Where rays first meet the solid. Origins and directions have the shape (n, 3) or (3,), and one of them may be for all;
-    /// distances count multiples of a direction's length. `on="inner"` stops rays where the solid is proven to be, `on="outer"`
-    /// where it may be. An answer has `hit` (whether anything stopped a ray), `distance` (`Intervals`: before the lower end the ray
-    /// is proven outside, at the upper end inside; infinite without a hit), `normal` and `surface` (numbers of triangles, −1 where
-    /// none is known).
+    /// Where rays first meet the solid. Origins and directions have the shape (n, 3); a single origin or direction is used for all rays.
+    /// Distances count multiples of a direction's length. `on="inner"` stops a ray where the solid is proven to be, `on="outer"` where
+    /// the solid may be. `last` ends all rays at that distance.
+    ///
+    /// The answer is a `RayHits`: `hit`, `distance` (`Intervals`), `normal` and `surface`. Before the lower end of a distance the ray is
+    /// proven outside, at the upper end inside.
     ///
     /// >>> hits = Csg.ball([0, 0, 0], 1).rays([[-2, 0.6, 0], [-2, 2, 0]], [1, 0, 0])
     /// >>> hits.hit, 1.2 in hits.distance[0]
@@ -209,7 +212,7 @@ impl Solid {
         directions: &Bound<'py, PyAny>,
         on: &str,
         last: f64,
-        frame: Option<Frame>,
+        frame: Option<FrameLike>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
@@ -243,8 +246,8 @@ impl Solid {
         answer.call1((hit, distance, arrays::rows(py, normal)?, arrays::array(py, surface, &[count])?))
     }
 
-    /// The solid moved by a map: a mesh stays a mesh, all else becomes an expression. Meshes and expressions are moved exactly; of
-    /// octrees, cells blur by about one unless they are moved by whole cells or quarter turns.
+    /// The solid moved by an `Affine` or a matrix. A mesh stays a mesh; any other solid becomes an expression. Meshes and expressions are
+    /// moved exactly. The cells of an octree blur by about one cell, unless the map moves by whole cells or quarter turns.
     fn placed<'py>(slf: &Bound<'py, Self>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         operators::placed(slf, placement)
     }

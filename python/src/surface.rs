@@ -1,8 +1,7 @@
 //! Surfaces as triangle meshes.
 
-use crate::ask::{self, Wish};
+use crate::ask::{self, FrameLike, Wish};
 use crate::error::refused;
-use crate::frame::Frame;
 use crate::mesh::Mesh;
 use crate::octree::Octree;
 use crate::solid::given;
@@ -13,12 +12,12 @@ use leafless::{Error, FillRule, TriangleMesh, marching_cubes};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Depths that nobody tells, of cells that end by themselves, of those that one vertex must do for, and of equal ones.
+/// Default depths: for cells that end by themselves, for cells that hold one vertex each, and for cells of one size.
 const DEEP: u8 = 14;
 const FINE: u8 = 12;
 const EQUAL: u8 = 8;
 
-/// The tolerance that nobody tells, as a part of the longest extent.
+/// The default tolerance, as a part of the longest extent.
 const TOLERANCE: f64 = 1e-3;
 
 /// Where coplanar shrink puts vertices.
@@ -60,14 +59,18 @@ enum Method {
 
 /// The surface of a solid as a closed triangle mesh.
 ///
-/// By `method`: "faces" for solids that know their surfaces (expressions, octrees that keep them) and for meshes: plane faces as they
-/// are, sharp edges, few triangles; "adaptive" for any solid: few triangles where it is flat; "cubes" (marching cubes), "nets" (surface nets,
-/// of octrees) and "shrink" (coplanar shrink) in cells of one size, 2^`depth` to an axis. Without a method it is the first of these that
-/// suits; of an octree of cells alone, and of a volume, marching cubes. A volume's samples tell where they pass the threshold, voxel by
-/// voxel.
+/// `method` is one of these. Without it, the first method that suits the solid is taken.
 ///
-/// `tolerance` (model units; by default a thousandth of the longest side) is how far "faces" and "adaptive" may be from the solid;
-/// `mesh.surface_report.deviation` is what is proven of that. `resolve` says what undecided cells of an octree count as: "outer" or "inner".
+/// - "faces": plane faces as they are, sharp edges, few triangles. For solids that know their surfaces (expressions, octrees that keep them)
+///   and for meshes.
+/// - "adaptive": few triangles where the surface is flat. For any solid.
+/// - "cubes": marching cubes in 2^`depth` cells along an axis. For octrees it uses their cells, for volumes their voxels.
+/// - "nets": surface nets, smoother, in the same cells.
+/// - "shrink": coplanar shrink, with few triangles where the cells make a plane.
+///
+/// `tolerance` (model units) is how far "faces" and "adaptive" may be from the solid; the default is a thousandth of the longest side.
+/// `mesh.surface_report.deviation` is what is proven of that distance. `resolve` says whether undecided cells of an octree belong to the
+/// solid: "outer" (they do) or "inner" (they do not).
 ///
 /// >>> mesh = surface(Csg.cuboid([0, 0, 0], [3, 2, 1]))
 /// >>> len(mesh.faces), mesh.surface_report.method
@@ -79,7 +82,7 @@ pub fn surface<'py>(
     tolerance: Option<f64>,
     method: Option<&str>,
     resolve: Option<&str>,
-    frame: Option<Frame>,
+    frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, Mesh>> {
@@ -170,8 +173,7 @@ pub fn surface<'py>(
     made(py, mesh, report)
 }
 
-/// A mesh with fewer triangles, no point of which is further than `tolerance` (model units) from the given one, nor the other way
-/// round: proven, for open meshes, too.
+/// The same mesh with fewer triangles. Both meshes are within `tolerance` (model units) of each other: proven, for open meshes too.
 #[pyfunction]
 #[pyo3(signature = (mesh, tolerance, **limits))]
 pub fn simplify<'py>(

@@ -17,12 +17,14 @@ use std::sync::Arc;
 
 /// A 3-D array of samples as a solid: its voxels with values in a band.
 ///
-/// The array is indexed [x, y, z], or with `order="zyx"` [z, y, x], as SimpleITK and tifffile have them. It may hold booleans, uint8,
-/// uint16, int16 or float32. An array of which x varies fastest in memory is not copied (that is "zyx" in NumPy's default order, and
-/// "xyz" in Fortran's), and must not be changed as long as the volume is there.
+/// The array is indexed [x, y, z]. With `order="zyx"` it is indexed [z, y, x], as in SimpleITK and tifffile. It may hold booleans, uint8,
+/// uint16, int16 or float32.
 ///
-/// A voxel is inside if its sample is at least `threshold`, or at least the first and at most the second of two. The lower corner of
-/// the first voxel lies at `origin`.
+/// An array in which x varies fastest is not copied: "zyx" in NumPy's default order, "xyz" in Fortran's. Do not change such an array as
+/// long as the volume lives.
+///
+/// A voxel is inside if its sample is at least `threshold`. Two thresholds are a least and a greatest sample. `origin` is the lower corner
+/// of the first voxel, `spacing` the edge of a voxel, or the edges along x, y and z.
 ///
 /// >>> import numpy as np
 /// >>> x, y, z = np.mgrid[-10:11, -10:11, -10:11]
@@ -63,7 +65,7 @@ impl<T> AsRef<[T]> for Held<T> {
     }
 }
 
-/// The samples of an array of which x varies fastest.
+/// The samples of an array in which x varies fastest.
 fn held<'py, T: Element + Sync + Copy>(array: &Bound<'py, PyAny>) -> PyResult<SampleArray<'static, T>> {
     let array = array.cast::<PyArray3<T>>()?;
     let held = Held {

@@ -119,7 +119,7 @@ impl VoxelRecords {
         Ok(arrays::array(py, order, &[count])?.into_any())
     }
 
-    /// The octree of the voxels; `boundary` says what boundary voxels are: "partial" or "full".
+    /// The octree of the voxels. `boundary` says what boundary voxels become: "partial", "full" or "empty".
     #[pyo3(signature = (boundary="partial", **limits))]
     fn to_octree<'py>(
         &self,
@@ -127,7 +127,10 @@ impl VoxelRecords {
         boundary: &str,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, Octree>> {
-        let boundary: Tag = words::value(py, boundary)?;
+        let boundary: Tag = words::value_of(py, "boundary", boundary)?;
+        if boundary == Tag::Branch {
+            return Err(refused(py, "boundary", "must be one of 'empty', 'partial', 'full'"));
+        }
         let view = self.0.view();
         let octree = Limits::of(limits)?.run(py, |control| view.to_octree(boundary, control))?;
         Octree::bound(py, octree)

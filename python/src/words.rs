@@ -1,4 +1,4 @@
-//! What the library's enumerations are called in Python.
+//! The words that stand for the library's enumerations in Python.
 
 use crate::error::refused;
 use leafless::query::{DistanceTo, GapVerdict, Obstacle, Overlap, StopReason, Within};
@@ -15,11 +15,16 @@ pub trait Word: Copy + 'static {
 
 /// The value of a word.
 pub fn value<W: Word>(py: Python<'_>, word: &str) -> PyResult<W> {
+    value_of(py, W::NAME, word)
+}
+
+/// The value of a word that another parameter takes.
+pub fn value_of<W: Word>(py: Python<'_>, name: &str, word: &str) -> PyResult<W> {
     match W::ALL.iter().find(|(own, _)| *own == word) {
         Some(&(_, value)) => Ok(value),
         None => {
             let words: Vec<_> = W::ALL.iter().map(|(own, _)| format!("'{own}'")).collect();
-            Err(refused(py, W::NAME, format!("must be one of {}, not '{word}'", words.join(", "))))
+            Err(refused(py, name, format!("must be one of {}, not '{word}'", words.join(", "))))
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::from_package;
 use leafless::{Control, Error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::thread;
 use std::time::Duration;
@@ -39,6 +39,7 @@ impl Limits {
                 "max_nodes" => limits.max_nodes = Some(value.extract()?),
                 "max_bytes" => limits.max_bytes = Some(value.extract()?),
                 "max_splits" => limits.max_splits = Some(value.extract()?),
+                "progress" if value.is(PyBool::new(value.py(), false)) => {}
                 "progress" => {
                     let reporter = from_package!(value.py(), "leafless._progress", "reporter")?;
                     limits.progress = Some(reporter.call1((value,))?.unbind());

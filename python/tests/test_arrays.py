@@ -205,4 +205,4 @@ def test_lazy(plate):
     with pytest.raises(lf.Error):
         lf.LazyOctree(lf.Csg.ball([0, 0, 0], 1), resume=frozen)
     with pytest.raises(lf.ArgumentError):
-        lazy.refine(point=[0, 0, 0], bounds=[[0, 0, 0], [1, 1, 1]])
+        lazy.refine(3, point=[0, 0, 0], bounds=[[0, 0, 0], [1, 1, 1]])

@@ -1,5 +1,6 @@
 """The notebooks run from the first cell to the last one; what they assert holds."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,9 @@ def test_notebook_runs(name, tmp_path):
         pytest.importorskip("rtree")
     notebook = nbformat.read(FOLDER / f"{name}.ipynb", 4)
     before = [kinds(cell) for cell in notebook.cells]
+    if os.environ.get("LEAFLESS_THOROUGH") != "1":
+        for cell in notebook.cells:
+            cell.source = cell.source.replace("500_000", "20_000")
     nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
     # The kinds of outputs are those that are shown.
     assert [kinds(cell) for cell in notebook.cells] == before and any(before)

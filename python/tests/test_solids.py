@@ -58,7 +58,7 @@ CUBES = {
 
 def frozen(solid):
     lazy = lf.LazyOctree(solid, FRAME)
-    assert lazy.refine()
+    assert lazy.refine(FRAME.depth)
     return lazy.freeze()
 
 
