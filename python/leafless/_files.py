@@ -30,7 +30,8 @@ def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | Tri
     (NRRD, MetaImage).
 
     `path` is a path, or a URL of any kind that fsspec knows. Of meshes, `fill` says what is inside ("nonzero", "positive", "evenodd"),
-    `unit` what the numbers mean ("mm", "in"), `to_unit` what they are converted to, and `scale` multiplies them; of volumes, `threshold`
+    `unit` what the numbers mean ("mm", "in"), `to_unit` what they are converted to, `scale` multiplies them, and
+    `sew=False` leaves hair cracks open, which are closed by default; of volumes, `threshold`
     says which samples are inside.
 
     >>> import os, tempfile

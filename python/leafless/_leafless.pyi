@@ -113,6 +113,7 @@ class Taking(TypedDict, total=False):
     unit: str | None
     to_unit: str | None
     scale: float | None
+    sew: bool
     threshold: float | tuple[float, float] | None
 
 @type_check_only
@@ -149,6 +150,7 @@ class MeshReport(TypedDict):
     opposite: int
     flat: int
     degenerate: int
+    sewn: int
     welded: int
     is_closed: bool
     is_manifold: bool
@@ -351,6 +353,7 @@ class Mesh(Solid):
     def is_closed(self) -> bool: ...
     @property
     def surface_report(self) -> SurfaceReport | None: ...
+    def sewn(self) -> Mesh: ...
     def report(self) -> MeshReport: ...
     @property
     def attributes(self) -> list[str]: ...

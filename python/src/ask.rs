@@ -5,7 +5,7 @@ use crate::frame::Frame;
 use crate::octree::Octree;
 use crate::solid::Given;
 use leafless::lattice::MAX_DEPTH;
-use leafless::{Affine, Bounds, Error, Frame as Inner, Solid as _};
+use leafless::{Affine, Bounds, Error, Frame as Inner};
 use pyo3::Borrowed;
 use pyo3::prelude::*;
 
@@ -47,7 +47,7 @@ impl Wish {
             Some(own) => {
                 let own = self.depth.map_or(Ok(own), |depth| own.with_depth(depth)).or_raise(py)?;
                 // An expression may reach beyond the octree in it.
-                solid.shape.bounds().map_or(Ok(own), |all| doubled(own, &all)).or_raise(py)
+                solid.bounds().map_or(Ok(own), |all| doubled(own, &all)).or_raise(py)
             }
             None => fitted(py, &bounds(py, solid)?, deepest),
         }
@@ -90,7 +90,7 @@ fn fitted(py: Python<'_>, Bounds { min, max }: &Bounds, depth: u8) -> PyResult<I
 
 /// A box that holds a solid, or all that is known of it.
 pub fn bounds(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
-    match (solid.shape.bounds(), solid.own) {
+    match (solid.bounds(), solid.own) {
         (Some(bounds), _) => Ok(bounds),
         (None, Some(own)) => Ok(Bounds::of(&own)),
         (None, None) => Err(refused(py, "frame", "must be given: no bounds of the solid are known")),

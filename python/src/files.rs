@@ -18,9 +18,10 @@ use leafless::lattice::MAX_DEPTH;
 use leafless::scene::{is_scene, read_scene};
 use leafless::{Error, Frame};
 use pyo3::IntoPyObjectExt;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
+use std::ffi::CString;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -53,17 +54,22 @@ fn content(bytes: &[u8], name: &Path) -> Option<Content> {
     }
 }
 
-/// How meshes and volumes in files are taken: `fill`, `unit`, `to_unit`, `scale`, `threshold`.
+/// How meshes and volumes in files are taken: `fill`, `unit`, `to_unit`, `scale`, `sew`, `threshold`.
 struct Taking<'py> {
     fill: leafless::FillRule,
     options: MeshOptions,
     threshold: Option<Bound<'py, PyAny>>,
+    sew: bool,
 }
 
 impl<'py> Taking<'py> {
     fn of(py: Python<'py>, given: Option<&Bound<'py, PyDict>>) -> PyResult<Taking<'py>> {
-        let mut taking =
-            Taking { fill: leafless::FillRule::NonZero, options: MeshOptions::default(), threshold: None };
+        let mut taking = Taking {
+            fill: leafless::FillRule::NonZero,
+            options: MeshOptions::default(),
+            threshold: None,
+            sew: true,
+        };
         for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
             if value.is_none() {
                 continue;
@@ -74,6 +80,7 @@ impl<'py> Taking<'py> {
                 "unit" => taking.options.unit = Some(unit()?),
                 "to_unit" => taking.options.target = Some(unit()?),
                 "scale" => taking.options.scale = value.extract()?,
+                "sew" => taking.sew = value.extract()?,
                 "threshold" => taking.threshold = Some(value),
                 name => return Err(PyTypeError::new_err(format!("unexpected keyword argument '{name}'"))),
             }
@@ -215,8 +222,13 @@ pub fn map_path<'py>(
 }
 
 fn mesh<'py>(py: Python<'py>, found: MeshFile, taking: &Taking<'py>) -> PyResult<Bound<'py, PyAny>> {
+    for warning in &found.warnings {
+        let text = CString::new(warning.to_string().replace('\0', " "))?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+    }
     let unit = found.unit.map(|unit| unit.to_string());
-    Ok(Mesh::bound(py, found.mesh, taking.fill, unit, None)?.into_any())
+    let mesh = if taking.sew { Limits::default().run(py, |_| found.mesh.sewn())? } else { found.mesh };
+    Ok(Mesh::bound(py, mesh, taking.fill, unit, None)?.into_any())
 }
 
 fn volume<'py>(py: Python<'py>, found: VolumeFile, taking: &Taking<'py>) -> PyResult<Bound<'py, PyAny>> {

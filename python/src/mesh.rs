@@ -156,6 +156,13 @@ impl Mesh {
         self.surface
     }
 
+    /// The mesh with hair cracks closed: vertices next to open edges that differ by rounding only become one. `report` counts them
+    /// (`sewn`). What is proven of the mesh accounts for how far they moved.
+    fn sewn<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Mesh>> {
+        let mesh = Limits::default().run(py, |_| self.mesh.try_clone()?.sewn())?;
+        Mesh::bound(py, mesh, self.fill, self.unit.clone(), self.surface)
+    }
+
     /// What is wrong with the mesh, if anything is: counts of bodies, open edges, turned facets and the like, as a dictionary.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let report = self.mesh.report().or_raise(py)?;
@@ -176,6 +183,7 @@ impl Mesh {
             ("flat", report.flat),
             ("degenerate", report.degenerate),
             ("welded", report.welded),
+            ("sewn", report.sewn),
         ];
         for (name, count) in counts {
             told.set_item(name, count)?;

@@ -10,7 +10,7 @@ use crate::solid::{Given, given};
 use crate::words;
 use crate::work::Limits;
 use leafless::query::{self, clearance_at, gap_at_least_at, interference_at};
-use leafless::{Affine, AnySolid, Bounds, Control, Error, Frame as Inner, Solid as _};
+use leafless::{Affine, AnySolid, Bounds, Control, Error, Frame as Inner};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -385,7 +385,7 @@ pub fn deviation(
 /// A box that holds what a solid becomes under a placement.
 impl Given {
     pub fn placed(&self, placement: &Affine) -> Option<Bounds> {
-        let bounds = self.shape.bounds().or_else(|| self.own.map(|own| Bounds::of(&own)))?;
+        let bounds = self.bounds().or_else(|| self.own.map(|own| Bounds::of(&own)))?;
         bounds.placed(placement)
     }
 }

@@ -6,12 +6,12 @@ use crate::error::{OrRaise, refused};
 use crate::octree::Octree;
 use crate::solid::{Given, given, is_solid};
 use crate::work::Limits;
+use leafless::Bounds;
 use leafless::exchange::write_png;
 use leafless::render::{
     self as pictures, Camera, Clip, FIELD_OF_VIEW, Finish, Layer, OctreeLayer, Outline, Shot, SliceLayer,
     SlicePlane, SolidLayer,
 };
-use leafless::{Bounds, Solid as _};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 
@@ -164,7 +164,7 @@ pub fn render(
 
 /// A box around a solid.
 fn tight(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
-    match (solid.own, solid.shape.bounds()) {
+    match (solid.own, solid.bounds()) {
         // The universe of an octree may be much larger than what is in it.
         (Some(own), _) => {
             let (shape, coarse) = (&solid.shape, own);

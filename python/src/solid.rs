@@ -13,10 +13,13 @@ use crate::work::Limits;
 use leafless::lattice::MAX_DEPTH;
 use leafless::query::{DistanceTo, Obstacle, PointDistance, distances};
 use leafless::solid::Prepared;
-use leafless::{AnySolid, Control, Frame as Inner, Membership, Proof, Ray, Solid as _, cast_rays, contains};
+use leafless::{
+    AnySolid, Bounds, Control, Frame as Inner, Membership, Proof, Ray, Solid as _, cast_rays, contains,
+};
 use pyo3::exceptions::{PyNotImplementedError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::{Arc, OnceLock};
 
 /// Questions that are answered on the calling thread: more of them may take longer than anybody wants to wait for Ctrl-C.
 const FEW_POINTS: usize = 4096;
@@ -31,6 +34,8 @@ const TOLERANCE: f64 = 1e-6;
 pub struct Given {
     /// The solid, which remembers the frame that it was asked on last.
     pub shape: Prepared,
+    /// The box that holds it, if one is known; found out once.
+    pub known_bounds: Arc<OnceLock<Option<Bounds>>>,
     /// The frame of an octree, or of a volume's voxels.
     pub own: Option<Inner>,
     /// Whether the cells of an octree keep surfaces.
@@ -42,7 +47,13 @@ pub struct Given {
 impl Given {
     pub fn new(solid: AnySolid) -> Given {
         let own = solid.home();
-        Given { shape: Prepared::new(solid), own, keeps_surfaces: false, calls_python: false }
+        let (shape, known_bounds) = (Prepared::new(solid), Arc::default());
+        Given { shape, known_bounds, own, keeps_surfaces: false, calls_python: false }
+    }
+
+    /// A box that holds the solid, if one is known.
+    pub fn bounds(&self) -> Option<Bounds> {
+        *self.known_bounds.get_or_init(|| self.shape.bounds())
     }
 
     /// The solid itself.
@@ -113,7 +124,7 @@ impl Solid {
     /// the solid; `bounding_box` proves how large that is.
     #[getter]
     fn bounds<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let bounds = given(slf, "self")?.shape.bounds();
+        let bounds = given(slf, "self")?.bounds();
         let array = bounds.map(|bounds| arrays::rows(slf.py(), vec![bounds.min, bounds.max]));
         Ok(array.transpose()?.map(Bound::into_any))
     }
@@ -152,7 +163,7 @@ impl Solid {
             }
         }
         // What lies beyond the frame, and beyond the box that holds the solid, is proven outside.
-        if let Some(bounds) = solid.shape.bounds() {
+        if let Some(bounds) = solid.bounds() {
             let is_beyond = |axis: usize, x: f64| x < bounds.min[axis] || x > bounds.max[axis];
             for (answer, point) in answers.iter_mut().zip(list) {
                 if *answer == Membership::Undecided && (0..3).any(|axis| is_beyond(axis, point[axis])) {
