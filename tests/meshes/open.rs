@@ -290,8 +290,8 @@ fn damage_all(
 
 fn damaged_shapes(fill: FillRule) {
     let effort = Effort { points: 250, centres: 160, corners: 40, shares: 50 };
-    let (variants, total) = damage_all(2, 0, 0, Some((fill, repeated(4, 1))), effort);
-    assert!(variants > repeated(32, 130));
+    let (variants, total) = damage_all(2, 0, 0, Some((fill, repeated(8, 1))), effort);
+    assert!(variants > repeated(16, 130));
     // Most of what no triangle meets is decided, though many of these soups are nothing but holes.
     assert!(total.clear_open * 5 < total.clear);
     total.judge();

@@ -1,5 +1,6 @@
 //! How far two boundaries are from each other: formulas, an independent sampler, and all kinds of solids.
 
+use crate::common::repeated;
 use leafless::op::DexelOptions;
 use leafless::query::{Deviation, DistanceTo, StopReason, Within, distances, ray_spans};
 use leafless::surface::DexelSolid;
@@ -419,7 +420,7 @@ fn random_solids_beside_rays() {
     let frame = around(2.0, 14);
     let coarse = around(2.0, 6);
     let (to, mut seen) = (DistanceTo::Boundary, 0);
-    for round in 0..12 {
+    for round in 0..repeated(6, 12) {
         let (a, b) = (random.part(), random.part());
         let stored = |solid: &Csg| match round % 3 {
             0 => AnySolid::new(solid.clone()),

@@ -214,7 +214,7 @@ fn boxes_on_and_off_the_lattice() {
 fn balls_and_their_contacts() {
     let mut random = Random(4);
     let mut counts = [0; 3];
-    for case in 0..repeated(90, 300) {
+    for case in 0..repeated(45, 300) {
         let frame = Frame::new([-16.0; 3], 32.0, 9).unwrap();
         // Every third pair touches exactly: the distance is the hypotenuse of 3, 4, 12.
         let (p, r, q, s) = if case % 3 == 0 {

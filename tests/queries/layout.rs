@@ -1,6 +1,6 @@
 //! Layouts: what a check tells against closed forms and dense samples, and what a search places.
 
-use crate::common::{Random, alone};
+use crate::common::{Random, alone, repeated};
 use leafless::layout::{
     Bay, Beside, Direction, Item, Layout, Objective, Orientations, SearchEnd, SearchOptions, Standing,
 };
@@ -129,7 +129,7 @@ fn eight_blocks() {
 
 #[test]
 fn arrangements_by_chance() {
-    check_arrangements(200);
+    check_arrangements(repeated(100, 200));
 }
 
 /// `cargo test --release --test queries layout -- --ignored`

@@ -135,7 +135,7 @@ fn ask(
 fn balls_have_the_sections_of_the_formula() {
     let mut random = Random(1);
     let (mut most, mut cut) = (0, 0);
-    for round in 0..600 {
+    for round in 0..repeated(200, 600) {
         let depth = [20, 20, 9, 4, 1][round % 5];
         let origin = [0; 3].map(|_| random.between(-3.0, 1.0));
         let frame = Frame::new(origin, random.between(4.0, 9.0), depth).unwrap();
@@ -172,7 +172,7 @@ fn balls_have_the_sections_of_the_formula() {
 fn widths_fall_with_the_square_of_the_splits() {
     let mut random = Random(2);
     let frame = Frame::new([-1.0, -1.1, -1.2], 2.5, 20).unwrap();
-    for round in 0..20 {
+    for round in 0..repeated(8, 20) {
         let ball = Csg::ball([0.1, 0.2, 0.0], 0.8).unwrap();
         let tilted = Csg::torus(0.6, 0.25).unwrap().placed(&affine(turn(&mut random), DVec3::ZERO)).unwrap();
         let plane = Plane { point: vector(&mut random) * 0.4, normal: vector(&mut random) };
@@ -661,7 +661,7 @@ fn a_shape_of_a_host_goes_by_its_cells() {
 #[test]
 fn huge_and_tiny_coordinates() {
     let mut random = Random(12);
-    for round in 0..repeated(60, 200) {
+    for round in 0..repeated(30, 200) {
         // All of it times a power of two.
         let exponent = random.below(400) as i32 - 200;
         let scale = 2f64.powi(exponent);
