@@ -1,5 +1,5 @@
 //! The Python interface of Leafless. A class or a function of Python is some lines here: it takes Python's values, asks the
-//! library with the interpreter released, and hands back what was found. What is easier said in Python is in `leafless/`.
+//! library with the interpreter released, and hands back what was found. What is easier said in Python is in `package/leafless`.
 //!
 //! From the bottom up: `error`, `work` (long work that can be watched and interrupted), `words` (what enumerations are called),
 //! `arrays`, `interval`, `frame` and `affine` are what values are taken from; `solid` is the class of all that has a shape, and

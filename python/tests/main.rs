@@ -38,7 +38,7 @@ fn package_tests() {
     let folder = tempfile::tempdir().unwrap();
     let installed = folder.path().join("leafless");
     std::fs::create_dir(&installed).unwrap();
-    for entry in std::fs::read_dir(package().join("leafless")).unwrap() {
+    for entry in std::fs::read_dir(package().join("package/leafless")).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|ending| ending == "py" || ending == "pyi" || ending == "typed") {
             std::fs::copy(&path, installed.join(path.file_name().unwrap())).unwrap();

@@ -48,13 +48,14 @@ def test_meshes(plate, tmp_path, extension):
         lf.open(path, colour="red")
 
 
-def test_warnings(tetrahedron, tmp_path):
-    lf.save(tetrahedron, tmp_path / "t.off")
-    text = (tmp_path / "t.off").read_text().split("\n", 1)
-    # Without the word that the format begins with.
-    (tmp_path / "t.off").write_text(text[1])
-    with pytest.warns(UserWarning):
-        assert len(lf.open(tmp_path / "t.off")) == 4
+def test_warnings(tmp_path):
+    # A PLY with one number more on each line of a vertex than its header announces.
+    header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    faces = "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    corners = "0 0 0 9\n1 0 0 9\n0 1 0 9\n0 0 1 9\n"
+    (tmp_path / "t.ply").write_text(header + faces + corners + "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+    with pytest.warns(UserWarning, match="values"):
+        assert lf.open(tmp_path / "t.ply").is_closed
 
 
 def test_scenes(tmp_path, tetrahedron):

@@ -26,7 +26,7 @@ def test_notebook_runs(name, tmp_path):
     before = [kinds(cell) for cell in notebook.cells]
     if os.environ.get("LEAFLESS_THOROUGH") != "1":
         for cell in notebook.cells:
-            cell.source = cell.source.replace("500_000", "20_000")
+            cell.source = cell.source.replace("500_000", "10_000").replace("spacing = 0.05", "spacing = 0.2")
     nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
     # The kinds of outputs are those that are shown.
     assert [kinds(cell) for cell in notebook.cells] == before and any(before)
