@@ -3,17 +3,19 @@
 use crate::arrays::{layout, shown};
 use crate::ask::{self, Wish};
 use crate::error::{OrRaise, refused};
+use crate::mesh::Mesh;
 use crate::octree::Octree;
 use crate::solid::{Given, given, is_solid};
 use crate::work::Limits;
-use leafless::Bounds;
 use leafless::exchange::write_png;
 use leafless::render::{
-    self as pictures, Camera, Clip, FIELD_OF_VIEW, Finish, Layer, OctreeLayer, Outline, Shot, SliceLayer,
-    SlicePlane, SolidLayer,
+    self as pictures, Camera, Clip, FIELD_OF_VIEW, Finish, Layer, MeshEdges, MeshLayer, OctreeLayer, Outline,
+    Shot, SliceLayer, SlicePlane, SolidLayer,
 };
+use leafless::{Bounds, Frame, TriangleMesh};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
+use std::sync::Arc;
 
 /// The default direction of view: azimuth and elevation in degrees.
 const FROM: [f64; 2] = [30.0, 25.0];
@@ -63,7 +65,16 @@ impl Picture {
     }
 }
 
-/// Takes a picture of solids.
+/// A solid, and how it is shown.
+struct Shown {
+    solid: Given,
+    stored: Option<leafless::Octree>,
+    open: Option<Arc<TriangleMesh>>,
+    frame: Frame,
+    colour: [u8; 4],
+}
+
+/// Takes a picture of solids. A mesh with holes is shown by its triangles.
 ///
 /// One looks from an azimuth and an elevation in degrees, `view`; `colours` are triples or quadruples of 0 to 255, one for each solid;
 /// `clip` keeps what lies within planes a x + b y + c z + d ≥ 0, rows of four numbers; `slice` is one such plane a x + b y + c z + d = 0,
@@ -103,13 +114,21 @@ pub fn render(
         };
         let colour = [colour[0], colour[1], colour[2], colour.get(3).copied().unwrap_or(255)];
         let stored = object.cast::<Octree>().ok().map(|octree| octree.get().octree.clone());
+        // A mesh with holes is shown as it is: its triangles.
+        let open = match object.cast::<Mesh>() {
+            Ok(mesh) if !mesh.get().mesh.report().or_raise(py)?.is_closed() => Some(mesh.get().mesh.clone()),
+            _ => None,
+        };
         let solid = given(&object, "solids")?;
         let frame = Wish::default().of(py, &solid, if slice.is_some() { CELLS } else { 20 })?;
-        scene.push((solid, stored, frame, colour));
+        scene.push(Shown { solid, stored, open, frame, colour });
     }
     let mut points = Vec::new();
-    for (solid, ..) in &scene {
-        let known = tight(py, solid)?;
+    for shown in &scene {
+        let known = match &shown.open {
+            Some(mesh) => Bounds { min: mesh.bounds().0, max: mesh.bounds().1 },
+            None => tight(py, &shown.solid)?,
+        };
         points.extend(known.corners());
     }
     if points.is_empty() {
@@ -141,9 +160,18 @@ pub fn render(
     let plane = slice.map(|[a, b, c, d]| SlicePlane::new([a, b, c], d)).transpose().or_raise(py)?;
     let picture = limits.run(py, |control| {
         let mut layers: Vec<Box<dyn Layer + '_>> = Vec::new();
-        for (solid, stored, frame, colour) in &scene {
+        for Shown { solid, stored, open, frame, colour } in &scene {
+            let drawn = if edges { MeshEdges::Features } else { MeshEdges::None };
             let edges = if edges { Some(Outline::default()) } else { None };
             let finish = Finish { colour: *colour, edges, faces: cells, ..Finish::default() };
+            if let (None, Some(mesh)) = (plane, open) {
+                layers.push(Box::new(MeshLayer::new(mesh).colour(*colour).edges(
+                    drawn,
+                    1.5,
+                    [30, 30, 30, 255],
+                )));
+                continue;
+            }
             layers.push(match (plane, stored) {
                 (Some(plane), Some(octree)) => Box::new(SliceLayer::new(octree.view(), plane)),
                 (Some(plane), None) => Box::new(SliceLayer::of_solid(&solid.shape, frame, plane)),
