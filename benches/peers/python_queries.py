@@ -17,7 +17,7 @@ import leafless as lf
 
 SIZES = (1, 1_000, 1_000_000)
 #: A call that takes longer is not repeated, and a larger batch that would take longer is left out (seconds).
-PATIENCE = 60
+PATIENCE = 30
 
 
 def median(call):
