@@ -7,6 +7,7 @@ use numpy::{
     Element, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods,
 };
 use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -67,7 +68,8 @@ pub fn required<'py, T: Element>(
     let py = given.py();
     let require = from_package!(py, "numpy", "require")?;
     let array = require.call1((given, kind, ["C", "A"])).map_err(|error| {
-        if error.is_instance_of::<pyo3::exceptions::PyMemoryError>(py) {
+        // What interrupts is no problem of the array.
+        if !error.is_instance_of::<PyTypeError>(py) && !error.is_instance_of::<PyValueError>(py) {
             return error;
         }
         refused(py, name, format!("must be an array of numbers ({})", error.value(py)))

@@ -79,7 +79,7 @@ impl Channel {
     /// The values of a function, of a volume's samples, or one value everywhere.
     ///
     /// A function gets points (shape (n, 3)) and returns values of shape (n,) or (n, components), NaN where there is none; it is
-    /// asked at the centres of cells that belong to the solid. Without a solid, give a frame. `depth` may differ from the
+    /// asked at the lower corner of the frame, for the number of components, and at the centres of cells that belong to the solid. Without a solid, give a frame. `depth` may differ from the
     /// solid's, and `cell` ends cells at that edge, whatever the values. `dtype` is "uint8", "uint16", "uint32" or "float32".
     #[staticmethod]
     #[pyo3(signature = (values, solid=None, *, frame=None, depth=None, cell=None, dtype="float32", nearest=false, **limits))]

@@ -250,6 +250,9 @@ pub fn scene<'py>(
     folder: Option<&Path>,
     name: &Path,
 ) -> PyResult<Bound<'py, PyAny>> {
+    // The recipe must find the files from anywhere.
+    let folder = folder.map(std::path::absolute).transpose().map_err(Error::Io).or_raise(py)?;
+    let folder = folder.as_deref();
     let whole = Limits::default().run(py, |_| {
         let scene = read_scene(text, folder).map_err(|error| error.of_file(name))?;
         let (min, max) = scene.bounds()?.unwrap_or(([0.0; 3], [1.0; 3]));
@@ -265,11 +268,16 @@ pub fn scene<'py>(
 #[pyfunction]
 pub fn save_path(object: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {
     let py = object.py();
-    if let Ok(octree) = object.cast::<Octree>() {
+    let is_own = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("lfl"));
+    if let Ok(octree) = object.cast::<Octree>()
+        && is_own
+    {
         let octree = octree.get().octree.clone();
         return Limits::default().run(py, |_| file::save(&octree, &path));
     }
-    if let Ok(model) = object.cast::<TriDexel>() {
+    if let Ok(model) = object.cast::<TriDexel>()
+        && is_own
+    {
         let model = model.get().model.clone();
         return Limits::default().run(py, |_| dexels::save(&model, &path));
     }

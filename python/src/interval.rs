@@ -17,8 +17,8 @@ use pyo3::prelude::*;
 /// >>> 171234.5 in volume, volume.lower, volume.upper
 /// (True, 171000.0, 172000.0)
 ///
-/// Comparisons with numbers hold for all that the interval contains, so that `volume < 2e5` is a proof, and both
-/// `volume < 171500` and `volume > 171500` are false:
+/// `<`, `<=`, `>` and `>=` are true only if they hold for all that the interval contains. So `volume < 2e5` is a proof, and both
+/// `volume < 171500` and `volume > 171500` are false. `==` compares the ends of two intervals; an interval equals no number.
 ///
 /// >>> volume < 2e5, volume < 171500, volume > 171500
 /// (True, False, False)
@@ -67,7 +67,6 @@ impl Interval {
 
     /// Lower and upper, so that `low, high = interval` works.
     fn __iter__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        let Bounds { .. } = slf.get().0;
         let ends = (slf.get().0.lower, slf.get().0.upper).into_pyobject(slf.py())?;
         ends.call_method0("__iter__")
     }
@@ -100,7 +99,7 @@ impl Interval {
     }
 
     fn __hash__(&self) -> u64 {
-        self.0.lower.to_bits() ^ self.0.upper.to_bits().rotate_left(32)
+        (self.0.lower + 0.0).to_bits() ^ (self.0.upper + 0.0).to_bits().rotate_left(32)
     }
 
     fn __repr__(&self) -> String {

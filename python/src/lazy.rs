@@ -13,9 +13,10 @@ use leafless::op::{Refinement, Zone};
 use leafless::query::Membership;
 use leafless::solid::Prepared;
 use leafless::{LazyOctree as Inner, Solid as _};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, TryLockError};
 
 /// An octree that splits the cells you ask about, and remembers them.
 ///
@@ -32,8 +33,15 @@ pub struct LazyOctree {
 }
 
 impl LazyOctree {
-    fn lock(&self) -> MutexGuard<'_, Inner<Prepared>> {
-        self.lazy.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The octree, unless another call is at work on it: a shape's own method must not wait for the call that called it.
+    fn lock(&self) -> PyResult<MutexGuard<'_, Inner<Prepared>>> {
+        match self.lazy.try_lock() {
+            Ok(lazy) => Ok(lazy),
+            Err(TryLockError::Poisoned(lazy)) => Ok(lazy.into_inner()),
+            Err(TryLockError::WouldBlock) => {
+                Err(PyRuntimeError::new_err("another call is at work on this LazyOctree"))
+            }
+        }
     }
 }
 
@@ -93,7 +101,9 @@ impl LazyOctree {
             _ => return Err(refused(py, "bounds", "must be the only zone: bounds, point or ray")),
         };
         let limits = Limits::of(limits)?;
-        let done = limits.run(py, |control| self.lock().refine(&zone, level, control))?;
+        let mut lazy = self.lock()?;
+        let lazy = &mut *lazy;
+        let done = limits.run(py, |control| lazy.refine(&zone, level, control))?;
         Ok(done == Refinement::Done)
     }
 
@@ -102,29 +112,27 @@ impl LazyOctree {
         let py = points.py();
         let rows = crate::arrays::Rows::of(points, "points")?;
         let list = rows.list();
-        let answers: Vec<Membership> = py.detach(|| {
-            let lazy = self.lock();
-            list.iter().map(|&point| lazy.contains(point)).collect()
-        });
+        let lazy = self.lock()?;
+        let answers: Vec<Membership> = list.iter().map(|&point| lazy.contains(point)).collect();
         crate::solid::memberships(py, &answers, rows.is_one)
     }
 
     /// Where it lies.
     #[getter]
-    fn frame(&self, py: Python<'_>) -> Frame {
-        py.detach(|| Frame(*self.lock().frame()))
+    fn frame(&self) -> PyResult<Frame> {
+        Ok(Frame(*self.lock()?.frame()))
     }
 
     /// How many cells were split.
     #[getter]
-    fn splits(&self, py: Python<'_>) -> u64 {
-        py.detach(|| self.lock().splits())
+    fn splits(&self) -> PyResult<u64> {
+        Ok(self.lock()?.splits())
     }
 
     /// Between which numbers the volume lies, as far as cells were split.
     #[getter]
-    fn volume(&self, py: Python<'_>) -> Interval {
-        Interval(py.detach(|| self.lock().statistics().volume()))
+    fn volume(&self) -> PyResult<Interval> {
+        Ok(Interval(self.lock()?.statistics().volume()))
     }
 
     /// What is known, as an octree. It remembers the solid, and can be taken up again.
@@ -134,15 +142,18 @@ impl LazyOctree {
         py: Python<'py>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, Octree>> {
-        let octree = Limits::of(limits)?.run(py, |control| self.lock().freeze(control))?;
+        let lazy = self.lock()?;
+        let known = &*lazy;
+        let octree = Limits::of(limits)?.run(py, |control| known.freeze(control))?;
         Octree::bound(py, octree)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> String {
-        let (splits, volume) = py.detach(|| {
-            let lazy = self.lock();
-            (lazy.splits(), lazy.statistics().volume())
-        });
-        format!("<LazyOctree: {splits} splits, volume {volume}>")
+    fn __repr__(&self) -> String {
+        match self.lock() {
+            Ok(lazy) => {
+                format!("<LazyOctree: {} splits, volume {}>", lazy.splits(), lazy.statistics().volume())
+            }
+            Err(_) => "<LazyOctree at work>".into(),
+        }
     }
 }

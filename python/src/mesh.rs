@@ -63,7 +63,9 @@ impl Mesh {
 
     /// How far the true boundary may lie from it, if that is known.
     pub fn deviation(&self) -> Option<f64> {
-        self.surface.map(|report| report.deviation).filter(|deviation| deviation.is_finite())
+        self.surface
+            .filter(|report| report.deviation.is_finite() && !report.from_mesh)
+            .map(|report| report.deviation)
     }
 
     /// The mesh in another place.
@@ -101,6 +103,22 @@ impl Mesh {
         let given = Given::new(AnySolid::new(solid));
         let mesh = Mesh { mesh, fill, unit: None, surface: None };
         Ok(PyClassInitializer::from(Solid::new(given)).add_subclass(mesh))
+    }
+
+    /// A mesh again, as it was pickled.
+    #[staticmethod]
+    fn _restored<'py>(
+        vertices: &Bound<'py, PyAny>,
+        faces: &Bound<'py, PyAny>,
+        fill: &str,
+        unit: Option<String>,
+        displacement: f64,
+    ) -> PyResult<Bound<'py, Mesh>> {
+        let py = vertices.py();
+        let vertices = Rows::of(vertices, "vertices")?.list().to_vec();
+        let mesh = TriangleMesh::new(vertices, indices(faces)?).or_raise(py)?;
+        let mesh = if displacement > 0.0 { mesh.with_deviation(displacement).or_raise(py)? } else { mesh };
+        Mesh::bound(py, mesh, words::value(py, fill)?, unit, None)
     }
 
     /// A mesh of trimesh, or of anything else that has `vertices` and `faces`.
@@ -225,7 +243,10 @@ impl Mesh {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let again = from_package!(slf.py(), "leafless._pickle", "mesh")?;
-        let arguments = (Mesh::vertices(slf)?, Mesh::faces(slf)?, slf.get().fill());
+        let own = slf.get();
+        // What is proven of a mesh accounts for how far its vertices were moved, and so must what is proven of the copy.
+        let displacement = own.mesh.displacement();
+        let arguments = (Mesh::vertices(slf)?, Mesh::faces(slf)?, own.fill(), own.unit.clone(), displacement);
         Ok((again, arguments.into_bound_py_any(slf.py())?))
     }
 }

@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// - `gradient(boxes)` bounds a function f over the boxes, where the solid is f ≤ 0: a pair of arrays of shape (n, 2), which hold the
 ///   value in the middle of each box, and (n, 3, 2), the derivatives in all of it. Measures need far fewer cells with it. NaN says
 ///   nothing.
-/// - `bounds`, an attribute or a property: a lower and an upper corner between which all of the shape lies.
+/// - `bounds`, an attribute of the class or a property: a lower and an upper corner between which all of the shape lies.
 ///
 /// The methods are called from several threads, one at a time. Exceptions in them end the work, and come out of it.
 ///
@@ -127,6 +127,9 @@ impl Methods {
             |py| points_of(py, points),
             |found| numbers(&found, "float64", "inside", &[points.len()]),
         )?;
+        if found.iter().any(|found| found.is_nan()) {
+            return Err(carried(PyValueError::new_err("inside: NaN is neither true nor false")));
+        }
         for (inside, found) in inside.iter_mut().zip(found) {
             *inside = found != 0.0;
         }
@@ -207,11 +210,13 @@ pub fn given(object: &Bound<'_, PyAny>) -> PyResult<Given> {
     let py = object.py();
     let inherited = py.get_type::<Solid>().getattr("bounds")?;
     if !object.get_type().getattr("bounds")?.is(&inherited) {
-        let [min, max] = crate::frame::corners(&object.getattr("bounds")?, "bounds")?;
-        let bounds = Bounds::new(min, max);
-        let bounds =
-            bounds.ok_or_else(|| PyValueError::new_err("bounds: the lower corner must come first"))?;
-        callback = callback.with_bounds(bounds);
+        let told = object.getattr("bounds")?;
+        if !told.is_none() {
+            let [min, max] = crate::frame::corners(&told, "bounds")?;
+            let bounds = Bounds::new(min, max);
+            let first = || PyValueError::new_err("bounds: the lower corner must come first");
+            callback = callback.with_bounds(bounds.ok_or_else(first)?);
+        }
     }
     Ok(Given { calls_python: true, ..Given::new(AnySolid::new(callback)) })
 }

@@ -16,7 +16,7 @@ use leafless::solid::Prepared;
 use leafless::{
     AnySolid, Bounds, Control, Frame as Inner, Membership, Proof, Ray, Solid as _, cast_rays, contains,
 };
-use pyo3::exceptions::{PyNotImplementedError, PyTypeError};
+use pyo3::exceptions::{PyException, PyNotImplementedError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, OnceLock};
@@ -129,8 +129,8 @@ impl Solid {
         Ok(array.transpose()?.map(Bound::into_any))
     }
 
-    /// Whether points lie inside. `points` has the shape (n, 3), in model units; the answer is an array of `Membership`. A single point
-    /// has a single answer. A point in an undecided cell of an octree is UNDECIDED, and so is a point outside of the frame about which
+    /// Whether points lie inside. `points` has the shape (n, 3), in model units. The answer is an array of the codes of `Membership`, of type
+    /// uint8; compare it, as in `points[part.contains(points) == INSIDE]`. A single point has a single answer. A point in an undecided cell of an octree is UNDECIDED, and so is a point outside of the frame about which
     /// nothing is known. On the boundary both answers are right.
     ///
     /// >>> ball = Csg.ball([0, 0, 0], 1)
@@ -300,7 +300,8 @@ impl Solid {
         // What cannot be shown is told in words.
         match from_package!(slf.py(), "leafless._leafless", "render")?.call1((slf,)) {
             Ok(picture) => picture.call_method0("_repr_png_").map(Some),
-            Err(_) => Ok(None),
+            Err(error) if error.is_instance_of::<PyException>(slf.py()) => Ok(None),
+            Err(error) => Err(error),
         }
     }
 

@@ -29,9 +29,11 @@ const SNAP: Snap = Snap::Fat;
 pub struct SurfaceReport {
     /// "faces", "adaptive", "cubes", "nets", "shrink" or "simplify".
     method: &'static str,
-    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the mesh (model units):
-    /// proven. Infinite if nothing is known.
+    /// No point of the mesh is further from the solid's boundary than that, and no point of the boundary is further from the mesh
+    /// (model units): proven. Infinite if nothing is known.
     pub deviation: f64,
+    /// Whether the deviation is that from another mesh, of which no deviation is known: `simplify` of a mesh from a file.
+    pub from_mesh: bool,
     /// Pairs of triangles that intersect each other, where the method counts them.
     intersecting_pairs: u64,
 }
@@ -39,7 +41,7 @@ pub struct SurfaceReport {
 #[pymethods]
 impl SurfaceReport {
     fn __repr__(&self) -> String {
-        let SurfaceReport { method, deviation, intersecting_pairs } = self;
+        let SurfaceReport { method, deviation, intersecting_pairs, .. } = self;
         format!(
             "<SurfaceReport: {method}, deviation {deviation:.3e}, {intersecting_pairs} intersecting pairs>"
         )
@@ -112,7 +114,12 @@ pub fn surface<'py>(
         return made(
             py,
             mesh,
-            SurfaceReport { method: "cubes", deviation: f64::INFINITY, intersecting_pairs: 0 },
+            SurfaceReport {
+                method: "cubes",
+                deviation: f64::INFINITY,
+                from_mesh: false,
+                intersecting_pairs: 0,
+            },
         );
     }
     let stored = solid.cast::<Octree>().ok().map(|octree| octree.get().octree.clone());
@@ -130,7 +137,11 @@ pub fn surface<'py>(
             Method::Shrink => "shrink",
             _ => "cubes",
         };
-        return made(py, mesh, SurfaceReport { method, deviation: f64::INFINITY, intersecting_pairs: 0 });
+        return made(
+            py,
+            mesh,
+            SurfaceReport { method, deviation: f64::INFINITY, from_mesh: false, intersecting_pairs: 0 },
+        );
     }
     if let Method::Cubes | Method::Shrink | Method::Nets = method {
         let frame = wish.of(py, &solid, EQUAL)?;
@@ -144,7 +155,11 @@ pub fn surface<'py>(
             _ => surfaces::marching_cubes_solid(&solid.shape, &frame, VertexPlacement::Crossing, control),
         })?;
         let method = if method == Method::Nets { "nets" } else { name };
-        return made(py, mesh, SurfaceReport { method, deviation: f64::INFINITY, intersecting_pairs: 0 });
+        return made(
+            py,
+            mesh,
+            SurfaceReport { method, deviation: f64::INFINITY, from_mesh: false, intersecting_pairs: 0 },
+        );
     }
     let bounds = ask::bounds(py, &solid)?;
     let longest = (0..3).map(|axis| bounds.max[axis] - bounds.min[axis]).fold(0.0, f64::max);
@@ -156,7 +171,8 @@ pub fn surface<'py>(
                 Ok(found) => {
                     let report = found.report();
                     let (deviation, intersecting_pairs) = (report.deviation, report.intersecting_pairs);
-                    let report = SurfaceReport { method: "faces", deviation, intersecting_pairs };
+                    let report =
+                        SurfaceReport { method: "faces", deviation, from_mesh: false, intersecting_pairs };
                     return Ok((found.into_mesh(), report));
                 }
                 // Of what is not bounded by surfaces the other method makes one.
@@ -167,7 +183,7 @@ pub fn surface<'py>(
         let found = surfaces::contour(&solid.shape, &fine, tolerance, control)?;
         let report = found.report();
         let (deviation, intersecting_pairs) = (report.deviation, report.intersecting_pairs);
-        let report = SurfaceReport { method: "adaptive", deviation, intersecting_pairs };
+        let report = SurfaceReport { method: "adaptive", deviation, from_mesh: false, intersecting_pairs };
         Ok((found.into_mesh(), report))
     })?;
     made(py, mesh, report)
@@ -184,8 +200,12 @@ pub fn simplify<'py>(
     let (py, own) = (mesh.py(), mesh.get());
     let found = Limits::of(limits)?.run(py, |control| surfaces::simplify(&own.mesh, tolerance, control))?;
     let report = found.report();
-    let (deviation, intersecting_pairs) = (report.deviation, report.intersecting_pairs);
-    let report = SurfaceReport { method: "simplify", deviation, intersecting_pairs };
+    // What the mesh was off before, and what it is off now.
+    let before = own.deviation();
+    let deviation = before.map_or(report.deviation, |before| (before + report.deviation).next_up());
+    let intersecting_pairs = report.intersecting_pairs;
+    let report =
+        SurfaceReport { method: "simplify", deviation, from_mesh: before.is_none(), intersecting_pairs };
     Mesh::bound(py, found.into_mesh(), own.fill, own.unit.clone(), Some(report))
 }
 

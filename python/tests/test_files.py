@@ -2,6 +2,7 @@
 
 import multiprocessing
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -121,6 +122,10 @@ def test_what_is_wrong_is_told(octree, tmp_path):
         lf.open(tmp_path / "what.txt")
     with pytest.raises(lf.ArgumentError, match=r"\.stl"):
         lf.save(lf.surface(octree), tmp_path / "mesh.xyz")
+    with pytest.raises(lf.ArgumentError, match=r"\.lfl"):
+        lf.save(octree, tmp_path / "octree.stl")
+    with pytest.raises(ValueError, match="mapped"):
+        lf.map("memory://some/plate.lfl")
     with pytest.raises(TypeError, match="build makes"):
         lf.save(lf.Csg.ball([0, 0, 0], 1), tmp_path / "ball.lfl")
     assert lf.open(path) == octree
@@ -147,6 +152,29 @@ def test_mapped_files_are_pickled_by_their_path(octree, tmp_path):
         pickle.loads(data)
     # What is mapped stays what it was.
     assert mapped == octree
+
+
+def test_pickled_meshes_keep_their_doubt(tmp_path):
+    # The faces of a cube, whose common edges differ by rounding.
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    soup = np.concatenate([corners[quad] + 1e-12 * k for k, quad in enumerate(quads)])
+    faces = [[4 * k + i for i in t] for k in range(6) for t in ([0, 1, 2], [0, 2, 3])]
+    mesh = lf.Mesh(soup, faces).sewn()
+    assert mesh.is_closed and mesh.report()["sewn"] > 0
+    again = pickle.loads(pickle.dumps(mesh))
+    one, other = lf.measure(mesh).volume, lf.measure(again).volume
+    assert one.width > 1e-13 and other.width > 0.5 * one.width and other.lower < 1 < other.upper
+
+
+def test_scenes_are_found_from_anywhere(tetrahedron, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    lf.save(tetrahedron, "t.stl")
+    Path("s.csg").write_text('import("t.stl");')
+    data = pickle.dumps(lf.open("s.csg"))
+    (tmp_path / "other").mkdir()
+    monkeypatch.chdir(tmp_path / "other")
+    assert pickle.loads(data).contains([0.1, 0.1, 0.1]) == lf.INSIDE
 
 
 def ask(solid, points):

@@ -101,3 +101,18 @@ def test_pictures(plate):
             lf.render(plate, **wrong)
     with pytest.raises(lf.ArgumentError):
         lf.render()
+
+
+def test_simplified_meshes_add_up_what_they_are_off():
+    ball = lf.Csg.ball([0, 0, 0], 1)
+    first = lf.surface(ball, tolerance=0.02)
+    few = lf.simplify(first, 0.02)
+    report = few.surface_report
+    assert not report.from_mesh and report.deviation > first.surface_report.deviation
+    # The farthest of many points of its triangles is no farther than that.
+    corners = few.vertices[few.faces]
+    weights = np.random.default_rng(0).dirichlet([1, 1, 1], 20_000)
+    points = np.einsum("nk,nkd->nd", weights, corners[np.random.default_rng(1).integers(0, len(few), 20_000)])
+    assert np.abs(np.linalg.norm(points, axis=1) - 1).max() <= report.deviation
+    # Nothing is known of a mesh that comes as it is.
+    assert lf.simplify(lf.Mesh(first.vertices, first.faces), 0.02).surface_report.from_mesh

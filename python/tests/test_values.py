@@ -42,8 +42,11 @@ def test_arrays_of_intervals():
     assert some.contain([[1, 4], [4, 1e9]]).tolist() == [[True, False], [True, True]]
     assert repr(some) == "Intervals([[1, 2 to 3], [3 to 5, at least 4]])"
     assert len(list(some)) == 2 and some == lf.Intervals(some.lower, some.upper)
-    with pytest.raises(ValueError):
-        lf.Intervals([1], [1, 2])
+    for wrong in (([1], [1, 2]), ([2], [1]), ([np.nan], [1])):
+        with pytest.raises(ValueError):
+            lf.Intervals(*wrong)
+    with pytest.raises(TypeError, match="contain"):
+        2.0 in some
 
 
 def test_frame():

@@ -234,3 +234,25 @@ def test_a_shape_may_ask_the_library():
             return np.where(found.lower > 0, found.lower, np.where(found.upper < 0, found.upper, 0))
 
     assert 4 / 3 * np.pi in lf.build(Asking(), depth=3).volume
+
+
+def test_a_shape_must_not_wait_for_its_own_octree():
+    class Curious(Distant):
+        def distance(self, points):
+            return super().distance(points) + 0 * lazy.splits
+
+    lazy = lf.LazyOctree(Curious())
+    with pytest.raises(RuntimeError, match="at work"):
+        lazy.refine(3)
+    assert "LazyOctree" in repr(lazy)
+
+
+def test_interrupts_come_through():
+    class Interrupted(lf.Shape):
+        bounds = [[0, 0, 0], [1, 1, 1]]
+
+        def classify(self, boxes):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        Interrupted()._repr_png_()

@@ -62,6 +62,8 @@ def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDe
     >>> map(path).contains([0, 0, 0])
     <Membership.INSIDE: 1>
     """
+    if _url(path) is not None:
+        raise ValueError(f"path: only a file of this machine can be mapped, not {path}; open reads it")
     return _leafless.map_path(os.fspath(path), verify=verify)
 
 

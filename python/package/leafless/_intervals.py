@@ -30,6 +30,8 @@ class Intervals:
         self.upper = np.asarray(upper, dtype=np.float64)
         if self.lower.shape != self.upper.shape:
             raise ValueError("lower and upper must have one shape")
+        if not (self.lower <= self.upper).all():
+            raise ValueError("lower must not be above upper, and neither may be NaN")
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -54,6 +56,9 @@ class Intervals:
         return (self.lower <= values) & (values <= self.upper)
 
     # Whether an axis is left, and with it an array, depends on how many there are.
+    def __contains__(self, value: object) -> bool:
+        raise TypeError("which of the intervals? intervals.contain(values) tells of each")
+
     @overload
     def __getitem__(self, index: slice | list[int] | list[bool] | npt.NDArray[Any]) -> Intervals: ...
     @overload

@@ -18,8 +18,8 @@ def csg(name: str, arguments: tuple[Any, ...]) -> Csg:
     return made
 
 
-def mesh(vertices: npt.NDArray[np.float64], faces: npt.NDArray[np.uint32], fill: _Fill) -> Mesh:
-    return Mesh(vertices, faces, fill=fill)
+def mesh(vertices: Any, faces: Any, fill: Any, unit: str | None, displacement: float) -> Mesh:
+    return Mesh._restored(vertices, faces, fill, unit, displacement)
 
 
 def octree(data: bytes) -> Octree:
