@@ -251,7 +251,10 @@ pub fn scene<'py>(
     name: &Path,
 ) -> PyResult<Bound<'py, PyAny>> {
     // The recipe must find the files from anywhere.
-    let folder = folder.map(std::path::absolute).transpose().map_err(Error::Io).or_raise(py)?;
+    let here = |folder: &Path| {
+        std::path::absolute(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
+    };
+    let folder = folder.map(here).transpose().map_err(Error::Io).or_raise(py)?;
     let folder = folder.as_deref();
     let whole = Limits::default().run(py, |_| {
         let scene = read_scene(text, folder).map_err(|error| error.of_file(name))?;
