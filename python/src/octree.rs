@@ -239,6 +239,9 @@ impl Octree {
 
     /// The tag of the finest cell with these indices along x, y and z.
     fn tag_at<'py>(&self, py: Python<'py>, at: [u32; 3]) -> PyResult<Bound<'py, PyAny>> {
+        if at.iter().any(|&index| index >= self.octree.frame().cells()) {
+            return Err(refused(py, "at", "must be a cell of the frame"));
+        }
         from_package!(py, "leafless._answers", "Tag")?.call1((self.octree.view().tag_at(at) as u8,))
     }
 
@@ -435,7 +438,14 @@ pub fn build<'py>(
     };
     let deepest = match &surfaces {
         None => DEPTH,
-        Some(options) => options.frame(&crate::ask::bounds(py, &solid)?).or_raise(py)?.depth(),
+        Some(options) => {
+            // (A frame tells its depth.)
+            if frame.is_some() {
+                DEPTH
+            } else {
+                options.frame(&crate::ask::bounds(py, &solid)?).or_raise(py)?.depth()
+            }
+        }
     };
     let frame = Wish { frame, depth }.of(py, &solid, deepest)?;
     if surfaces.is_some() && rule != Rule::Certified {

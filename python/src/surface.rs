@@ -8,7 +8,7 @@ use crate::solid::given;
 use crate::volume::Volume;
 use crate::work::Limits;
 use leafless::surface::{self as surfaces, Resolve, Snap, VertexPlacement};
-use leafless::{Error, FillRule, TriangleMesh, marching_cubes};
+use leafless::{Bounds, Error, FillRule, TriangleMesh, marching_cubes};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -161,7 +161,10 @@ pub fn surface<'py>(
             SurfaceReport { method, deviation: f64::INFINITY, from_mesh: false, intersecting_pairs: 0 },
         );
     }
-    let bounds = ask::bounds(py, &solid)?;
+    let bounds = match frame {
+        Some(FrameLike(frame)) => Bounds::of(&frame),
+        None => ask::bounds(py, &solid)?,
+    };
     let longest = (0..3).map(|axis| bounds.max[axis] - bounds.min[axis]).fold(0.0, f64::max);
     let tolerance = tolerance.unwrap_or(TOLERANCE * longest);
     let (deep, fine) = (wish.of(py, &solid, DEEP)?, wish.of(py, &solid, FINE)?);

@@ -118,6 +118,9 @@ def test_cells_add_up(plate):
     assert np.isclose(full, octree.volume.lower) and np.isclose(full + partial, octree.volume.upper)
     assert len(octree.cells("full")) == (cells.tag == lf.FULL).sum()
     assert np.isclose((edges**3).sum(), octree.frame.edge**3)
+    assert octree.tag_at([0, 0, 0]) in tuple(lf.Tag)
+    with pytest.raises(lf.ArgumentError, match="^at: "):
+        octree.tag_at([1 << octree.frame.depth, 0, 0])
     levels = octree.statistics()
     assert sum(level["full"] for level in levels) == len(octree.cells("full"))
 

@@ -52,6 +52,20 @@ def test_contact_is_not_overlap():
     assert lf.interference(lf.Csg.cylinder(2.0005, -5, 5), bore).verdict == "overlapping"
 
 
+def test_one_bar_of_progress(capsys):
+    pytest.importorskip("tqdm")
+    lf.deviation(BLOCK, lf.Csg.cuboid([0, 0, 0], [2, 2, 2.1]), tolerance=0.1, progress=True)
+    assert capsys.readouterr().err.count("\n") <= 1
+
+
+def test_a_given_frame_stands_for_bounds():
+    frame = lf.Frame([-4, -4, -4], 8, 6)
+    around = ~lf.Csg.ball([0, 0, 0], 1)
+    assert 512 - 4 / 3 * np.pi in lf.build(around, frame, surfaces=True).volume
+    with pytest.raises(lf.ArgumentError, match="frame"):
+        lf.build(around, surfaces=True)
+
+
 def test_deviation():
     found = lf.deviation(BLOCK, lf.Csg.cuboid([0, 0, 0], [2, 2, 2.1]), tolerance=0.01)
     assert 0.1 in found.distance and found.within(0.2) == "yes" and found.within(0.05) == "no"
