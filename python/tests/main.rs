@@ -16,13 +16,30 @@ fn package() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The extension module: cargo puts it beside the folder of this program.
+/// Builds the extension module, which nothing links, so that cargo does not build it for this program. The arguments are those of the
+/// tests in C, so that all that both need is compiled once.
 fn extension() -> PathBuf {
     let program = std::env::current_exe().expect("a program has a path");
+    // …/debug/deps/python-…
+    let folder = program.ancestors().nth(2).expect("cargo has folders for programs");
+    let profile = if folder.ends_with("release") { "release" } else { "test" };
+    let status = Command::new(env!("CARGO"))
+        .args([
+            "build",
+            "--quiet",
+            "--lib",
+            "--features",
+            "leafless-capi/test",
+            "--test",
+            "c_api",
+            "--profile",
+            profile,
+        ])
+        .current_dir(package().parent().expect("the package lies in the repository"))
+        .status();
+    assert!(status.unwrap().success(), "the extension module was not built");
     let ending = if cfg!(target_os = "macos") { "dylib" } else { "so" };
-    let found =
-        program.ancestors().skip(1).take(2).map(|folder| folder.join(format!("lib_leafless.{ending}")));
-    found.into_iter().find(|path| path.exists()).expect("cargo builds the library before its tests")
+    folder.join(format!("lib_leafless.{ending}"))
 }
 
 #[test]
