@@ -128,12 +128,12 @@ mod walk;
 pub use control::Control;
 pub use dexel::TriDexel;
 pub use error::Error;
-pub use lattice::{Affine, Bounds, Cell, Frame, Interval};
+pub use lattice::{Affine, Bounds, Cell, Frame, Interval, Shard};
 pub use mesh::{FillRule, TriangleMesh};
 pub use octree::{Metadata, Octree, OctreeRef, Proof, Tag};
 pub use op::{
-    LazyOctree, Rule, SurfaceOptions, build, build_extended, compact, complement, dexelize, difference,
-    intersection, union, xor,
+    LazyOctree, Rule, SurfaceOptions, build, build_extended, build_shard, compact, complement, dexelize,
+    difference, intersection, union, xor,
 };
 pub use query::{
     Clearance, Deviation, Interference, MassProperties, Membership, Ray, Tolerance, bounding_box, cast_rays,

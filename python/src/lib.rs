@@ -25,6 +25,7 @@ mod operators;
 mod pairs;
 mod picture;
 mod shape;
+mod shards;
 mod solid;
 mod surface;
 mod volume;
@@ -67,6 +68,8 @@ mod _leafless {
     use super::picture::{Picture, render};
     #[pymodule_export]
     use super::shape::Shape;
+    #[pymodule_export]
+    use super::shards::{MassSum, Shard, ShardedSolid, join, joined_statistics, measure_cell};
     #[pymodule_export]
     use super::solid::Solid;
     #[pymodule_export]

@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 
 /// Volume, centroid and inertia of a solid.
 #[pyclass(frozen, module = "leafless")]
-pub struct MassProperties(query::MassProperties);
+pub struct MassProperties(pub query::MassProperties);
 
 #[pymethods]
 impl MassProperties {

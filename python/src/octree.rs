@@ -7,11 +7,13 @@ use crate::error::{OrRaise, refused};
 use crate::frame::{Frame, corners};
 use crate::from_package;
 use crate::interval::Interval;
+use crate::shards::Shard;
 use crate::solid::{Given, Solid, given};
 use crate::voxels::VoxelRecords;
 use crate::words;
 use crate::work::Limits;
-use leafless::octree::CellFilter;
+use leafless::octree::{CellFilter, LevelStatistics, Statistics};
+use leafless::op::build_extended_shard;
 use leafless::{AnySolid, Metadata, Octree as Inner, Rule, SurfaceOptions, Tag, build_extended};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -150,26 +152,29 @@ impl Octree {
     /// Level by level, a list of dictionaries: `level`, `nodes`, `empty`, `full`, `partial` (cells that end there), and `volume`, an
     /// interval of what the cells down to that level tell.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let statistics = self.octree.statistics();
-        statistics
-            .levels()
-            .iter()
-            .map(|level| {
-                let told = PyDict::new(py);
-                told.set_item("level", level.level)?;
-                let counts = [
-                    ("nodes", level.nodes),
-                    ("empty", level.empty),
-                    ("full", level.full),
-                    ("partial", level.partial),
-                ];
-                for (name, count) in counts {
-                    told.set_item(name, count)?;
-                }
-                told.set_item("volume", Interval(level.volume))?;
-                Ok(told)
-            })
-            .collect()
+        told(py, &self.octree.statistics())
+    }
+
+    /// The `leafless.shards.Shard` of the octree: it knows the cells of the shard, and all others are PARTIAL.
+    #[pyo3(signature = (shard, **limits))]
+    fn shard<'py>(
+        &self,
+        py: Python<'py>,
+        shard: Shard,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        let view = self.octree.view();
+        let found = Limits::of(limits)?.run(py, |control| leafless::op::shard(view, shard.0, control))?;
+        Octree::bound(py, found)
+    }
+
+    /// The cells of a level of which nothing is known, by their places in Morton order: of the top of that level these are the cells
+    /// that need a shard.
+    fn open_cells<'py>(&self, py: Python<'py>, level: u8) -> PyResult<Bound<'py, PyAny>> {
+        let cells = Limits::default().run(py, |_| self.octree.view().open_cells(level))?;
+        let codes: Vec<u64> = cells.iter().map(|cell| cell.morton()).collect();
+        let count = codes.len();
+        Ok(arrays::array(py, codes, &[count])?.into_any())
     }
 
     /// What its file says of it, such as `name` and `units`.
@@ -400,6 +405,26 @@ impl Octree {
     }
 }
 
+/// Statistics as a list of dictionaries, level by level.
+pub fn told<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let level = |level: &LevelStatistics| {
+        let told = PyDict::new(py);
+        told.set_item("level", level.level)?;
+        let counts = [
+            ("nodes", level.nodes),
+            ("empty", level.empty),
+            ("full", level.full),
+            ("partial", level.partial),
+        ];
+        for (name, count) in counts {
+            told.set_item(name, count)?;
+        }
+        told.set_item("volume", Interval(level.volume))?;
+        Ok(told)
+    };
+    statistics.levels().iter().map(level).collect()
+}
+
 /// An octree of a solid: cells are split until they are decided, or the frame's depth is reached.
 ///
 /// `rule` says what becomes of cells that are undecided at the finest level. "certified" keeps the doubt, so every answer is
@@ -411,17 +436,20 @@ impl Octree {
 /// `frame` is a `Frame`, or an octree whose frame is used. Without it, the frame is a cube around the solid. `depth` replaces the frame's
 /// depth; a cube around the solid has the depth 9 by default.
 ///
+/// `shard`, a `leafless.shards.Shard`, makes only the cells of that; all others are PARTIAL.
+///
 /// >>> block = build(Csg.cuboid([0, 0, 0], [3, 2, 1]), depth=5)
 /// >>> block.volume, bool(block.proof)
 /// (6, True)
 #[pyfunction]
-#[pyo3(signature = (solid, frame=None, *, depth=None, rule="certified", surfaces=None, **limits))]
+#[pyo3(signature = (solid, frame=None, *, depth=None, rule="certified", surfaces=None, shard=None, **limits))]
 pub fn build<'py>(
     solid: &Bound<'py, PyAny>,
     frame: Option<FrameLike>,
     depth: Option<u8>,
     rule: &str,
     surfaces: Option<&Bound<'py, PyAny>>,
+    shard: Option<Shard>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, Octree>> {
     let py = solid.py();
@@ -451,9 +479,13 @@ pub fn build<'py>(
     if surfaces.is_some() && rule != Rule::Certified {
         return Err(refused(py, "rule", "must be 'certified' with surfaces, which decide what cells do not"));
     }
-    let octree = limits.run(py, |control| match &surfaces {
-        Some(options) => build_extended(&solid.shape, &frame, options, control),
-        None => leafless::build(&solid.shape, &frame, rule, control),
+    let octree = limits.run(py, |control| match (&surfaces, shard) {
+        (Some(options), None) => build_extended(&solid.shape, &frame, options, control),
+        (Some(options), Some(Shard(shard))) => {
+            build_extended_shard(&solid.shape, &frame, options, shard, control)
+        }
+        (None, None) => leafless::build(&solid.shape, &frame, rule, control),
+        (None, Some(Shard(shard))) => leafless::build_shard(&solid.shape, &frame, rule, shard, control),
     })?;
     Octree::bound(py, octree)
 }

@@ -35,6 +35,25 @@ impl Cell {
         Cell { level, at: self.at.map(|a| a >> (self.level - level)) }
     }
 
+    /// The place of the cell among those of its level in Morton order: the octants from the universe down, three bits each.
+    #[inline]
+    pub fn morton(self) -> u64 {
+        (1..=self.level).fold(0, |code, level| code << 3 | u64::from(self.ancestor(level).octant()))
+    }
+
+    /// The cell of a level at a place in Morton order; `None` unless `code` < 8^level and the level is at most
+    /// [`MAX_DEPTH`](crate::lattice::MAX_DEPTH).
+    pub fn from_morton(level: u8, code: u64) -> Option<Cell> {
+        let is_there = level <= super::MAX_DEPTH && code >> (3 * level) == 0;
+        is_there.then(|| (0..level).rev().fold(Cell::ROOT, |cell, k| cell.child((code >> (3 * k) & 7) as u8)))
+    }
+
+    /// Whether the cell lies in another one, or is it.
+    #[inline]
+    pub(crate) fn is_in(self, other: Cell) -> bool {
+        self.level >= other.level && self.ancestor(other.level) == other
+    }
+
     /// Which child of its parent this cell is.
     #[inline]
     pub fn octant(self) -> u8 {
@@ -63,5 +82,9 @@ mod tests {
         }
         assert_eq!(Cell::ROOT.child(5).at, [1, 0, 1]);
         assert_eq!(cell.first_at(5).at, [4, 24, 16]);
+        assert_eq!(Cell::from_morton(3, cell.morton()), Some(cell));
+        assert_eq!((Cell::ROOT.morton(), Cell::ROOT.child(5).child(3).morton()), (0, 0o53));
+        assert_eq!((Cell::from_morton(2, 64), Cell::from_morton(0, 0)), (None, Some(Cell::ROOT)));
+        assert_eq!(Cell::from_morton(21, 0), None);
     }
 }

@@ -33,6 +33,7 @@ mod inverse;
 mod moments;
 pub(crate) mod morton;
 mod ray;
+mod shard;
 pub(crate) mod valid;
 mod window;
 
@@ -50,6 +51,7 @@ pub use interval::{Interval, IntervalEnds};
 pub(crate) use inverse::Inverse;
 pub use moments::VolumeMoments;
 pub use ray::Ray;
+pub use shard::Shard;
 pub(crate) use valid::{LARGEST, SMALLEST};
 pub(crate) use window::Window;
 

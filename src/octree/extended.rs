@@ -6,6 +6,7 @@ use super::cuts::{
 use super::links::Step;
 use super::tag::Tag;
 use super::view::{OctreeRef, starts_half_way};
+use super::word::Planes;
 use crate::error::{Damage, Error};
 use crate::lattice::{Cell, VolumeMoments};
 use crate::memory;
@@ -206,10 +207,38 @@ impl<'a> OctreeRef<'a> {
     }
 
     /// The record and the level of the PARTIAL cell of the planes in which a cell lies.
-    fn record_above(&self, cuts: &CutsRef<'_>, cell: Cell) -> Option<(usize, u8)> {
+    pub(super) fn record_above(&self, cuts: &CutsRef<'_>, cell: Cell) -> Option<(usize, u8)> {
+        let (place, level) = self.partial_above(cell)?;
+        Some((place.map_or(CutsRef::ROOT, |(index, planes, c)| cuts.record(index, planes, c)), level))
+    }
+
+    /// The level of the PARTIAL cell of the planes in which a cell lies of which nothing is known; `None` if something is known of it, or
+    /// there is no such cell.
+    pub(super) fn open_above(&self, cell: Cell) -> Option<u8> {
+        if cell.level > self.frame().depth() || cell.at.iter().any(|&a| a >> cell.level != 0) {
+            return None;
+        }
+        let (_, open) = self.partial_above(cell)?;
+        let Some(cuts) = &self.cuts else { return Some(open) };
+        let (mut record, mut level) = self.record_above(cuts, cell)?;
+        loop {
+            match cuts.at(record) {
+                CellCut::None => return Some(open),
+                CellCut::Split(first) if level < cell.level => {
+                    level += 1;
+                    record = first + usize::from(cell.ancestor(level).octant());
+                }
+                _ => return None,
+            }
+        }
+    }
+
+    /// The PARTIAL cell of the planes in which a cell lies: its element, the planes of that and the number there, or nothing if it is
+    /// the universe; and its level.
+    fn partial_above(&self, cell: Cell) -> Option<(Option<(usize, Planes, u32)>, u8)> {
         match self.root_tag() {
             Tag::Branch => {}
-            Tag::Partial => return Some((CutsRef::ROOT, 0)),
+            Tag::Partial => return Some((None, 0)),
             _ => return None,
         }
         // The finest cell at its lower corner.
@@ -231,7 +260,7 @@ impl<'a> OctreeRef<'a> {
                 Step::Into(child) => index = child,
                 Step::Settled(Tag::Partial) => {
                     let level = cells - u8::from(planes.octant(c >> 3) == Tag::Partial);
-                    return (level <= cell.level).then(|| (cuts.record(index, planes, c), level));
+                    return (level <= cell.level).then_some((Some((index, planes, c)), level));
                 }
                 Step::Settled(_) => return None,
             }

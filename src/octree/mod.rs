@@ -21,8 +21,10 @@ pub(crate) mod metadata;
 mod neighbour;
 #[allow(clippy::module_inception)]
 pub(crate) mod octree;
+mod open_cells;
 mod path;
 mod proof;
+mod shard_statistics;
 pub(crate) mod stats;
 mod tag;
 pub(crate) mod view;

@@ -3,7 +3,7 @@
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Cell, Frame, morton};
+use crate::lattice::{Cell, Frame, Shard, morton};
 use crate::memory;
 use crate::octree::block::BLOCK_LEVELS;
 use crate::octree::links::Windows;
@@ -39,10 +39,55 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
     build_on(&solid.on(frame, control)?, rule, control)
 }
 
+/// Builds the cells of a [`Shard`] of what [`build`] makes: of all others nothing is known, whatever the rule. Time and memory
+/// are linear in the nodes that are visited, which are those of the shard and the way to it.
+///
+/// [`join`](super::join) makes of the top and of the shards of all cells that it leaves open the octree that [`build`] makes, byte
+/// for byte.
+///
+/// # Errors
+/// As [`build`]; [`Error::Argument`] if the frame does not have the shard's cells.
+///
+/// ```
+/// use leafless::op::join;
+/// use leafless::{Control, Csg, Frame, Rule, Shard, build, build_shard};
+/// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 7)?, Control::default());
+/// let ball = Csg::ball([0.1, 0.0, 0.0], 0.75)?;
+/// let make = |shard| build_shard(&ball, &frame, Rule::Certified, shard, &control);
+/// let mut trees = vec![make(Shard::Top { level: 2 })?];
+/// for cell in trees[0].view().open_cells(2)? {
+///     trees.push(make(Shard::Below(cell))?);
+/// }
+/// assert_eq!(trees.len(), 1 + 56);
+/// let views: Vec<_> = trees.iter().map(|tree| *tree.view()).collect();
+/// let whole = build(&ball, &frame, Rule::Certified, &control)?;
+/// assert_eq!(join(&views, &control)?.to_bytes()?, whole.to_bytes()?);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn build_shard<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    rule: Rule,
+    shard: Shard,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    shard.check(frame.depth())?;
+    build_cells(&solid.on(frame, control)?, rule, Some(shard), control)
+}
+
 /// As [`build`], of a solid that is on its frame already.
 pub(crate) fn build_on<C: Classifier>(
     classifier: &C,
     rule: Rule,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    build_cells(classifier, rule, None, control)
+}
+
+fn build_cells<C: Classifier>(
+    classifier: &C,
+    rule: Rule,
+    shard: Option<Shard>,
     control: &Control<'_>,
 ) -> Result<Octree, Error> {
     let job = Job::new(control);
@@ -52,8 +97,9 @@ pub(crate) fn build_on<C: Classifier>(
     // Shallow trees are made faster than threads, unless it is somebody else who takes the time.
     let worth = element_levels(frame.depth()) > 3 || hand.worker.likes_many();
     control.run(worth, |parallel| {
-        let builder = Builder { classifier, frame, rule, levels: element_levels(frame.depth()), parallel };
-        let mut writer = Writer::new(&job, frame.depth(), rule.is_binary());
+        let levels = element_levels(frame.depth());
+        let builder = Builder { classifier, frame, rule, shard, levels, parallel };
+        let mut writer = Writer::new(&job, frame.depth(), rule.is_binary() && shard.is_none());
         let root = hand.worker.root()?;
         if !matches!(root, Verdict::Partial(_)) {
             job.advance(WHOLE);
@@ -97,6 +143,8 @@ struct Builder<'a, C> {
     classifier: &'a C,
     frame: Frame,
     rule: Rule,
+    /// The cells that are wanted, unless all are.
+    shard: Option<Shard>,
     levels: usize,
     #[cfg_attr(not(feature = "parallel"), allow(dead_code))]
     parallel: bool,
@@ -130,10 +178,11 @@ impl<C: Classifier> Builder<'_, C> {
         writer: &mut Writer<'_>,
     ) -> Result<Tag, Error> {
         writer.job().check()?;
-        if hand.worker.likes_many() && cell.level + walk::LEVELS >= self.frame.depth() {
+        let is_whole = self.has_all_in(cell);
+        if is_whole && hand.worker.likes_many() && cell.level + walk::LEVELS >= self.frame.depth() {
             return self.gathered(e, cell, part, hand, writer);
         }
-        if cell.level + BLOCK_LEVELS == self.frame.depth() {
+        if is_whole && cell.level + BLOCK_LEVELS == self.frame.depth() {
             let block = match &mut hand.block {
                 Some(block) => block,
                 none => none.insert(self.rule.block()?),
@@ -145,18 +194,48 @@ impl<C: Classifier> Builder<'_, C> {
         }
         let mark = hand.worker.mark();
         let first = hand.parts.len();
-        let planes = self.split(e, cell, part, hand)?;
-        let tag = if e + 1 == self.levels {
-            let planes = self.resolve_finest(planes, cell, first, hand)?;
+        let mut planes = self.split(e, cell, part, hand)?;
+        let mut known = !0;
+        if let Some(shard) = self.shard.filter(|_| !is_whole) {
+            known = self.known(&shard, e, cell, planes, &hand.parts[first..]);
+            planes = planes.masked(known);
+            drop_unknown(&mut hand.parts, first, known);
+        }
+        let mut planes = if e + 1 == self.levels {
             self.progress(e, writer);
-            writer.put(e, planes)?
+            self.resolve_finest(planes, cell, first, hand)?
         } else {
-            let planes = self.children(e, cell, planes, first, hand, writer)?;
-            writer.put(e, planes)?
+            self.children(e, cell, planes, first, hand, writer)?
         };
+        // The rule concerns what the solid leaves undecided, not what the shard does not know.
+        planes.upper |= !known;
+        let tag = writer.put(e, planes)?;
         hand.parts.truncate(first);
         hand.worker.release(mark);
         Ok(tag)
+    }
+
+    /// Whether everything in a cell is wanted.
+    fn has_all_in(&self, cell: Cell) -> bool {
+        self.shard.is_none_or(|shard| shard.has_all_in(cell))
+    }
+
+    /// The cells of an element that a shard knows, of which some are wanted.
+    fn known(&self, shard: &Shard, e: usize, cell: Cell, planes: Planes, parts: &[(u8, Part<C>)]) -> u64 {
+        let cells = self.at(e, cell, 0).level;
+        let last = shard.last(self.frame.depth());
+        let goes_on = parts.iter().fold(0u64, |mask, &(c, _)| mask | 1 << c);
+        if cells == last + 1 {
+            // Octants are the last cells, and were split to find out what they are.
+            let [empty, full, partial] = planes.octants();
+            let goes_on =
+                (0..64).step_by(8).filter(|o| goes_on >> o & 0xFF != 0).fold(0, |mask, o| mask | 1 << o);
+            return (empty | full | partial & !goes_on) * 0xFF;
+        }
+        let outside =
+            (0..64u8).filter(|&c| usize::from(c) < self.cells(e) && shard.is_without(self.at(e, cell, c)));
+        let known = outside.fold(!0u64, |mask, c| mask & !(1 << c));
+        if cells == last && last < self.frame.depth() { known & !goes_on } else { known }
     }
 
     /// The cells of an element: two levels of the solid, or one for a root that starts half-way.
@@ -241,7 +320,9 @@ impl<C: Classifier> Builder<'_, C> {
         for i in first..hand.parts.len() {
             let (c, part) = hand.parts[i].clone();
             // Stored subtrees are copied, neighbours together.
-            if let Some(subtree) = self.stored(e + 1, &part, &hand.worker) {
+            let child = self.at(e, cell, c);
+            if let Some(subtree) = self.stored(e + 1, &part, &hand.worker).filter(|_| self.has_all_in(child))
+            {
                 result.set(c as u32, Tag::Branch);
                 match &mut run {
                     Some(run) if self.goes_on(run, &subtree, hand) => run.count += 1,
@@ -250,7 +331,7 @@ impl<C: Classifier> Builder<'_, C> {
                 continue;
             }
             self.copy(run.take(), hand, writer)?;
-            let tag = self.cell(e + 1, self.at(e, cell, c), &part, hand, writer)?;
+            let tag = self.cell(e + 1, child, &part, hand, writer)?;
             result.set(c as u32, tag);
             if e == 1 {
                 writer.job().advance(self.weight(e));
@@ -275,8 +356,8 @@ impl<C: Classifier> Builder<'_, C> {
             hand.parts[first..].iter(),
             || None,
             |own, (c, part)| {
-                let mut subtree = subtrees.sibling();
-                if let Some(stored) = self.stored(e + 1, part, from) {
+                let (mut subtree, child) = (subtrees.sibling(), self.at(e, cell, *c));
+                if let Some(stored) = self.stored(e + 1, part, from).filter(|_| self.has_all_in(child)) {
                     copy(&stored, 1, &mut subtree)?;
                     return Ok((*c, Tag::Branch, subtree));
                 }
@@ -286,7 +367,7 @@ impl<C: Classifier> Builder<'_, C> {
                 };
                 let mark = hand.worker.mark();
                 let part = hand.worker.hand_over(from, part)?;
-                let tag = self.cell(e + 1, self.at(e, cell, *c), &part, hand, &mut subtree)?;
+                let tag = self.cell(e + 1, child, &part, hand, &mut subtree)?;
                 hand.worker.release(mark);
                 if e == 1 {
                     subtree.job().advance(self.weight(e));
@@ -345,6 +426,7 @@ impl<C: Classifier> Builder<'_, C> {
             classifier: &&known,
             frame: self.frame,
             rule: self.rule,
+            shard: None,
             levels: self.levels,
             parallel: false,
         };
@@ -376,6 +458,15 @@ impl<C: Classifier> Builder<'_, C> {
             None => Ok(()),
         }
     }
+}
+
+/// Drops the parts from `first` on of cells that are not known.
+fn drop_unknown<P>(parts: &mut Vec<(u8, P)>, first: usize, known: u64) {
+    let mut place = 0;
+    parts.retain(|&(c, _)| {
+        place += 1;
+        place <= first || known >> c & 1 != 0
+    });
 }
 
 /// Neighbouring stored subtrees that are copied together: the place of the first one's part, their element

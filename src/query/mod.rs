@@ -72,7 +72,8 @@ pub use distance::{DISTANCE_SPLITS, DistanceTo, NearCell, NearPoint, PointDistan
 pub use extent::{BOUNDING_BOX_SPLITS, Extent, bounding_box};
 pub use interference::{Ball, Interference, Overlap, interference, interference_at};
 pub use measure::{
-    AREA_SPLITS, MEASURE_SPLITS, MassProperties, StopReason, SurfaceArea, Tolerance, measure, surface_area,
+    AREA_SPLITS, MEASURE_SPLITS, MassProperties, MassSum, StopReason, SurfaceArea, Tolerance, measure,
+    measure_in, surface_area,
 };
 pub use point::{Membership, PointCursor, PointTable};
 #[cfg(feature = "render")]

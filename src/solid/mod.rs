@@ -85,6 +85,7 @@ pub use prepared::Prepared;
 pub use question::{Ask, AskWhole, Chords, Direct, LayersQuestion, Question, WholeQuestion};
 pub(crate) use question::{AskDirect, AskLayers};
 pub use split_counter::SplitCounter;
+pub use stored::ShardedOctree;
 pub use subtree::Subtree;
 pub use trace::{
     BoundaryFacets, BoundaryPieces, BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrace,

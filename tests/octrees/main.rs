@@ -16,4 +16,5 @@ mod lazy;
 mod neighbours;
 mod proof;
 mod proof_table;
+mod shards;
 mod voxels;

@@ -15,16 +15,16 @@ use leafless::attribute::{
 };
 use leafless::layout::Item;
 use leafless::op::{
-    DexelOptions, Zone, difference_of, intersection_of, octree_from_dexel_ends, octree_from_dexels, resolve,
-    union_of, xor_of,
+    DexelOptions, Zone, build_extended_shard, difference_of, intersection_of, join, octree_from_dexel_ends,
+    octree_from_dexels, resolve, shard, union_of, xor_of,
 };
-use leafless::solid::{Adaptive, Band, Prepared, Samples, SplitCounter, Transform, VoxelGrid};
+use leafless::solid::{Adaptive, Band, Prepared, Samples, ShardedOctree, SplitCounter, Transform, VoxelGrid};
 use leafless::surface::DexelSolid;
 use leafless::voxel::{Symmetry, VoxelBoundary, VoxelOptions, VoxelRecords, VoxelRecordsRef, VoxelSolid};
 use leafless::{
-    Affine, AnySolid, Bounds, Callback, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid,
-    Metadata, Octree, Proof, Rule, Solid, SurfaceOptions, Tag, Verdict, Volume, build, build_extended,
-    compact, complement, dexelize, difference, file, intersection, marching_cubes, union, xor,
+    Affine, AnySolid, Bounds, Callback, Cell, Control, Csg, Error, FillRule, Frame, LazyOctree, MeshSolid,
+    Metadata, Octree, Proof, Rule, Shard, Solid, SurfaceOptions, Tag, Verdict, Volume, build, build_extended,
+    build_shard, compact, complement, dexelize, difference, file, intersection, marching_cubes, union, xor,
 };
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -397,6 +397,47 @@ const WAYS: &[Way] = &[
         name: "difference of one",
         through: &["op/boolean.rs difference_of"],
         make: |a| of_ball(difference_of(&[*a.tree.view()], &CONTROL)?),
+        proven: SAME,
+    },
+    // ---- shards
+    Way {
+        name: "shards, joined",
+        through: &["op/build.rs build_shard", "op/shards.rs shard", "op/shards.rs join"],
+        make: |a| {
+            let top = shard(a.tree.view(), Shard::Top { level: 1 }, &CONTROL)?;
+            let mut trees = vec![top];
+            for cell in trees[0].view().open_cells(1)? {
+                let below = Shard::Below(cell);
+                trees.push(build_shard(&a.tree, &frame(DEPTH), Rule::Certified, below, &CONTROL)?);
+            }
+            let views: Vec<_> = trees.iter().map(|tree| *tree.view()).collect();
+            let joined = join(&views, &CONTROL)?;
+            assert_eq!(file::to_bytes(&joined)?, file::to_bytes(&a.tree)?);
+            of_ball(joined)
+        },
+        proven: SAME,
+    },
+    Way {
+        name: "shards that are not joined",
+        through: &["ShardedOctree", "solid/stored/sharded.rs new", "op/shards.rs shard"],
+        make: |a| {
+            let top = shard(a.tree.view(), Shard::Top { level: 2 }, &CONTROL)?;
+            let cells = top.view().open_cells(2)?;
+            let one = |cell| Ok((cell, shard(a.tree.view(), Shard::Below(cell), &CONTROL)?));
+            let shards = cells.into_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
+            asked(&ShardedOctree::new(top, shards)?)
+        },
+        proven: SAME,
+    },
+    Way {
+        name: "one shard, extended",
+        through: &["op/extended/build.rs build_extended_shard", "op/shards.rs join"],
+        make: |a| {
+            let below = Shard::Below(Cell { level: 1, at: [0; 3] });
+            let options = SurfaceOptions::default();
+            let one = build_extended_shard(&a.csg(), &frame(DEPTH), &options, below, &CONTROL)?;
+            of_ball(join(&[*one.view()], &CONTROL)?)
+        },
         proven: SAME,
     },
     // ---- expressions

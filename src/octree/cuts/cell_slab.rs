@@ -61,8 +61,7 @@ const MADE_FOR_A_CELL: u64 = 1 << 63;
 impl CellSlab {
     /// The `index`-th slab of a cell, up to the third.
     pub(crate) fn new(cell: Cell, index: u8, steps: &Steps) -> CellSlab {
-        let octants =
-            (1..=cell.level).fold(1u64, |all, level| all << 3 | u64::from(cell.ancestor(level).octant()));
+        let octants = 1 << (3 * cell.level) | cell.morton();
         let [a, b] = steps.others.map(|own| u64::from(own as u16));
         let offset = (steps.offset as u32 & 0x7_FFFF).into();
         let parts = [
@@ -107,6 +106,15 @@ impl CellSlab {
     /// Its number among all slabs of its origin.
     pub(crate) fn number(self) -> u64 {
         MADE_FOR_A_CELL | self.home
+    }
+
+    /// The number of the `index`-th slab of a cell, up to the sixth, whether it has the form of this or not.
+    pub(crate) fn number_in(cell: Cell, index: u8) -> u64 {
+        let (octants, index) = (1 << (3 * cell.level) | cell.morton(), u64::from(index));
+        match index {
+            0..3 => MADE_FOR_A_CELL | index << CELL | octants,
+            _ => (index - 2) << CELL | octants,
+        }
     }
 
     /// Whether the words are those of a slab of a cell of an octree that is so deep.

@@ -4,9 +4,9 @@ use super::element::{Family, Fate, Output, Source, element};
 use super::function::{Done, Function, Known, MOST_KEPT};
 use crate::control::{Control, Job, WHOLE};
 use crate::error::Error;
-use crate::lattice::{Bounds, Cell, Cube, Frame, valid};
+use crate::lattice::{Bounds, Cell, Cube, Frame, Shard, valid};
 use crate::memory;
-use crate::octree::cuts::{Cut, Origin, StoredMoments};
+use crate::octree::cuts::{CellSlab, Cut, Origin, StoredMoments};
 use crate::octree::view::{element_levels, starts_half_way};
 use crate::octree::writer::Writer;
 use crate::octree::{Octree, Tag};
@@ -106,6 +106,32 @@ pub fn build_extended<S: Solid>(
     options: &SurfaceOptions,
     control: &Control<'_>,
 ) -> Result<Octree, Error> {
+    build_cells(solid, frame, options, None, control)
+}
+
+/// Builds the cells of a [`Shard`] of what [`build_extended`] makes: of all others nothing is known. [`join`](super::join) makes of
+/// the top and of the shards of all cells that it leaves open the octree that [`build_extended`] makes, byte for byte.
+///
+/// # Errors
+/// As [`build_extended`]; [`Error::Argument`] if the frame does not have the shard's cells.
+pub fn build_extended_shard<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    options: &SurfaceOptions,
+    shard: Shard,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    shard.check(frame.depth())?;
+    build_cells(solid, frame, options, Some(shard), control)
+}
+
+fn build_cells<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    options: &SurfaceOptions,
+    shard: Option<Shard>,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
     if let Some(tolerance) = options.tolerance {
         valid::length("tolerance", tolerance)?;
     }
@@ -135,6 +161,8 @@ pub fn build_extended<S: Solid>(
         let builder = Extended {
             classifier: &classifier,
             frame: *frame,
+            shard,
+            last: shard.map_or(frame.depth(), |shard| shard.last(frame.depth())),
             tolerance,
             layers,
             names: &names,
@@ -170,13 +198,15 @@ pub fn build_extended<S: Solid>(
         };
         let mut cuts = cuts.finish((tag == Tag::Partial).then_some(cut), by_size, group)?;
         if let Some((cuts, used)) = &mut cuts {
-            // Slabs are numbered as the table of surfaces is.
-            for (number, &id) in (0..).zip(&*used) {
-                let Some((layer, origin)) = (id as usize).checked_sub(exact).zip(origin) else { continue };
+            // Slabs have numbers that any shard of the tree gives them: their place in the solid's list, or one of their cell's.
+            for &id in &*used {
+                let Some(layer) = (id as usize).checked_sub(exact) else { continue };
                 // (A slab that another build made for a cell, and that has no origin, has none here.)
-                if layer >= shared.len() || layers[layer].cell_slab(frame).is_none() {
+                if layer >= shared.len() || origin.is_some() && layers[layer].cell_slab(frame).is_none() {
                     let half_space = &mut layers[layer].half_space;
-                    *half_space = half_space.identified(origin, number);
+                    let number =
+                        if layer < shared.len() { Some(layer as u64) } else { half_space.slab_number() };
+                    *half_space = half_space.identified(origin.zip(number));
                 }
             }
             let surfaces = used.iter().map(|&id| match (id as usize).checked_sub(exact) {
@@ -219,6 +249,10 @@ fn origin<S: Solid>(solid: &S, frame: &Frame, options: &SurfaceOptions) -> Optio
 struct Extended<'a, C> {
     classifier: &'a C,
     frame: Frame,
+    /// The cells that are wanted, unless all are.
+    shard: Option<Shard>,
+    /// The level at which cells are split no more.
+    last: u8,
     tolerance: Option<f64>,
     /// The same, if the solid has a list of layers.
     layers: Option<f64>,
@@ -343,6 +377,9 @@ impl<C: Classifier> Extended<'_, C> {
         slabs: &mut Vec<PlacedHalfSpace>,
     ) -> Result<(Fate<Part<C>>, bool), Error> {
         let part = match verdict {
+            _ if self.shard.is_some_and(|shard| shard.is_without(cell)) => {
+                return Ok((Fate::Ends(Cut::None), false));
+            }
             Verdict::Empty => return Ok((Fate::Settled(Tag::Empty), false)),
             Verdict::Full => return Ok((Fate::Settled(Tag::Full), false)),
             Verdict::Undecided => return Ok((Fate::Ends(Cut::None), false)),
@@ -365,7 +402,7 @@ impl<C: Classifier> Extended<'_, C> {
         self.quantise(cell, &mut slabs[before..]);
         let fate = match done {
             Some(done) => done.into(),
-            None if cell.level == self.frame.depth() && !wants_slabs => Fate::Ends(Cut::None),
+            None if cell.level == self.last && !wants_slabs => Fate::Ends(Cut::None),
             None => Fate::Goes(part),
         };
         Ok((fate, wants_slabs))
@@ -375,10 +412,17 @@ impl<C: Classifier> Extended<'_, C> {
     /// function needs; a home tells three apart.)
     fn quantise(&self, cell: Cell, own: &mut [PlacedHalfSpace]) {
         let tolerance = self.tolerance.unwrap_or(0.0);
-        for (index, slab) in (0..MOST_KEPT as u8).zip(own) {
-            if let Some(quantised) = slab.quantised(&self.frame, cell, index, tolerance) {
-                *slab = quantised;
-            }
+        for (index, slab) in (0u8..).zip(own) {
+            let quantised = match usize::from(index) < MOST_KEPT {
+                true => slab.quantised(&self.frame, cell, index, tolerance),
+                false => None,
+            };
+            // (Who made it is told when the tree is done.)
+            *slab = quantised.unwrap_or_else(|| {
+                let number = CellSlab::number_in(cell, index);
+                let half_space = slab.half_space.identified(Some(([0; 2], number)));
+                PlacedHalfSpace { half_space, placements: slab.placements.clone() }
+            });
         }
     }
 
@@ -395,7 +439,7 @@ impl<C: Classifier> Extended<'_, C> {
         {
             return Ok(Fate::Ends(cut));
         }
-        Ok(if cell.level == self.frame.depth() { Fate::Ends(Cut::None) } else { Fate::Goes(part) })
+        Ok(if cell.level == self.last { Fate::Ends(Cut::None) } else { Fate::Goes(part) })
     }
 
     /// The same function of the surfaces that differ, simplified. `None` if a surface has no exact numbers.
@@ -467,7 +511,7 @@ impl<C: Classifier> Extended<'_, C> {
         let done = if hand.worker.likes_many() {
             // Parts are left over where elements begin.
             let levels = if e == 0 && starts_half_way(self.frame.depth()) { LEVELS - 1 } else { LEVELS };
-            let last = (cell.level + levels).min(self.frame.depth());
+            let last = (cell.level + levels).min(self.last);
             let told = Told { builder: self, families: self.asked(cell, part, last, hand)? };
             element(&told, e, cell, &Asked::Children(0), hand)
         } else {

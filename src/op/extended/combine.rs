@@ -9,9 +9,9 @@ use super::function::{Done, Function, Known};
 use super::joint::JointSurfaces;
 use crate::control::{Control, Job, WHOLE};
 use crate::error::{Damage, Error};
-use crate::lattice::{Cell, Frame};
+use crate::lattice::{Cell, Frame, Shard};
 use crate::memory;
-use crate::octree::cuts::{CellCut, Cut, Cuts, CutsRef, Head, SurfacesRef};
+use crate::octree::cuts::{CellCut, Cut, Cuts, CutsRef, Head, StoredMoments, SurfacesRef};
 use crate::octree::links::Windows;
 use crate::octree::view::{OctreeRef, starts_half_way};
 use crate::octree::writer::Writer;
@@ -29,6 +29,8 @@ pub(in crate::op) enum Combination {
     All { flip: bool },
     /// The points that lie in an odd number of them.
     Odd,
+    /// One solid, of which each of them knows something.
+    Known,
 }
 
 /// Entries of all operands from which threads pay.
@@ -41,6 +43,16 @@ const MOST_IN_PARALLEL: usize = 1 << 12;
 pub(in crate::op) fn combine(
     operands: &[(OctreeRef<'_>, bool)],
     combination: Combination,
+    control: &Control<'_>,
+) -> Result<Octree, Error> {
+    combine_cells(operands, combination, None, control)
+}
+
+/// The same in the cells of a shard, if there is one.
+pub(in crate::op) fn combine_cells(
+    operands: &[(OctreeRef<'_>, bool)],
+    combination: Combination,
+    shard: Option<Shard>,
     control: &Control<'_>,
 ) -> Result<Octree, Error> {
     let Some((first, _)) = operands.first() else {
@@ -59,16 +71,18 @@ pub(in crate::op) fn combine(
         entries += tree.element_count() + tree.brick_count() + records as u64;
     }
     let surfaces = JointSurfaces::new(&frame, tables)?;
-    let (is_odd, flip) = match combination {
-        Combination::All { flip } => (false, flip),
-        Combination::Odd => (true, false),
-    };
-    let walk = Walk { frame, operands, is_odd, flip, surfaces };
+    let last = shard.map_or(frame.depth(), |shard| shard.last(frame.depth()));
+    let walk = Walk { frame, operands, combination, shard, last, surfaces };
+    let exterior = walk.exterior()?;
+    // Without surfaces nothing needs be noted of cells that are PARTIAL.
+    let has_cuts = operands.iter().any(|(tree, _)| tree.cuts.is_some());
     control.run(entries > WORTH_THREADS, |parallel| {
         let parallel = parallel && operands.len() <= MOST_IN_PARALLEL;
         let walk = Threads { walk: &walk, parallel };
         let mut writer = Writer::new(&job, frame.depth(), false);
-        writer.note_runs();
+        if has_cuts {
+            writer.note_runs();
+        }
         let mut hand = Hand {
             windows: memory::collected(operands.iter().map(|(tree, _)| Windows::new(tree)))?,
             out: Output::new(writer, &frame)?,
@@ -86,11 +100,17 @@ pub(in crate::op) fn combine(
         let Output { writer, cuts } = hand.out;
         let surfaces = &walk.walk.surfaces;
         let (order, group) = (|a, b| surfaces.order(a, b), |id| surfaces.group(id));
-        let cuts = match cuts.finish((tag == Tag::Partial).then_some(cut), order, group)? {
-            Some((cuts, used)) => Some(Cuts { surfaces: surfaces.written(&used)?, ..cuts }),
+        let cuts = match has_cuts {
+            true => cuts.finish((tag == Tag::Partial).then_some(cut), order, group)?,
+            false => None,
+        };
+        let cuts = match cuts {
+            Some((cuts, used)) => {
+                let (surfaces, moments) = (surfaces.written(&used)?, walk.walk.moments());
+                Some(Cuts { surfaces, moments, ..cuts })
+            }
             None => None,
         };
-        let exterior = walk.walk.exterior();
         Ok(writer.finish_with(&frame, tag, exterior, cuts)?.with_proof(walk.walk.proof()))
     })
 }
@@ -126,6 +146,18 @@ struct Copied {
     flip: bool,
 }
 
+/// What two trees know together of one cell, PARTIAL being nothing.
+fn both(one: Tag, other: Tag) -> Result<Tag, Error> {
+    match (one, other) {
+        (Tag::Partial, known) | (known, Tag::Partial) => Ok(known),
+        (one, other) if one == other => Ok(one),
+        _ => {
+            let problem = "are not of one solid: one says FULL where another one says EMPTY";
+            Err(Error::Argument { name: "trees", problem })
+        }
+    }
+}
+
 /// What is known of a cell that is to be split.
 enum Part {
     /// One operand is left, and the cell has an element there.
@@ -152,26 +184,42 @@ impl<'j> AsMut<Output<'j>> for Hand<'j> {
 struct Walk<'a> {
     frame: Frame,
     operands: &'a [(OctreeRef<'a>, bool)],
-    /// Whether the points are meant that lie in an odd number of the operands, not those that lie in all.
-    is_odd: bool,
-    /// Whether the complement of the result is meant.
-    flip: bool,
+    combination: Combination,
+    /// The cells that are wanted, unless all are.
+    shard: Option<Shard>,
+    /// The level at which cells are split no more.
+    last: u8,
     surfaces: JointSurfaces<'a>,
 }
 
 impl Walk<'_> {
+    /// Whether the complement of what comes of the operands is meant.
+    fn flip(&self) -> bool {
+        self.combination == Combination::All { flip: true }
+    }
+
+    fn is_odd(&self) -> bool {
+        self.combination == Combination::Odd
+    }
+
     /// What is known outside of the universe.
-    fn exterior(&self) -> Tag {
+    fn exterior(&self) -> Result<Tag, Error> {
         let all =
             self.operands.iter().map(|(tree, flip)| Planes::uniform(tree.exterior()).complement_if(*flip));
-        let one = all.reduce(|a, b| match self.is_odd {
-            false => a.intersection(b),
-            true if [a, b].iter().any(|planes| planes.tag(0) == Tag::Partial) => {
-                Planes::uniform(Tag::Partial)
+        let one = match self.combination {
+            Combination::Known => {
+                return all.map(|planes| planes.tag(0)).try_fold(Tag::Partial, |all, tag| both(all, tag));
             }
-            true => a.xor(b),
-        });
-        one.unwrap_or(Planes::uniform(Tag::Partial)).complement_if(self.flip).tag(0)
+            Combination::All { .. } => all.reduce(Planes::intersection),
+            Combination::Odd => all.reduce(|a, b| {
+                if [a, b].iter().any(|planes| planes.tag(0) == Tag::Partial) {
+                    Planes::uniform(Tag::Partial)
+                } else {
+                    a.xor(b)
+                }
+            }),
+        };
+        Ok(one.unwrap_or(Planes::uniform(Tag::Partial)).complement_if(self.flip()).tag(0))
     }
 
     /// What the cells of the result prove.
@@ -180,9 +228,22 @@ impl Walk<'_> {
             if *flip { tree.proof().complement() } else { tree.proof() }
         };
         let one =
-            self.operands.iter().map(proof).reduce(|a, b| if self.is_odd { a.xor(b) } else { a.and(b) });
+            self.operands.iter().map(proof).reduce(|a, b| if self.is_odd() { a.xor(b) } else { a.and(b) });
         let one = one.unwrap_or(Proof::CERTIFIED);
-        if self.flip { one.complement() } else { one }
+        if self.flip() { one.complement() } else { one }
+    }
+
+    /// The moments of the solid, if that is the same as before.
+    fn moments(&self) -> Option<StoredMoments> {
+        match self.combination {
+            Combination::Known => self.operands.iter().find_map(|(tree, _)| tree.cuts?.moments).copied(),
+            _ => None,
+        }
+    }
+
+    /// Whether nothing is wanted of a cell.
+    fn is_without(&self, cell: Cell) -> bool {
+        self.shard.is_some_and(|shard| shard.is_without(cell))
     }
 
     fn operand(&self, of: u32) -> (&OctreeRef<'_>, bool) {
@@ -227,13 +288,39 @@ impl Walk<'_> {
         }
     }
 
+    /// What becomes of a cell of which these operands know something without deciding it, and all others know nothing.
+    fn known(&self, cell: Cell, open: Vec<(u32, Side)>) -> Fate<Part> {
+        let function = open.iter().find_map(|(_, side)| match *side {
+            Side::Function { ids, table, .. } => Some(Cut::Table { ids, table }),
+            _ => None,
+        });
+        if let Some(cut) = function {
+            return Fate::Ends(cut);
+        }
+        if open.is_empty() || cell.level == self.last {
+            return Fate::Ends(Cut::None);
+        }
+        match *open {
+            _ if self.shard.is_some_and(|shard| !shard.has_all_in(cell)) => {}
+            [(of, Side::Element { parent, index })] => {
+                return Fate::Goes(Part::Copy(Copied { of, parent, index, flip: false }));
+            }
+            [(of, Side::Records(first))] => {
+                let eight = core::array::from_fn(|k| self.taken(of, first + k, false));
+                return Fate::Ends(Cut::Split(Box::new(eight)));
+            }
+            _ => {}
+        }
+        Fate::Goes(Part::Open(open, false))
+    }
+
     /// What becomes of a cell in which these operands are not decided, and all others do not matter.
     fn fate(&self, cell: Cell, open: Vec<(u32, Side)>, flip: bool) -> Result<Fate<Part>, Error> {
-        let is_last = cell.level == self.frame.depth();
+        let is_last = cell.level == self.last;
         match *open {
             [] => {
                 // All hold, or none of an odd number.
-                let is_full = self.is_odd == flip;
+                let is_full = self.is_odd() == flip;
                 return Ok(Fate::Settled(if is_full { Tag::Full } else { Tag::Empty }));
             }
             [(of, Side::Element { parent, index })] => {
@@ -251,7 +338,7 @@ impl Walk<'_> {
         }
         let is_unknown = |(_, side): &(u32, Side)| matches!(side, Side::Unknown);
         let ends = |(_, side): &(u32, Side)| matches!(side, Side::Unknown | Side::Function { .. });
-        if open.iter().any(is_unknown) && (self.is_odd || open.iter().all(ends)) {
+        if open.iter().any(is_unknown) && (self.is_odd() || open.iter().all(ends)) {
             return Ok(Fate::Ends(Cut::None));
         }
         if open.iter().all(ends)
@@ -275,7 +362,7 @@ impl Walk<'_> {
             let own = Function::of_record(*ids, *table);
             all = Some(match all {
                 None => own,
-                Some(all) if self.is_odd => all.with(&own, |a, b| a ^ b)?,
+                Some(all) if self.is_odd() => all.with(&own, |a, b| a ^ b)?,
                 Some(all) => all.with(&own, |a, b| a & b)?,
             });
         }
@@ -401,7 +488,7 @@ impl Threads<'_, '_> {
                 },
             ));
         }
-        self.gathered(Cell::ROOT, met.into_iter(), self.walk.flip)
+        self.gathered(Cell::ROOT, met.into_iter(), self.walk.flip())
     }
 
     /// What becomes of a cell in which the operands are these.
@@ -412,17 +499,38 @@ impl Threads<'_, '_> {
         mut flip: bool,
     ) -> Result<Fate<Part>, Error> {
         let mut open = Vec::new();
+        if self.walk.combination == Combination::Known {
+            return self.gathered_known(cell, met);
+        }
+        let is_odd = self.walk.is_odd();
         for (of, met) in met {
             match met {
-                Met::Empty if !self.walk.is_odd => {
+                Met::Empty if !is_odd => {
                     return Ok(Fate::Settled(if flip { Tag::Full } else { Tag::Empty }));
                 }
-                Met::Full => flip ^= self.walk.is_odd,
+                Met::Full => flip ^= is_odd,
                 Met::Empty => {}
                 Met::Open(side) => memory::push(&mut open, (of, side))?,
             }
         }
         self.walk.fate(cell, open, flip)
+    }
+
+    /// The same of operands of which each knows something of one solid.
+    fn gathered_known(&self, cell: Cell, met: impl Iterator<Item = (u32, Met)>) -> Result<Fate<Part>, Error> {
+        let (mut open, mut settled) = (Vec::new(), Tag::Partial);
+        if self.walk.is_without(cell) {
+            return Ok(Fate::Ends(Cut::None));
+        }
+        for (of, met) in met {
+            match met {
+                Met::Empty => settled = both(settled, Tag::Empty)?,
+                Met::Full => settled = both(settled, Tag::Full)?,
+                Met::Open(Side::Unknown) => {}
+                Met::Open(side) => memory::push(&mut open, (of, side))?,
+            }
+        }
+        Ok(if settled == Tag::Partial { self.walk.known(cell, open) } else { Fate::Settled(settled) })
     }
 
     /// The element level of the element in which the children of a cell lie.

@@ -12,5 +12,5 @@ mod element;
 mod function;
 mod joint;
 
-pub use build::{SurfaceOptions, build_extended, plain};
-pub(super) use combine::{Combination, combine};
+pub use build::{SurfaceOptions, build_extended, build_extended_shard, plain};
+pub(super) use combine::{Combination, combine, combine_cells};

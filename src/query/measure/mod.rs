@@ -3,12 +3,14 @@
 mod area;
 mod bounds;
 mod faces;
+mod mass_sum;
 mod moments;
 mod quantity;
 mod volume;
 mod walk;
 
 pub use area::{AREA_SPLITS, SurfaceArea, surface_area};
+pub use mass_sum::{MassSum, measure_in};
 
 use crate::control::Control;
 use crate::error::Error;
@@ -183,17 +185,5 @@ pub fn measure<S: Solid>(
         control.max_splits.unwrap_or(MEASURE_SPLITS),
         control,
     )?;
-    let known = Known { frame: frame.with_depth(MAX_DEPTH)?, found: walked.found };
-    Ok(MassProperties {
-        volume: known.volume(),
-        centroid: known.centroid(),
-        inertia_about_origin: known.inertia_about_origin(),
-        inertia_about_centroid: known.inertia_about_centroid(),
-        proof: classifier.proof(),
-        clipped: classifier.exterior() != Tag::Empty,
-        exact: false,
-        stop_reason: walked.stop_reason,
-        level: walked.level,
-        splits: walked.splits,
-    })
+    MassSum::new(&classifier, walked).properties()
 }

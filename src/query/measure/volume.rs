@@ -9,7 +9,7 @@ use crate::solid::{Ask, Enclosure, Worker};
 use core::ops::AddAssign;
 
 /// Moments of what is proven inside, and of what is open.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Found {
     pub(super) full: Moments,
     pub(super) open: Moments,

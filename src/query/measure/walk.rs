@@ -107,6 +107,17 @@ pub(super) fn walk<Q: Quantity, C: Classifier>(
     budget: u64,
     control: &Control<'_>,
 ) -> Result<Walked<Q::Found>, Error> {
+    walk_in::<Q, C>(classifier, Cell::ROOT, tolerance, budget, control)
+}
+
+/// The same of the part of the solid in a cell of the frame.
+pub(super) fn walk_in<Q: Quantity, C: Classifier>(
+    classifier: &C,
+    within: Cell,
+    tolerance: Tolerance,
+    budget: u64,
+    control: &Control<'_>,
+) -> Result<Walked<Q::Found>, Error> {
     let job = Job::new(control);
     job.check()?;
     // Shallow walks are done faster than threads are made.
@@ -118,7 +129,9 @@ pub(super) fn walk<Q: Quantity, C: Classifier>(
         let quantity = PhantomData::<Q>;
         // (While a front is split there are two of them.)
         let large = control.max_bytes.map_or(LARGE_FRONT, |limit| LARGE_FRONT.min((limit / 4) as usize));
-        Walk { quantity, classifier, frame, tolerance, budget, job: &job, chunk, long, large, parallel }.run()
+        let job = &job;
+        Walk { quantity, classifier, frame, within, tolerance, budget, job, chunk, long, large, parallel }
+            .run()
     })
 }
 
@@ -126,6 +139,8 @@ struct Walk<'a, Q, C> {
     quantity: PhantomData<Q>,
     classifier: &'a C,
     frame: &'a Frame,
+    /// The cell that is looked at.
+    within: Cell,
     tolerance: Tolerance,
     budget: u64,
     job: &'a Job<'a>,
@@ -219,14 +234,26 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         let mut worker = self.classifier.worker()?;
         let mut settled = Leaves::<Q>::new();
         let mut cells = Vec::new();
-        match worker.root()? {
+        let mut verdict = worker.root()?;
+        for level in 1..=self.within.level {
+            let Verdict::Partial(part) = &verdict else { break };
+            let eight = split_one(&mut worker, self.within.ancestor(level - 1), part, self.job.control())?;
+            let octant = usize::from(self.within.ancestor(level).octant());
+            verdict = eight.into_iter().nth(octant).unwrap_or(Verdict::Undecided);
+        }
+        let cell = self.within;
+        match verdict {
             Verdict::Partial(part) => {
-                let (_, doubt) = weigh::<Q, _>(&mut worker, Cell::ROOT, &part)?;
-                memory::push(&mut cells, Open { cell: Cell::ROOT, part, doubt })?;
+                let (known, doubt) = weigh::<Q, _>(&mut worker, cell, &part)?;
+                if cell.level == self.frame.depth() {
+                    settled.open(cell, &known);
+                } else {
+                    memory::push(&mut cells, Open { cell, part, doubt })?;
+                }
             }
             Verdict::Empty => {}
-            Verdict::Full => settled.full(Cell::ROOT),
-            Verdict::Undecided => settled.open(Cell::ROOT, &Q::NOTHING),
+            Verdict::Full => settled.full(cell),
+            Verdict::Undecided => settled.open(cell, &Q::NOTHING),
         }
         let chunk = Chunk { worker, cells, found: Q::Found::default(), level: 0 };
         Ok((settled.sum.finish(), memory::collected([chunk].into_iter())?, 0))

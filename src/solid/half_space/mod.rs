@@ -226,16 +226,26 @@ impl HalfSpace {
         matches!(&*self.0, Surface::Slab(_))
     }
 
-    /// The slab of which it is known which one it is: that of this number, or one of a cell. Any other half-space as it is.
-    pub(crate) fn identified(&self, origin: Origin, number: u32) -> HalfSpace {
+    /// The slab of which it is known which one it is, by its origin and its number there, or (`None`) is not. Any other half-space as
+    /// it is.
+    pub(crate) fn identified(&self, identity: Option<(Origin, u64)>) -> HalfSpace {
         match &*self.0 {
             &Surface::Slab(ThickPlane { normal, inner, outer, cell_slab, .. }) => {
-                let number = cell_slab.map_or(number.into(), CellSlab::number);
-                let identity = Some(SlabIdentity { origin, number });
+                let identity = identity.map(|(origin, number)| SlabIdentity { origin, number });
                 let slab = ThickPlane { normal, inner, outer, identity, cell_slab };
                 HalfSpace(Arc::new(Surface::Slab(slab)))
             }
             _ => self.clone(),
+        }
+    }
+
+    /// The number of a slab among all of its origin, if that is known.
+    pub(crate) fn slab_number(&self) -> Option<u64> {
+        match &*self.0 {
+            Surface::Slab(ThickPlane { identity, cell_slab, .. }) => {
+                cell_slab.map(CellSlab::number).or(identity.as_ref().map(|identity| identity.number))
+            }
+            _ => None,
         }
     }
 

@@ -1,6 +1,7 @@
 //! A stored octree as a solid.
 
 mod cuts;
+mod sharded;
 
 use super::forward::forward_solid;
 use super::{
@@ -18,6 +19,7 @@ use crate::octree::{Octree, OctreeRef, Planes, Proof, Tag};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use cuts::PlacedCuts;
+pub use sharded::ShardedOctree;
 
 /// Where a cut cell of a stored octree is described.
 #[derive(Debug, Clone, Copy)]

@@ -1,0 +1,264 @@
+//! Measures of the cells of a frame, which add up exactly.
+
+use super::bounds::Known;
+use super::moments::{Moments, Tally, UNIVERSE};
+use super::volume::{Found, Volume};
+use super::walk::{Walked, walk_in};
+use super::{MEASURE_SPLITS, MassProperties, StopReason, Tolerance};
+use crate::control::Control;
+use crate::error::Error;
+use crate::lattice::{Cell, Frame, MAX_DEPTH, valid};
+use crate::octree::{Proof, Tag};
+use crate::solid::{Classifier, Solid};
+use crate::walk::Proven;
+
+/// What is known of the volume and the moments of a solid in some cells of its frame.
+///
+/// Sums are in fixed point: they are the same in any order, and taking off what was added leaves what there was. So the measures of
+/// a solid can be taken cell by cell, on several machines, and added up. What is measured of all cells of one level is what
+/// [`measure`](crate::measure) finds, as long as the splits are the same: of octrees without surfaces always, with a tolerance of 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MassSum {
+    frame: Frame,
+    found: Found,
+    proof: Proof,
+    clipped: bool,
+    stop_reason: StopReason,
+    level: u8,
+    splits: u64,
+}
+
+/// Measures the part of `solid` in one cell of `frame`, as [`measure`](crate::measure) does the whole: the tolerance concerns the
+/// volume in the cell. A solid that knows its moments is split all the same.
+///
+/// # Errors
+/// As [`measure`](crate::measure); [`Error::Argument`] if the frame does not have the cell.
+///
+/// ```
+/// use leafless::query::{MassSum, measure_in};
+/// use leafless::{Cell, Control, Csg, Frame, Rule, build, measure};
+/// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 7)?, Control::default());
+/// let ball = build(&Csg::ball([0.1, 0.0, 0.0], 0.75)?, &frame, Rule::Certified, &control)?;
+/// let mut sum: Option<MassSum> = None;
+/// for octant in 0..8 {
+///     let part = measure_in(&ball, &frame, Cell::ROOT.child(octant), 0.0, &control)?;
+///     sum = Some(match sum {
+///         Some(sum) => sum.plus(&part)?,
+///         None => part,
+///     });
+/// }
+/// let whole = measure(&ball, &frame, 0.0, &control)?;
+/// assert_eq!(sum.unwrap().properties()?.volume, whole.volume);
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn measure_in<S: Solid>(
+    solid: &S,
+    frame: &Frame,
+    cell: Cell,
+    tolerance: impl Into<Tolerance>,
+    control: &Control<'_>,
+) -> Result<MassSum, Error> {
+    let tolerance = tolerance.into();
+    valid::tolerance("tolerance", tolerance.relative)?;
+    valid::tolerance("tolerance", tolerance.absolute)?;
+    check(frame, cell)?;
+    let classifier = Proven(solid.on(frame, control)?);
+    let splits = control.max_splits.unwrap_or(MEASURE_SPLITS);
+    let walked = walk_in::<Volume, _>(&classifier, cell, tolerance, splits, control)?;
+    Ok(MassSum::new(&classifier, walked))
+}
+
+fn check(frame: &Frame, cell: Cell) -> Result<(), Error> {
+    if cell.level <= frame.depth() && cell.at.iter().all(|&a| a >> cell.level == 0) {
+        return Ok(());
+    }
+    Err(Error::Argument { name: "cell", problem: "is none of the frame" })
+}
+
+impl MassSum {
+    pub(super) fn new<C: Classifier>(classifier: &C, walked: Walked<Found>) -> MassSum {
+        MassSum {
+            frame: *classifier.frame(),
+            found: walked.found,
+            proof: classifier.proof(),
+            clipped: classifier.exterior() != Tag::Empty,
+            stop_reason: walked.stop_reason,
+            level: walked.level,
+            splits: walked.splits,
+        }
+    }
+
+    /// A cell of which nothing is known, and that takes nothing from what others prove.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the frame does not have the cell.
+    pub fn unknown(frame: &Frame, cell: Cell) -> Result<MassSum, Error> {
+        check(frame, cell)?;
+        let mut open = Tally::new();
+        open.add(cell);
+        Ok(MassSum {
+            frame: *frame,
+            found: Found { full: Moments::default(), open: open.finish() },
+            proof: Proof::CERTIFIED,
+            clipped: false,
+            stop_reason: StopReason::Tolerance,
+            level: cell.level,
+            splits: 0,
+        })
+    }
+
+    /// The frame.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The sum with that of other cells.
+    ///
+    /// # Errors
+    /// [`Error::FrameMismatch`]; [`Error::Argument`] if it is more than the universe holds: then a cell was added twice.
+    pub fn plus(&self, other: &MassSum) -> Result<MassSum, Error> {
+        self.with(
+            other,
+            Found { full: self.found.full + other.found.full, open: self.found.open + other.found.open },
+        )
+    }
+
+    /// The sum without that of some of its cells: [`plus`](Self::plus) the other way round. What is proven stays, and so do splits.
+    ///
+    /// # Errors
+    /// [`Error::FrameMismatch`]; [`Error::Argument`] if that leaves less than nothing.
+    pub fn minus(&self, other: &MassSum) -> Result<MassSum, Error> {
+        let less = |a: Moments, b: Moments| Moments { error: a.error - b.error, ..a - b };
+        let (full, open) = (less(self.found.full, other.found.full), less(self.found.open, other.found.open));
+        let with = self.with(other, Found { full, open })?;
+        Ok(MassSum { proof: self.proof, clipped: self.clipped, stop_reason: self.stop_reason, ..with })
+    }
+
+    fn with(&self, other: &MassSum, found: Found) -> Result<MassSum, Error> {
+        if self.frame != other.frame {
+            return Err(self.frame.mismatch(&other.frame));
+        }
+        let of_reasons = |a: StopReason, b: StopReason| match (a, b) {
+            (StopReason::Budget, _) | (_, StopReason::Budget) => StopReason::Budget,
+            (StopReason::Exhausted, _) | (_, StopReason::Exhausted) => StopReason::Exhausted,
+            _ => StopReason::Tolerance,
+        };
+        let sum = MassSum {
+            frame: self.frame,
+            found,
+            proof: self.proof.and(other.proof),
+            clipped: self.clipped || other.clipped,
+            stop_reason: of_reasons(self.stop_reason, other.stop_reason),
+            level: self.level.max(other.level),
+            splits: self.splits.saturating_add(other.splits),
+        };
+        match sum.is_sound() {
+            true => Ok(sum),
+            false => {
+                Err(Error::Argument { name: "other", problem: "has cells that the sum has, or has not" })
+            }
+        }
+    }
+
+    /// Whether all moments are those of a set in the universe, as far as single numbers tell.
+    fn is_sound(&self) -> bool {
+        // Lengths are less than 2^21 half grains, and the second moments have a factor of 3.
+        let (first, second) = (UNIVERSE << 21, UNIVERSE << 44);
+        [self.found.full, self.found.open].iter().all(|moments| {
+            let slack = moments.error;
+            (0..=UNIVERSE).contains(&slack)
+                && (-slack..=UNIVERSE + slack).contains(&moments.volume)
+                && moments.first.iter().all(|sum| (-first..=first).contains(sum))
+                && moments.second.iter().all(|sum| (-second..=second).contains(sum))
+        })
+    }
+
+    /// The sum as bytes, for another process that adds it up. Their meaning is that of one version of the library.
+    pub fn to_bytes(&self) -> [u8; MassSum::BYTES] {
+        let flags = self.proof.bits() | u8::from(self.clipped) << 2 | (self.stop_reason as u8) << 3;
+        let frame = self.frame;
+        let numbers = [self.proof.displacement(), frame.edge()].into_iter().chain(frame.origin());
+        let sums = [self.found.full, self.found.open];
+        let sums = sums.iter().flat_map(|m| [m.volume, m.error].into_iter().chain(m.first).chain(m.second));
+        let head = [MassSum::VERSION, frame.depth(), self.level, flags];
+        let mut bytes = [0; MassSum::BYTES];
+        let all = head
+            .into_iter()
+            .chain(self.splits.to_le_bytes())
+            .chain(numbers.flat_map(f64::to_le_bytes))
+            .chain(sums.flat_map(i128::to_le_bytes));
+        bytes.iter_mut().zip(all).for_each(|(byte, own)| *byte = own);
+        bytes
+    }
+
+    /// The sum of such bytes.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if they are none.
+    pub fn from_bytes(bytes: &[u8]) -> Result<MassSum, Error> {
+        MassSum::read(bytes)
+            .ok_or(Error::Argument { name: "bytes", problem: "are none of a sum of measures" })
+    }
+
+    fn read(bytes: &[u8]) -> Option<MassSum> {
+        let (&[MassSum::VERSION, depth, level, flags], rest) = bytes.split_first_chunk()? else {
+            return None;
+        };
+        let (splits, mut rest) = rest.split_first_chunk()?;
+        let mut number = || {
+            let (number, more) = rest.split_first_chunk()?;
+            rest = more;
+            Some(f64::from_le_bytes(*number))
+        };
+        let (displacement, edge) = (number()?, number()?);
+        let frame = Frame::new([number()?, number()?, number()?], edge, depth).ok()?;
+        let mut sum = || {
+            let (sum, more) = rest.split_first_chunk()?;
+            rest = more;
+            Some(i128::from_le_bytes(*sum))
+        };
+        let mut moments = || {
+            let mut read = Moments { volume: sum()?, error: sum()?, ..Moments::default() };
+            for own in read.first.iter_mut().chain(&mut read.second) {
+                *own = sum()?;
+            }
+            Some(read)
+        };
+        let found = Found { full: moments()?, open: moments()? };
+        let stop_reason = match flags >> 3 {
+            0 => StopReason::Tolerance,
+            1 => StopReason::Budget,
+            2 => StopReason::Exhausted,
+            _ => return None,
+        };
+        let proof = Proof::from_bits(flags).with_displacement(displacement).ok()?;
+        let splits = u64::from_le_bytes(*splits);
+        let sum = MassSum { frame, found, proof, clipped: flags & 4 != 0, stop_reason, level, splits };
+        (rest.is_empty() && level <= depth && sum.is_sound()).then_some(sum)
+    }
+
+    /// Of [`to_bytes`](Self::to_bytes).
+    pub const BYTES: usize = 4 + 6 * 8 + 22 * 16;
+
+    const VERSION: u8 = 1;
+
+    /// Volume, centroid and inertia.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] if the cells of depth 20 of the frame are too small to have coordinates of their own.
+    pub fn properties(&self) -> Result<MassProperties, Error> {
+        let known = Known { frame: self.frame.with_depth(MAX_DEPTH)?, found: self.found };
+        Ok(MassProperties {
+            volume: known.volume(),
+            centroid: known.centroid(),
+            inertia_about_origin: known.inertia_about_origin(),
+            inertia_about_centroid: known.inertia_about_centroid(),
+            proof: self.proof,
+            clipped: self.clipped,
+            exact: false,
+            stop_reason: self.stop_reason,
+            level: self.level,
+            splits: self.splits,
+        })
+    }
+}
