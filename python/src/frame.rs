@@ -87,6 +87,26 @@ impl Frame {
         self.0.cell_size()
     }
 
+    /// The cells of a level in which points lie, by their places in Morton order, an array of type uint64; 2^64 - 1 outside of the cube. A
+    /// point on a wall lies in the cell behind it.
+    fn codes<'py>(&self, points: &Bound<'py, PyAny>, level: u8) -> PyResult<Bound<'py, PyAny>> {
+        let py = points.py();
+        let frame = self.0;
+        if level > frame.depth() {
+            return Err(refused(py, "level", "is below the depth of the frame"));
+        }
+        let points = crate::arrays::Rows::of(points, "points")?;
+        let list = points.list();
+        let code = |point: &[f64; 3]| {
+            let at = frame.cell_of(*point)?.map(|a| a >> (frame.depth() - level));
+            Some(leafless::Cell { level, at }.morton())
+        };
+        let codes: Vec<u64> =
+            py.detach(|| list.iter().map(|point| code(point).unwrap_or(u64::MAX)).collect());
+        let count = codes.len();
+        Ok(crate::arrays::array(py, codes, &[count])?.into_any())
+    }
+
     fn __repr__(&self) -> String {
         let [x, y, z] = self.0.origin();
         format!("Frame(({x:?}, {y:?}, {z:?}), {:?}, depth={})", self.0.edge(), self.0.depth())

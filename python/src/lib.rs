@@ -59,7 +59,7 @@ mod _leafless {
     #[pymodule_export]
     use super::mesh::Mesh;
     #[pymodule_export]
-    use super::octree::{Octree, Proof, build};
+    use super::octree::{Octree, Proof, build, frame_of};
     #[pymodule_export]
     use super::pairs::{
         Clearance, Deviation, Gap, Interference, clearance, deviation, gap_at_least, interference,
@@ -69,7 +69,7 @@ mod _leafless {
     #[pymodule_export]
     use super::shape::Shape;
     #[pymodule_export]
-    use super::shards::{MassSum, Shard, ShardedSolid, join, joined_statistics, measure_cell};
+    use super::shards::{MassSum, Shard, ShardedSolid, join, joined_statistics, measure_cell, surface_in};
     #[pymodule_export]
     use super::solid::Solid;
     #[pymodule_export]

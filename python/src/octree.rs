@@ -425,6 +425,49 @@ pub fn told<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Vec<Bound
     statistics.levels().iter().map(level).collect()
 }
 
+/// Which surfaces are kept.
+fn kept_surfaces(surfaces: Option<&Bound<'_, PyAny>>) -> PyResult<Option<SurfaceOptions>> {
+    Ok(match surfaces {
+        None => None,
+        Some(kept) => match kept.extract::<bool>() {
+            Ok(false) => None,
+            Ok(true) => Some(SurfaceOptions { tolerance: None }),
+            Err(_) => Some(SurfaceOptions { tolerance: Some(kept.extract()?) }),
+        },
+    })
+}
+
+/// The frame that an octree is built on.
+fn frame_for(
+    py: Python<'_>,
+    solid: &Given,
+    wish: Wish,
+    surfaces: Option<&SurfaceOptions>,
+) -> PyResult<leafless::Frame> {
+    let deepest = match surfaces {
+        // (A frame tells its depth.)
+        Some(options) if wish.frame.is_none() => {
+            options.frame(&crate::ask::bounds(py, solid)?).or_raise(py)?.depth()
+        }
+        _ => DEPTH,
+    };
+    wish.of(py, solid, deepest)
+}
+
+/// The frame on which `build` would build a solid.
+#[pyfunction]
+#[pyo3(signature = (solid, frame=None, *, depth=None, surfaces=None))]
+pub fn frame_of(
+    solid: &Bound<'_, PyAny>,
+    frame: Option<FrameLike>,
+    depth: Option<u8>,
+    surfaces: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Frame> {
+    let py = solid.py();
+    let solid = given(solid, "solid")?;
+    frame_for(py, &solid, Wish { frame, depth }, kept_surfaces(surfaces)?.as_ref()).map(Frame)
+}
+
 /// An octree of a solid: cells are split until they are decided, or the frame's depth is reached.
 ///
 /// `rule` says what becomes of cells that are undecided at the finest level. "certified" keeps the doubt, so every answer is
@@ -456,26 +499,8 @@ pub fn build<'py>(
     let limits = Limits::of(limits)?;
     let rule: Rule = words::value(py, rule)?;
     let solid = given(solid, "solid")?;
-    let surfaces = match surfaces {
-        None => None,
-        Some(kept) => match kept.extract::<bool>() {
-            Ok(false) => None,
-            Ok(true) => Some(SurfaceOptions { tolerance: None }),
-            Err(_) => Some(SurfaceOptions { tolerance: Some(kept.extract()?) }),
-        },
-    };
-    let deepest = match &surfaces {
-        None => DEPTH,
-        Some(options) => {
-            // (A frame tells its depth.)
-            if frame.is_some() {
-                DEPTH
-            } else {
-                options.frame(&crate::ask::bounds(py, &solid)?).or_raise(py)?.depth()
-            }
-        }
-    };
-    let frame = Wish { frame, depth }.of(py, &solid, deepest)?;
+    let surfaces = kept_surfaces(surfaces)?;
+    let frame = frame_for(py, &solid, Wish { frame, depth }, surfaces.as_ref())?;
     if surfaces.is_some() && rule != Rule::Certified {
         return Err(refused(py, "rule", "must be 'certified' with surfaces, which decide what cells do not"));
     }

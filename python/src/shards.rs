@@ -1,5 +1,6 @@
 //! Octrees in shards: building, cutting and joining them, and adding up what is measured of them.
 
+use crate::arrays;
 use crate::ask::FrameLike;
 use crate::error::{OrRaise, refused};
 use crate::frame::Frame;
@@ -10,6 +11,7 @@ use crate::work::Limits;
 use leafless::octree::OctreeRef;
 use leafless::query;
 use leafless::solid::ShardedOctree;
+use leafless::surface::{Resolve, marching_cubes_in};
 use leafless::{AnySolid, Cell, Shard as Inner, Tolerance};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -242,4 +244,31 @@ pub fn joined_statistics<'py>(
         list.push((cell(py, level, code)?, leafless::octree::Statistics::of_counts(frame, &counts)));
     }
     crate::octree::told(py, &top.octree.statistics_with(&list).or_raise(py)?)
+}
+
+/// The triangles of marching cubes in one cell, as vertices and faces: of the octree of the cell's shard, joined with those of the
+/// neighbours behind it. `resolve` says what undecided cells count as.
+#[pyfunction]
+#[pyo3(signature = (octree, level, code, resolve, **limits))]
+pub fn surface_in<'py>(
+    py: Python<'py>,
+    octree: &Octree,
+    level: u8,
+    code: u64,
+    resolve: &str,
+    limits: Option<&Bound<'py, PyDict>>,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let cell = cell(py, level, code)?;
+    let resolve = match resolve {
+        "inner" => Resolve::Inner,
+        "outer" => Resolve::Outer,
+        _ => return Err(refused(py, "resolve", "must be 'inner' or 'outer'")),
+    };
+    let view = octree.octree.view();
+    let mesh =
+        Limits::of(limits)?.run(py, |control| marching_cubes_in(view, Some(resolve), cell, control))?;
+    let (vertices, faces) = (mesh.vertices().to_vec(), mesh.triangles().to_vec());
+    let count = faces.len();
+    let faces = arrays::array(py, faces.into_flattened(), &[count, 3])?;
+    Ok((arrays::rows(py, vertices)?.into_any(), faces.into_any()))
 }

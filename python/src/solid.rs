@@ -129,6 +129,14 @@ impl Solid {
         Ok(array.transpose()?.map(Bound::into_any))
     }
 
+    /// What tells the shape from others: solids with the same fingerprint give the same answers. `None` if nothing does, as of a shape of
+    /// Python's.
+    #[getter]
+    fn fingerprint(slf: &Bound<'_, Self>) -> PyResult<Option<String>> {
+        let (py, solid) = (slf.py(), given(slf, "self")?);
+        Ok(py.detach(|| solid.shape.fingerprint()).map(|fingerprint| fingerprint.to_string()))
+    }
+
     /// Whether points lie inside. `points` has the shape (n, 3), in model units. The answer is an array of the codes of `Membership`, of type
     /// uint8; compare it, as in `points[part.contains(points) == INSIDE]`. A single point has a single answer. A point in an undecided cell of an octree is UNDECIDED, and so is a point outside of the frame about which
     /// nothing is known. On the boundary both answers are right.

@@ -12,7 +12,7 @@ use super::table::{ENDS, MARCHING_CUBES};
 use crate::control::{Control, Job, WHOLE};
 use crate::dispatch::{Hot, with_popcount};
 use crate::error::Error;
-use crate::lattice::morton;
+use crate::lattice::{Cell, morton};
 use crate::memory;
 use crate::mesh::TriangleMesh;
 use crate::octree::OctreeRef;
@@ -84,6 +84,84 @@ pub fn marching_cubes_reusing(
 ) -> Result<TriangleMesh, Error> {
     in_memory(mesh.into_arrays(), tree, resolve, control)
 }
+
+/// The triangles that [`marching_cubes`] makes in one cell of the frame, and the vertices of these: those of the dual cells whose first
+/// sample lies there. The surfaces of all cells of a level are together that of the tree, each triangle once, and vertices at one place
+/// have the same coordinates to the bit. So a [sharded](crate::Shard) octree has its surface made cell by cell, each from its own
+/// shard and those of the up to seven neighbours towards +x, +y and +z: what lies further away does not matter.
+///
+/// # Errors
+/// As [`marching_cubes`]; [`Error::Argument`] if the cell is none of the frame, or has less than 4³ finest cells.
+///
+/// ```
+/// use leafless::surface::{Resolve, marching_cubes_in};
+/// use leafless::{Cell, Control, Csg, Frame, Rule, build, marching_cubes};
+/// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 6)?, Control::default());
+/// let ball = build(&Csg::ball([0.0; 3], 0.75)?, &frame, Rule::Sampled, &control)?;
+/// let part = |octant| marching_cubes_in(ball.view(), None, Cell::ROOT.child(octant), &control);
+/// let parts = (0..8).map(|octant| Ok(part(octant)?.triangles().len()));
+/// let count: usize = parts.collect::<Result<Vec<_>, leafless::Error>>()?.iter().sum();
+/// assert_eq!(count, marching_cubes(ball.view(), None, &control)?.triangles().len());
+/// # Ok::<(), leafless::Error>(())
+/// ```
+pub fn marching_cubes_in(
+    tree: &OctreeRef<'_>,
+    resolve: Option<Resolve<'_>>,
+    cell: Cell,
+    control: &Control<'_>,
+) -> Result<TriangleMesh, Error> {
+    let depth = tree.frame().depth();
+    if cell.level + BLOCK_LEVELS > depth || cell.at.iter().any(|&a| a >> cell.level != 0) {
+        return Err(Error::Argument {
+            name: "cell",
+            problem: "must be one of the frame, with 4³ finest cells at least",
+        });
+    }
+    resolved(tree, resolve, control, |tree, partial, control| {
+        let samples = Samples::new(tree, partial, u32::MAX)?;
+        let lattice = Lattice::new(tree.frame())?;
+        let job = Job::new(control);
+        job.check()?;
+        control.run(samples.levels() > 3, |parallel| {
+            let blocks = Blocks::find(&samples, &Least::CUBES, &job, parallel)?;
+            let vertices = midpoints(Vec::new(), &blocks, &lattice, &job, parallel)?;
+            let triangles = triangles(Vec::new(), &blocks, &job, parallel)?;
+            let shift = depth - BLOCK_LEVELS - cell.level;
+            let is_inside = |block: &Block| {
+                // Dual cells before the first samples belong to the cells there.
+                let at = key::position(block.key, blocks.bias);
+                at.iter().zip(cell.at).all(|(&at, own)| at.max(0) as u32 >> shift == own)
+            };
+            let (mut own, mut list, mut used) = (Vec::new(), Vec::new(), Vec::new());
+            let mut numbers = memory::refilled(Vec::new(), vertices.len(), u32::MAX)?;
+            for (i, _) in blocks.list.iter().enumerate().filter(|(_, block)| is_inside(block)) {
+                let end = blocks.list.get(i + 1).map_or(triangles.len(), |next| next.triangle as usize);
+                for triangle in &triangles[blocks.list[i].triangle as usize..end] {
+                    memory::push(&mut list, *triangle)?;
+                    for &vertex in triangle {
+                        let number = &mut numbers[vertex as usize];
+                        if *number == u32::MAX {
+                            *number = 0;
+                            memory::push(&mut used, vertex)?;
+                        }
+                    }
+                }
+            }
+            used.sort_unstable();
+            for (number, &vertex) in (0..).zip(&used) {
+                numbers[vertex as usize] = number;
+                memory::push(&mut own, vertices[vertex as usize])?;
+            }
+            for triangle in &mut list {
+                *triangle = triangle.map(|vertex| numbers[vertex as usize]);
+            }
+            Ok(TriangleMesh::from_welded(own, list, 0, 0))
+        })
+    })
+}
+
+/// Levels between a block and its samples.
+const BLOCK_LEVELS: u8 = 2;
 
 fn in_memory(
     memory: (Vec<[f64; 3]>, Vec<[u32; 3]>),

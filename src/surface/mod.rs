@@ -67,7 +67,7 @@ mod weld;
 pub use boundary::{Boundary, BoundaryFaces, BoundaryRegion, BoundaryReport, boundary};
 #[cfg(feature = "std")]
 pub use contour::{Contour, ContourReport, contour};
-pub use cubes::{marching_cubes, marching_cubes_reusing};
+pub use cubes::{marching_cubes, marching_cubes_in, marching_cubes_reusing};
 pub use dexel::{DexelSurfaceReport, dual_contouring_dexels, dual_contouring_solid, marching_cubes_dexels};
 pub use dexel_solid::DexelSolid;
 pub use nets::surface_nets;

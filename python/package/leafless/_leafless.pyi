@@ -37,11 +37,14 @@ __all__ = [
     "Interval",
     "LazyOctree",
     "MassProperties",
+    "MassSum",
     "Mesh",
     "Octree",
     "Picture",
     "Proof",
     "Shape",
+    "Shard",
+    "ShardedSolid",
     "Solid",
     "SurfaceArea",
     "SurfaceReport",
@@ -53,10 +56,14 @@ __all__ = [
     "clearance",
     "deviation",
     "dexelize",
+    "frame_of",
     "gap_at_least",
     "interference",
+    "join",
+    "joined_statistics",
     "map_path",
     "measure",
+    "measure_cell",
     "open_bytes",
     "open_path",
     "render",
@@ -65,6 +72,7 @@ __all__ = [
     "simplify",
     "surface",
     "surface_area",
+    "surface_in",
 ]
 
 _Rule: TypeAlias = Literal["certified", "sampled", "inner", "outer"]
@@ -202,6 +210,7 @@ class Frame:
     def cells(self) -> int: ...
     @property
     def cell_size(self) -> float: ...
+    def codes(self, points: ArrayLike, level: int) -> npt.NDArray[np.uint64]: ...
     def __hash__(self) -> int: ...
 
 @final
@@ -237,6 +246,8 @@ class Solid:
     # A shape of your own may tell it as a list.
     @property
     def bounds(self) -> ArrayLike | None: ...
+    @property
+    def fingerprint(self) -> str | None: ...
     @overload
     def contains(self, points: _Point, *, frame: Frame | Octree | None = None, **limits: Unpack[Limits]) -> Membership: ...
     @overload
@@ -392,6 +403,8 @@ class Octree(Solid):
     def keeps_surfaces(self) -> bool: ...
     def as_truth(self) -> Octree: ...
     def statistics(self) -> list[Level]: ...
+    def shard(self, shard: Shard, **limits: Unpack[Limits]) -> Octree: ...
+    def open_cells(self, level: int) -> npt.NDArray[np.uint64]: ...
     @property
     def metadata(self) -> dict[str, str]: ...
     def with_metadata(self, metadata: dict[str, str]) -> Octree: ...
@@ -742,8 +755,68 @@ def build(
     depth: int | None = None,
     rule: _Rule = "certified",
     surfaces: bool | float | None = None,
+    shard: Shard | None = None,
     **limits: Unpack[Limits],
 ) -> Octree: ...
+def frame_of(
+    solid: Solid,
+    frame: Frame | Octree | None = None,
+    *,
+    depth: int | None = None,
+    surfaces: bool | float | None = None,
+) -> Frame: ...
+@final
+@disjoint_base
+class Shard:
+    @staticmethod
+    def top(level: int) -> Shard: ...
+    @staticmethod
+    def below(level: int, code: int) -> Shard: ...
+    @property
+    def level(self) -> int: ...
+    @property
+    def code(self) -> int | None: ...
+    def __hash__(self) -> int: ...
+
+@final
+@disjoint_base
+class MassSum:
+    @staticmethod
+    def unknown(frame: Frame | Octree, level: int, code: int) -> MassSum: ...
+    @staticmethod
+    def from_bytes(data: bytes) -> MassSum: ...
+    def to_bytes(self) -> bytes: ...
+    @property
+    def frame(self) -> Frame: ...
+    @property
+    def properties(self) -> MassProperties: ...
+    def __add__(self, other: MassSum) -> MassSum: ...
+    def __sub__(self, other: MassSum) -> MassSum: ...
+
+@final
+@disjoint_base
+class ShardedSolid(Solid):
+    def __new__(cls, top: Octree, level: int, shards: Sequence[tuple[int, Octree]]) -> Self: ...
+    @property
+    def frame(self) -> Frame: ...
+
+def join(octrees: Sequence[Octree], **limits: Unpack[Limits]) -> Octree: ...
+def joined_statistics(
+    top: Octree, level: int, shards: Sequence[tuple[int, Sequence[tuple[int, int, int]]]]
+) -> list[Level]: ...
+def measure_cell(
+    solid: Solid,
+    frame: Frame | Octree,
+    level: int = 0,
+    code: int = 0,
+    *,
+    tolerance: float = 1e-3,
+    absolute: float = 0.0,
+    **limits: Unpack[Limits],
+) -> MassSum: ...
+def surface_in(
+    octree: Octree, level: int, code: int, resolve: Literal["inner", "outer"], **limits: Unpack[Limits]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]: ...
 def dexelize(
     solid: Solid,
     frame: Frame | Octree | None = None,

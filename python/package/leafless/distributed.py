@@ -1,0 +1,186 @@
+"""Sharded octrees on the workers of Dask: built, combined, measured, meshed and listed shard by shard, and many poses or parameters at
+once.
+
+Each function makes a graph of small tasks and computes it with the scheduler that Dask is set to: threads by default, or the workers
+of a `dask.distributed.Client`. A task builds, reads or writes one shard. It depends on nothing but its arguments, and writes whole
+files, so that a task that is lost with its worker is done again by another one, with the same bytes. What a worker holds at a time is
+bounded by a shard. Results are those of one machine, byte by byte.
+
+Solids travel to the workers by pickle. A folder must be one that all workers see: on one machine any, else a URL of fsspec.
+
+>>> import leafless as lf, tempfile
+>>> from leafless import distributed, shards
+>>> ball = lf.Csg.ball([0, 0, 0], 1)
+>>> parts = distributed.build(ball, tempfile.mkdtemp(), depth=6, level=1)
+>>> parts.join() == lf.build(ball, depth=6)
+True
+>>> distributed.measure(parts, tolerance=0).volume == lf.measure(parts.join(), tolerance=0).volume
+True
+
+Progress is Dask's own: `with dask.diagnostics.ProgressBar(): …` for threads, the dashboard of a client for workers.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from . import _leafless
+from ._leafless import Affine, Frame, Interference, MassProperties, MassSum, Mesh, Octree, VoxelRecords
+from .shards import Entry, Folder, Operation, Recipe, ShardedOctree, combined, combined_top, complemented, finish, recipe, store_shard, welded
+
+if TYPE_CHECKING:
+    from ._leafless import Solid, _Rule
+
+__all__ = ["build", "combine", "complement", "interference", "measure", "split", "surface", "sweep", "voxels"]
+
+R = TypeVar("R")
+
+#: Threads of a task. Workers have several processors by having several threads of Dask.
+THREADS = 1
+
+
+def _dask() -> Any:
+    try:
+        import dask  # type: ignore[import, unused-ignore]
+    except ImportError as error:
+        raise ImportError("leafless.distributed needs Dask: pip install dask[distributed]") from error
+    return dask
+
+
+def _each(task: Callable[..., R], arguments: Iterable[tuple[Any, ...]], **shared: Any) -> list[R]:
+    """What a task gives for each of many arguments, in their order. What they share travels once."""
+    dask = _dask()
+    delayed = dask.delayed(task, pure=False, traverse=False)
+    given = {name: dask.delayed(value, traverse=False) for name, value in shared.items()}
+    done: tuple[R, ...] = dask.compute(*(delayed(*own, **given) for own in arguments))
+    return list(done)
+
+
+def _built(code: int, solid: Solid, folder: Folder, how: Recipe) -> Entry | bytes:
+    return store_shard(folder, how.level, code, how.below(solid, code, threads=THREADS))
+
+
+def build(
+    solid: Solid,
+    url: str | os.PathLike[str],
+    frame: Frame | Octree | None = None,
+    *,
+    depth: int | None = None,
+    level: int = 3,
+    rule: _Rule = "certified",
+    surfaces: bool | float | None = None,
+) -> ShardedOctree:
+    """Builds the octree of a solid in shards, each by a task, into a folder or to a URL. The arguments are those of
+    `leafless.shards.build`, and so are the bytes."""
+    how, folder = recipe(solid, frame, depth, level, rule, surfaces), Folder(url)
+    top = how.top(solid)
+    made = _each(_built, ((code,) for code in top.open_cells(level).tolist()), solid=solid, folder=folder, how=how)
+    return finish(folder, level, top, made, solid.fingerprint)
+
+
+def _split(code: int, octree: Octree, folder: Folder, level: int) -> Entry | bytes:
+    from .shards import Shard
+
+    return store_shard(folder, level, code, octree.shard(Shard.below(level, code), threads=THREADS))
+
+
+def split(octree: Octree, url: str | os.PathLike[str], *, level: int = 3) -> ShardedOctree:
+    """Cuts an octree into shards, as `leafless.shards.split`. An octree that is mapped travels by its path."""
+    from .shards import Shard
+
+    folder, top = Folder(url), octree.shard(Shard.top(level))
+    made = _each(_split, ((code,) for code in top.open_cells(level).tolist()), octree=octree, folder=folder, level=level)
+    return finish(folder, level, top, made, None)
+
+
+def _combined(code: int, operation: Operation, a: ShardedOctree, b: ShardedOctree, folder: Folder) -> Entry | bytes:
+    return combined(folder, operation, a, b, code)
+
+
+def combine(operation: Operation, a: ShardedOctree, b: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
+    """A set operation on two sharded octrees, as `leafless.shards.combine`: "union", "intersection", "difference" or "xor"."""
+    folder, top = Folder(url), combined_top(operation, a, b)
+    codes = ((code,) for code in top.open_cells(a.level).tolist())
+    return finish(folder, a.level, top, _each(_combined, codes, operation=operation, a=a, b=b, folder=folder), None)
+
+
+def _complemented(code: int, a: ShardedOctree, folder: Folder) -> Entry | bytes:
+    return complemented(folder, a, code)
+
+
+def complement(a: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
+    """Everything but a sharded octree, as `leafless.shards.complement`."""
+    folder = Folder(url)
+    codes = ((code,) for code in a.top.open_cells(a.level).tolist())
+    top: Any = ~a.top
+    return finish(folder, a.level, top, _each(_complemented, codes, a=a, folder=folder), None)
+
+
+def _measured(code: int | None, octree: ShardedOctree, tolerance: float, absolute: float) -> tuple[MassSum | None, dict[int, str]]:
+    if code is not None and octree.shard(code) is None:
+        return None, octree.missing
+    return octree.measure_part(code, tolerance=tolerance, absolute=absolute, threads=THREADS), {}
+
+
+def measure(octree: ShardedOctree, *, tolerance: float = 1e-3, absolute: float = 0.0) -> MassProperties:
+    """Volume, centroid and inertia, as `ShardedOctree.measure`, each shard by a task. Sums are exact, so that their order does not
+    matter. Shards that are missing are in doubt, and told in `octree.missing`."""
+    absolute /= len(octree) + 1
+    codes: list[tuple[int | None]] = [(None,), *((code,) for code in octree.codes)]
+    total: MassSum | None = None
+    for part, missing in _each(_measured, codes, octree=octree, tolerance=tolerance, absolute=absolute):
+        octree.note_missing(missing)
+        if part is not None:
+            total = part if total is None else total + part
+    assert total is not None
+    return total.properties
+
+
+def _surface(code: int, octree: ShardedOctree, resolve: Literal["inner", "outer"]) -> tuple[Any, Any]:
+    return octree.surface_part(code, resolve, threads=THREADS)
+
+
+def surface(octree: ShardedOctree, resolve: Literal["inner", "outer"] = "outer") -> Mesh:
+    """The surface by marching cubes, as `ShardedOctree.surface`, each cell by a task. The mesh is in the memory of the caller."""
+    return welded(_each(_surface, ((code,) for code in octree.surface_codes()), octree=octree, resolve=resolve))
+
+
+def _voxels(code: int | None, octree: ShardedOctree, outside: bool) -> tuple[VoxelRecords | None, dict[int, str]]:
+    if code is not None and octree.shard(code) is None:
+        return None, octree.missing
+    return octree.voxels_part(code, outside=outside, threads=THREADS), {}
+
+
+def voxels(octree: ShardedOctree, *, outside: bool = False) -> VoxelRecords:
+    """The voxels as records, as `Octree.voxels` of the joined octree, each shard by a task."""
+    codes: list[tuple[int | None]] = [(None,), *((code,) for code in octree.codes)]
+    parts = []
+    for part, missing in _each(_voxels, codes, octree=octree, outside=outside):
+        octree.note_missing(missing)
+        if part is not None:
+            parts.append(part)
+    return octree.voxels_joined(parts)
+
+
+def _interfered(placements: list[Affine], a: Solid, b: Solid, options: dict[str, Any]) -> list[Interference]:
+    found: list[Interference] = _leafless.interference(a, b, placements, threads=THREADS, **options)
+    return found
+
+
+def interference(a: Solid, b: Solid, placements: Sequence[Any], *, batch: int = 256, **options: Any) -> list[Interference]:
+    """What `leafless.interference` tells of two solids under many placements of the second, `batch` of them by a task. The options are
+    those of `leafless.interference`. Without a `frame`, that for all placements is found first."""
+    placed = [placement if isinstance(placement, Affine) else Affine(placement) for placement in placements]
+    if not placed:
+        return []
+    parts = [(placed[first : first + batch],) for first in range(0, len(placed), batch)]
+    found = _each(_interfered, parts, a=a, b=b, options=options)
+    return [verdict for part in found for verdict in part]
+
+
+def sweep(task: Callable[..., R], parameters: Iterable[Any]) -> list[R]:
+    """What a function gives for each of many parameters, each by a task: parts of a family that are built, measured or compared. A tuple
+    is taken as several arguments."""
+    return _each(task, (given if isinstance(given, tuple) else (given,) for given in parameters))
