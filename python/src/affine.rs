@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 ///
 /// >>> Affine.rotation([0, 0, 1], 90).matrix[0]
 /// array([ 0., -1.,  0.,  0.])
-#[pyclass(frozen, eq, from_py_object, module = "leafless")]
+#[pyclass(frozen, eq, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct Affine(pub Inner);
 

@@ -30,7 +30,7 @@ const DEPTH: u8 = 8;
 /// >>> model = dexelize(Csg.ball([0, 0, 0], 1), depth=6)
 /// >>> round(model.volume(), 3)
 /// 4.19
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct TriDexel {
     pub model: Inner,
     /// The file that it is mapped from, with the checksum of its header.

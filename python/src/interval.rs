@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 ///
 /// >>> volume < 2e5, volume < 171500, volume > 171500
 /// (True, False, False)
-#[pyclass(frozen, from_py_object, module = "leafless")]
+#[pyclass(frozen, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy)]
 pub struct Interval(pub Bounds);
 

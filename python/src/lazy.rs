@@ -14,6 +14,7 @@ use leafless::query::Membership;
 use leafless::solid::Prepared;
 use leafless::{LazyOctree as Inner, Solid as _};
 use pyo3::exceptions::PyRuntimeError;
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, TryLockError};
@@ -27,9 +28,11 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 /// True
 /// >>> lazy.freeze()
 /// <Octree: depth 20, 345 nodes, volume 3.063 to 5.329>
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct LazyOctree {
     lazy: Mutex<Inner<Prepared>>,
+    /// The object that has the shape.
+    solid: Py<PyAny>,
 }
 
 impl LazyOctree {
@@ -69,7 +72,7 @@ impl LazyOctree {
                 Inner::new(shape, &frame)
             }
         })?;
-        Ok(LazyOctree { lazy: Mutex::new(lazy) })
+        Ok(LazyOctree { lazy: Mutex::new(lazy), solid: solid.clone().unbind() })
     }
 
     /// Splits undecided cells down to a level: all of them, or those in a box (`bounds`), around a `point`, or along a `ray` (origin and
@@ -155,5 +158,9 @@ impl LazyOctree {
             }
             Err(_) => "<LazyOctree at work>".into(),
         }
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        visit.call(&self.solid)
     }
 }

@@ -22,7 +22,7 @@ use std::path::PathBuf;
 const DEPTH: u8 = 9;
 
 /// What cells prove.
-#[pyclass(frozen, eq, get_all, module = "leafless")]
+#[pyclass(frozen, eq, get_all, weakref, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct Proof {
     /// Whether FULL cells are proven to lie inside.

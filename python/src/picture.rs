@@ -30,7 +30,7 @@ const CELLS: u8 = 7;
 /// A picture: an array `rgba` of shape (height, width, 4), and `depth` of shape (height, width), infinite where nothing is seen.
 ///
 /// Notebooks show it. `leafless.save(picture, "part.png")` writes a PNG.
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct Picture(pub pictures::Picture);
 
 #[pymethods]

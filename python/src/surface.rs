@@ -24,7 +24,7 @@ const TOLERANCE: f64 = 1e-3;
 const SNAP: Snap = Snap::Fat;
 
 /// How a mesh was made of a solid.
-#[pyclass(frozen, get_all, from_py_object, module = "leafless")]
+#[pyclass(frozen, get_all, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy)]
 pub struct SurfaceReport {
     /// "faces", "adaptive", "cubes", "nets", "shrink" or "simplify".

@@ -18,7 +18,7 @@ use pyo3::types::PyDict;
 /// >>> records = build(Csg.cuboid([0, 0, 0], [3, 1, 1]), Frame([0, 0, 0], 4, 2)).voxels()
 /// >>> len(records), records.corners().tolist()
 /// (3, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct VoxelRecords(pub Inner);
 
 #[pymethods]

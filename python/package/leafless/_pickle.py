@@ -7,15 +7,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ._leafless import Csg, Mesh, Octree, Shape, TriDexel, Volume, map_path
+from ._leafless import Csg, Mesh, Octree, TriDexel, Volume, map_path
 
 if TYPE_CHECKING:
     from ._leafless import _Fill, _Order, _Samples, _Triple
 
 
-def csg(name: str, arguments: tuple[Any, ...]) -> Csg:
-    made: Csg = getattr(Csg, name)(*arguments)
-    return made
+def csg(steps: list[tuple[str, tuple[Any, ...]]]) -> Csg:
+    made: list[Csg] = []
+    for name, arguments in steps:
+        # A whole number stands for what an earlier step made: no function of the class takes one.
+        parts = (made[part] if type(part) is int else part for part in arguments)
+        made.append(getattr(Csg, name)(*parts))
+    return made[-1]
 
 
 def mesh(vertices: Any, faces: Any, fill: Any, unit: str | None, displacement: float) -> Mesh:
@@ -41,7 +45,3 @@ def volume(
     low, high = threshold
     band = low if high is None else (low, high)
     return Volume(array, band, origin=origin, spacing=spacing, order=order)
-
-
-def shape(kind: type[Shape]) -> Shape:
-    return kind.__new__(kind)
