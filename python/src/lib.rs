@@ -54,15 +54,13 @@ mod _leafless {
     #[pymodule_export]
     use super::lazy::LazyOctree;
     #[pymodule_export]
-    use super::measures::{BoundingBox, MassProperties, SurfaceArea, bounding_box, measure, surface_area};
+    use super::measures::{bounding_box, measure, surface_area};
     #[pymodule_export]
     use super::mesh::Mesh;
     #[pymodule_export]
     use super::octree::{Octree, Proof, build};
     #[pymodule_export]
-    use super::pairs::{
-        Clearance, Deviation, Gap, Interference, clearance, deviation, gap_at_least, interference,
-    };
+    use super::pairs::{clearance, deviation, gap_at_least, interference};
     #[pymodule_export]
     use super::picture::{Picture, render};
     #[pymodule_export]

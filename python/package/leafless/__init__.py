@@ -19,7 +19,22 @@ Long work takes the keyword arguments `threads` (0: all processors), `max_bytes`
 function of the part done, a bar of tqdm, or True); Ctrl-C interrupts it. No result depends on the number of threads.
 """
 
-from ._answers import Cells, DexelRays, Distances, Membership, RayHits, Tag, VoxelKind
+from ._answers import (
+    BoundingBox,
+    Cells,
+    Clearance,
+    Deviation,
+    DexelRays,
+    Distances,
+    Gap,
+    Interference,
+    MassProperties,
+    Membership,
+    RayHits,
+    SurfaceArea,
+    Tag,
+    VoxelKind,
+)
 from ._errors import (
     ArgumentError,
     CancelledError,
@@ -33,24 +48,17 @@ from ._files import map, open, save
 from ._intervals import Intervals
 from ._leafless import (
     Affine,
-    BoundingBox,
     Channel,
-    Clearance,
     Csg,
-    Deviation,
     Frame,
-    Gap,
-    Interference,
     Interval,
     LazyOctree,
-    MassProperties,
     Mesh,
     Octree,
     Picture,
     Proof,
     Shape,
     Solid,
-    SurfaceArea,
     SurfaceReport,
     TriDexel,
     Volume,

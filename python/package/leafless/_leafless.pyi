@@ -21,29 +21,36 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 from typing_extensions import Never, Self, TypeAlias, Unpack, disjoint_base
 
-from ._answers import Cells, DexelRays, Distances, Membership, RayHits, Tag
+from ._answers import (
+    BoundingBox,
+    Cells,
+    Clearance,
+    Deviation,
+    DexelRays,
+    Distances,
+    Gap,
+    Interference,
+    MassProperties,
+    Membership,
+    RayHits,
+    SurfaceArea,
+    Tag,
+)
 from ._intervals import Intervals
 
 __all__ = [
     "Affine",
-    "BoundingBox",
     "Channel",
-    "Clearance",
     "Csg",
-    "Deviation",
     "Frame",
-    "Gap",
-    "Interference",
     "Interval",
     "LazyOctree",
-    "MassProperties",
     "Mesh",
     "Octree",
     "Picture",
     "Proof",
     "Shape",
     "Solid",
-    "SurfaceArea",
     "SurfaceReport",
     "TriDexel",
     "Volume",
@@ -70,8 +77,6 @@ __all__ = [
 _Rule: TypeAlias = Literal["certified", "sampled", "inner", "outer"]
 _Fill: TypeAlias = Literal["nonzero", "positive", "evenodd"]
 _Order: TypeAlias = Literal["xyz", "zyx"]
-_StopReason: TypeAlias = Literal["tolerance", "budget", "exhausted"]
-_Answer: TypeAlias = Literal["yes", "no", "undecided"]
 _Method: TypeAlias = Literal["faces", "adaptive", "cubes", "nets", "shrink"]
 
 _Triple: TypeAlias = tuple[float, float, float]
@@ -612,6 +617,7 @@ class TriDexel:
 
 @final
 class Proof:
+    def __new__(cls, full: bool, empty: bool, displacement: float = 0.0) -> Self: ...
     @property
     def full(self) -> bool: ...
     @property
@@ -623,6 +629,7 @@ class Proof:
 
 @final
 class SurfaceReport:
+    def __new__(cls, method: str, deviation: float, from_mesh: bool, intersecting_pairs: int) -> Self: ...
     @property
     def method(self) -> _Method | Literal["simplify"]: ...
     @property
@@ -631,100 +638,7 @@ class SurfaceReport:
     def deviation(self) -> float: ...
     @property
     def intersecting_pairs(self) -> int: ...
-
-@final
-class MassProperties:
-    @property
-    def volume(self) -> Interval: ...
-    @property
-    def centroid(self) -> Intervals | None: ...
-    @property
-    def inertia_about_origin(self) -> Intervals: ...
-    @property
-    def inertia_about_centroid(self) -> Intervals: ...
-    @property
-    def exact(self) -> bool: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def proof(self) -> Proof: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
-    @property
-    def splits(self) -> int: ...
-
-@final
-class SurfaceArea:
-    @property
-    def area(self) -> Interval: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
-    @property
-    def splits(self) -> int: ...
-
-@final
-class BoundingBox:
-    @property
-    def corners(self) -> Intervals | None: ...
-    @property
-    def occupied(self) -> bool: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
-    @property
-    def splits(self) -> int: ...
-
-@final
-class Interference:
-    @property
-    def verdict(self) -> Literal["disjoint", "overlapping", "undecided"]: ...
-    @property
-    def volume(self) -> Interval: ...
-    @property
-    def ball(self) -> tuple[_Triple, float] | None: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def splits(self) -> tuple[int, int]: ...
-
-@final
-class Clearance:
-    @property
-    def distance(self) -> Interval: ...
-    @property
-    def points(self) -> _Doubles | None: ...
-    @property
-    def depth(self) -> float: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def splits(self) -> tuple[int, int]: ...
-
-@final
-class Gap:
-    @property
-    def verdict(self) -> _Answer: ...
-    @property
-    def distance(self) -> Interval: ...
-
-@final
-class Deviation:
-    @property
-    def distance(self) -> Interval: ...
-    @property
-    def a_to_b(self) -> Interval: ...
-    @property
-    def b_to_a(self) -> Interval: ...
-    @property
-    def points(self) -> _Doubles | None: ...
-    def within(self, distance: float) -> _Answer: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
 
 @final
 class Picture:
