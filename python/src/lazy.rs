@@ -13,7 +13,7 @@ use leafless::op::{Refinement, Zone};
 use leafless::query::Membership;
 use leafless::solid::Prepared;
 use leafless::{LazyOctree as Inner, Solid as _};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -158,6 +158,12 @@ impl LazyOctree {
             }
             Err(_) => "<LazyOctree at work>".into(),
         }
+    }
+
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(PyTypeError::new_err(
+            "a LazyOctree cannot be pickled: pickle the solid and what freeze() makes, and resume with both",
+        ))
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {

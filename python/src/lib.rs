@@ -44,7 +44,7 @@ mod _leafless {
     #[pymodule_export]
     use super::csg::Csg;
     #[pymodule_export]
-    use super::dexels::{TriDexel, dexelize};
+    use super::dexels::{DexelSolid, TriDexel, dexelize};
     #[pymodule_export]
     use super::files::{map_path, open_bytes, open_path, save_bytes, save_path};
     #[pymodule_export]

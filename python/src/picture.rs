@@ -1,8 +1,9 @@
 //! Pictures.
 
-use crate::arrays::{layout, shown};
+use crate::arrays::{layout, required, shown};
 use crate::ask::{self, Wish};
 use crate::error::{OrRaise, refused};
+use crate::from_package;
 use crate::mesh::Mesh;
 use crate::octree::Octree;
 use crate::solid::{Given, given, is_solid};
@@ -13,6 +14,8 @@ use leafless::render::{
     Shot, SliceLayer, SlicePlane, SolidLayer,
 };
 use leafless::{Bounds, Frame, TriangleMesh};
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::sync::Arc;
@@ -58,6 +61,27 @@ impl Picture {
 
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         self.to_png(py)
+    }
+
+    /// A picture again, as it was pickled.
+    #[staticmethod]
+    fn _restored(rgba: &Bound<'_, PyAny>, depth: &Bound<'_, PyAny>) -> PyResult<Picture> {
+        let py = rgba.py();
+        let (rgba, depth) =
+            (required::<u8>(rgba, "uint8", "rgba")?, required::<f32>(depth, "float32", "depth")?);
+        let &[height, width, 4] = rgba.shape() else {
+            return Err(refused(py, "rgba", "must have the shape (height, width, 4)"));
+        };
+        let size = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+        let colours = bytemuck::cast_slice(rgba.readonly().as_slice()?).to_vec();
+        let picture = pictures::Picture::of_colours(size, colours);
+        let depths = depth.readonly().as_slice()?.to_vec();
+        picture.and_then(|picture| picture.with_depths(depths)).or_raise(py).map(Picture)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let again = from_package!(slf.py(), "leafless._pickle", "picture")?;
+        Ok((again, (Picture::rgba(slf)?, Picture::depth(slf)?).into_bound_py_any(slf.py())?))
     }
 
     fn __repr__(&self) -> String {

@@ -164,7 +164,13 @@ def test_pickled_meshes_keep_their_doubt(tmp_path):
     assert mesh.is_closed and mesh.report()["sewn"] > 0
     again = pickle.loads(pickle.dumps(mesh))
     one, other = lf.measure(mesh).volume, lf.measure(again).volume
-    assert one.width > 1e-13 and other.width > 0.5 * one.width and other.lower < 1 < other.upper
+    assert one.width > 1e-13 and other == one and other.lower < 1 < other.upper
+    # With a hole, too, which no stated deviation allows.
+    opened = lf.Mesh(soup, faces[:-1]).sewn()
+    assert not opened.is_closed and opened.report()["sewn"] > 0
+    points = [[0.5, 0.5, 0.5], [0.5, 0.5, 1e-12], [2, 2, 2]]
+    again = pickle.loads(pickle.dumps(opened))
+    assert again.report() == opened.report() and (again.contains(points) == opened.contains(points)).all()
 
 
 def test_scenes_are_found_from_anywhere(tetrahedron, tmp_path, monkeypatch):

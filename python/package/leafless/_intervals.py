@@ -20,7 +20,7 @@ class Intervals:
     array([ True, False])
     """
 
-    __slots__ = ("lower", "upper")
+    __slots__ = ("__weakref__", "lower", "upper")
 
     lower: npt.NDArray[np.float64]
     upper: npt.NDArray[np.float64]

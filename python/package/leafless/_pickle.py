@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
-from ._leafless import Csg, Mesh, Octree, TriDexel, Volume, map_path
+from ._leafless import Csg, DexelSolid, Mesh, Octree, Picture, TriDexel, Volume, VoxelRecords, map_path
 
 if TYPE_CHECKING:
-    from ._leafless import _Fill, _Order, _Samples, _Triple
+    from ._leafless import Frame, Proof, _Order, _Samples, _Triple
 
 
 def csg(steps: list[tuple[str, tuple[Any, ...]]]) -> Csg:
@@ -22,8 +19,20 @@ def csg(steps: list[tuple[str, tuple[Any, ...]]]) -> Csg:
     return made[-1]
 
 
-def mesh(vertices: Any, faces: Any, fill: Any, unit: str | None, displacement: float) -> Mesh:
-    return Mesh._restored(vertices, faces, fill, unit, displacement)
+def mesh(*parts: Any) -> Mesh:
+    return Mesh._restored(*parts)
+
+
+def voxels(frame: Frame, arrays: tuple[Any, ...], known: tuple[str, str, Proof]) -> VoxelRecords:
+    return VoxelRecords._restored(VoxelRecords(frame, *arrays), *known)
+
+
+def picture(rgba: Any, depth: Any) -> Picture:
+    return Picture._restored(rgba, depth)
+
+
+def dexel_solid(model: TriDexel) -> DexelSolid:
+    return model.solid()
 
 
 def octree(data: bytes) -> Octree:
