@@ -4,9 +4,10 @@ use crate::csg::Csg;
 use crate::dexels::TriDexel;
 use crate::error::{OrRaise, refused};
 use crate::mesh::Mesh;
+use crate::note;
 use crate::octree::Octree;
 use crate::picture::Picture;
-use crate::volume::{Volume, band};
+use crate::volume::{Threshold, Volume, band, threshold};
 use crate::words;
 use crate::work::Limits;
 use leafless::error::FormatError;
@@ -106,7 +107,7 @@ pub fn open_bytes<'py>(
         Some(Content::Solid) => solid(py, data).or_raise(py)?.into_object(py, None),
         Some(Content::Volume) => {
             let found = Limits::default().run(py, |_| exchange::read_volume(data, None).map_err(of_file))?;
-            volume(py, found, &taking)
+            volume(py, found, &taking, note::threshold(data))
         }
         Some(Content::Mesh) => {
             let options = &taking.options;
@@ -148,7 +149,7 @@ pub fn open_path<'py>(
     if let Some(Content::Volume) = content {
         // Samples may lie in a file beside the header.
         let found = Limits::default().run(py, |_| exchange::open_volume(&path))?;
-        return volume(py, found, &taken);
+        return volume(py, found, &taken, note::threshold(&bytes));
     }
     let folder = path.parent().map(Path::to_path_buf);
     open_bytes(py, &bytes, path, folder, taking)
@@ -231,8 +232,18 @@ fn mesh<'py>(py: Python<'py>, found: MeshFile, taking: &Taking<'py>) -> PyResult
     Ok(Mesh::bound(py, mesh, taking.fill, unit, None)?.into_any())
 }
 
-fn volume<'py>(py: Python<'py>, found: VolumeFile, taking: &Taking<'py>) -> PyResult<Bound<'py, PyAny>> {
-    let (band, told) = band(taking.threshold.as_ref(), found.kind.half_range())?;
+/// The volume in a file, whose header may tell the threshold that it was saved with.
+fn volume<'py>(
+    py: Python<'py>,
+    found: VolumeFile,
+    taking: &Taking<'py>,
+    saved: Option<Threshold>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let told = match &taking.threshold {
+        Some(given) => threshold(given)?,
+        None => saved.unwrap_or((found.kind.half_range(), None)),
+    };
+    let band = band(py, told)?;
     let (samples, grid) = (found.samples, found.grid);
     let volume = Limits::default().run(py, |control| leafless::Volume::new(samples, &grid, band, control))?;
     let volume = Bound::new(py, Volume::initial(volume, false, false, told)?)?.into_any();
@@ -318,9 +329,12 @@ pub fn save_bytes<'py>(object: &Bound<'py, PyAny>, name: PathBuf) -> PyResult<Bo
         if extension != "nrrd" {
             return wrong(".nrrd");
         }
-        let volume = volume.get().volume.clone();
-        Limits::default()
-            .run(py, |_| exchange::write_nrrd(volume.samples(), volume.grid(), NrrdEncoding::Gzip))?
+        let (volume, threshold) = (volume.get().volume.clone(), volume.get().threshold);
+        Limits::default().run(py, |_| {
+            let mut file = exchange::write_nrrd(volume.samples(), volume.grid(), NrrdEncoding::Gzip)?;
+            note::add(&mut file, threshold);
+            Ok(file)
+        })?
     } else if let Ok(picture) = object.cast::<Picture>() {
         return if extension == "png" { picture.get().to_png(py) } else { wrong(".png") };
     } else {

@@ -20,6 +20,7 @@ mod interval;
 mod lazy;
 mod measures;
 mod mesh;
+mod note;
 mod octree;
 mod operators;
 mod pairs;

@@ -82,6 +82,43 @@ def test_volumes(tmp_path):
     assert lf.build(again, rule="sampled") == lf.build(volume, rule="sampled")
 
 
+@pytest.mark.parametrize("threshold", [500, (300, 500), (-np.inf, 500.25), (0, np.inf)])
+def test_volumes_remember_their_threshold(tmp_path, threshold):
+    samples = np.random.default_rng(0).integers(0, 1000, (5, 6, 7)).astype(np.uint16)
+    volume = lf.Volume(samples, threshold)
+    path = tmp_path / "scan.nrrd"
+    lf.save(volume, path)
+    assert lf.open(path).threshold == volume.threshold
+    assert lf.build(lf.open(path), rule="sampled") == lf.build(volume, rule="sampled")
+    assert lf.open(path, threshold=7).threshold == (7, None)
+
+
+def test_masks_are_opened_as_they_were(tmp_path):
+    pytest.importorskip("fsspec")
+    mask = lf.build(lf.Csg.ball([4, 4, 4], 3), lf.Frame([0, 0, 0], 8, 3), rule="sampled").bitmap()
+    for path in (str(tmp_path / "mask.nrrd"), "memory://mask.nrrd"):
+        lf.save(lf.Volume(mask), path)
+        again = lf.open(path)
+        assert again.threshold == (0.5, None) and float(mask.sum()) in lf.build(again, rule="sampled").volume
+
+
+def test_thresholds_of_other_files(tmp_path):
+    path = tmp_path / "scan.nrrd"
+    lf.save(lf.Volume(np.full((2, 2, 2), 9, np.uint8), 5), path)
+    whole = path.read_bytes()
+    line = b"leafless threshold:=5.0\n"
+    assert whole.startswith(b"NRRD0004\n" + line)
+    # Without the key, or with one that tells no number, it is the middle of the type.
+    for other in (b"", b"other key:=7\n", b"leafless threshold:=low\n", b"leafless threshold:=\n"):
+        path.write_bytes(whole.replace(line, other))
+        assert lf.open(path).threshold == (127.5, None)
+    path.write_bytes(whole.replace(line, line.replace(b"\n", b" 9.5\r\n")))
+    assert lf.open(path).threshold == (5, 9.5)
+    path.write_bytes(whole.replace(line, b"leafless threshold:=nan\n"))
+    with pytest.raises(lf.ArgumentError):
+        lf.open(path)
+
+
 def test_pictures(plate, tmp_path):
     lf.save(lf.render(plate, size=(32, 32)), tmp_path / "plate.png")
     assert (tmp_path / "plate.png").read_bytes()[:4] == b"\x89PNG"

@@ -31,8 +31,9 @@ def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | Tri
 
     `path` is a path, or a URL of any kind that fsspec knows. Of meshes, `fill` says what is inside ("nonzero", "positive", "evenodd"),
     `unit` what the numbers mean ("mm", "in"), `to_unit` what they are converted to, `scale` multiplies them, and
-    `sew=False` leaves hair cracks open, which are closed by default; of volumes, `threshold`
-    says which samples are inside.
+    `sew=False` leaves hair cracks open, which are closed by default. For volumes, `threshold` says which samples are inside. A volume that
+    was saved here remembers its threshold. For other files the default is the middle of what the type of the samples can be: 127.5 for
+    uint8, 32767.5 for uint16, −0.5 for signed integers, 0 for floating point. A mask of zeros and ones therefore needs `threshold=0.5`.
 
     >>> import os, tempfile
     >>> path = os.path.join(tempfile.mkdtemp(), "ball.lfl")
@@ -68,7 +69,8 @@ def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDe
 
 
 def save(object: Octree | TriDexel | Mesh | Volume | Picture, path: str | os.PathLike[str]) -> None:
-    """Writes an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd) or a `Picture` (.png).
+    """Writes an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd, with its threshold) or a
+    `Picture` (.png).
 
     `path` is a path, or a URL of any kind that fsspec can write to. A file at a path is replaced as a whole: at any moment there is the
     old one or the new one.
