@@ -199,7 +199,8 @@ pub fn map_path<'py>(
     checksum: Option<u64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let path = std::path::absolute(&path).map_err(|error| Error::Io(error).of_file(&path)).or_raise(py)?;
-    let found = py.detach(|| {
+    let (own, found) = py.detach(|| {
+        let before = header_checksum(&path);
         let found = either(
             // SAFETY: that the file is not shortened or written to is what `leafless.map` asks of its callers.
             #[allow(unsafe_code)]
@@ -207,19 +208,25 @@ pub fn map_path<'py>(
             // SAFETY: as above.
             #[allow(unsafe_code)]
             || unsafe { if verify { dexels::map_verified(&path) } else { dexels::map(&path) } },
-        )?;
-        let mut header = [0; HEADER];
-        let read = std::fs::File::open(&path).and_then(|mut file| file.read_exact(&mut header));
-        read.map_err(|error| Error::Io(error).of_file(&path))?;
-        let own = header[CHECKSUM].iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte));
-        Ok((found, own))
+        );
+        // Of a file that was replaced in between nobody knows which one is mapped.
+        (before.filter(|_| header_checksum(&path) == before), found)
     });
-    let (found, own) = found.or_raise(py)?;
-    if checksum.is_some_and(|checksum| checksum != own) {
+    let found = found.or_raise(py)?;
+    if checksum.is_some() && checksum != own {
         let path = path.display();
         return Err(refused(py, "checksum", format!("{path} is not the file that it was")));
     }
-    found.into_object(py, Some((path, own)))
+    found.into_object(py, own.map(|own| (path, own)))
+}
+
+/// The checksum in the header of a file, which covers those of all sections; nothing of a file that has no header.
+fn header_checksum(path: &Path) -> Option<u64> {
+    // Opening a pipe would wait for whoever writes to it.
+    std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
+    let mut header = [0; HEADER];
+    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut header)).ok()?;
+    Some(header[CHECKSUM].iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte)))
 }
 
 fn mesh<'py>(py: Python<'py>, found: MeshFile, taking: &Taking<'py>) -> PyResult<Bound<'py, PyAny>> {

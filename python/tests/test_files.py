@@ -1,7 +1,9 @@
 """Files of all kinds, URLs, mapped files, pickles."""
 
+import builtins
 import multiprocessing
 import pickle
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +134,32 @@ def test_urls(octree, tetrahedron):
     assert len(lf.open("memory://some/t.ply")) == 4
     with pytest.raises(FileNotFoundError):
         lf.open("memory://nowhere/t.ply")
+
+
+def test_the_name_of_a_url_tells_the_format(octree, tetrahedron, tmp_path):
+    fsspec = pytest.importorskip("fsspec")
+
+    class Server(fsspec.get_filesystem_class("memory")):
+        """Files that are asked for by a token."""
+
+        protocol = "tokens"
+        store, pseudo_dirs = {}, [""]
+
+    fsspec.register_implementation("tokens", Server, clobber=True)
+    lf.save(octree, "tokens://some/plate.lfl?token=a/b.stl")
+    assert lf.open("tokens://some/plate.lfl?token=a/b.stl") == octree
+    lf.save(tetrahedron, tmp_path / "part#1.off")
+    with zipfile.ZipFile(tmp_path / "parts.zip", "w") as parts:
+        parts.write(tmp_path / "part#1.off", "part#1.off")
+    assert len(lf.open(f"zip://part#1.off::file://{tmp_path}/parts.zip")) == 4
+    assert len(lf.open(f"simplecache::file://{tmp_path}/part#1.off")) == 4
+
+
+def test_import_of_everything_hides_nothing_of_python():
+    names = {}
+    exec("from leafless import *", names)
+    assert not set(names) & set(dir(builtins)) - {"__builtins__", "__doc__", "__name__"}
+    assert names["save"] is lf.save and callable(lf.open) and callable(lf.map)
 
 
 def test_what_is_wrong_is_told(octree, tmp_path):

@@ -44,7 +44,7 @@ from ._errors import (
     LimitError,
     MeshError,
 )
-from ._files import map, open, save
+from ._files import map as map, open as open, save
 from ._intervals import Intervals
 from ._leafless import (
     Affine,
@@ -88,6 +88,7 @@ EMPTY = Tag.EMPTY
 FULL = Tag.FULL
 PARTIAL = Tag.PARTIAL
 
+# `open` and `map` are not in it: `import *` must not hide those of Python.
 __all__ = [
     "EMPTY",
     "FULL",
@@ -141,9 +142,7 @@ __all__ = [
     "dexelize",
     "gap_at_least",
     "interference",
-    "map",
     "measure",
-    "open",
     "render",
     "save",
     "simplify",

@@ -17,6 +17,12 @@ def _url(path: str | os.PathLike[str]) -> str | None:
     return path if isinstance(path, str) and "://" in path else None
 
 
+def _name(url: str) -> str:
+    """The name of the file at a URL, without what is asked of a server. In a chain (`zip://part.stl::https://…`) it is the first name."""
+    first = next(part for part in url.split("::") if "://" in part)
+    return first.partition("?")[0].rsplit("/", 1)[-1]
+
+
 def _fsspec() -> Any:
     try:
         import fsspec  # type: ignore[import, unused-ignore]
@@ -45,7 +51,7 @@ def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | Tri
     if url is None:
         return _leafless.open_path(os.fspath(path), **taking)
     with _fsspec().open(url, "rb") as file:
-        return _leafless.open_bytes(file.read(), url.rsplit("/", 1)[-1], **taking)
+        return _leafless.open_bytes(file.read(), _name(url), **taking)
 
 
 def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDexel:
@@ -85,7 +91,7 @@ def save(object: Octree | TriDexel | Mesh | Volume | Picture, path: str | os.Pat
     if url is None:
         _leafless.save_path(object, os.fspath(path))
         return
-    data = _leafless.save_bytes(object, url.rsplit("/", 1)[-1])
+    data = _leafless.save_bytes(object, _name(url))
     with _fsspec().open(url, "wb") as file:
         file.write(data)
 
