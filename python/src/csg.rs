@@ -70,7 +70,8 @@ impl Csg {
 
     /// The points where a polynomial of degree two is not negative: ten coefficients, of xx, yy, zz, xy, yz, zx, x, y, z and 1.
     #[staticmethod]
-    fn quadric<'py>(py: Python<'py>, coefficients: [f64; 10]) -> PyResult<Bound<'py, Csg>> {
+    fn quadric<'py>(coefficients: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
+        let (py, coefficients) = (coefficients.py(), arrays::tuple::<10>(coefficients, "coefficients")?);
         let half = leafless::solid::HalfSpace::quadric(coefficients).map(Expression::from);
         made!(py, half, "quadric", coefficients)
     }
@@ -129,9 +130,10 @@ impl Csg {
     fn frustum_between<'py>(
         start: &Bound<'py, PyAny>,
         end: &Bound<'py, PyAny>,
-        radii: [f64; 2],
+        radii: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, Csg>> {
         let (py, a, b) = (start.py(), triple(start, "start")?, triple(end, "end")?);
+        let radii = arrays::tuple::<2>(radii, "radii")?;
         made!(py, Expression::frustum_between(a, b, radii), "frustum_between", a, b, radii)
     }
 

@@ -85,7 +85,7 @@ impl LazyOctree {
         level: u8,
         bounds: Option<&Bound<'_, PyAny>>,
         point: Option<&Bound<'_, PyAny>>,
-        ray: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+        ray: Option<[Bound<'_, PyAny>; 2]>,
         limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<bool> {
         let zone = match (bounds, point, ray) {
@@ -95,7 +95,7 @@ impl LazyOctree {
                 Zone::Box { min, max }
             }
             (None, Some(point), None) => Zone::Point(triple(point, "point")?),
-            (None, None, Some((origin, direction))) => Zone::Ray {
+            (None, None, Some([origin, direction])) => Zone::Ray {
                 origin: triple(&origin, "origin")?,
                 direction: triple(&direction, "direction")?,
                 from: 0.0,

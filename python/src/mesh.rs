@@ -318,14 +318,12 @@ fn read(name: &str, values: &Bound<'_, PyAny>) -> PyResult<MeshAttribute> {
 /// Triples of indices, of integers of any type.
 fn indices(given: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 3]>> {
     let py = given.py();
-    let array = required::<i64>(
-        &from_package!(py, "leafless._exchange", "indices")?.call1((given,))?,
-        "int64",
-        "faces",
-    )?;
-    let &[_, 3] = array.shape() else {
-        return Err(refused(py, "faces", format!("must have the shape (n, 3), not {:?}", array.shape())));
-    };
+    let array = required::<i64>(given, "int64", "faces")?;
+    match *array.shape() {
+        // An empty list has one axis.
+        [_, 3] | [0] => {}
+        ref shape => return Err(refused(py, "faces", format!("must have the shape (n, 3), not {shape:?}"))),
+    }
     let list = array.readonly();
     let index = |&index: &i64| {
         let problem = || refused(py, "faces", format!("{index} is not the index of a vertex"));

@@ -1,6 +1,6 @@
 //! Pictures.
 
-use crate::arrays::{layout, required, shown};
+use crate::arrays::{layout, required, shown, tuple};
 use crate::ask::{self, Wish};
 use crate::error::{OrRaise, refused};
 use crate::from_package;
@@ -108,24 +108,25 @@ struct Shown {
 /// <Picture: 320 × 240 pixels>
 #[pyfunction]
 #[pyo3(signature = (
-    *solids, size=(640, 480), view=(FROM[0], FROM[1]), colours=None, clip=None, slice=None, edges=true, cells=false,
-    background=(255, 255, 255, 255), samples=4, **limits
+    *solids, size=[640, 480], view=FROM, colours=None, clip=None, slice=None, edges=true, cells=false,
+    background=[255; 4], samples=4, **limits
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn render(
     solids: &Bound<'_, PyTuple>,
-    size: (u32, u32),
-    view: (f64, f64),
+    size: [u32; 2],
+    view: [f64; 2],
     colours: Option<Vec<Vec<u8>>>,
     clip: Option<&Bound<'_, PyAny>>,
-    slice: Option<[f64; 4]>,
+    slice: Option<&Bound<'_, PyAny>>,
     edges: bool,
     cells: bool,
-    background: (u8, u8, u8, u8),
+    background: [u8; 4],
     samples: u32,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Picture> {
     let (py, limits) = (solids.py(), Limits::of(limits)?);
+    let slice = slice.map(|plane| tuple::<4>(plane, "slice")).transpose()?;
     let mut scene = Vec::new();
     for (i, object) in solids.iter().enumerate() {
         if !is_solid(&object) {
@@ -158,9 +159,9 @@ pub fn render(
     if points.is_empty() {
         return Err(refused(py, "solids", "must be one at least"));
     }
-    let aspect = f64::from(size.0) / f64::from(size.1.max(1));
+    let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
     let camera = match slice {
-        None => Camera::fitted(&points, [view.0, view.1], Some(FIELD_OF_VIEW), aspect),
+        None => Camera::fitted(&points, view, Some(FIELD_OF_VIEW), aspect),
         // From above the plane.
         Some([a, b, c, _]) => {
             let flat = (a * a + b * b).sqrt();
@@ -169,8 +170,8 @@ pub fn render(
             Camera::fitted(&points, from, None, aspect)
         }
     };
-    let mut shot = Shot::new(camera.or_raise(py)?, size.into());
-    shot.background = background.into();
+    let mut shot = Shot::new(camera.or_raise(py)?, size);
+    shot.background = background;
     shot.samples = samples;
     if let Some(planes) = clip {
         let planes = crate::arrays::doubles(planes, "clip")?.call_method1("reshape", ((-1, 4),))?;

@@ -82,14 +82,16 @@ pub type Threshold = (f64, Option<f64>);
 
 /// One number, or a least and a greatest one.
 pub fn threshold(given: &Bound<'_, PyAny>) -> PyResult<Threshold> {
-    match given.extract::<f64>() {
-        Ok(low) => Ok((low, None)),
-        Err(_) => match given.extract::<[f64; 2]>() {
-            Ok([low, high]) => Ok((low, Some(high))),
-            Err(_) => {
-                Err(refused(given.py(), "threshold", "must be one number, or a least and a greatest one"))
-            }
-        },
+    if let Ok(low) = given.extract::<f64>() {
+        return Ok((low, None));
+    }
+    // What the property tells.
+    if let Ok(told) = given.extract::<(f64, Option<f64>)>() {
+        return Ok(told);
+    }
+    match arrays::tuple(given, "threshold") {
+        Ok([low, high]) => Ok((low, Some(high))),
+        Err(_) => Err(refused(given.py(), "threshold", "must be one number, or a least and a greatest one")),
     }
 }
 

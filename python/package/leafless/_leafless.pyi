@@ -85,6 +85,8 @@ _Path: TypeAlias = str | PathLike[str]
 _Doubles: TypeAlias = npt.NDArray[np.float64]
 _Samples: TypeAlias = npt.NDArray[np.bool_ | np.uint8 | np.uint16 | np.int16 | np.float32]
 _Indices: TypeAlias = Sequence[SupportsIndex] | npt.NDArray[np.integer[Any]]
+# A least sample, or a least and a greatest one.
+_Threshold: TypeAlias = float | tuple[float, float | None] | Sequence[float] | npt.NDArray[Any]
 
 # One point, and many. An array may hold either: its type does not say how many axes it has.
 _Point: TypeAlias = Sequence[float]
@@ -120,7 +122,7 @@ class Taking(TypedDict, total=False):
     to_unit: str | None
     scale: float | None
     sew: bool
-    threshold: float | tuple[float, float] | None
+    threshold: _Threshold | None
 
 @type_check_only
 class Level(TypedDict):
@@ -468,7 +470,7 @@ class Volume(Solid):
     def __new__(
         cls,
         array: _Samples,
-        threshold: float | tuple[float, float] | None = None,
+        threshold: _Threshold | None = None,
         *,
         origin: ArrayLike | None = None,
         spacing: ArrayLike | None = None,
@@ -487,7 +489,7 @@ class Volume(Solid):
     def order(self) -> _Order: ...
     @property
     def frame(self) -> Frame: ...
-    def with_threshold(self, threshold: float | tuple[float, float], **limits: Unpack[Limits]) -> Volume: ...
+    def with_threshold(self, threshold: _Threshold, **limits: Unpack[Limits]) -> Volume: ...
     @overload
     def values_at(self, points: _Point) -> np.float64: ...
     @overload
@@ -523,7 +525,7 @@ class LazyOctree:
         *,
         bounds: ArrayLike | None = None,
         point: ArrayLike | None = None,
-        ray: tuple[ArrayLike, ArrayLike] | None = None,
+        ray: Sequence[ArrayLike] | npt.NDArray[Any] | None = None,
         **limits: Unpack[Limits],
     ) -> bool: ...
     @overload
@@ -844,14 +846,14 @@ def deviation(
 ) -> Deviation: ...
 def render(
     *solids: Solid,
-    size: tuple[int, int] = ...,
-    view: tuple[float, float] = ...,
+    size: _Indices = ...,
+    view: Sequence[float] | npt.NDArray[Any] = ...,
     colours: ArrayLike | None = None,
     clip: ArrayLike | None = None,
     slice: ArrayLike | None = None,
     edges: bool = True,
     cells: bool = False,
-    background: tuple[int, int, int, int] = ...,
+    background: _Indices = ...,
     samples: int = 4,
     **limits: Unpack[Limits],
 ) -> Picture: ...

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ._leafless import Csg, DexelSolid, Mesh, Octree, Picture, TriDexel, Volume, VoxelRecords, map_path
 
 if TYPE_CHECKING:
-    from ._leafless import Frame, Proof, _Order, _Samples, _Triple
+    from ._leafless import Frame, Proof, _Order, _Samples, _Threshold, _Triple
 
 
 def csg(steps: list[tuple[str, tuple[Any, ...]]]) -> Csg:
@@ -48,9 +48,5 @@ def mapped(path: str, checksum: int) -> Octree | TriDexel:
     return map_path(path, checksum=checksum)
 
 
-def volume(
-    array: _Samples, threshold: tuple[float, float | None], origin: _Triple, spacing: _Triple, order: _Order
-) -> Volume:
-    low, high = threshold
-    band = low if high is None else (low, high)
-    return Volume(array, band, origin=origin, spacing=spacing, order=order)
+def volume(array: _Samples, threshold: _Threshold, origin: _Triple, spacing: _Triple, order: _Order) -> Volume:
+    return Volume(array, threshold, origin=origin, spacing=spacing, order=order)
