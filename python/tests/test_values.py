@@ -83,6 +83,53 @@ def test_affine():
             lf.Affine(wrong)
 
 
+def test_maps_are_arrays():
+    turn = lf.Affine.rotation([0, 0, 1], 30, about=[1, 2, 3])
+    assert (np.asarray(turn) == turn.matrix).all() and np.array(turn, np.float32).dtype == np.float32
+    assert lf.Affine(np.asarray(turn)) == turn and np.stack([turn, turn]).shape == (2, 4, 4)
+    own = np.asarray(turn)
+    own[0, 0] = 7
+    assert turn.matrix[0, 0] != 7
+    with pytest.raises(ValueError, match="copy"):
+        turn.__array__(copy=False)
+
+
+class Backwards:
+    """What knows by itself how a map is multiplied with it."""
+
+    def __rmatmul__(self, map):
+        return "mine"
+
+
+def test_products_of_maps_say_what_is_wrong():
+    move = lf.Affine.translation([1, 2, 3])
+    for wrong in (np.eye(3), np.zeros((4, 4)), np.eye(4)[::-1], [[1, 2], [3]], [move], np.stack([np.eye(4)] * 2)):
+        with pytest.raises(lf.ArgumentError):
+            move @ wrong
+        with pytest.raises(lf.ArgumentError):
+            wrong @ move
+    with pytest.raises(lf.Error):
+        lf.Affine.scale(1e200) @ lf.Affine.scale(1e200)
+    assert move @ np.eye(4).tolist() == move == np.eye(3, 4).tolist() @ move
+    assert move @ Backwards() == "mine"
+    for wrong in (3, "text", None):
+        with pytest.raises(TypeError, match="unsupported operand"):
+            move @ wrong
+
+
+def test_lists_of_maps_and_matrices():
+    block, pin = lf.Csg.cuboid([0, 0, 0], [2, 2, 2]), lf.Csg.ball([0, 0, 0], 1)
+    maps = [lf.Affine.translation([x, 0, 0]) for x in (-2, 0, 4)]
+    mixed = [maps[0].matrix, maps[1], maps[2].matrix[:3].tolist()]
+    told = ["disjoint", "overlapping", "disjoint"]
+    for places in (maps, mixed, mixed[::-1], tuple(mixed), np.stack(maps), [one.matrix for one in maps]):
+        found = lf.interference(block, pin, places)
+        assert isinstance(found, list) and [one.verdict for one in found] == told
+    assert lf.interference(block, pin, [maps[1]])[0].verdict == "overlapping" and lf.interference(block, pin, []) == []
+    with pytest.raises(lf.ArgumentError, match="placements"):
+        lf.interference(block, pin, [maps[0], np.eye(3)])
+
+
 @pytest.mark.parametrize(
     "value",
     [lf.Interval(1, 2), lf.Frame([0, 1, 2], 3, 4), lf.Affine.rotation([1, 2, 3], 77), lf.Intervals([1.0], [2.0])],
