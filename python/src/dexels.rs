@@ -146,7 +146,7 @@ impl TriDexel {
         Mesh::bound(py, mesh, FillRule::NonZero, None, None)
     }
 
-    /// The solid inside of the surface that marching cubes finds, which is taken for the truth.
+    /// The solid inside of the surface that marching cubes finds, which is taken for the truth: a `DexelSolid`.
     #[pyo3(signature = (**limits))]
     fn solid<'py>(
         slf: &Bound<'py, Self>,

@@ -4,7 +4,7 @@
 //! From the bottom up: `error`, `work` (long work that can be watched and interrupted), `words` (what enumerations are called),
 //! `arrays`, `interval`, `frame` and `affine` are what values are taken from; `solid` is the class of all that has a shape, and
 //! `ask` what is asked of it on which frame; `csg`, `mesh`, `octree` and the others are its kinds; `measures`, `pairs`, `surface`
-//! and `picture` are questions; `files` reads and writes.
+//! and `picture` are questions; `files` reads and writes, and `note` is what a volume adds to its file.
 
 mod affine;
 mod anywhere;

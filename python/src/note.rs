@@ -1,10 +1,9 @@
 //! The threshold of a volume in its NRRD file: a key with a value, which other programs skip or carry along.
 
+use crate::volume::Threshold;
+
 /// The key, and what follows any key.
 const KEY: &[u8] = b"leafless threshold:=";
-
-/// The least sample inside; and the greatest, if there is one.
-type Threshold = (f64, Option<f64>);
 
 /// The lines of a header, which end with an empty line or with the file.
 fn lines(file: &[u8]) -> impl Iterator<Item = &[u8]> {
