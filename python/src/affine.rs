@@ -3,12 +3,14 @@
 use crate::arrays::{self, doubles, triple};
 use crate::error::{OrRaise, refused};
 use leafless::Affine as Inner;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyTuple};
 
 /// A map of space that moves, turns or stretches: a 3×4 or 4×4 matrix, whose numbers are taken as they are.
 ///
 /// `map @ solid` is the solid moved by it, and `first @ second` the map that does what `second` does, and then `first`. Where a
-/// placement is asked for, any matrix of NumPy will do.
+/// placement is asked for, any matrix of NumPy will do. `numpy.asarray` makes the 4×4 matrix of a map.
 ///
 /// >>> turned = Affine.translation([10, 0, 0]) @ Affine.rotation([0, 0, 1], 90)
 /// >>> turned([1, 0, 0])
@@ -18,7 +20,7 @@ use pyo3::prelude::*;
 ///
 /// >>> Affine.rotation([0, 0, 1], 90).matrix[0]
 /// array([ 0., -1.,  0.,  0.])
-#[pyclass(frozen, eq, from_py_object, module = "leafless")]
+#[pyclass(frozen, eq, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct Affine(pub Inner);
 
@@ -114,22 +116,29 @@ impl Affine {
     }
 
     fn __matmul__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let py = other.py();
         if crate::solid::is_solid(other) {
             return other.call_method1("placed", (*self,));
         }
-        match affine(other, "placement") {
-            Ok(first) => Ok(Affine(after(&self.0, &first).or_raise(py)?).into_pyobject(py)?.into_any()),
-            Err(_) => Ok(py.NotImplemented().into_bound(py)),
-        }
+        composed(other, |other| after(&self.0, other))
     }
 
     fn __rmatmul__<'py>(&self, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let py = other.py();
-        match affine(other, "placement") {
-            Ok(second) => Ok(Affine(after(&second, &self.0).or_raise(py)?).into_pyobject(py)?.into_any()),
-            Err(_) => Ok(py.NotImplemented().into_bound(py)),
+        composed(other, |other| after(other, &self.0))
+    }
+
+    /// The 4×4 matrix, for `numpy.asarray`.
+    #[pyo3(signature = (dtype=None, copy=None))]
+    fn __array__<'py>(
+        &self,
+        py: Python<'py>,
+        dtype: Option<&Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if copy == Some(false) {
+            return Err(PyValueError::new_err("the matrix of an Affine is always a copy"));
         }
+        let matrix = self.matrix(py)?;
+        dtype.map_or(Ok(matrix.clone()), |dtype| matrix.call_method1("astype", (dtype,)))
     }
 
     fn __repr__(&self) -> String {
@@ -143,6 +152,21 @@ impl Affine {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>,))> {
         Ok((slf.get_type().into_any(), (slf.get().matrix(slf.py())?,)))
     }
+}
+
+/// What becomes of a map and another operand, if that is a map or an array.
+fn composed<'py>(
+    other: &Bound<'py, PyAny>,
+    compose: impl FnOnce(&Inner) -> Result<Inner, leafless::Error>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = other.py();
+    let is_array =
+        other.hasattr("__array__")? || other.is_instance_of::<PyList>() || other.is_instance_of::<PyTuple>();
+    if !is_array {
+        return Ok(py.NotImplemented().into_bound(py));
+    }
+    let whole = compose(&affine(other, "placement")?).or_raise(py)?;
+    Ok(Affine(whole).into_pyobject(py)?.into_any())
 }
 
 /// Sine and cosine of an angle in degrees, exact for quarter turns.
@@ -179,16 +203,16 @@ pub fn affine(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Inner> {
     }
 }
 
-/// Maps from one matrix, from an array of shape (n, 4, 4) or (n, 3, 4), or from a list of maps.
+/// Maps from one matrix, from an array of shape (n, 4, 4) or (n, 3, 4), or from a list of maps and matrices.
 pub fn affines(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Inner>> {
     if given.cast::<Affine>().is_ok() {
         return Ok(vec![affine(given, name)?]);
     }
-    if let Ok(list) = given.cast::<pyo3::types::PySequence>()
-        && list.len()? > 0
-        && list.get_item(0)?.cast::<Affine>().is_ok()
-    {
-        return list.try_iter()?.map(|one| affine(&one?, name)).collect();
+    if given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {
+        let list = given.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+        if list.iter().any(|one| one.is_instance_of::<Affine>()) {
+            return list.iter().map(|one| affine(one, name)).collect();
+        }
     }
     let array = doubles(given, name)?;
     if numpy::PyUntypedArrayMethods::len(&array) == 0 {

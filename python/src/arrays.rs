@@ -7,9 +7,8 @@ use numpy::{
     Element, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods,
 };
 use pyo3::IntoPyObjectExt;
-use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 /// Rows of three doubles from an array, or one row.
 pub struct Rows<'py> {
@@ -22,7 +21,8 @@ impl<'py> Rows<'py> {
     /// Takes rows of shape (n, 3), or one of shape (3,). An array of doubles that lies in memory row after row is not copied,
     /// and must not be changed by another thread as long as the call takes.
     pub fn of(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Rows<'py>> {
-        if let Ok(array) = given.cast::<PyArray2<f64>>()
+        if given.get_type().is(&from_package!(given.py(), "numpy", "ndarray")?)
+            && let Ok(array) = given.cast::<PyArray2<f64>>()
             && array.shape()[1] == 3
             && array.is_c_contiguous()
             && array.data().is_aligned()
@@ -59,28 +59,31 @@ pub fn doubles<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py
     required(given, "float64", name)
 }
 
-/// An array of one type that lies in memory row after row, copied if need be.
+/// An array of one type that lies in memory row after row, copied if need be; refused if it holds other things than such numbers.
 pub fn required<'py, T: Element>(
     given: &Bound<'py, PyAny>,
     kind: &str,
     name: &str,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    let py = given.py();
-    let require = from_package!(py, "numpy", "require")?;
-    let array = require.call1((given, kind, ["C", "A"])).map_err(|error| {
-        // What interrupts is no problem of the array.
-        if !error.is_instance_of::<PyTypeError>(py) && !error.is_instance_of::<PyValueError>(py) {
-            return error;
-        }
-        refused(py, name, format!("must be an array of numbers ({})", error.value(py)))
-    })?;
+    let array = from_package!(given.py(), "leafless._exchange", "numbers")?.call1((given, kind, name))?;
     Ok(array.cast_into::<PyArrayDyn<T>>()?)
+}
+
+/// So many numbers.
+pub fn tuple<const N: usize>(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; N]> {
+    let array = doubles(given, name)?;
+    match <[f64; N]>::try_from(array.readonly().as_slice()?) {
+        Ok(numbers) if array.ndim() == 1 => Ok(numbers),
+        _ => Err(refused(given.py(), name, format!("must be {N} numbers"))),
+    }
 }
 
 /// Three numbers.
 pub fn triple(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
     // A tuple or a list needs no array.
-    if let Ok(numbers) = given.extract::<[f64; 3]>() {
+    if (given.is_instance_of::<PyTuple>() || given.is_instance_of::<PyList>())
+        && let Ok(numbers) = given.extract::<[f64; 3]>()
+    {
         return Ok(numbers);
     }
     let rows = Rows::of(given, name)?;

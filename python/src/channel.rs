@@ -26,7 +26,7 @@ use pyo3::types::PyDict;
 /// >>> part = part.with_channel("heat", heat)
 /// >>> part.channel("heat").values_at([[1.5, 1.5, 1.5]])
 /// array([24.5])
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct Channel(pub Inner);
 
 /// A function of Python that has values at points.

@@ -8,8 +8,10 @@ use crate::solid::{Given, Solid};
 use leafless::error::Error;
 use leafless::{AnySolid, Csg as Expression};
 use pyo3::IntoPyObjectExt;
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyList, PyTuple};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// An expression: half-spaces, primitives, and set operations of these and of any other solids.
@@ -23,7 +25,7 @@ use std::path::{Path, PathBuf};
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct Csg {
     pub expression: Expression,
-    /// The function of this class and its arguments that made it.
+    /// The function of this class and its arguments that made it. A shape of Python in the expression lives as long as these do.
     recipe: (&'static str, Py<PyTuple>),
 }
 
@@ -68,7 +70,8 @@ impl Csg {
 
     /// The points where a polynomial of degree two is not negative: ten coefficients, of xx, yy, zz, xy, yz, zx, x, y, z and 1.
     #[staticmethod]
-    fn quadric<'py>(py: Python<'py>, coefficients: [f64; 10]) -> PyResult<Bound<'py, Csg>> {
+    fn quadric<'py>(coefficients: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
+        let (py, coefficients) = (coefficients.py(), arrays::tuple::<10>(coefficients, "coefficients")?);
         let half = leafless::solid::HalfSpace::quadric(coefficients).map(Expression::from);
         made!(py, half, "quadric", coefficients)
     }
@@ -127,9 +130,10 @@ impl Csg {
     fn frustum_between<'py>(
         start: &Bound<'py, PyAny>,
         end: &Bound<'py, PyAny>,
-        radii: [f64; 2],
+        radii: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, Csg>> {
         let (py, a, b) = (start.py(), triple(start, "start")?, triple(end, "end")?);
+        let radii = arrays::tuple::<2>(radii, "radii")?;
         made!(py, Expression::frustum_between(a, b, radii), "frustum_between", a, b, radii)
     }
 
@@ -241,6 +245,10 @@ impl Csg {
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         let (name, arguments) = &slf.get().recipe;
         let count = arguments.bind(slf.py()).len();
+        if *name == "from_scene" {
+            let text: String = arguments.bind(slf.py()).get_item(0)?.extract()?;
+            return Ok(format!("<Csg: from_scene ({} lines)>", text.lines().count()));
+        }
         if arguments.bind(slf.py()).iter().any(|argument| crate::solid::is_solid(&argument)) {
             return Ok(format!("<Csg: {name} ({count})>"));
         }
@@ -250,10 +258,43 @@ impl Csg {
 
     /// By how it was made: names and numbers, and the solids in it.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let (name, arguments) = &slf.get().recipe;
         let again = from_package!(slf.py(), "leafless._pickle", "csg")?;
-        Ok((again, (*name, arguments).into_bound_py_any(slf.py())?))
+        Ok((again, (steps(slf)?,).into_bound_py_any(slf.py())?))
     }
+
+    // Like a tuple, an expression never changes, so that each cycle through it has an object that the collector can clear.
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        visit.call(&self.recipe.1)
+    }
+}
+
+/// The recipe of an expression as a list of steps, each a name and arguments, that needs no recursion. An expression among the
+/// arguments is the number of the step that made it, and has one step however often it occurs.
+fn steps<'py>(whole: &Bound<'py, Csg>) -> PyResult<Bound<'py, PyList>> {
+    let py = whole.py();
+    let steps = PyList::empty(py);
+    let mut numbers: HashMap<_, usize> = HashMap::new();
+    let mut rest = vec![(whole.clone(), false)];
+    while let Some((csg, has_parts)) = rest.pop() {
+        if numbers.contains_key(&csg.as_ptr()) {
+            continue;
+        }
+        let (name, arguments) = &csg.get().recipe;
+        let arguments = arguments.bind(py);
+        if !has_parts {
+            rest.push((csg.clone(), true));
+            rest.extend(arguments.iter().filter_map(|part| Some((part.cast_into::<Csg>().ok()?, false))));
+            continue;
+        }
+        let told = arguments.iter().map(|argument| match numbers.get(&argument.as_ptr()) {
+            Some(number) => number.into_bound_py_any(py),
+            None => Ok(argument),
+        });
+        let told = PyTuple::new(py, told.collect::<PyResult<Vec<_>>>()?)?;
+        numbers.insert(csg.as_ptr(), steps.len());
+        steps.append((*name, told))?;
+    }
+    Ok(steps)
 }
 
 /// Solids as expressions.

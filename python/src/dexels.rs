@@ -12,7 +12,7 @@ use crate::words;
 use crate::work::Limits;
 use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::{DexelOptions, octree_from_dexel_ends, octree_from_dexels};
-use leafless::surface::{DexelSolid, dual_contouring_dexels, marching_cubes_dexels};
+use leafless::surface::{DexelSolid as Inside, dual_contouring_dexels, marching_cubes_dexels};
 use leafless::{AnySolid, FillRule, Rule, TriDexel as Inner};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -30,7 +30,7 @@ const DEPTH: u8 = 8;
 /// >>> model = dexelize(Csg.ball([0, 0, 0], 1), depth=6)
 /// >>> round(model.volume(), 3)
 /// 4.19
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct TriDexel {
     pub model: Inner,
     /// The file that it is mapped from, with the checksum of its header.
@@ -146,16 +146,18 @@ impl TriDexel {
         Mesh::bound(py, mesh, FillRule::NonZero, None, None)
     }
 
-    /// The solid inside of the surface that marching cubes finds, which is taken for the truth.
+    /// The solid inside of the surface that marching cubes finds, which is taken for the truth: a `DexelSolid`.
     #[pyo3(signature = (**limits))]
     fn solid<'py>(
-        &self,
+        slf: &Bound<'py, Self>,
         py: Python<'py>,
         limits: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, Solid>> {
-        let view = self.model.view();
-        let solid = Limits::of(limits)?.run(py, |control| DexelSolid::new(view, control))?;
-        Bound::new(py, Solid::new(Given::new(AnySolid::new(solid.as_truth()))))
+    ) -> PyResult<Bound<'py, DexelSolid>> {
+        let view = slf.get().model.view();
+        let solid = Limits::of(limits)?.run(py, |control| Inside::new(view, control))?;
+        let given = Given::new(AnySolid::new(solid.as_truth()));
+        let solid = DexelSolid { model: slf.clone().unbind() };
+        Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(solid))
     }
 
     /// The octree of the samples that rays decide; with `by_ends=True` cells in which rays begin or end stay undecided.
@@ -227,6 +229,30 @@ impl TriDexel {
                 Ok((again, (self.to_bytes(py)?,).into_bound_py_any(py)?))
             }
         }
+    }
+}
+
+/// The solid inside of the surface that marching cubes finds in a tri-dexel model, which is taken for the truth: `model.solid()`.
+#[pyclass(extends = Solid, frozen, module = "leafless")]
+pub struct DexelSolid {
+    model: Py<TriDexel>,
+}
+
+#[pymethods]
+impl DexelSolid {
+    /// The model.
+    #[getter]
+    fn model(&self, py: Python<'_>) -> Py<TriDexel> {
+        self.model.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<DexelSolid of {}>", self.model.get().__repr__())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let again = from_package!(py, "leafless._pickle", "dexel_solid")?;
+        Ok((again, (&self.model,).into_bound_py_any(py)?))
     }
 }
 

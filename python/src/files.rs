@@ -4,9 +4,10 @@ use crate::csg::Csg;
 use crate::dexels::TriDexel;
 use crate::error::{OrRaise, refused};
 use crate::mesh::Mesh;
+use crate::note;
 use crate::octree::Octree;
 use crate::picture::Picture;
-use crate::volume::{Volume, band};
+use crate::volume::{Threshold, Volume, band, threshold};
 use crate::words;
 use crate::work::Limits;
 use leafless::error::FormatError;
@@ -106,7 +107,7 @@ pub fn open_bytes<'py>(
         Some(Content::Solid) => solid(py, data).or_raise(py)?.into_object(py, None),
         Some(Content::Volume) => {
             let found = Limits::default().run(py, |_| exchange::read_volume(data, None).map_err(of_file))?;
-            volume(py, found, &taking)
+            volume(py, found, &taking, note::threshold(data))
         }
         Some(Content::Mesh) => {
             let options = &taking.options;
@@ -148,7 +149,7 @@ pub fn open_path<'py>(
     if let Some(Content::Volume) = content {
         // Samples may lie in a file beside the header.
         let found = Limits::default().run(py, |_| exchange::open_volume(&path))?;
-        return volume(py, found, &taken);
+        return volume(py, found, &taken, note::threshold(&bytes));
     }
     let folder = path.parent().map(Path::to_path_buf);
     open_bytes(py, &bytes, path, folder, taking)
@@ -198,7 +199,8 @@ pub fn map_path<'py>(
     checksum: Option<u64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let path = std::path::absolute(&path).map_err(|error| Error::Io(error).of_file(&path)).or_raise(py)?;
-    let found = py.detach(|| {
+    let (own, found) = py.detach(|| {
+        let before = header_checksum(&path);
         let found = either(
             // SAFETY: that the file is not shortened or written to is what `leafless.map` asks of its callers.
             #[allow(unsafe_code)]
@@ -206,19 +208,25 @@ pub fn map_path<'py>(
             // SAFETY: as above.
             #[allow(unsafe_code)]
             || unsafe { if verify { dexels::map_verified(&path) } else { dexels::map(&path) } },
-        )?;
-        let mut header = [0; HEADER];
-        let read = std::fs::File::open(&path).and_then(|mut file| file.read_exact(&mut header));
-        read.map_err(|error| Error::Io(error).of_file(&path))?;
-        let own = header[CHECKSUM].iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte));
-        Ok((found, own))
+        );
+        // Of a file that was replaced in between nobody knows which one is mapped.
+        (before.filter(|_| header_checksum(&path) == before), found)
     });
-    let (found, own) = found.or_raise(py)?;
-    if checksum.is_some_and(|checksum| checksum != own) {
+    let found = found.or_raise(py)?;
+    if checksum.is_some() && checksum != own {
         let path = path.display();
         return Err(refused(py, "checksum", format!("{path} is not the file that it was")));
     }
-    found.into_object(py, Some((path, own)))
+    found.into_object(py, own.map(|own| (path, own)))
+}
+
+/// The checksum in the header of a file, which covers those of all sections; nothing of a file that has no header.
+fn header_checksum(path: &Path) -> Option<u64> {
+    // Opening a pipe would wait for whoever writes to it.
+    std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
+    let mut header = [0; HEADER];
+    std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut header)).ok()?;
+    Some(header[CHECKSUM].iter().rev().fold(0, |sum, &byte| sum << 8 | u64::from(byte)))
 }
 
 fn mesh<'py>(py: Python<'py>, found: MeshFile, taking: &Taking<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -231,8 +239,18 @@ fn mesh<'py>(py: Python<'py>, found: MeshFile, taking: &Taking<'py>) -> PyResult
     Ok(Mesh::bound(py, mesh, taking.fill, unit, None)?.into_any())
 }
 
-fn volume<'py>(py: Python<'py>, found: VolumeFile, taking: &Taking<'py>) -> PyResult<Bound<'py, PyAny>> {
-    let (band, told) = band(taking.threshold.as_ref(), found.kind.half_range())?;
+/// The volume in a file, whose header may tell the threshold that it was saved with.
+fn volume<'py>(
+    py: Python<'py>,
+    found: VolumeFile,
+    taking: &Taking<'py>,
+    saved: Option<Threshold>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let told = match &taking.threshold {
+        Some(given) => threshold(given)?,
+        None => saved.unwrap_or((found.kind.half_range(), None)),
+    };
+    let band = band(py, told)?;
     let (samples, grid) = (found.samples, found.grid);
     let volume = Limits::default().run(py, |control| leafless::Volume::new(samples, &grid, band, control))?;
     let volume = Bound::new(py, Volume::initial(volume, false, false, told)?)?.into_any();
@@ -318,9 +336,12 @@ pub fn save_bytes<'py>(object: &Bound<'py, PyAny>, name: PathBuf) -> PyResult<Bo
         if extension != "nrrd" {
             return wrong(".nrrd");
         }
-        let volume = volume.get().volume.clone();
-        Limits::default()
-            .run(py, |_| exchange::write_nrrd(volume.samples(), volume.grid(), NrrdEncoding::Gzip))?
+        let (volume, threshold) = (volume.get().volume.clone(), volume.get().threshold);
+        Limits::default().run(py, |_| {
+            let mut file = exchange::write_nrrd(volume.samples(), volume.grid(), NrrdEncoding::Gzip)?;
+            note::add(&mut file, threshold);
+            Ok(file)
+        })?
     } else if let Ok(picture) = object.cast::<Picture>() {
         return if extension == "png" { picture.get().to_png(py) } else { wrong(".png") };
     } else {

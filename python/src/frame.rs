@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 /// (1024, 0.125)
 /// >>> Frame.around([[0, 0, 0], [80, 60, 10]], depth=10).edge >= 80
 /// True
-#[pyclass(frozen, eq, from_py_object, module = "leafless")]
+#[pyclass(frozen, eq, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct Frame(pub Inner);
 

@@ -4,16 +4,20 @@ use crate::arrays;
 use crate::error::refused;
 use crate::from_package;
 use leafless::Interval as Bounds;
+use pyo3::IntoPyObjectExt;
 use pyo3::basic::CompareOp;
 use pyo3::prelude::*;
 
 /// Two numbers between which the truth lies: proven.
 ///
-/// It prints the digits that mean something, and `in` asks whether a number is possible.
+/// It prints the digits that mean something, and `in` asks whether a number is possible. A format of numbers is one of both ends, which are
+/// rounded outward, so that what is printed contains the truth.
 ///
 /// >>> volume = Interval(171000.0, 172000.0)
 /// >>> volume
 /// 171500 ± 510
+/// >>> f"{Interval(0.123456, 0.123457):.3f}"
+/// '0.123 to 0.124'
 /// >>> 171234.5 in volume, volume.lower, volume.upper
 /// (True, 171000.0, 172000.0)
 ///
@@ -22,7 +26,7 @@ use pyo3::prelude::*;
 ///
 /// >>> volume < 2e5, volume < 171500, volume > 171500
 /// (True, False, False)
-#[pyclass(frozen, from_py_object, module = "leafless")]
+#[pyclass(frozen, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy)]
 pub struct Interval(pub Bounds);
 
@@ -106,15 +110,12 @@ impl Interval {
         self.0.to_string()
     }
 
-    fn __format__(&self, spec: &str) -> PyResult<String> {
+    /// Both ends by a format of numbers, as in `f"{volume:.3f}"`, the lower one rounded down and the upper one rounded up.
+    fn __format__<'py>(&self, py: Python<'py>, spec: &str) -> PyResult<Bound<'py, PyAny>> {
         if spec.is_empty() {
-            return Ok(self.0.to_string());
+            return self.0.to_string().into_bound_py_any(py);
         }
-        Python::attach(|py| {
-            let format = from_package!(py, "builtins", "format")?;
-            let end = |value: f64| format.call1((value, spec))?.extract::<String>();
-            Ok(format!("{} to {}", end(self.0.lower)?, end(self.0.upper)?))
-        })
+        from_package!(py, "leafless._format", "outward")?.call1((self.0.lower, self.0.upper, spec))
     }
 
     fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyAny>, (f64, f64))> {

@@ -13,7 +13,8 @@ use leafless::op::{Refinement, Zone};
 use leafless::query::Membership;
 use leafless::solid::Prepared;
 use leafless::{LazyOctree as Inner, Solid as _};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, TryLockError};
@@ -27,9 +28,11 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 /// True
 /// >>> lazy.freeze()
 /// <Octree: depth 20, 345 nodes, volume 3.063 to 5.329>
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct LazyOctree {
     lazy: Mutex<Inner<Prepared>>,
+    /// The object that has the shape.
+    solid: Py<PyAny>,
 }
 
 impl LazyOctree {
@@ -69,7 +72,7 @@ impl LazyOctree {
                 Inner::new(shape, &frame)
             }
         })?;
-        Ok(LazyOctree { lazy: Mutex::new(lazy) })
+        Ok(LazyOctree { lazy: Mutex::new(lazy), solid: solid.clone().unbind() })
     }
 
     /// Splits undecided cells down to a level: all of them, or those in a box (`bounds`), around a `point`, or along a `ray` (origin and
@@ -82,7 +85,7 @@ impl LazyOctree {
         level: u8,
         bounds: Option<&Bound<'_, PyAny>>,
         point: Option<&Bound<'_, PyAny>>,
-        ray: Option<(Bound<'_, PyAny>, Bound<'_, PyAny>)>,
+        ray: Option<[Bound<'_, PyAny>; 2]>,
         limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<bool> {
         let zone = match (bounds, point, ray) {
@@ -92,7 +95,7 @@ impl LazyOctree {
                 Zone::Box { min, max }
             }
             (None, Some(point), None) => Zone::Point(triple(point, "point")?),
-            (None, None, Some((origin, direction))) => Zone::Ray {
+            (None, None, Some([origin, direction])) => Zone::Ray {
                 origin: triple(&origin, "origin")?,
                 direction: triple(&direction, "direction")?,
                 from: 0.0,
@@ -155,5 +158,15 @@ impl LazyOctree {
             }
             Err(_) => "<LazyOctree at work>".into(),
         }
+    }
+
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(PyTypeError::new_err(
+            "a LazyOctree cannot be pickled: pickle the solid and what freeze() makes, and resume with both",
+        ))
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        visit.call(&self.solid)
     }
 }

@@ -4,7 +4,7 @@
 //! From the bottom up: `error`, `work` (long work that can be watched and interrupted), `words` (what enumerations are called),
 //! `arrays`, `interval`, `frame` and `affine` are what values are taken from; `solid` is the class of all that has a shape, and
 //! `ask` what is asked of it on which frame; `csg`, `mesh`, `octree` and the others are its kinds; `measures`, `pairs`, `surface`
-//! and `picture` are questions; `files` reads and writes.
+//! and `picture` are questions; `files` reads and writes, and `note` is what a volume adds to its file.
 
 mod affine;
 mod anywhere;
@@ -20,6 +20,7 @@ mod interval;
 mod lazy;
 mod measures;
 mod mesh;
+mod note;
 mod octree;
 mod operators;
 mod pairs;
@@ -45,7 +46,7 @@ mod _leafless {
     #[pymodule_export]
     use super::csg::Csg;
     #[pymodule_export]
-    use super::dexels::{TriDexel, dexelize};
+    use super::dexels::{DexelSolid, TriDexel, dexelize};
     #[pymodule_export]
     use super::files::{map_path, open_bytes, open_path, save_bytes, save_path};
     #[pymodule_export]
@@ -55,15 +56,13 @@ mod _leafless {
     #[pymodule_export]
     use super::lazy::LazyOctree;
     #[pymodule_export]
-    use super::measures::{BoundingBox, MassProperties, SurfaceArea, bounding_box, measure, surface_area};
+    use super::measures::{bounding_box, measure, surface_area};
     #[pymodule_export]
     use super::mesh::Mesh;
     #[pymodule_export]
     use super::octree::{Octree, Proof, build, frame_of};
     #[pymodule_export]
-    use super::pairs::{
-        Clearance, Deviation, Gap, Interference, clearance, deviation, gap_at_least, interference,
-    };
+    use super::pairs::{clearance, deviation, gap_at_least, interference};
     #[pymodule_export]
     use super::picture::{Picture, render};
     #[pymodule_export]

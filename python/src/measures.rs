@@ -1,6 +1,7 @@
 //! Volumes, areas and boxes, as intervals that contain the truth.
 
 use crate::ask::{FrameLike, Wish};
+use crate::from_package;
 use crate::interval::{Interval, intervals};
 use crate::octree::Proof;
 use crate::solid::given;
@@ -12,155 +13,6 @@ use leafless::query;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Volume, centroid and inertia of a solid.
-#[pyclass(frozen, module = "leafless")]
-pub struct MassProperties(pub query::MassProperties);
-
-#[pymethods]
-impl MassProperties {
-    /// The volume (cubic model units).
-    #[getter]
-    fn volume(&self) -> Interval {
-        Interval(self.0.volume)
-    }
-
-    /// The centroid: `Intervals` of shape (3,); `None` if the solid may be empty.
-    #[getter]
-    fn centroid<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        self.0.centroid.map(|centroid| intervals(py, centroid, &[3])).transpose()
-    }
-
-    /// The inertia tensor about the origin, of density 1: `Intervals` of shape (3, 3).
-    #[getter]
-    fn inertia_about_origin<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        intervals(py, self.0.inertia_about_origin.into_iter().flatten(), &[3, 3])
-    }
-
-    /// The inertia tensor about the centroid, of density 1: `Intervals` of shape (3, 3).
-    #[getter]
-    fn inertia_about_centroid<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        intervals(py, self.0.inertia_about_centroid.into_iter().flatten(), &[3, 3])
-    }
-
-    /// Whether nothing is in doubt but rounding.
-    #[getter]
-    fn exact(&self) -> bool {
-        self.0.exact
-    }
-
-    /// Whether the solid may go on beyond the frame.
-    #[getter]
-    fn clipped(&self) -> bool {
-        self.0.clipped
-    }
-
-    /// What of the solid is proven.
-    #[getter]
-    fn proof(&self) -> Proof {
-        self.0.proof.into()
-    }
-
-    /// Why it ended: "tolerance", "budget" or "exhausted".
-    #[getter]
-    fn stop_reason(&self) -> &'static str {
-        words::word(self.0.stop_reason)
-    }
-
-    /// How many times a cell was split.
-    #[getter]
-    fn splits(&self) -> u64 {
-        self.0.splits
-    }
-
-    fn __repr__(&self) -> String {
-        let centroid = self.0.centroid.map(|at| at.map(|x| x.to_string()).join(", "));
-        let centroid = centroid.unwrap_or_else(|| "unknown".into());
-        format!("<MassProperties: volume {}, centroid ({centroid})>", self.0.volume)
-    }
-}
-
-/// The area of a solid's boundary.
-#[pyclass(frozen, module = "leafless")]
-pub struct SurfaceArea(query::SurfaceArea);
-
-#[pymethods]
-impl SurfaceArea {
-    /// The area (square model units).
-    #[getter]
-    fn area(&self) -> Interval {
-        Interval(self.0.area)
-    }
-
-    /// Whether the solid may go on beyond the frame.
-    #[getter]
-    fn clipped(&self) -> bool {
-        self.0.clipped
-    }
-
-    /// Why it ended: "tolerance", "budget" or "exhausted".
-    #[getter]
-    fn stop_reason(&self) -> &'static str {
-        words::word(self.0.stop_reason)
-    }
-
-    /// How many times a cell was split.
-    #[getter]
-    fn splits(&self) -> u64 {
-        self.0.splits
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<SurfaceArea: {}>", self.0.area)
-    }
-}
-
-/// What is proven of a bounding box.
-#[pyclass(frozen, module = "leafless")]
-pub struct BoundingBox(query::Extent);
-
-#[pymethods]
-impl BoundingBox {
-    /// The lower and the upper corner: `Intervals` of shape (2, 3); `None` if the solid is proven empty.
-    #[getter]
-    fn corners<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        self.0.corners.map(|corners| intervals(py, corners.into_iter().flatten(), &[2, 3])).transpose()
-    }
-
-    /// Whether the solid is proven not to be empty.
-    #[getter]
-    fn occupied(&self) -> bool {
-        self.0.occupied
-    }
-
-    /// Whether the solid may go on beyond the frame.
-    #[getter]
-    fn clipped(&self) -> bool {
-        self.0.clipped
-    }
-
-    /// Why it ended: "tolerance", "budget" or "exhausted".
-    #[getter]
-    fn stop_reason(&self) -> &'static str {
-        words::word(self.0.stop_reason)
-    }
-
-    /// How many times a cell was split.
-    #[getter]
-    fn splits(&self) -> u64 {
-        self.0.splits
-    }
-
-    fn __repr__(&self) -> String {
-        match &self.0.corners {
-            None => "<BoundingBox: empty>".into(),
-            Some([low, high]) => {
-                let told = |corner: &[leafless::Interval; 3]| corner.map(|x| x.to_string()).join(", ");
-                format!("<BoundingBox: ({}) to ({})>", told(low), told(high))
-            }
-        }
-    }
-}
-
 /// Measures a solid: volume, centroid and inertia, until the width of the volume's interval is `tolerance` of it, or at most
 /// `absolute` (cubic model units). Closed meshes are known to rounding at once.
 ///
@@ -169,19 +21,34 @@ impl BoundingBox {
 /// (True, True)
 #[pyfunction]
 #[pyo3(signature = (solid, *, tolerance=1e-3, absolute=0.0, frame=None, depth=None, **limits))]
-pub fn measure(
-    solid: &Bound<'_, PyAny>,
+pub fn measure<'py>(
+    solid: &Bound<'py, PyAny>,
     tolerance: f64,
     absolute: f64,
     frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'_, PyDict>>,
-) -> PyResult<MassProperties> {
+) -> PyResult<Bound<'py, PyAny>> {
     let (py, limits) = (solid.py(), Limits::of(limits)?);
     let solid = given(solid, "solid")?;
     let frame = Wish { frame, depth }.of(py, &solid, MAX_DEPTH)?;
     let tolerance = Tolerance { relative: tolerance, absolute };
-    limits.run(py, |control| query::measure(&solid.shape, &frame, tolerance, control)).map(MassProperties)
+    told(py, &limits.run(py, |control| query::measure(&solid.shape, &frame, tolerance, control))?)
+}
+
+/// Mass properties as Python tells them.
+pub fn told<'py>(py: Python<'py>, found: &query::MassProperties) -> PyResult<Bound<'py, PyAny>> {
+    from_package!(py, "leafless._answers", "MassProperties")?.call1((
+        Interval(found.volume),
+        found.centroid.map(|centroid| intervals(py, centroid, &[3])).transpose()?,
+        intervals(py, found.inertia_about_origin.into_iter().flatten(), &[3, 3])?,
+        intervals(py, found.inertia_about_centroid.into_iter().flatten(), &[3, 3])?,
+        found.exact,
+        found.clipped,
+        Proof::from(found.proof),
+        words::word(found.stop_reason),
+        found.splits,
+    ))
 }
 
 /// The area of a solid's boundary, until the width of its interval is `tolerance` of it, or at most `absolute`.
@@ -190,19 +57,21 @@ pub fn measure(
 /// True
 #[pyfunction]
 #[pyo3(signature = (solid, *, tolerance=1e-2, absolute=0.0, frame=None, depth=None, **limits))]
-pub fn surface_area(
-    solid: &Bound<'_, PyAny>,
+pub fn surface_area<'py>(
+    solid: &Bound<'py, PyAny>,
     tolerance: f64,
     absolute: f64,
     frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'_, PyDict>>,
-) -> PyResult<SurfaceArea> {
+) -> PyResult<Bound<'py, PyAny>> {
     let (py, limits) = (solid.py(), Limits::of(limits)?);
     let solid = given(solid, "solid")?;
     let frame = Wish { frame, depth }.of(py, &solid, MAX_DEPTH)?;
     let tolerance = Tolerance { relative: tolerance, absolute };
-    limits.run(py, |control| query::surface_area(&solid.shape, &frame, tolerance, control)).map(SurfaceArea)
+    let found = limits.run(py, |control| query::surface_area(&solid.shape, &frame, tolerance, control))?;
+    let answer = from_package!(py, "leafless._answers", "SurfaceArea")?;
+    answer.call1((Interval(found.area), found.clipped, words::word(found.stop_reason), found.splits))
 }
 
 /// The bounding box of a solid, each side known to `tolerance` (model units; by default a millionth of the frame).
@@ -212,16 +81,23 @@ pub fn surface_area(
 /// True
 #[pyfunction]
 #[pyo3(signature = (solid, *, tolerance=None, frame=None, depth=None, **limits))]
-pub fn bounding_box(
-    solid: &Bound<'_, PyAny>,
+pub fn bounding_box<'py>(
+    solid: &Bound<'py, PyAny>,
     tolerance: Option<f64>,
     frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'_, PyDict>>,
-) -> PyResult<BoundingBox> {
+) -> PyResult<Bound<'py, PyAny>> {
     let (py, limits) = (solid.py(), Limits::of(limits)?);
     let solid = given(solid, "solid")?;
     let frame = Wish { frame, depth }.of(py, &solid, MAX_DEPTH)?;
     let tolerance = tolerance.unwrap_or(1e-6 * frame.edge());
-    limits.run(py, |control| query::bounding_box(&solid.shape, &frame, tolerance, control)).map(BoundingBox)
+    let found = limits.run(py, |control| query::bounding_box(&solid.shape, &frame, tolerance, control))?;
+    from_package!(py, "leafless._answers", "BoundingBox")?.call1((
+        found.corners.map(|corners| intervals(py, corners.into_iter().flatten(), &[2, 3])).transpose()?,
+        found.occupied,
+        found.clipped,
+        words::word(found.stop_reason),
+        found.splits,
+    ))
 }

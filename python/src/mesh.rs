@@ -7,6 +7,7 @@ use crate::solid::{Given, Solid};
 use crate::surface::SurfaceReport;
 use crate::words;
 use crate::work::Limits;
+use leafless::mesh::{AttributeDomain, MeshAttribute, MeshHistory};
 use leafless::{Affine, AnySolid, FillRule, MeshSolid, TriangleMesh};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
@@ -112,13 +113,32 @@ impl Mesh {
         faces: &Bound<'py, PyAny>,
         fill: &str,
         unit: Option<String>,
-        displacement: f64,
+        surface_report: Option<SurfaceReport>,
+        attributes: Vec<(String, Vec<String>, Bound<'py, PyAny>)>,
+        history: History,
     ) -> PyResult<Bound<'py, Mesh>> {
         let py = vertices.py();
         let vertices = Rows::of(vertices, "vertices")?.list().to_vec();
-        let mesh = TriangleMesh::new(vertices, indices(faces)?).or_raise(py)?;
-        let mesh = if displacement > 0.0 { mesh.with_deviation(displacement).or_raise(py)? } else { mesh };
-        Mesh::bound(py, mesh, words::value(py, fill)?, unit, None)
+        let attributes =
+            attributes.iter().map(|(name, names, values)| Ok(read(name, values)?.named(names.clone())));
+        let attributes = attributes.collect::<PyResult<Vec<_>>>()?;
+        let (counts, lengths) = history;
+        let [welded, degenerate, sewn, polygons, bent_polygons] = counts;
+        let [displacement, deviation, polygon_deviation] = lengths;
+        let history = MeshHistory {
+            welded,
+            degenerate,
+            sewn,
+            displacement,
+            deviation,
+            polygons,
+            bent_polygons,
+            polygon_deviation,
+        };
+        let mesh = TriangleMesh::with_attributes(vertices, indices(faces)?, attributes)
+            .and_then(|mesh| mesh.with_history(history))
+            .or_raise(py)?;
+        Mesh::bound(py, mesh, words::value(py, fill)?, unit, surface_report)
     }
 
     /// A mesh of trimesh, or of anything else that has `vertices` and `faces`.
@@ -222,14 +242,7 @@ impl Mesh {
         let Some(attribute) = self.mesh.attribute(name) else {
             return Err(refused(py, "name", format!("no attribute is called '{name}'")));
         };
-        let (count, components) = (self.mesh.triangles().len(), attribute.components());
-        let mut values = Vec::with_capacity(count * 3 * components);
-        for (triangle, corner) in (0..count).flat_map(|triangle| (0..3).map(move |corner| (triangle, corner)))
-        {
-            let value = attribute.value(triangle, corner).unwrap_or([f64::NAN; 4]);
-            values.extend_from_slice(&value[..components]);
-        }
-        Ok(arrays::array(py, values, &[count, 3, components])?.into_any())
+        values(py, attribute, 3)
     }
 
     fn __len__(&self) -> usize {
@@ -244,24 +257,73 @@ impl Mesh {
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let again = from_package!(slf.py(), "leafless._pickle", "mesh")?;
         let own = slf.get();
+        let attributes = own.mesh.attributes().iter().map(|attribute| {
+            let corners = if attribute.domain() == AttributeDomain::Corner { 3 } else { 1 };
+            Ok((attribute.name(), attribute.names(), values(slf.py(), attribute, corners)?))
+        });
         // What is proven of a mesh accounts for how far its vertices were moved, and so must what is proven of the copy.
-        let displacement = own.mesh.displacement();
-        let arguments = (Mesh::vertices(slf)?, Mesh::faces(slf)?, own.fill(), own.unit.clone(), displacement);
+        let past = own.mesh.history();
+        let history: History = (
+            [past.welded, past.degenerate, past.sewn, past.polygons, past.bent_polygons],
+            [past.displacement, past.deviation, past.polygon_deviation],
+        );
+        let arguments = (
+            Mesh::vertices(slf)?,
+            Mesh::faces(slf)?,
+            own.fill(),
+            own.unit.clone(),
+            own.surface,
+            attributes.collect::<PyResult<Vec<_>>>()?,
+            history,
+        );
         Ok((again, arguments.into_bound_py_any(slf.py())?))
     }
+}
+
+/// A mesh's history as it is pickled: its counts, and its lengths.
+type History = ([u64; 5], [f64; 3]);
+
+/// The values of an attribute, shape (m, corners, components), at the first corner of each triangle or at all three.
+fn values<'py>(py: Python<'py>, attribute: &MeshAttribute, corners: usize) -> PyResult<Bound<'py, PyAny>> {
+    let (count, components) = (attribute.len(), attribute.components());
+    let mut values = Vec::with_capacity(count * corners * components);
+    for triangle in 0..count {
+        for corner in 0..corners {
+            let value = attribute.value(triangle, corner).unwrap_or([f64::NAN; 4]);
+            values.extend_from_slice(&value[..components]);
+        }
+    }
+    Ok(arrays::array(py, values, &[count, corners, components])?.into_any())
+}
+
+/// The attribute with these values, shape (m, 1, components) for triangles or (m, 3, components) for their corners.
+fn read(name: &str, values: &Bound<'_, PyAny>) -> PyResult<MeshAttribute> {
+    let py = values.py();
+    let array = arrays::doubles(values, name)?;
+    let list = array.readonly();
+    let attribute = match *array.shape() {
+        [_, 1, components] => MeshAttribute::per_triangle(name, components, list.as_slice()?),
+        [_, 3, components] => MeshAttribute::per_corner(name, components, list.as_slice()?),
+        ref shape => {
+            return Err(refused(
+                py,
+                name,
+                format!("must have values of triangles or of corners, not {shape:?}"),
+            ));
+        }
+    };
+    attribute.or_raise(py)
 }
 
 /// Triples of indices, of integers of any type.
 fn indices(given: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 3]>> {
     let py = given.py();
-    let array = required::<i64>(
-        &from_package!(py, "leafless._exchange", "indices")?.call1((given,))?,
-        "int64",
-        "faces",
-    )?;
-    let &[_, 3] = array.shape() else {
-        return Err(refused(py, "faces", format!("must have the shape (n, 3), not {:?}", array.shape())));
-    };
+    let array = required::<i64>(given, "int64", "faces")?;
+    match *array.shape() {
+        // An empty list has one axis.
+        [_, 3] | [0] => {}
+        ref shape => return Err(refused(py, "faces", format!("must have the shape (n, 3), not {shape:?}"))),
+    }
     let list = array.readonly();
     let index = |&index: &i64| {
         let problem = || refused(py, "faces", format!("{index} is not the index of a vertex"));

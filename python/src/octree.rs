@@ -24,7 +24,7 @@ use std::path::PathBuf;
 const DEPTH: u8 = 9;
 
 /// What cells prove.
-#[pyclass(frozen, eq, get_all, module = "leafless")]
+#[pyclass(frozen, eq, get_all, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct Proof {
     /// Whether FULL cells are proven to lie inside.
@@ -37,6 +37,13 @@ pub struct Proof {
 
 #[pymethods]
 impl Proof {
+    /// What cells prove, as `octree.proof` tells it.
+    #[new]
+    #[pyo3(signature = (full, empty, displacement=0.0))]
+    fn new(py: Python<'_>, full: bool, empty: bool, displacement: f64) -> PyResult<Proof> {
+        leafless::Proof::new(full, empty).with_displacement(displacement).or_raise(py).map(Proof::from)
+    }
+
     fn __bool__(&self) -> bool {
         self.full && self.empty
     }
@@ -46,11 +53,23 @@ impl Proof {
         let (full, empty) = (word(self.full), word(self.empty));
         format!("Proof(full={full}, empty={empty}, displacement={:?})", self.displacement)
     }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let Proof { full, empty, displacement } = *slf.get();
+        Ok((slf.get_type().into_any(), (full, empty, displacement).into_bound_py_any(slf.py())?))
+    }
 }
 
 impl From<leafless::Proof> for Proof {
     fn from(proof: leafless::Proof) -> Proof {
         Proof { full: proof.full, empty: proof.empty, displacement: proof.displacement() }
+    }
+}
+
+impl Proof {
+    /// The library's own.
+    pub fn inner(self) -> Result<leafless::Proof, leafless::Error> {
+        leafless::Proof::new(self.full, self.empty).with_displacement(self.displacement)
     }
 }
 

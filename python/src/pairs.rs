@@ -5,13 +5,13 @@ use crate::anywhere::anywhere;
 use crate::arrays;
 use crate::ask::{FrameLike, Wish};
 use crate::error::OrRaise;
+use crate::from_package;
 use crate::interval::Interval;
 use crate::solid::{Given, given};
 use crate::words;
 use crate::work::Limits;
 use leafless::query::{self, clearance_at, gap_at_least_at, interference_at};
 use leafless::{Affine, AnySolid, Bounds, Control, Error, Frame as Inner};
-use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -24,165 +24,33 @@ const SPLITS: u64 = 100_000;
 /// The default tolerance of distances, as a part of the frame.
 const TOLERANCE: f64 = 1e-6;
 
-/// Whether two solids overlap.
-#[pyclass(frozen, module = "leafless")]
-pub struct Interference(query::Interference);
-
-#[pymethods]
-impl Interference {
-    /// "disjoint" (proven: no common point but on the boundaries), "overlapping" (proven) or "undecided".
-    #[getter]
-    fn verdict(&self) -> &'static str {
-        words::word(self.0.verdict)
-    }
-
-    /// The volume of what both have in common (cubic model units).
-    #[getter]
-    fn volume(&self) -> Interval {
-        Interval(self.0.volume)
-    }
-
-    /// A ball that lies in both, as its centre and radius, if an overlap is proven.
-    #[getter]
-    fn ball(&self) -> Option<((f64, f64, f64), f64)> {
-        self.0.ball.map(|ball| (ball.centre.into(), ball.radius))
-    }
-
-    /// Whether a solid may go on beyond the frame.
-    #[getter]
-    fn clipped(&self) -> bool {
-        self.0.clipped
-    }
-
-    /// How many cells of each were split.
-    #[getter]
-    fn splits(&self) -> (u64, u64) {
-        self.0.splits.into()
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Interference: {}, volume {}>", self.verdict(), self.0.volume)
-    }
+/// What is known of two solids, as an object.
+fn overlap(py: Python<'_>, found: query::Interference) -> PyResult<Bound<'_, PyAny>> {
+    from_package!(py, "leafless._answers", "Interference")?.call1((
+        words::word(found.verdict),
+        Interval(found.volume),
+        found.ball.map(|ball| (<(f64, f64, f64)>::from(ball.centre), ball.radius)),
+        found.clipped,
+        <(u64, u64)>::from(found.splits),
+    ))
 }
 
-/// How far two solids are apart.
-#[pyclass(frozen, module = "leafless")]
-pub struct Clearance(query::Clearance);
-
-#[pymethods]
-impl Clearance {
-    /// The distance (model units); 0 where they overlap.
-    #[getter]
-    fn distance(&self) -> Interval {
-        Interval(self.0.distance)
-    }
-
-    /// A point of each, as near as the upper bound says: an array of shape (2, 3), if they are known.
-    #[getter]
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let array = self.0.points.map(|points| arrays::rows(py, points.to_vec()));
-        Ok(array.transpose()?.map(Bound::into_any))
-    }
-
-    /// How deep they overlap at the least; 0 if they do not, or nothing is known.
-    #[getter]
-    fn depth(&self) -> f64 {
-        self.0.depth
-    }
-
-    /// Why it ended: "tolerance", "budget" or "exhausted".
-    #[getter]
-    fn stop_reason(&self) -> &'static str {
-        words::word(self.0.stop_reason)
-    }
-
-    /// Whether a solid may go on beyond the frame.
-    #[getter]
-    fn clipped(&self) -> bool {
-        self.0.clipped
-    }
-
-    /// How many cells of each were split.
-    #[getter]
-    fn splits(&self) -> (u64, u64) {
-        self.0.splits.into()
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Clearance: {}>", self.0.distance)
-    }
+/// The distance of two solids, as an object.
+fn distance(py: Python<'_>, found: query::Clearance) -> PyResult<Bound<'_, PyAny>> {
+    from_package!(py, "leafless._answers", "Clearance")?.call1((
+        Interval(found.distance),
+        found.points.map(|points| arrays::rows(py, points.to_vec())).transpose()?,
+        found.depth,
+        words::word(found.stop_reason),
+        found.clipped,
+        <(u64, u64)>::from(found.splits),
+    ))
 }
 
-/// Whether two solids are far enough apart.
-#[pyclass(frozen, module = "leafless")]
-pub struct Gap(query::Gap);
-
-#[pymethods]
-impl Gap {
-    /// "yes" (proven), "no" (proven) or "undecided".
-    #[getter]
-    fn verdict(&self) -> &'static str {
-        words::word(self.0.verdict)
-    }
-
-    /// What is known of the distance by then.
-    #[getter]
-    fn distance(&self) -> Interval {
-        Interval(self.0.evidence.distance)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Gap: {}, distance {}>", self.verdict(), self.0.evidence.distance)
-    }
-}
-
-/// How far the boundaries of two solids are from each other.
-#[pyclass(frozen, module = "leafless")]
-pub struct Deviation(query::Deviation);
-
-#[pymethods]
-impl Deviation {
-    /// The greatest distance of a boundary point of one from the boundary of the other (Hausdorff).
-    #[getter]
-    fn distance(&self) -> Interval {
-        Interval(self.0.distance())
-    }
-
-    /// The same of points of the first only.
-    #[getter]
-    fn a_to_b(&self) -> Interval {
-        Interval(self.0.a_to_b.distance)
-    }
-
-    /// The same of points of the second only.
-    #[getter]
-    fn b_to_a(&self) -> Interval {
-        Interval(self.0.b_to_a.distance)
-    }
-
-    /// Where that is: a point of one boundary and the nearest of the other, as an array of shape (2, 3), if it is known.
-    #[getter]
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let (one, other) = (&self.0.a_to_b, &self.0.b_to_a);
-        let farther = if one.distance.lower >= other.distance.lower { one } else { other };
-        let array = farther.at.map(|at| arrays::rows(py, vec![at.point, at.nearest]));
-        Ok(array.transpose()?.map(Bound::into_any))
-    }
-
-    /// Whether the boundaries are within a distance of each other: "yes", "no" or "undecided".
-    fn within(&self, distance: f64) -> &'static str {
-        words::word(self.0.within(distance))
-    }
-
-    /// Why it ended: "tolerance", "budget" or "exhausted".
-    #[getter]
-    fn stop_reason(&self) -> &'static str {
-        words::word(self.0.stop_reason)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Deviation: {}>", self.0.distance())
-    }
+/// The gap between two solids, as an object.
+fn gap(py: Python<'_>, found: query::Gap) -> PyResult<Bound<'_, PyAny>> {
+    let answer = from_package!(py, "leafless._answers", "Gap")?;
+    answer.call1((words::word(found.verdict), Interval(found.evidence.distance)))
 }
 
 /// Two solids, the places of the second, and the frame to look at.
@@ -242,12 +110,12 @@ impl Pair {
     }
 
     /// The answers at all places.
-    fn ask<'py, T: Send, W: IntoPyObject<'py>>(
+    fn ask<'py, T: Send>(
         &self,
         py: Python<'py>,
         here: impl FnOnce(&AnySolid, &AnySolid, &Control<'_>) -> Result<T, Error> + Send,
         there: impl FnOnce(&AnySolid, &AnySolid, &[Affine], &Control<'_>) -> Result<Vec<T>, Error> + Send,
-        wrap: impl Fn(T) -> W,
+        answer: impl Fn(Python<'py>, T) -> PyResult<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let found = self.limits.run(py, |control| {
             match &self.placements {
@@ -262,7 +130,7 @@ impl Pair {
         })?;
         let mut answers = Vec::with_capacity(found.len());
         for one in found {
-            answers.push(wrap(one).into_bound_py_any(py)?);
+            answers.push(answer(py, one)?);
         }
         match (self.is_one, answers.pop()) {
             (true, Some(one)) => Ok(one),
@@ -301,7 +169,7 @@ pub fn interference<'py>(
         a.py(),
         |a, b, control| query::interference(a, b, &frame, tolerance, control),
         |a, b, places, control| interference_at(a, b, &own, places, &frame, tolerance, control),
-        Interference,
+        overlap,
     )
 }
 
@@ -329,7 +197,7 @@ pub fn clearance<'py>(
         a.py(),
         |a, b, control| query::clearance(a, b, &frame, tolerance, control),
         |a, b, places, control| clearance_at(a, b, &own, places, &frame, tolerance, control),
-        Clearance,
+        distance,
     )
 }
 
@@ -354,7 +222,7 @@ pub fn gap_at_least<'py>(
         a.py(),
         |a, b, control| query::gap_at_least(a, b, &frame, least, control),
         |a, b, places, control| gap_at_least_at(a, b, &own, places, &frame, least, control),
-        Gap,
+        gap,
     )
 }
 
@@ -365,14 +233,14 @@ pub fn gap_at_least<'py>(
 /// (True, 'yes')
 #[pyfunction]
 #[pyo3(signature = (a, b, *, tolerance=None, frame=None, depth=None, **limits))]
-pub fn deviation(
-    a: &Bound<'_, PyAny>,
-    b: &Bound<'_, PyAny>,
+pub fn deviation<'py>(
+    a: &Bound<'py, PyAny>,
+    b: &Bound<'py, PyAny>,
     tolerance: Option<f64>,
     frame: Option<FrameLike>,
     depth: Option<u8>,
     limits: Option<&Bound<'_, PyDict>>,
-) -> PyResult<Deviation> {
+) -> PyResult<Bound<'py, PyAny>> {
     let py = a.py();
     let pair = Pair::of(a, b, None, Wish { frame, depth }, Limits::of(limits)?)?;
     let frame = pair.frame;
@@ -381,7 +249,15 @@ pub fn deviation(
         let (a, b) = (pair.still(&pair.a), pair.still(&pair.b));
         query::deviation(&a, &b, &frame, tolerance, control)
     })?;
-    Ok(Deviation(found))
+    let (one, other) = (&found.a_to_b, &found.b_to_a);
+    let farther = if one.distance.lower >= other.distance.lower { one } else { other };
+    from_package!(py, "leafless._answers", "Deviation")?.call1((
+        Interval(found.distance()),
+        Interval(one.distance),
+        Interval(other.distance),
+        farther.at.map(|at| arrays::rows(py, vec![at.point, at.nearest])).transpose()?,
+        words::word(found.stop_reason),
+    ))
 }
 
 /// A box that holds what a solid becomes under a placement.

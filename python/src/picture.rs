@@ -1,8 +1,9 @@
 //! Pictures.
 
-use crate::arrays::{layout, shown};
+use crate::arrays::{layout, required, shown, tuple};
 use crate::ask::{self, Wish};
 use crate::error::{OrRaise, refused};
+use crate::from_package;
 use crate::mesh::Mesh;
 use crate::octree::Octree;
 use crate::solid::{Given, given, is_solid};
@@ -13,6 +14,8 @@ use leafless::render::{
     Shot, SliceLayer, SlicePlane, SolidLayer,
 };
 use leafless::{Bounds, Frame, TriangleMesh};
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::sync::Arc;
@@ -30,7 +33,7 @@ const CELLS: u8 = 7;
 /// A picture: an array `rgba` of shape (height, width, 4), and `depth` of shape (height, width), infinite where nothing is seen.
 ///
 /// Notebooks show it. `leafless.save(picture, "part.png")` writes a PNG.
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct Picture(pub pictures::Picture);
 
 #[pymethods]
@@ -60,6 +63,27 @@ impl Picture {
         self.to_png(py)
     }
 
+    /// A picture again, as it was pickled.
+    #[staticmethod]
+    fn _restored(rgba: &Bound<'_, PyAny>, depth: &Bound<'_, PyAny>) -> PyResult<Picture> {
+        let py = rgba.py();
+        let (rgba, depth) =
+            (required::<u8>(rgba, "uint8", "rgba")?, required::<f32>(depth, "float32", "depth")?);
+        let &[height, width, 4] = rgba.shape() else {
+            return Err(refused(py, "rgba", "must have the shape (height, width, 4)"));
+        };
+        let size = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+        let colours = bytemuck::cast_slice(rgba.readonly().as_slice()?).to_vec();
+        let picture = pictures::Picture::of_colours(size, colours);
+        let depths = depth.readonly().as_slice()?.to_vec();
+        picture.and_then(|picture| picture.with_depths(depths)).or_raise(py).map(Picture)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let again = from_package!(slf.py(), "leafless._pickle", "picture")?;
+        Ok((again, (Picture::rgba(slf)?, Picture::depth(slf)?).into_bound_py_any(slf.py())?))
+    }
+
     fn __repr__(&self) -> String {
         format!("<Picture: {} × {} pixels>", self.0.width(), self.0.height())
     }
@@ -84,24 +108,25 @@ struct Shown {
 /// <Picture: 320 × 240 pixels>
 #[pyfunction]
 #[pyo3(signature = (
-    *solids, size=(640, 480), view=(FROM[0], FROM[1]), colours=None, clip=None, slice=None, edges=true, cells=false,
-    background=(255, 255, 255, 255), samples=4, **limits
+    *solids, size=[640, 480], view=FROM, colours=None, clip=None, slice=None, edges=true, cells=false,
+    background=[255; 4], samples=4, **limits
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn render(
     solids: &Bound<'_, PyTuple>,
-    size: (u32, u32),
-    view: (f64, f64),
+    size: [u32; 2],
+    view: [f64; 2],
     colours: Option<Vec<Vec<u8>>>,
     clip: Option<&Bound<'_, PyAny>>,
-    slice: Option<[f64; 4]>,
+    slice: Option<&Bound<'_, PyAny>>,
     edges: bool,
     cells: bool,
-    background: (u8, u8, u8, u8),
+    background: [u8; 4],
     samples: u32,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Picture> {
     let (py, limits) = (solids.py(), Limits::of(limits)?);
+    let slice = slice.map(|plane| tuple::<4>(plane, "slice")).transpose()?;
     let mut scene = Vec::new();
     for (i, object) in solids.iter().enumerate() {
         if !is_solid(&object) {
@@ -134,9 +159,9 @@ pub fn render(
     if points.is_empty() {
         return Err(refused(py, "solids", "must be one at least"));
     }
-    let aspect = f64::from(size.0) / f64::from(size.1.max(1));
+    let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
     let camera = match slice {
-        None => Camera::fitted(&points, [view.0, view.1], Some(FIELD_OF_VIEW), aspect),
+        None => Camera::fitted(&points, view, Some(FIELD_OF_VIEW), aspect),
         // From above the plane.
         Some([a, b, c, _]) => {
             let flat = (a * a + b * b).sqrt();
@@ -145,8 +170,8 @@ pub fn render(
             Camera::fitted(&points, from, None, aspect)
         }
     };
-    let mut shot = Shot::new(camera.or_raise(py)?, size.into());
-    shot.background = background.into();
+    let mut shot = Shot::new(camera.or_raise(py)?, size);
+    shot.background = background;
     shot.samples = samples;
     if let Some(planes) = clip {
         let planes = crate::arrays::doubles(planes, "clip")?.call_method1("reshape", ((-1, 4),))?;

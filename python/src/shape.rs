@@ -6,9 +6,9 @@ use crate::solid::{Given, Solid};
 use leafless::solid::GradientRange;
 use leafless::{AnySolid, Bounds, Callback, Error, Interval, Tag, Verdict};
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyReferenceError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyTuple, PyType, PyWeakrefMethods, PyWeakrefReference};
 use std::sync::Arc;
 
 /// A solid of your own: a subclass with one of these methods or both, which get arrays of many cells or points at once.
@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// - `gradient(boxes)` bounds a function f over the boxes, where the solid is f ≤ 0: a pair of arrays of shape (n, 2), which hold the
 ///   value in the middle of each box, and (n, 3, 2), the derivatives in all of it. Measures need far fewer cells with it. NaN says
 ///   nothing.
-/// - `bounds`, an attribute of the class or a property: a lower and an upper corner between which all of the shape lies.
+/// - `bounds`, an attribute of the class or of the object, or a property: a lower and an upper corner between which all of the shape lies.
 ///
 /// The methods are called from several threads, one at a time. Exceptions in them end the work, and come out of it.
 ///
@@ -40,29 +40,48 @@ pub struct Shape;
 
 #[pymethods]
 impl Shape {
+    /// Nothing is known. A plain attribute, unlike that of other solids, so that a subclass or an object may have its own.
+    #[classattr]
+    #[allow(non_upper_case_globals)]
+    const bounds: Option<u8> = None;
+
+    /// Arguments are for `__init__`. Where nobody takes them they are refused, as `object` does.
     #[new]
-    #[pyo3(signature = (*_arguments, **_named))]
-    fn new(_arguments: &Bound<'_, PyTuple>, _named: Option<&Bound<'_, PyDict>>) -> PyClassInitializer<Shape> {
-        PyClassInitializer::from(Solid::of_python()).add_subclass(Shape)
+    #[classmethod]
+    #[pyo3(signature = (*arguments, **named))]
+    fn new(
+        class: &Bound<'_, PyType>,
+        arguments: &Bound<'_, PyTuple>,
+        named: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<PyClassInitializer<Shape>> {
+        let py = class.py();
+        if !arguments.is_empty() || named.is_some_and(|named| !named.is_empty()) {
+            let inherits = |name: &str, from: Bound<'_, PyType>| -> PyResult<bool> {
+                Ok(class.getattr(name)?.is(&from.getattr(name)?))
+            };
+            if !inherits("__new__", py.get_type::<Shape>())? {
+                return Err(PyTypeError::new_err("Shape.__new__() takes the class and nothing else"));
+            }
+            if inherits("__init__", py.get_type::<PyAny>())? {
+                return Err(PyTypeError::new_err(format!("{}() takes no arguments", class.name()?)));
+            }
+        }
+        Ok(PyClassInitializer::from(Solid::of_python()).add_subclass(Shape))
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
         Ok(format!("<{}>", slf.get_type().name()?))
     }
 
-    /// As any object of a class of its own: by the class and the attributes.
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let py = slf.py();
-        let again = crate::from_package!(py, "leafless._pickle", "shape")?;
-        let arguments = PyTuple::new(py, [slf.get_type()])?.into_any();
-        Ok((again, arguments, slf.getattr("__dict__").unwrap_or_else(|_| PyDict::new(py).into_any())))
+    /// Tells `object.__reduce_ex__` that all there is to pickle are the attributes.
+    fn __getnewargs__<'py>(&self, py: Python<'py>) -> Bound<'py, PyTuple> {
+        PyTuple::empty(py)
     }
 }
 
-/// The methods of a shape, called from wherever the library is.
-struct Methods(Py<PyAny>);
+/// The methods of a shape, called from wherever the library is. The reference is weak, because the collector does not see what the
+/// library holds: whoever keeps a solid beyond a call keeps the object, too.
+struct Methods(Py<PyWeakrefReference>);
 
 /// Numbers of an array of one size.
 fn numbers(array: &Bound<'_, PyAny>, kind: &str, name: &str, shape: &[usize]) -> PyResult<Vec<f64>> {
@@ -84,7 +103,9 @@ impl Methods {
         take: impl for<'py> FnOnce(Bound<'py, PyAny>) -> PyResult<R>,
     ) -> Result<R, Error> {
         Python::attach(|py| {
-            let called = self.0.bind(py).call_method1(name, (argument(py)?,))?;
+            let gone = || PyReferenceError::new_err("the shape is no longer there");
+            let shape = self.0.bind(py).upgrade().ok_or_else(gone)?;
+            let called = shape.call_method1(name, (argument(py)?,))?;
             take(called)
         })
         .map_err(carried)
@@ -177,7 +198,7 @@ pub fn given(object: &Bound<'_, PyAny>) -> PyResult<Given> {
             object.get_type().name()?
         )));
     }
-    let methods = Arc::new(Methods(object.clone().unbind()));
+    let methods = Arc::new(Methods(PyWeakrefReference::new(object)?.unbind()));
     let own = || methods.clone();
     let (one, many) = (own(), own());
     let mut callback = Callback::new(move |min, max| {
@@ -206,17 +227,12 @@ pub fn given(object: &Bound<'_, PyAny>) -> PyResult<Given> {
         let methods = own();
         callback = callback.with_gradient(move |min, max, _| methods.gradient(min, max));
     }
-    // The class of all solids has a property of that name, which asks here.
-    let py = object.py();
-    let inherited = py.get_type::<Solid>().getattr("bounds")?;
-    if !object.get_type().getattr("bounds")?.is(&inherited) {
-        let told = object.getattr("bounds")?;
-        if !told.is_none() {
-            let [min, max] = crate::frame::corners(&told, "bounds")?;
-            let bounds = Bounds::new(min, max);
-            let first = || PyValueError::new_err("bounds: the lower corner must come first");
-            callback = callback.with_bounds(bounds.ok_or_else(first)?);
-        }
+    let told = object.getattr("bounds")?;
+    if !told.is_none() {
+        let [min, max] = crate::frame::corners(&told, "bounds")?;
+        let bounds = Bounds::new(min, max);
+        let first = || PyValueError::new_err("bounds: the lower corner must come first");
+        callback = callback.with_bounds(bounds.ok_or_else(first)?);
     }
     Ok(Given { calls_python: true, ..Given::new(AnySolid::new(callback)) })
 }

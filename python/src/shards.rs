@@ -4,7 +4,7 @@ use crate::arrays;
 use crate::ask::FrameLike;
 use crate::error::{OrRaise, refused};
 use crate::frame::Frame;
-use crate::measures::MassProperties;
+use crate::measures;
 use crate::octree::Octree;
 use crate::solid::{Given, Solid, given};
 use crate::work::Limits;
@@ -110,8 +110,8 @@ impl MassSum {
 
     /// Volume, centroid and inertia.
     #[getter]
-    fn properties(&self, py: Python<'_>) -> PyResult<MassProperties> {
-        self.0.properties().or_raise(py).map(MassProperties)
+    fn properties<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        measures::told(py, &self.0.properties().or_raise(py)?)
     }
 
     fn __add__(&self, py: Python<'_>, other: &MassSum) -> PyResult<MassSum> {

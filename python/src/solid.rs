@@ -16,7 +16,7 @@ use leafless::solid::Prepared;
 use leafless::{
     AnySolid, Bounds, Control, Frame as Inner, Membership, Proof, Ray, Solid as _, cast_rays, contains,
 };
-use pyo3::exceptions::{PyException, PyNotImplementedError, PyTypeError};
+use pyo3::exceptions::{PyException, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, OnceLock};
@@ -67,7 +67,7 @@ impl Given {
 /// Operators combine any two solids: `a | b` (union), `a & b` (intersection), `a - b` (difference), `a ^ b` (symmetric
 /// difference) and `~a` (complement). Two octrees make an octree, at once and exactly; any others an expression (`Csg`), which
 /// splits nothing before it is asked. `map @ a` is `a` moved by an `Affine` or a matrix.
-#[pyclass(subclass, frozen, module = "leafless")]
+#[pyclass(subclass, frozen, weakref, module = "leafless")]
 pub struct Solid {
     /// Nothing for shapes of Python, which come with the object itself.
     given: Option<Given>,
@@ -311,11 +311,6 @@ impl Solid {
             Err(error) if error.is_instance_of::<PyException>(slf.py()) => Ok(None),
             Err(error) => Err(error),
         }
-    }
-
-    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
-        let kind = slf.get_type().name()?;
-        Err(PyNotImplementedError::new_err(format!("a {kind} cannot be pickled")))
     }
 }
 

@@ -9,6 +9,7 @@ use crate::volume::Volume;
 use crate::work::Limits;
 use leafless::surface::{self as surfaces, Resolve, Snap, VertexPlacement};
 use leafless::{Bounds, Error, FillRule, TriangleMesh, marching_cubes};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -23,9 +24,12 @@ const TOLERANCE: f64 = 1e-3;
 /// Where coplanar shrink puts vertices.
 const SNAP: Snap = Snap::Fat;
 
+/// What `method` of a report may be.
+const METHODS: [&str; 6] = ["faces", "adaptive", "cubes", "nets", "shrink", "simplify"];
+
 /// How a mesh was made of a solid.
-#[pyclass(frozen, get_all, from_py_object, module = "leafless")]
-#[derive(Clone, Copy)]
+#[pyclass(frozen, eq, get_all, weakref, from_py_object, module = "leafless")]
+#[derive(Clone, Copy, PartialEq)]
 pub struct SurfaceReport {
     /// "faces", "adaptive", "cubes", "nets", "shrink" or "simplify".
     method: &'static str,
@@ -40,6 +44,26 @@ pub struct SurfaceReport {
 
 #[pymethods]
 impl SurfaceReport {
+    /// A report, as `mesh.surface_report` tells it.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        method: &str,
+        deviation: f64,
+        from_mesh: bool,
+        intersecting_pairs: u64,
+    ) -> PyResult<SurfaceReport> {
+        let unknown = || refused(py, "method", format!("must be one of {}", METHODS.join(", ")));
+        let method = METHODS.into_iter().find(|known| *known == method).ok_or_else(unknown)?;
+        Ok(SurfaceReport { method, deviation, from_mesh, intersecting_pairs })
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let SurfaceReport { method, deviation, from_mesh, intersecting_pairs } = *slf.get();
+        let arguments = (method, deviation, from_mesh, intersecting_pairs);
+        Ok((slf.get_type().into_any(), arguments.into_bound_py_any(slf.py())?))
+    }
+
     fn __repr__(&self) -> String {
         let SurfaceReport { method, deviation, intersecting_pairs, .. } = self;
         format!(

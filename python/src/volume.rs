@@ -23,8 +23,9 @@ use std::sync::Arc;
 /// An array in which x varies fastest is not copied: "zyx" in NumPy's default order, "xyz" in Fortran's. Do not change such an array as
 /// long as the volume lives.
 ///
-/// A voxel is inside if its sample is at least `threshold`. Two thresholds are a least and a greatest sample. `origin` is the lower corner
-/// of the first voxel, `spacing` the edge of a voxel, or the edges along x, y and z.
+/// A voxel is inside if its sample is at least `threshold`. Two thresholds are a least and a greatest sample. The default is 0.5 for
+/// booleans and float32, 127.5 for uint8, 32767.5 for uint16 and 0 for int16. `origin` is the lower corner of the first voxel, `spacing`
+/// the edge of a voxel, or the edges along x, y and z.
 ///
 /// >>> import numpy as np
 /// >>> x, y, z = np.mgrid[-10:11, -10:11, -10:11]
@@ -37,7 +38,7 @@ pub struct Volume {
     /// Booleans lie in memory as bytes.
     is_boolean: bool,
     axes_reversed: bool,
-    threshold: (f64, Option<f64>),
+    pub threshold: Threshold,
 }
 
 /// An array of NumPy that a volume reads.
@@ -76,27 +77,32 @@ fn held<'py, T: Element + Sync + Copy>(array: &Bound<'py, PyAny>) -> PyResult<Sa
     Ok(SampleArray::Shared(Arc::new(held)))
 }
 
+/// The least sample inside; and the greatest, if there is one.
+pub type Threshold = (f64, Option<f64>);
+
+/// One number, or a least and a greatest one.
+pub fn threshold(given: &Bound<'_, PyAny>) -> PyResult<Threshold> {
+    if let Ok(low) = given.extract::<f64>() {
+        return Ok((low, None));
+    }
+    // What the property tells.
+    if let Ok(told) = given.extract::<(f64, Option<f64>)>() {
+        return Ok(told);
+    }
+    match arrays::tuple(given, "threshold") {
+        Ok([low, high]) => Ok((low, Some(high))),
+        Err(_) => Err(refused(given.py(), "threshold", "must be one number, or a least and a greatest one")),
+    }
+}
+
 /// Which values are inside.
-pub fn band(given: Option<&Bound<'_, PyAny>>, middle: f64) -> PyResult<(Band, (f64, Option<f64>))> {
-    let Some(given) = given else {
-        return Ok((Band::at_least(middle).unwrap_or_else(|_| unreachable!()), (middle, None)));
-    };
-    let py = given.py();
-    let told = match given.extract::<f64>() {
-        Ok(low) => (low, None),
-        Err(_) => match given.extract::<(f64, f64)>() {
-            Ok((low, high)) => (low, Some(high)),
-            Err(_) => {
-                return Err(refused(py, "threshold", "must be one number, or a least and a greatest one"));
-            }
-        },
-    };
-    let band = match told {
+pub fn band(py: Python<'_>, threshold: Threshold) -> PyResult<Band> {
+    let band = match threshold {
         (low, None) => Band::at_least(low),
         (f64::NEG_INFINITY, Some(high)) => Band::at_most(high),
         (low, Some(high)) => Band::between(low, high),
     };
-    Ok((band.or_raise(py)?, told))
+    band.or_raise(py)
 }
 
 impl Volume {
@@ -104,7 +110,7 @@ impl Volume {
         volume: Inner<'static>,
         is_boolean: bool,
         axes_reversed: bool,
-        threshold: (f64, Option<f64>),
+        threshold: Threshold,
     ) -> PyResult<PyClassInitializer<Volume>> {
         let own = volume.grid().frame().ok();
         let given = Given { own, ..Given::new(AnySolid::new(volume.clone())) };
@@ -154,7 +160,8 @@ impl Volume {
                 )));
             }
         };
-        let (band, told) = band(threshold, middle)?;
+        let told = threshold.map_or(Ok((middle, None)), self::threshold)?;
+        let band = band(py, told)?;
         let grid = VoxelGrid::new(extents, origin, spacing).or_raise(py)?;
         let volume = limits.run(py, |control| Inner::new(samples, &grid, band, control))?;
         Volume::initial(volume, kind == "bool", axes_reversed, told)
@@ -230,7 +237,8 @@ impl Volume {
         limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Py<Volume>> {
         let py = threshold.py();
-        let (band, told) = band(Some(threshold), 0.5)?;
+        let told = self::threshold(threshold)?;
+        let band = band(py, told)?;
         let volume = Limits::of(limits)?.run(py, |control| self.volume.with_band(band, control))?;
         Py::new(py, Volume::initial(volume, self.is_boolean, self.axes_reversed, told)?)
     }

@@ -3,12 +3,14 @@
 use crate::arrays::{self, layout, required, shown};
 use crate::error::{OrRaise, refused};
 use crate::frame::Frame;
-use crate::octree::Octree;
+use crate::from_package;
+use crate::octree::{Octree, Proof};
 use crate::words;
 use crate::work::Limits;
 use leafless::Tag;
 use leafless::voxel::{Viewpoint, VoxelRecords as Inner};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -18,7 +20,7 @@ use pyo3::types::PyDict;
 /// >>> records = build(Csg.cuboid([0, 0, 0], [3, 1, 1]), Frame([0, 0, 0], 4, 2)).voxels()
 /// >>> len(records), records.corners().tolist()
 /// (3, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
-#[pyclass(frozen, module = "leafless")]
+#[pyclass(frozen, weakref, module = "leafless")]
 pub struct VoxelRecords(pub Inner);
 
 #[pymethods]
@@ -57,6 +59,21 @@ impl VoxelRecords {
         };
         let records = Inner::from_arrays(&frame.0, codes, levels, kinds, components, values);
         records.or_raise(py).map(VoxelRecords)
+    }
+
+    /// Records of your own with what else a list that the library made says, as it was pickled.
+    #[staticmethod]
+    fn _restored(
+        py: Python<'_>,
+        records: &VoxelRecords,
+        exterior: &str,
+        boundary: &str,
+        proof: Proof,
+    ) -> PyResult<VoxelRecords> {
+        let (exterior, boundary) =
+            (words::value_of(py, "exterior", exterior)?, words::value_of(py, "boundary", boundary)?);
+        let records = records.0.clone().with_exterior(exterior, proof.inner().or_raise(py)?);
+        Ok(VoxelRecords(records.with_boundary(boundary)))
     }
 
     /// The lattice.
@@ -142,5 +159,15 @@ impl VoxelRecords {
 
     fn __repr__(&self) -> String {
         format!("<VoxelRecords: {}>", self.0.view().len())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let again = from_package!(slf.py(), "leafless._pickle", "voxels")?;
+        let view = slf.get().0.view();
+        let values = if view.components() == 0 { None } else { Some(VoxelRecords::values(slf)?) };
+        let arrays =
+            (VoxelRecords::codes(slf)?, VoxelRecords::levels(slf)?, VoxelRecords::kinds(slf)?, values);
+        let known = (words::word(view.exterior()), words::word(view.boundary()), Proof::from(view.proof()));
+        Ok((again, (slf.get().frame(), arrays, known).into_bound_py_any(slf.py())?))
     }
 }

@@ -1,7 +1,7 @@
 //! The words that stand for the library's enumerations in Python.
 
 use crate::error::refused;
-use leafless::query::{DistanceTo, GapVerdict, Obstacle, Overlap, StopReason, Within};
+use leafless::query::{DistanceTo, GapVerdict, Obstacle, Overlap, StopReason};
 use leafless::{FillRule, Rule, Tag};
 use pyo3::prelude::*;
 
@@ -84,10 +84,5 @@ words! {
         "yes" => GapVerdict::Yes,
         "no" => GapVerdict::No,
         "undecided" => GapVerdict::Undecided,
-    }
-    Within as "within" {
-        "yes" => Within::Yes,
-        "no" => Within::No,
-        "undecided" => Within::Undecided,
     }
 }

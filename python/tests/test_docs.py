@@ -12,7 +12,7 @@ import leafless
 
 def documented():
     yield "leafless", leafless
-    for name in leafless.__all__:
+    for name in [*leafless.__all__, "map", "open"]:
         thing = getattr(leafless, name)
         yield name, thing
         if inspect.isclass(thing):
@@ -22,7 +22,7 @@ def documented():
 
 
 def is_constant(thing):
-    return isinstance(thing, (leafless.Membership, leafless.Tag, leafless.VoxelKind))
+    return thing is None or isinstance(thing, (leafless.Membership, leafless.Tag, leafless.VoxelKind))
 
 
 THINGS = [(name, thing) for name, thing in documented() if not is_constant(thing)]

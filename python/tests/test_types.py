@@ -74,7 +74,7 @@ WRONG = {
     'lf.surface(ball, method="magic")': "arg-type",
     'lf.Mesh([[0, 0, 0]], [[0, 0, 0]], fill="odd")': "arg-type",
     "lf.Volume(np.zeros((2, 2, 2)))": "arg-type",
-    "lf.render(ball, size=[640, 480])": "arg-type",
+    'lf.render(ball, size="large")': "arg-type",
     'lf.open("ball.lfl", colour="red")': "call-arg",
     'lf.open("ball.lfl").vertices': "union-attr",
     'lf.save(ball, "ball.lfl")': "arg-type",

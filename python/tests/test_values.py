@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -30,6 +31,29 @@ def test_intervals_compare_as_proofs():
     assert len({one, lf.Interval(1, 2)}) == 1
 
 
+def test_formats_are_rounded_outward():
+    random = np.random.default_rng(0)
+    nearest_is_inside = 0
+    for spec in (".0f", ".3f", "+.2f", "12.1f", ",.2f", ".3e", ".4g", ".2", "f", "e", "g", ".1%", "%"):
+        number = lambda text: Fraction(text.strip(" +%").replace(",", "")) / (100 if "%" in spec else 1)
+        for scale in 10.0 ** np.arange(-8, 9, 2):
+            low, high = np.sort(random.normal(0, scale, 2))
+            lower, upper = map(number, f"{lf.Interval(low, high):{spec}}".split(" to "))
+            assert lower <= Fraction(low) and Fraction(high) <= upper
+            nearest_is_inside += number(format(low, spec)) > Fraction(low) or number(format(high, spec)) < Fraction(high)
+            if spec == ".3f":
+                assert Fraction(low) - lower < Fraction(1, 1000) and upper - Fraction(high) < Fraction(1, 1000)
+    # The formats of numbers are not rounded so.
+    assert nearest_is_inside > 20
+    assert f"{lf.Interval(0.1):.20f}" == "0.10000000000000000555 to 0.10000000000000000556"
+    assert f"{lf.Interval(1e-9, 2e-9):.3f}" == "0.000 to 0.001" and f"{lf.Interval(-1e-9, 1):.0f}" == "-1 to 1"
+    assert f"{lf.Interval(0.25, 0.5):.2f}" == "0.25 to 0.50"
+    assert f"{lf.Interval(0, np.inf):6.1f}" == "   0.0 to    inf" and f"{lf.Interval(0.1, 2):>5}" == "  0.1 to   2.0"
+    for wrong in ("q", ".3d", "..", "s"):
+        with pytest.raises(ValueError):
+            format(lf.Interval(1, 2), wrong)
+
+
 @pytest.mark.parametrize("ends", [(2, 1), (np.nan, 1), (1, np.nan)])
 def test_intervals_are_refused(ends):
     with pytest.raises(lf.ArgumentError, match="^upper: "):
@@ -47,6 +71,30 @@ def test_arrays_of_intervals():
             lf.Intervals(*wrong)
     with pytest.raises(TypeError, match="contain"):
         2.0 in some
+
+
+def test_arrays_of_intervals_compare_as_proofs():
+    some = lf.Intervals([1, 2, 3], [2, 2, np.inf])
+    assert (some < 2.5).tolist() == [True, True, False] and (some > 2.5).tolist() == [False, False, True]
+    assert (some < 2).tolist() == [False] * 3 and (some <= 2).tolist() == [True, True, False]
+    assert (some >= [1, 2, 4]).tolist() == [True, True, False] and (some > [1, 2, 4]).tolist() == [False] * 3
+    # With intervals, whichever stands first.
+    for one in (lf.Interval(2, 3), lf.Interval(1.5), some):
+        for two in (lf.Interval(2, 3), lf.Interval(0), some):
+            if one is some or two is some:
+                pairs = [(one[k] if one is some else one, two[k] if two is some else two) for k in range(3)]
+                assert (one < two).tolist() == [a < b for a, b in pairs] == (two > one).tolist()
+                assert (one <= two).tolist() == [a <= b for a, b in pairs] == (two >= one).tolist()
+    for numbers in (np.array([0, 2, 4]), np.float64(2), 2):
+        assert (numbers < some).tolist() == (some > numbers).tolist()
+        assert (numbers >= some).tolist() == (some <= numbers).tolist()
+    assert not (some < np.nan).any() and not (some >= np.nan).any()
+    square = lf.Intervals([[1, 2], [3, 4]], [[1, 2], [3, 4]])
+    assert (square < [2, 3]).tolist() == [[True, True], [False, False]]
+    with pytest.raises(ValueError):
+        some < [1, 2]
+    with pytest.raises(TypeError):
+        some < "text"
 
 
 def test_frame():
@@ -81,6 +129,53 @@ def test_affine():
     for wrong in [np.zeros((4, 4)), np.eye(3), np.eye(4)[::-1], "text", np.full((3, 4), np.nan)]:
         with pytest.raises(lf.ArgumentError):
             lf.Affine(wrong)
+
+
+def test_maps_are_arrays():
+    turn = lf.Affine.rotation([0, 0, 1], 30, about=[1, 2, 3])
+    assert (np.asarray(turn) == turn.matrix).all() and np.array(turn, np.float32).dtype == np.float32
+    assert lf.Affine(np.asarray(turn)) == turn and np.stack([turn, turn]).shape == (2, 4, 4)
+    own = np.asarray(turn)
+    own[0, 0] = 7
+    assert turn.matrix[0, 0] != 7
+    with pytest.raises(ValueError, match="copy"):
+        turn.__array__(copy=False)
+
+
+class Backwards:
+    """What knows by itself how a map is multiplied with it."""
+
+    def __rmatmul__(self, map):
+        return "mine"
+
+
+def test_products_of_maps_say_what_is_wrong():
+    move = lf.Affine.translation([1, 2, 3])
+    for wrong in (np.eye(3), np.zeros((4, 4)), np.eye(4)[::-1], [[1, 2], [3]], [move], np.stack([np.eye(4)] * 2)):
+        with pytest.raises(lf.ArgumentError):
+            move @ wrong
+        with pytest.raises(lf.ArgumentError):
+            wrong @ move
+    with pytest.raises(lf.Error):
+        lf.Affine.scale(1e200) @ lf.Affine.scale(1e200)
+    assert move @ np.eye(4).tolist() == move == np.eye(3, 4).tolist() @ move
+    assert move @ Backwards() == "mine"
+    for wrong in (3, "text", None):
+        with pytest.raises(TypeError, match="unsupported operand"):
+            move @ wrong
+
+
+def test_lists_of_maps_and_matrices():
+    block, pin = lf.Csg.cuboid([0, 0, 0], [2, 2, 2]), lf.Csg.ball([0, 0, 0], 1)
+    maps = [lf.Affine.translation([x, 0, 0]) for x in (-2, 0, 4)]
+    mixed = [maps[0].matrix, maps[1], maps[2].matrix[:3].tolist()]
+    told = ["disjoint", "overlapping", "disjoint"]
+    for places in (maps, mixed, mixed[::-1], tuple(mixed), np.stack(maps), [one.matrix for one in maps]):
+        found = lf.interference(block, pin, places)
+        assert isinstance(found, list) and [one.verdict for one in found] == told
+    assert lf.interference(block, pin, [maps[1]])[0].verdict == "overlapping" and lf.interference(block, pin, []) == []
+    with pytest.raises(lf.ArgumentError, match="placements"):
+        lf.interference(block, pin, [maps[0], np.eye(3)])
 
 
 @pytest.mark.parametrize(

@@ -223,6 +223,51 @@ def test_shapes_are_freed():
     assert gone() is None and octree.node_count > 0
 
 
+def test_shapes_that_hold_what_is_made_of_them_are_freed():
+    shape = Sphere(1)
+    shape.half = shape & lf.Csg.half_space([0, 0, 1], 0)
+    shape.moved = lf.Affine.translation([1, 0, 0]) @ (shape.half - ~shape)
+    shape.lazy = lf.LazyOctree(shape.moved)
+    gone = [weakref.ref(thing) for thing in (shape, shape.half, shape.moved, shape.lazy)]
+    gc.collect()
+    assert shape.half.contains([0, 0, 0.5]) == lf.INSIDE and all(thing() is not None for thing in gone)
+    del shape
+    gc.collect()
+    assert [thing() for thing in gone] == [None] * 4
+
+
+def test_what_is_made_of_a_shape_keeps_it():
+    lazy = lf.LazyOctree(Sphere(1) | Sphere(0.5))
+    expression = lf.Csg.union_of(Sphere(1), lf.Csg.of(Sphere(0.5)))
+    gc.collect()
+    assert lazy.refine(3) and expression.contains([0, 0, 0.9]) == lf.INSIDE
+
+
+class Attributes(Distant):
+    def __init__(self, edge):
+        self.bounds = [[-edge] * 3, [edge] * 3]
+
+
+def test_bounds_are_told_by_a_class_an_object_or_a_property():
+    assert Distant().bounds == [[-1] * 3, [1] * 3] and Sphere(2).bounds == [[-2] * 3, [2] * 3]
+    one, other = Attributes(1), Attributes(3)
+    assert lf.Csg.of(one).bounds.tolist() == one.bounds and lf.Csg.of(other).bounds.tolist() == other.bounds
+    other.bounds = None
+    assert lf.Csg.of(other).bounds is None and lf.Shape.bounds is None
+
+
+class NewTakes(Distant):
+    def __new__(cls, size):
+        return super().__new__(cls)
+
+
+def test_arguments_that_nobody_takes_are_refused():
+    for wrong in (lambda: Distant(1), lambda: Distant(size=1), lambda: lf.Shape(1), lambda: lf.Shape.__new__(NewTakes, 1)):
+        with pytest.raises(TypeError, match="takes"):
+            wrong()
+    assert NewTakes(1).distance(np.zeros((1, 3))) == -1
+
+
 def test_a_shape_may_ask_the_library():
     inner = lf.Csg.ball([0, 0, 0], 1)
 

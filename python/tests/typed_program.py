@@ -25,11 +25,21 @@ class Ball(lf.Shape):
         return lengths * (1 - 1e-15) - self.radius
 
 
+class Cube(lf.Shape):
+    bounds: list[list[float]]
+
+    def __init__(self, edge: float) -> None:
+        self.bounds = [[0] * 3, [edge] * 3]
+
+    def classify(self, boxes: Doubles) -> npt.NDArray[np.integer[Any]]:
+        return np.full(len(boxes), lf.PARTIAL)
+
+
 def solids() -> tuple[lf.Csg, lf.Octree]:
     plate = lf.Csg.cuboid([0, 0, 0], (8, 6, 1)) - lf.Csg.cylinder_between([4, 3, -1], np.array([4, 3, 2]), 1)
     octree = lf.build(plate, depth=5, rule="sampled", threads=1, progress=lambda part: None)
     assert_type(octree - ~octree, lf.Octree)
-    assert_type(octree | Ball(1) | plate, lf.Csg)
+    assert_type(octree | Ball(1) | Cube(2) | plate, lf.Csg)
     assert_type(lf.Affine.translation([1, 0, 0]) @ plate, lf.Csg)
     assert_type(np.eye(4) @ lf.surface(plate), lf.Mesh)
     return plate, octree

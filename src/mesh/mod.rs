@@ -17,6 +17,7 @@ mod defects;
 mod discs;
 #[cfg(feature = "std")]
 mod faces;
+mod history;
 mod in_box;
 mod intersections;
 mod links;
@@ -56,6 +57,7 @@ pub use defects::{DefectKind, MeshDefect};
 pub(crate) use discs::Discs;
 #[cfg(feature = "std")]
 pub use faces::PolyhedronPart;
+pub use history::MeshHistory;
 pub use intersections::{IntersectingPair, IntersectingPairs};
 pub use moments::MeshMoments;
 pub(crate) use nearest::{NearVisitor, NearestPoint, TriangleTree};

@@ -32,6 +32,17 @@ impl Picture {
         Ok(Picture { width, height, colours, depths })
     }
 
+    /// The same picture with depths, row by row from the upper left corner: of one that was taken apart, and is put together again.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] unless there is one depth for each pixel.
+    pub fn with_depths(self, depths: Vec<f32>) -> Result<Picture, Error> {
+        if depths.len() == self.colours.len() {
+            return Ok(Picture { depths, ..self });
+        }
+        Err(Error::Argument { name: "depths", problem: "must be one for each pixel" })
+    }
+
     /// Pixels of a row.
     pub fn width(&self) -> u32 {
         self.width

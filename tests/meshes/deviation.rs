@@ -3,7 +3,7 @@
 use crate::common::{Random, alone, repeated};
 use crate::shapes::{Soup, block, mesh, prism};
 use leafless::error::MeshError;
-use leafless::mesh::{MeshMoments, MeshReport};
+use leafless::mesh::{MeshHistory, MeshMoments, MeshReport};
 use leafless::query::{
     DistanceTo, Obstacle, Overlap, Region, SectionPlane, bounding_box, cast_rays, classify_box, clearance,
     deviation, distances, interference, ray_spans, section_area, surface_area, volume_in,
@@ -110,6 +110,27 @@ fn what_is_stated() {
     let print = |mesh: TriangleMesh| solid(mesh).fingerprint().unwrap();
     assert_ne!(print(block()), print(block().with_deviation(0.25).unwrap()));
     assert_eq!(print(block()), print(block().with_deviation(0.0).unwrap()));
+}
+
+#[test]
+fn a_mesh_that_is_made_again_proves_no_more() {
+    let turn = Affine::new([[0.6, -0.8, 0.0, 0.1], [0.8, 0.6, 0.0, 0.2], [0.0, 0.0, 1.0, 0.3]]).unwrap();
+    let block = mesh(&block([0.0; 3], [1.0; 3])).with_deviation(0.25).unwrap().placed(&turn).unwrap();
+    let again = TriangleMesh::new(block.vertices().to_vec(), block.triangles().to_vec()).unwrap();
+    assert!(again.report().unwrap().welded == 0 && again.displacement() == 0.0);
+    let again = again.with_history(block.history()).unwrap();
+    assert_eq!(again.report().unwrap(), block.report().unwrap());
+    assert_eq!((again.deviation(), again.displacement()), (block.deviation(), block.displacement()));
+    let moments = |mesh: &TriangleMesh| mesh.moments(FillRule::NonZero, &alone()).unwrap();
+    assert_eq!(moments(&again), moments(&block));
+    for wrong in [-0.1, f64::NAN, f64::INFINITY] {
+        let moved = MeshHistory { displacement: wrong, ..block.history() };
+        let stated = MeshHistory { deviation: wrong, ..block.history() };
+        for (history, argument) in [(moved, "displacement"), (stated, "deviation")] {
+            let error = block.clone().with_history(history).unwrap_err();
+            assert!(matches!(error, Error::Argument { name, .. } if name == argument), "{error}");
+        }
+    }
 }
 
 #[test]

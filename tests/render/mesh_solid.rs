@@ -135,6 +135,7 @@ fn what_is_inside_out_is_drawn_as_the_solid() {
         assert_shows_box(&shot, &by_rays);
         let empty = taken(&shot, &SolidLayer::new(&nothing, &frame(), finish()));
         assert!(empty.depths().iter().all(|depth| *depth == f32::INFINITY));
+        assert!(empty.with_depths(vec![1.0]).is_err());
     }
 }
 

@@ -19,7 +19,22 @@ Long work takes the keyword arguments `threads` (0: all processors), `max_bytes`
 function of the part done, a bar of tqdm, or True); Ctrl-C interrupts it. No result depends on the number of threads.
 """
 
-from ._answers import Cells, DexelRays, Distances, Membership, RayHits, Tag, VoxelKind
+from ._answers import (
+    BoundingBox,
+    Cells,
+    Clearance,
+    Deviation,
+    DexelRays,
+    Distances,
+    Gap,
+    Interference,
+    MassProperties,
+    Membership,
+    RayHits,
+    SurfaceArea,
+    Tag,
+    VoxelKind,
+)
 from ._errors import (
     ArgumentError,
     CancelledError,
@@ -29,28 +44,22 @@ from ._errors import (
     LimitError,
     MeshError,
 )
-from ._files import map, open, save
+from ._files import map as map, open as open, save
 from ._intervals import Intervals
 from ._leafless import (
     Affine,
-    BoundingBox,
     Channel,
-    Clearance,
     Csg,
-    Deviation,
+    DexelSolid,
     Frame,
-    Gap,
-    Interference,
     Interval,
     LazyOctree,
-    MassProperties,
     Mesh,
     Octree,
     Picture,
     Proof,
     Shape,
     Solid,
-    SurfaceArea,
     SurfaceReport,
     TriDexel,
     Volume,
@@ -79,6 +88,7 @@ EMPTY = Tag.EMPTY
 FULL = Tag.FULL
 PARTIAL = Tag.PARTIAL
 
+# `open` and `map` are not in it: `import *` must not hide those of Python.
 __all__ = [
     "EMPTY",
     "FULL",
@@ -96,6 +106,7 @@ __all__ = [
     "Csg",
     "Deviation",
     "DexelRays",
+    "DexelSolid",
     "Distances",
     "Error",
     "FormatError",
@@ -131,9 +142,7 @@ __all__ = [
     "dexelize",
     "gap_at_least",
     "interference",
-    "map",
     "measure",
-    "open",
     "render",
     "save",
     "simplify",

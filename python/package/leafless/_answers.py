@@ -1,14 +1,23 @@
-"""What batches of questions are answered with."""
+"""What questions are answered with."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ._intervals import Intervals
+
+if TYPE_CHECKING:
+    from typing import Literal, TypeAlias
+
+    from ._leafless import Interval, Proof
+
+    _StopReason: TypeAlias = Literal["tolerance", "budget", "exhausted"]
+    _Answer: TypeAlias = Literal["yes", "no", "undecided"]
 
 
 class Membership(IntEnum):
@@ -76,6 +85,151 @@ class RayHits:
         return len(self.hit)
 
 
+@dataclass(frozen=True)
+class MassProperties:
+    """Volume, centroid and inertia of a solid."""
+
+    #: The volume (cubic model units).
+    volume: Interval
+    #: The centroid, shape (3,); `None` if the solid may be empty.
+    centroid: Intervals | None
+    #: The inertia tensor about the origin, of density 1, shape (3, 3).
+    inertia_about_origin: Intervals
+    #: The inertia tensor about the centroid, of density 1, shape (3, 3).
+    inertia_about_centroid: Intervals
+    #: Whether nothing is in doubt but rounding.
+    exact: bool
+    #: Whether the solid may go on beyond the frame.
+    clipped: bool
+    #: What of the solid is proven.
+    proof: Proof
+    #: Why it ended.
+    stop_reason: _StopReason
+    #: How many times a cell was split.
+    splits: int
+
+    def __repr__(self) -> str:
+        centroid = "unknown" if self.centroid is None else f"({', '.join(map(repr, self.centroid))})"
+        return f"<MassProperties: volume {self.volume}, centroid {centroid}>"
+
+
+@dataclass(frozen=True)
+class SurfaceArea:
+    """The area of a solid's boundary."""
+
+    #: The area (square model units).
+    area: Interval
+    #: Whether the solid may go on beyond the frame.
+    clipped: bool
+    #: Why it ended.
+    stop_reason: _StopReason
+    #: How many times a cell was split.
+    splits: int
+
+    def __repr__(self) -> str:
+        return f"<SurfaceArea: {self.area}>"
+
+
+@dataclass(frozen=True)
+class BoundingBox:
+    """What is proven of a bounding box."""
+
+    #: The lower and the upper corner, shape (2, 3); `None` if the solid is proven empty.
+    corners: Intervals | None
+    #: Whether the solid is proven not to be empty.
+    occupied: bool
+    #: Whether the solid may go on beyond the frame.
+    clipped: bool
+    #: Why it ended.
+    stop_reason: _StopReason
+    #: How many times a cell was split.
+    splits: int
+
+    def __repr__(self) -> str:
+        if self.corners is None:
+            return "<BoundingBox: empty>"
+        low, high = (", ".join(map(repr, corner)) for corner in self.corners)
+        return f"<BoundingBox: ({low}) to ({high})>"
+
+
+@dataclass(frozen=True)
+class Interference:
+    """Whether two solids overlap."""
+
+    #: "disjoint" (proven: no common point but on the boundaries), "overlapping" (proven) or "undecided".
+    verdict: Literal["disjoint", "overlapping", "undecided"]
+    #: The volume of what both have in common (cubic model units).
+    volume: Interval
+    #: A ball that lies in both, as its centre and radius, if an overlap is proven.
+    ball: tuple[tuple[float, float, float], float] | None
+    #: Whether a solid may go on beyond the frame.
+    clipped: bool
+    #: How many cells of each were split.
+    splits: tuple[int, int]
+
+    def __repr__(self) -> str:
+        return f"<Interference: {self.verdict}, volume {self.volume}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Clearance:
+    """How far two solids are apart."""
+
+    #: The distance (model units); 0 where they overlap.
+    distance: Interval
+    #: A point of each, as near as the upper bound says, shape (2, 3), if they are known.
+    points: npt.NDArray[np.float64] | None
+    #: How deep they overlap at the least; 0 if they do not, or nothing is known.
+    depth: float
+    #: Why it ended.
+    stop_reason: _StopReason
+    #: Whether a solid may go on beyond the frame.
+    clipped: bool
+    #: How many cells of each were split.
+    splits: tuple[int, int]
+
+    def __repr__(self) -> str:
+        return f"<Clearance: {self.distance}>"
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Whether two solids are far enough apart."""
+
+    #: "yes" (proven), "no" (proven) or "undecided".
+    verdict: _Answer
+    #: What is known of the distance by then.
+    distance: Interval
+
+    def __repr__(self) -> str:
+        return f"<Gap: {self.verdict}, distance {self.distance}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Deviation:
+    """How far the boundaries of two solids are from each other."""
+
+    #: The greatest distance of a boundary point of one from the boundary of the other (Hausdorff).
+    distance: Interval
+    #: The same of points of the first only.
+    a_to_b: Interval
+    #: The same of points of the second only.
+    b_to_a: Interval
+    #: Where that is: a point of one boundary and the nearest of the other, shape (2, 3), if it is known.
+    points: npt.NDArray[np.float64] | None
+    #: Why it ended.
+    stop_reason: _StopReason
+
+    def within(self, distance: float) -> _Answer:
+        """Whether the boundaries are within a distance of each other: "yes", "no" or "undecided"."""
+        if self.distance <= distance:
+            return "yes"
+        return "no" if self.distance > distance else "undecided"
+
+    def __repr__(self) -> str:
+        return f"<Deviation: {self.distance}>"
+
+
 @dataclass(frozen=True, eq=False)
 class Cells:
     """Cells of an octree."""
@@ -108,5 +262,8 @@ class DexelRays:
         return len(self.start)
 
 
-for _kind in (Membership, Tag, VoxelKind, Distances, RayHits, Cells, DexelRays):
+for _kind in (
+    *(Membership, Tag, VoxelKind, Distances, RayHits, MassProperties, SurfaceArea, BoundingBox),
+    *(Interference, Clearance, Gap, Deviation, Cells, DexelRays),
+):
     _kind.__module__ = "leafless"

@@ -7,23 +7,41 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from ._errors import ArgumentError
+
 if TYPE_CHECKING:
     from ._leafless import Mesh
 
 
-def indices(faces: npt.ArrayLike) -> npt.NDArray[np.integer[Any]]:
-    """An array of integers, refused if it holds anything else."""
-    faces = np.asarray(faces)
-    if faces.size == 0:
-        return np.zeros((0, 3), np.int64)
-    if faces.dtype.kind not in "iu":
-        raise TypeError(f"faces: must be whole numbers, not {faces.dtype}")
-    return faces
+def _plain(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
+    """An array of NumPy, refused if some of its elements are masked: their values mean nothing."""
+    parts = given if isinstance(given, (list, tuple)) else [given]
+    if any(isinstance(part, np.ma.MaskedArray) and np.ma.is_masked(part) for part in parts):
+        raise ArgumentError(f"{name}: must have no masked elements; filled and compressed make a plain array")
+    try:
+        return np.asarray(given)
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"{name}: must be an array of numbers ({error})") from None
+
+
+def numbers(given: npt.ArrayLike, kind: str, name: str) -> npt.NDArray[Any]:
+    """An array of one type that lies in memory row after row. Digits may be rounded; what else would be lost is refused."""
+    array = _plain(given, name)
+    if np.dtype(kind).kind == "f":
+        if array.dtype.kind not in "biuf":
+            raise ArgumentError(f"{name}: must be an array of real numbers, not of {array.dtype}")
+    elif array.size > 0:
+        if array.dtype.kind not in "iu":
+            raise TypeError(f"{name}: must be whole numbers, not {array.dtype}")
+        least, greatest = np.iinfo(kind).min, np.iinfo(kind).max
+        if array.min() < least or array.max() > greatest:
+            raise ArgumentError(f"{name}: must be from {least} to {greatest}")
+    return np.require(array, kind, ["C", "A"])
 
 
 def samples(array: npt.ArrayLike, axes_reversed: bool) -> tuple[npt.NDArray[Any], str, tuple[int, int, int]]:
     """The array with x varying fastest, the name of its type, and the numbers of samples along x, y and z."""
-    array = np.asarray(array)
+    array = _plain(array, "array")
     if array.ndim != 3:
         raise ValueError(f"array: must have three axes, not {array.ndim}")
     # In the order z, y, x the last axis varies fastest in memory, as NumPy likes it.
@@ -40,4 +58,5 @@ def to_trimesh(mesh: Mesh) -> Any:
     """The mesh as one of trimesh."""
     import trimesh  # type: ignore[import, unused-ignore]
 
-    return trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    # A mesh of trimesh may be changed, and has arrays of its own.
+    return trimesh.Trimesh(mesh.vertices.copy(), mesh.faces.astype(np.int64), process=False)

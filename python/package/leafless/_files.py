@@ -17,6 +17,12 @@ def _url(path: str | os.PathLike[str]) -> str | None:
     return path if isinstance(path, str) and "://" in path else None
 
 
+def _name(url: str) -> str:
+    """The name of the file at a URL, without what is asked of a server. In a chain (`zip://part.stl::https://…`) it is the first name."""
+    first = next(part for part in url.split("::") if "://" in part)
+    return first.partition("?")[0].rsplit("/", 1)[-1]
+
+
 def _fsspec() -> Any:
     try:
         import fsspec  # type: ignore[import, unused-ignore]
@@ -31,8 +37,9 @@ def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | Tri
 
     `path` is a path, or a URL of any kind that fsspec knows. Of meshes, `fill` says what is inside ("nonzero", "positive", "evenodd"),
     `unit` what the numbers mean ("mm", "in"), `to_unit` what they are converted to, `scale` multiplies them, and
-    `sew=False` leaves hair cracks open, which are closed by default; of volumes, `threshold`
-    says which samples are inside.
+    `sew=False` leaves hair cracks open, which are closed by default. For volumes, `threshold` says which samples are inside. A volume that
+    was saved here remembers its threshold. For other files the default is the middle of what the type of the samples can be: 127.5 for
+    uint8, 32767.5 for uint16, −0.5 for signed integers, 0 for floating point. A mask of zeros and ones therefore needs `threshold=0.5`.
 
     >>> import os, tempfile
     >>> path = os.path.join(tempfile.mkdtemp(), "ball.lfl")
@@ -44,7 +51,7 @@ def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | Tri
     if url is None:
         return _leafless.open_path(os.fspath(path), **taking)
     with _fsspec().open(url, "rb") as file:
-        return _leafless.open_bytes(file.read(), url.rsplit("/", 1)[-1], **taking)
+        return _leafless.open_bytes(file.read(), _name(url), **taking)
 
 
 def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDexel:
@@ -68,7 +75,8 @@ def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDe
 
 
 def save(object: Octree | TriDexel | Mesh | Volume | Picture, path: str | os.PathLike[str]) -> None:
-    """Writes an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd) or a `Picture` (.png).
+    """Writes an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd, with its threshold) or a
+    `Picture` (.png).
 
     `path` is a path, or a URL of any kind that fsspec can write to. A file at a path is replaced as a whole: at any moment there is the
     old one or the new one.
@@ -83,7 +91,7 @@ def save(object: Octree | TriDexel | Mesh | Volume | Picture, path: str | os.Pat
     if url is None:
         _leafless.save_path(object, os.fspath(path))
         return
-    data = _leafless.save_bytes(object, url.rsplit("/", 1)[-1])
+    data = _leafless.save_bytes(object, _name(url))
     with _fsspec().open(url, "wb") as file:
         file.write(data)
 

@@ -18,9 +18,18 @@ class Intervals:
     (1 to 1.5, array([0.5, 0. ]))
     >>> bounds.contain([1.2, 3.0])
     array([ True, False])
+
+    `<`, `<=`, `>` and `>=` compare one by one, with numbers or with intervals, and are true where they hold for all that an interval
+    contains. Where an interval is in doubt, both `<` and `>` are false.
+
+    >>> bounds < 1.2, bounds > 1.2
+    (array([False, False]), array([False,  True]))
     """
 
-    __slots__ = ("lower", "upper")
+    #: Operators of NumPy leave this class alone.
+    __array_ufunc__ = None
+
+    __slots__ = ("__weakref__", "lower", "upper")
 
     lower: npt.NDArray[np.float64]
     upper: npt.NDArray[np.float64]
@@ -54,6 +63,18 @@ class Intervals:
         """Where values lie in their intervals: an array of booleans."""
         values = np.asarray(values)
         return (self.lower <= values) & (values <= self.upper)
+
+    def __lt__(self, other: Intervals | Interval | npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        return self.upper < _ends(other)[0]
+
+    def __le__(self, other: Intervals | Interval | npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        return self.upper <= _ends(other)[0]
+
+    def __gt__(self, other: Intervals | Interval | npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        return self.lower > _ends(other)[1]
+
+    def __ge__(self, other: Intervals | Interval | npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        return self.lower >= _ends(other)[1]
 
     # Whether an axis is left, and with it an array, depends on how many there are.
     def __contains__(self, value: object) -> bool:
@@ -93,6 +114,13 @@ class Intervals:
             return repr(Interval(float(self.lower[place]), float(self.upper[place])))
         inner = (self._text((*place, index)) for index in range(self.shape[len(place)]))
         return f"[{', '.join(inner)}]"
+
+
+def _ends(value: Intervals | Interval | npt.ArrayLike) -> tuple[Any, Any]:
+    """The lower and the upper ends of what intervals are compared with."""
+    if isinstance(value, (Intervals, Interval)):
+        return value.lower, value.upper
+    return np.asarray(value), np.asarray(value)
 
 
 Intervals.__module__ = "leafless"

@@ -21,22 +21,31 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 from typing_extensions import Never, Self, TypeAlias, Unpack, disjoint_base
 
-from ._answers import Cells, DexelRays, Distances, Membership, RayHits, Tag
+from ._answers import (
+    BoundingBox,
+    Cells,
+    Clearance,
+    Deviation,
+    DexelRays,
+    Distances,
+    Gap,
+    Interference,
+    MassProperties,
+    Membership,
+    RayHits,
+    SurfaceArea,
+    Tag,
+)
 from ._intervals import Intervals
 
 __all__ = [
     "Affine",
-    "BoundingBox",
     "Channel",
-    "Clearance",
     "Csg",
-    "Deviation",
+    "DexelSolid",
     "Frame",
-    "Gap",
-    "Interference",
     "Interval",
     "LazyOctree",
-    "MassProperties",
     "MassSum",
     "Mesh",
     "Octree",
@@ -46,7 +55,6 @@ __all__ = [
     "Shard",
     "ShardedSolid",
     "Solid",
-    "SurfaceArea",
     "SurfaceReport",
     "TriDexel",
     "Volume",
@@ -78,8 +86,6 @@ __all__ = [
 _Rule: TypeAlias = Literal["certified", "sampled", "inner", "outer"]
 _Fill: TypeAlias = Literal["nonzero", "positive", "evenodd"]
 _Order: TypeAlias = Literal["xyz", "zyx"]
-_StopReason: TypeAlias = Literal["tolerance", "budget", "exhausted"]
-_Answer: TypeAlias = Literal["yes", "no", "undecided"]
 _Method: TypeAlias = Literal["faces", "adaptive", "cubes", "nets", "shrink"]
 
 _Triple: TypeAlias = tuple[float, float, float]
@@ -87,13 +93,15 @@ _Path: TypeAlias = str | PathLike[str]
 _Doubles: TypeAlias = npt.NDArray[np.float64]
 _Samples: TypeAlias = npt.NDArray[np.bool_ | np.uint8 | np.uint16 | np.int16 | np.float32]
 _Indices: TypeAlias = Sequence[SupportsIndex] | npt.NDArray[np.integer[Any]]
+# A least sample, or a least and a greatest one.
+_Threshold: TypeAlias = float | tuple[float, float | None] | Sequence[float] | npt.NDArray[Any]
 
 # One point, and many. An array may hold either: its type does not say how many axes it has.
 _Point: TypeAlias = Sequence[float]
 _Points: TypeAlias = Sequence[Sequence[float] | npt.NDArray[Any]]
 
 # Solids that are no octrees.
-_Other: TypeAlias = Csg | Mesh | Volume | Shape
+_Other: TypeAlias = Csg | Mesh | Volume | Shape | DexelSolid
 
 _Opened: TypeAlias = Octree | TriDexel | Mesh | Csg | Volume
 _Saved: TypeAlias = Octree | TriDexel | Mesh | Volume | Picture
@@ -122,7 +130,7 @@ class Taking(TypedDict, total=False):
     to_unit: str | None
     scale: float | None
     sew: bool
-    threshold: float | tuple[float, float] | None
+    threshold: _Threshold | None
 
 @type_check_only
 class Level(TypedDict):
@@ -229,10 +237,11 @@ class Affine:
     def matrix(self) -> _Doubles: ...
     def inverse(self) -> Affine: ...
     def __call__(self, points: ArrayLike) -> _Doubles: ...
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]: ...
     @overload
     def __matmul__(self, other: Mesh, /) -> Mesh: ...
     @overload
-    def __matmul__(self, other: Csg | Octree | Volume | Shape, /) -> Csg: ...
+    def __matmul__(self, other: Csg | Octree | Volume | Shape | DexelSolid, /) -> Csg: ...
     @overload
     def __matmul__(self, other: Solid, /) -> Csg | Mesh: ...
     @overload
@@ -350,7 +359,13 @@ class Mesh(Solid):
     def __new__(cls, vertices: ArrayLike, faces: ArrayLike, *, fill: _Fill = "nonzero") -> Self: ...
     @staticmethod
     def _restored(
-        vertices: ArrayLike, faces: ArrayLike, fill: str, unit: str | None, displacement: float
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        fill: str,
+        unit: str | None,
+        surface_report: SurfaceReport | None,
+        attributes: list[tuple[str, list[str], ArrayLike]],
+        history: tuple[list[int], list[float]],
     ) -> Mesh: ...
     @staticmethod
     def from_trimesh(mesh: _HasTriangles, *, fill: _Fill = "nonzero") -> Mesh: ...
@@ -469,7 +484,7 @@ class Volume(Solid):
     def __new__(
         cls,
         array: _Samples,
-        threshold: float | tuple[float, float] | None = None,
+        threshold: _Threshold | None = None,
         *,
         origin: ArrayLike | None = None,
         spacing: ArrayLike | None = None,
@@ -488,7 +503,7 @@ class Volume(Solid):
     def order(self) -> _Order: ...
     @property
     def frame(self) -> Frame: ...
-    def with_threshold(self, threshold: float | tuple[float, float], **limits: Unpack[Limits]) -> Volume: ...
+    def with_threshold(self, threshold: _Threshold, **limits: Unpack[Limits]) -> Volume: ...
     @overload
     def values_at(self, points: _Point) -> np.float64: ...
     @overload
@@ -506,7 +521,7 @@ class Volume(Solid):
     def __rmatmul__(self, placement: ArrayLike, /) -> Csg: ...
 
 class Shape(Solid):
-    def __new__(cls, *_arguments: Any, **_named: Any) -> Self: ...
+    def __new__(cls, *arguments: Any, **named: Any) -> Self: ...
     def placed(self, placement: Affine | ArrayLike) -> Csg: ...
     def __or__(self, other: Solid, /) -> Csg: ...
     def __and__(self, other: Solid, /) -> Csg: ...
@@ -524,7 +539,7 @@ class LazyOctree:
         *,
         bounds: ArrayLike | None = None,
         point: ArrayLike | None = None,
-        ray: tuple[ArrayLike, ArrayLike] | None = None,
+        ray: Sequence[ArrayLike] | npt.NDArray[Any] | None = None,
         **limits: Unpack[Limits],
     ) -> bool: ...
     @overload
@@ -580,6 +595,8 @@ class VoxelRecords:
     def __new__(
         cls, frame: Frame, codes: ArrayLike, levels: ArrayLike, kinds: ArrayLike, values: ArrayLike | None = None
     ) -> Self: ...
+    @staticmethod
+    def _restored(records: VoxelRecords, exterior: str, boundary: str, proof: Proof) -> VoxelRecords: ...
     @property
     def frame(self) -> Frame: ...
     @property
@@ -614,7 +631,7 @@ class TriDexel:
     def volume(self, axis: int = 2) -> float: ...
     def rays(self, axis: int) -> DexelRays: ...
     def surface(self, **limits: Unpack[Limits]) -> Mesh: ...
-    def solid(self, **limits: Unpack[Limits]) -> Solid: ...
+    def solid(self, **limits: Unpack[Limits]) -> DexelSolid: ...
     def to_octree(self, *, by_ends: bool = False, **limits: Unpack[Limits]) -> Octree: ...
     def __or__(self, other: TriDexel, /) -> TriDexel: ...
     def __and__(self, other: TriDexel, /) -> TriDexel: ...
@@ -624,7 +641,22 @@ class TriDexel:
     def __hash__(self) -> int: ...
 
 @final
+class DexelSolid(Solid):
+    @property
+    def model(self) -> TriDexel: ...
+    @property
+    def bounds(self) -> _Doubles | None: ...
+    def placed(self, placement: Affine | ArrayLike) -> Csg: ...
+    def __or__(self, other: Solid, /) -> Csg: ...
+    def __and__(self, other: Solid, /) -> Csg: ...
+    def __sub__(self, other: Solid, /) -> Csg: ...
+    def __xor__(self, other: Solid, /) -> Csg: ...
+    def __invert__(self) -> Csg: ...
+    def __rmatmul__(self, placement: ArrayLike, /) -> Csg: ...
+
+@final
 class Proof:
+    def __new__(cls, full: bool, empty: bool, displacement: float = 0.0) -> Self: ...
     @property
     def full(self) -> bool: ...
     @property
@@ -636,6 +668,7 @@ class Proof:
 
 @final
 class SurfaceReport:
+    def __new__(cls, method: str, deviation: float, from_mesh: bool, intersecting_pairs: int) -> Self: ...
     @property
     def method(self) -> _Method | Literal["simplify"]: ...
     @property
@@ -644,103 +677,12 @@ class SurfaceReport:
     def deviation(self) -> float: ...
     @property
     def intersecting_pairs(self) -> int: ...
-
-@final
-class MassProperties:
-    @property
-    def volume(self) -> Interval: ...
-    @property
-    def centroid(self) -> Intervals | None: ...
-    @property
-    def inertia_about_origin(self) -> Intervals: ...
-    @property
-    def inertia_about_centroid(self) -> Intervals: ...
-    @property
-    def exact(self) -> bool: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def proof(self) -> Proof: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
-    @property
-    def splits(self) -> int: ...
-
-@final
-class SurfaceArea:
-    @property
-    def area(self) -> Interval: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
-    @property
-    def splits(self) -> int: ...
-
-@final
-class BoundingBox:
-    @property
-    def corners(self) -> Intervals | None: ...
-    @property
-    def occupied(self) -> bool: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
-    @property
-    def splits(self) -> int: ...
-
-@final
-class Interference:
-    @property
-    def verdict(self) -> Literal["disjoint", "overlapping", "undecided"]: ...
-    @property
-    def volume(self) -> Interval: ...
-    @property
-    def ball(self) -> tuple[_Triple, float] | None: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def splits(self) -> tuple[int, int]: ...
-
-@final
-class Clearance:
-    @property
-    def distance(self) -> Interval: ...
-    @property
-    def points(self) -> _Doubles | None: ...
-    @property
-    def depth(self) -> float: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
-    @property
-    def clipped(self) -> bool: ...
-    @property
-    def splits(self) -> tuple[int, int]: ...
-
-@final
-class Gap:
-    @property
-    def verdict(self) -> _Answer: ...
-    @property
-    def distance(self) -> Interval: ...
-
-@final
-class Deviation:
-    @property
-    def distance(self) -> Interval: ...
-    @property
-    def a_to_b(self) -> Interval: ...
-    @property
-    def b_to_a(self) -> Interval: ...
-    @property
-    def points(self) -> _Doubles | None: ...
-    def within(self, distance: float) -> _Answer: ...
-    @property
-    def stop_reason(self) -> _StopReason: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
 
 @final
 class Picture:
+    @staticmethod
+    def _restored(rgba: ArrayLike, depth: ArrayLike) -> Picture: ...
     @property
     def rgba(self) -> npt.NDArray[np.uint8]: ...
     @property
@@ -978,14 +920,14 @@ def deviation(
 ) -> Deviation: ...
 def render(
     *solids: Solid,
-    size: tuple[int, int] = ...,
-    view: tuple[float, float] = ...,
+    size: _Indices = ...,
+    view: Sequence[float] | npt.NDArray[Any] = ...,
     colours: ArrayLike | None = None,
     clip: ArrayLike | None = None,
     slice: ArrayLike | None = None,
     edges: bool = True,
     cells: bool = False,
-    background: tuple[int, int, int, int] = ...,
+    background: _Indices = ...,
     samples: int = 4,
     **limits: Unpack[Limits],
 ) -> Picture: ...

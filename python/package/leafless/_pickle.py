@@ -4,22 +4,35 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
-from ._leafless import Csg, Mesh, Octree, Shape, TriDexel, Volume, map_path
+from ._leafless import Csg, DexelSolid, Mesh, Octree, Picture, TriDexel, Volume, VoxelRecords, map_path
 
 if TYPE_CHECKING:
-    from ._leafless import _Fill, _Order, _Samples, _Triple
+    from ._leafless import Frame, Proof, _Order, _Samples, _Threshold, _Triple
 
 
-def csg(name: str, arguments: tuple[Any, ...]) -> Csg:
-    made: Csg = getattr(Csg, name)(*arguments)
-    return made
+def csg(steps: list[tuple[str, tuple[Any, ...]]]) -> Csg:
+    made: list[Csg] = []
+    for name, arguments in steps:
+        # A whole number stands for what an earlier step made: no function of the class takes one.
+        parts = (made[part] if type(part) is int else part for part in arguments)
+        made.append(getattr(Csg, name)(*parts))
+    return made[-1]
 
 
-def mesh(vertices: Any, faces: Any, fill: Any, unit: str | None, displacement: float) -> Mesh:
-    return Mesh._restored(vertices, faces, fill, unit, displacement)
+def mesh(*parts: Any) -> Mesh:
+    return Mesh._restored(*parts)
+
+
+def voxels(frame: Frame, arrays: tuple[Any, ...], known: tuple[str, str, Proof]) -> VoxelRecords:
+    return VoxelRecords._restored(VoxelRecords(frame, *arrays), *known)
+
+
+def picture(rgba: Any, depth: Any) -> Picture:
+    return Picture._restored(rgba, depth)
+
+
+def dexel_solid(model: TriDexel) -> DexelSolid:
+    return model.solid()
 
 
 def octree(data: bytes) -> Octree:
@@ -35,13 +48,5 @@ def mapped(path: str, checksum: int) -> Octree | TriDexel:
     return map_path(path, checksum=checksum)
 
 
-def volume(
-    array: _Samples, threshold: tuple[float, float | None], origin: _Triple, spacing: _Triple, order: _Order
-) -> Volume:
-    low, high = threshold
-    band = low if high is None else (low, high)
-    return Volume(array, band, origin=origin, spacing=spacing, order=order)
-
-
-def shape(kind: type[Shape]) -> Shape:
-    return kind.__new__(kind)
+def volume(array: _Samples, threshold: _Threshold, origin: _Triple, spacing: _Triple, order: _Order) -> Volume:
+    return Volume(array, threshold, origin=origin, spacing=spacing, order=order)

@@ -27,7 +27,8 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from . import _leafless
-from ._leafless import Affine, Frame, Interference, MassProperties, MassSum, Mesh, Octree, VoxelRecords
+from ._answers import Interference, MassProperties
+from ._leafless import Affine, Frame, MassSum, Mesh, Octree, VoxelRecords
 from .shards import Entry, Folder, Operation, Recipe, ShardedOctree, combined, combined_top, complemented, finish, recipe, store_shard, welded
 
 if TYPE_CHECKING:

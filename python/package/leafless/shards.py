@@ -35,12 +35,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _files, _leafless
-from ._answers import Membership, RayHits, VoxelKind
+from ._answers import MassProperties, Membership, RayHits, VoxelKind
 from ._errors import FormatError
 from ._leafless import (
     Frame,
     Interval,
-    MassProperties,
     MassSum,
     Mesh,
     Octree,
