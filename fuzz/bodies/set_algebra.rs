@@ -2,10 +2,11 @@
 //! operands the right ones.
 
 use super::{Aligned, CONTROL, halves, queries};
-use leafless::op::{intersection_of, resolve, union_of, xor_of};
+use leafless::op::{intersection_of, join, resolve, shard, union_of, xor_of};
+use leafless::solid::ShardedOctree;
 use leafless::{
-    Control, Error, Membership, Octree, OctreeRef, Rule, Solid, Tag, build, compact, complement, difference,
-    file, intersection, union, xor,
+    Control, Error, Membership, Octree, OctreeRef, Rule, Shard, Solid, Tag, build, compact, complement,
+    difference, file, intersection, union, xor,
 };
 
 /// Combines the trees in the two halves of `data`.
@@ -14,11 +15,17 @@ pub fn set_algebra(data: &[u8]) {
     let (first, second) = (Aligned::new(first), Aligned::new(second));
     let Ok(a) = file::view(first.bytes()) else { return };
     let sure = file::verify(first.bytes()).is_ok();
+    in_shards(&a, sure);
     // The laws are those of the cells.
     let plain = a.without_cuts();
     alone(&plain, sure);
     match file::view(second.bytes()) {
         Ok(b) => {
+            // What is not of one solid is refused, and nothing worse.
+            match join(&[a, b], &BUDGET) {
+                Err(Error::Argument { name: "trees", .. } | Error::FrameMismatch { .. }) => {}
+                result => drop(sharp(result, false)),
+            }
             let sure = sure && file::verify(second.bytes()).is_ok();
             with_surfaces(&a, &b, sure);
             together(&plain, &b.without_cuts(), sure);
@@ -45,6 +52,39 @@ fn sharp(result: Result<Octree, Error>, sure: bool) -> Option<Octree> {
         // Of the budget, and of exact numbers.
         Err(Error::Limit { .. }) => None,
         Err(refused) => panic!("{refused}"),
+    }
+}
+
+/// A tree in shards, joined, is the tree; one shard says nothing else.
+fn in_shards(a: &OctreeRef<'_>, sure: bool) {
+    let level = a.frame().depth().min(2);
+    let Some(same) = sharp(join(&[*a], &BUDGET), sure) else { return };
+    let Some(top) = sharp(shard(a, Shard::Top { level }, &BUDGET), sure) else { return };
+    let Ok(cells) = top.view().open_cells(level) else { return };
+    let mut shards = Vec::new();
+    for cell in cells {
+        let Some(own) = sharp(shard(a, Shard::Below(cell), &BUDGET), sure) else { return };
+        shards.push((cell, own));
+    }
+    let views: Vec<_> =
+        [&top].into_iter().chain(shards.iter().map(|(_, own)| own)).map(|own| *own.view()).collect();
+    let Some(joined) = sharp(join(&views, &BUDGET), sure) else { return };
+    if sure {
+        assert!(joined == same && (a.cuts().is_some() || joined.view().element_count() == a.element_count()));
+    }
+    let split: Vec<_> = shards
+        .iter()
+        .map(|(cell, own)| (*cell, own.statistics()))
+        .filter(|(cell, own)| own.levels()[usize::from(cell.level)].nodes == 1)
+        .collect();
+    if let (true, true, Ok(found)) = (sure, split.len() == shards.len(), top.statistics_with(&split)) {
+        assert!(found == joined.statistics());
+    }
+    if let Ok(solid) = ShardedOctree::new(top, shards) {
+        let built = build(&solid, a.frame(), Rule::Certified, &BUDGET);
+        if let (true, Ok(built)) = (sure && a.cuts().is_none(), built) {
+            assert!(built == joined);
+        }
     }
 }
 

@@ -214,7 +214,7 @@ def test_a_build_that_was_broken_off_is_no_octree(tmp_path):
 
 def hostile():
     good = {"path": "a.lfl", "bytes": 1, "sha256": "0"}
-    shard = {**good, "code": 0, "levels": []}
+    shard = {**good, "code": 0, "levels": [[0, 0, 0]] * 4}
     frame = {"origin": [0, 0, 0], "edge": 1.0, "depth": 5}
     whole = {"format": "leafless shards", "version": 1, "frame": frame, "level": 1, "top": good, "shards": [shard]}
     yield {**whole, "format": "something else"}
@@ -230,7 +230,7 @@ def hostile():
     for path in ("../a.lfl", "/etc/passwd", "a/../../b", "", "..\\a", "http://elsewhere/a", None, 3):
         yield {**whole, "top": {**good, "path": path}}
         yield {**whole, "shards": [{**shard, "path": path}]}
-    for entry in ({"bytes": -1}, {"bytes": 1e9}, {"offset": -1}, {"code": 8}, {"code": -1}, {"levels": 3}, {"levels": [[1, 2]]}, {"levels": [[-1, 0, 0]]}, {"sha256": None}):
+    for entry in ({"bytes": -1}, {"bytes": 1e9}, {"offset": -1}, {"code": 8}, {"code": -1}, {"levels": 3}, {"levels": [[1, 2]] * 4}, {"levels": [[-1, 0, 0]] * 4}, {"levels": [[0, 0, 0]] * 3}, {"sha256": None}):
         yield {**whole, "shards": [{**shard, **entry}]}
     yield {**whole, "shards": [shard, shard]}
     yield {**whole, "shards": [{**shard, "code": 3}, {**shard, "code": 2}]}
@@ -244,6 +244,15 @@ def test_a_hostile_manifest_is_refused(tmp_path, manifest):
     (tmp_path / "manifest.json").write_text(json.dumps(manifest))
     with pytest.raises(lf.FormatError, match="manifest.json"):
         shards.open(tmp_path)
+
+
+def test_the_manifest_that_these_are_made_of_is_good(tmp_path):
+    good = {"path": "a.lfl", "bytes": 1, "sha256": "0"}
+    frame = {"origin": [0, 0, 0], "edge": 1.0, "depth": 5}
+    shard = {**good, "code": 0, "levels": [[0, 0, 0]] * 4}
+    whole = {"format": "leafless shards", "version": 1, "frame": frame, "level": 1, "top": good, "shards": [shard]}
+    (tmp_path / "manifest.json").write_text(json.dumps({**whole, "what others add": 1}))
+    assert shards.open(tmp_path).codes == [0]
 
 
 @pytest.mark.parametrize("text", ["", "{", "[" * 100_000, "\udcff", "nul"], ids=range(5))

@@ -103,7 +103,7 @@ class Entry:
     offset: int = 0
     #: The place of the cell in Morton order; −1 of the top.
     code: int = -1
-    #: Nodes, FULL and PARTIAL cells of the shard, level by level.
+    #: Nodes, FULL and PARTIAL cells in the shard's cell, level by level from the one below it on.
     levels: tuple[tuple[int, int, int], ...] = ()
 
     def told(self) -> dict[str, Any]:
@@ -158,24 +158,21 @@ def _name(level: int, code: int) -> str:
     return f"{code:0{level}o}.lfl" if level else "0.lfl"
 
 
-def _counts(octree: Octree) -> tuple[tuple[int, int, int], ...]:
-    return tuple((level["nodes"], level["full"], level["partial"]) for level in octree.statistics())
-
-
-def store(folder: Folder, name: str, octree: Octree, code: int = -1) -> Entry:
+def store(folder: Folder, name: str, octree: Octree) -> Entry:
     """Writes an octree into a folder."""
     data = octree.to_bytes()
     folder.write(name, data)
-    levels = () if code < 0 else _counts(octree)
-    return Entry(name, len(data), hashlib.sha256(data).hexdigest(), 0, code, levels)
+    return Entry(name, len(data), hashlib.sha256(data).hexdigest())
 
 
 def store_shard(folder: Folder, level: int, code: int, octree: Octree) -> Entry | bytes:
     """Writes a shard into a folder. What is known of a cell that is not split belongs into the top: that is handed back as the bytes of an
     octree."""
-    if octree.statistics()[level]["nodes"] == 1:
-        return store(folder, _name(level, code), octree, code)
-    return octree.to_bytes()
+    statistics = octree.statistics()
+    if statistics[level]["nodes"] != 1:
+        return octree.to_bytes()
+    levels = tuple((below["nodes"], below["full"], below["partial"]) for below in statistics[level + 1 :])
+    return dataclasses.replace(store(folder, _name(level, code), octree), code=code, levels=levels)
 
 
 def finish(
@@ -206,8 +203,15 @@ def finish(
         "top": store(folder, TOP, top).told(),
         "shards": [entry.told() for entry in entries],
     }
-    folder.write(MANIFEST, json.dumps(manifest, indent=1).encode())
+    folder.write(MANIFEST, _written(manifest))
     return ShardedOctree(folder.url, manifest)
+
+
+def _written(manifest: dict[str, Any]) -> bytes:
+    """A manifest as bytes, a line for each shard."""
+    shards = ",\n".join(json.dumps(entry, separators=(",", ":")) for entry in manifest["shards"])
+    head = json.dumps({**manifest, "shards": []}, separators=(",", ":"))
+    return (head.removesuffix("[]}") + "[\n" + shards + "\n]}\n").encode()
 
 
 def _checked(manifest: Any, url: str) -> dict[str, Any]:
@@ -228,7 +232,8 @@ def _checked(manifest: Any, url: str) -> dict[str, Any]:
         if not is_file(entry) or not whole(entry.get("code"), 0, 8 ** manifest["level"] - 1):
             return False
         levels = entry.get("levels")
-        return isinstance(levels, list) and all(
+        count = manifest["frame"]["depth"] - manifest["level"]
+        return isinstance(levels, list) and len(levels) == count and all(
             isinstance(level, list) and len(level) == 3 and all(whole(count, 0, 2**63) for count in level) for level in levels
         )
 
@@ -421,7 +426,8 @@ class ShardedOctree:
 
     def statistics(self) -> list[Level]:
         """As `Octree.statistics`, from the manifest and the top alone."""
-        known = [(code, entry.levels) for code, entry in self._entries.items() if code not in self._missing]
+        above = ((1, 0, 0),) * (self.level + 1)
+        known = [(code, above + entry.levels) for code, entry in self._entries.items() if code not in self._missing]
         return _leafless.joined_statistics(self.top, self.level, known)
 
     @property
@@ -628,7 +634,7 @@ class ShardedOctree:
         folder.write("shards.lfl.pack", bytes(data))
         told = {"top": store(folder, TOP, self.top).told(), "shards": [entry.told() for entry in entries]}
         manifest = {**self._manifest, **told}
-        folder.write(MANIFEST, json.dumps(manifest, indent=1).encode())
+        folder.write(MANIFEST, _written(manifest))
         return ShardedOctree(folder.url, manifest, verify=self._verify, keep=self._keep)
 
     def __len__(self) -> int:
