@@ -1,7 +1,8 @@
 //! Arrays of samples as solids.
 
+use crate::arguments::{named, other_type};
 use crate::arrays::{self, layout, shown, triple};
-use crate::error::{OrRaise, refused};
+use crate::error::{OrRaise, called, refused};
 use crate::frame::Frame;
 use crate::from_package;
 use crate::solid::{Given, Solid};
@@ -15,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
-/// A 3-D array of samples as a solid: its voxels with values in a band.
+/// A 3-D `array` of samples as a solid: its voxels with values in a band.
 ///
 /// The array is indexed [x, y, z]. With `order="zyx"` it is indexed [z, y, x], as in SimpleITK and tifffile. It may hold booleans, uint8,
 /// uint16, int16 or float32.
@@ -84,10 +85,10 @@ pub fn band(given: Option<&Bound<'_, PyAny>>, middle: f64) -> PyResult<(Band, (f
     let py = given.py();
     let told = match given.extract::<f64>() {
         Ok(low) => (low, None),
-        Err(_) => match given.extract::<(f64, f64)>() {
-            Ok((low, high)) => (low, Some(high)),
+        Err(_) => match given.extract::<[f64; 2]>() {
+            Ok([low, high]) => (low, Some(high)),
             Err(_) => {
-                return Err(refused(py, "threshold", "must be one number, or a least and a greatest one"));
+                return Err(other_type(given, "threshold", "one number, or a least and a greatest one"));
             }
         },
     };
@@ -96,7 +97,9 @@ pub fn band(given: Option<&Bound<'_, PyAny>>, middle: f64) -> PyResult<(Band, (f
         (f64::NEG_INFINITY, Some(high)) => Band::at_most(high),
         (low, Some(high)) => Band::between(low, high),
     };
-    Ok((band.or_raise(py)?, told))
+    let problem =
+        |_| refused(py, "threshold", format!("must be a number, or a least and a greatest one, not {given}"));
+    Ok((band.map_err(problem)?, told))
 }
 
 impl Volume {
@@ -122,7 +125,7 @@ impl Volume {
         threshold: Option<&Bound<'_, PyAny>>,
         origin: Option<&Bound<'_, PyAny>>,
         spacing: Option<&Bound<'_, PyAny>>,
-        order: &str,
+        #[pyo3(from_py_with = named::order)] order: &str,
         limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyClassInitializer<Volume>> {
         let py = array.py();
@@ -130,7 +133,7 @@ impl Volume {
         let axes_reversed = match order {
             "xyz" => false,
             "zyx" => true,
-            _ => return Err(refused(py, "order", "must be 'xyz' or 'zyx'")),
+            _ => return Err(refused(py, "order", format!("must be 'xyz' or 'zyx', not '{order}'"))),
         };
         let origin = origin.map_or(Ok([0.0; 3]), |origin| triple(origin, "origin"))?;
         let spacing = match spacing {
@@ -155,7 +158,8 @@ impl Volume {
             }
         };
         let (band, told) = band(threshold, middle)?;
-        let grid = VoxelGrid::new(extents, origin, spacing).or_raise(py)?;
+        let names = [("corner", "origin"), ("extents", "array")];
+        let grid = VoxelGrid::new(extents, origin, spacing).map_err(called(names)).or_raise(py)?;
         let volume = limits.run(py, |control| Inner::new(samples, &grid, band, control))?;
         Volume::initial(volume, kind == "bool", axes_reversed, told)
     }
@@ -181,9 +185,10 @@ impl Volume {
             Samples::Bits(words) => {
                 let (row, [x, y, z]) =
                     (own.volume.grid().words(), own.volume.grid().extents().map(|n| n as usize));
-                let lines = words.values().chunks_exact(row).take(y * z);
-                let bits: Vec<bool> =
-                    lines.flat_map(|line| (0..x).map(move |i| line[i / 64] >> (i % 64) & 1 != 0)).collect();
+                let bits: Vec<bool> = slf.py().detach(|| {
+                    let lines = words.values().chunks_exact(row).take(y * z);
+                    lines.flat_map(|line| (0..x).map(move |i| line[i / 64] >> (i % 64) & 1 != 0)).collect()
+                });
                 let order = PyDict::new(slf.py());
                 order.set_item("order", if own.axes_reversed { "C" } else { "F" })?;
                 let flat = arrays::array(slf.py(), bits, &[x * y * z])?;
@@ -222,7 +227,7 @@ impl Volume {
         self.volume.grid().frame().or_raise(py).map(Frame)
     }
 
-    /// The same samples with another threshold, without reading them again.
+    /// The same samples with another `threshold`, without reading them again.
     #[pyo3(signature = (threshold, **limits))]
     fn with_threshold(
         &self,
@@ -235,11 +240,12 @@ impl Volume {
         Py::new(py, Volume::initial(volume, self.is_boolean, self.axes_reversed, told)?)
     }
 
-    /// The value between samples at points (shape (n, 3)): NaN beyond the grid.
+    /// The value between samples at `points` (shape (n, 3)): NaN beyond the grid.
     fn values_at<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let rows = arrays::Rows::of(points, "points")?;
-        let values: Vec<f64> =
-            rows.list().iter().map(|&point| self.volume.value_at(point).unwrap_or(f64::NAN)).collect();
+        let list = rows.list();
+        let value = |&point: &[f64; 3]| self.volume.value_at(point).unwrap_or(f64::NAN);
+        let values: Vec<f64> = points.py().detach(|| list.iter().map(value).collect());
         let count = values.len();
         arrays::one_or_all(arrays::array(points.py(), values, &[count])?.into_any(), rows.is_one)
     }

@@ -117,6 +117,13 @@ def test_cells_add_up(plate):
     partial = (edges[cells.tag == lf.PARTIAL] ** 3).sum()
     assert np.isclose(full, octree.volume.lower) and np.isclose(full + partial, octree.volume.upper)
     assert len(octree.cells("full")) == (cells.tag == lf.FULL).sum()
+    for tag in (lf.FULL, lf.PARTIAL, lf.EMPTY, lf.Tag.BRANCH):
+        assert (octree.cells(tag).at == octree.cells(tag.name.lower()).at).all()
+    assert len(octree.cells("full", lf.EMPTY, lf.FULL)) == len(octree.cells("empty", "full"))
+    # The constants of points are numbers, too, and none of them is a tag.
+    for wrong in (lf.INSIDE, 3, None):
+        with pytest.raises(TypeError, match="^tags: "):
+            octree.cells(wrong)
     assert np.isclose((edges**3).sum(), octree.frame.edge**3)
     assert octree.tag_at([0, 0, 0]) in tuple(lf.Tag)
     with pytest.raises(lf.ArgumentError, match="^at: "):
@@ -167,6 +174,7 @@ def test_voxels(plate):
     assert sorted(records.depth_order([20, 20, 20]).tolist()) == list(range(len(records)))
     own = lf.VoxelRecords(records.frame, records.codes, records.levels, records.kinds)
     assert len(own) == len(records) and own.to_octree().volume.lower == octree.volume.lower
+    assert own.to_octree(lf.FULL) == own.to_octree("full") != own.to_octree(lf.PARTIAL) == own.to_octree()
     assert not records.codes.flags.writeable
     heat = lf.Channel.fill(3.5, octree)
     assert (octree.voxels(heat).values[inside] == 3.5).all()

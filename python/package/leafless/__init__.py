@@ -19,7 +19,7 @@ Long work takes the keyword arguments `threads` (0: all processors), `max_bytes`
 function of the part done, a bar of tqdm, or True); Ctrl-C interrupts it. No result depends on the number of threads.
 """
 
-from ._answers import Cells, DexelRays, Distances, Membership, RayHits, Tag, VoxelKind
+from ._answers import Cells, DexelRays, Distance, Distances, Membership, RayHit, RayHits, Tag, VoxelKind
 from ._errors import (
     ArgumentError,
     CancelledError,
@@ -96,6 +96,7 @@ __all__ = [
     "Csg",
     "Deviation",
     "DexelRays",
+    "Distance",
     "Distances",
     "Error",
     "FormatError",
@@ -114,6 +115,7 @@ __all__ = [
     "Octree",
     "Picture",
     "Proof",
+    "RayHit",
     "RayHits",
     "Shape",
     "Solid",

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._intervals import Intervals
+from ._leafless import Interval
 
 
 class Membership(IntEnum):
@@ -43,6 +44,20 @@ class VoxelKind(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
+class Distance:
+    """How far a point is from a solid."""
+
+    #: The distance.
+    distance: Interval
+    #: A point of the boundary that is as near, shape (3,); NaN if none is known.
+    nearest: npt.NDArray[np.float64]
+    #: The number of the triangle or surface there; −1 if none is known.
+    surface: int
+    #: Whether the interval is wider than the tolerance.
+    undecided: bool
+
+
+@dataclass(frozen=True, eq=False)
 class Distances:
     """How far points are from a solid."""
 
@@ -57,6 +72,20 @@ class Distances:
 
     def __len__(self) -> int:
         return len(self.distance)
+
+
+@dataclass(frozen=True, eq=False)
+class RayHit:
+    """Where a ray first meets a solid."""
+
+    #: Whether anything stopped the ray.
+    hit: bool
+    #: Before the lower end the ray is proven outside, at the upper end inside; infinite without a hit.
+    distance: Interval
+    #: The outward normal at the hit, shape (3,); NaN without a hit.
+    normal: npt.NDArray[np.float64]
+    #: The number of the triangle that was hit; −1 if none is known.
+    surface: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,5 +137,5 @@ class DexelRays:
         return len(self.start)
 
 
-for _kind in (Membership, Tag, VoxelKind, Distances, RayHits, Cells, DexelRays):
+for _kind in (Membership, Tag, VoxelKind, Distance, Distances, RayHit, RayHits, Cells, DexelRays):
     _kind.__module__ = "leafless"

@@ -21,7 +21,7 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 from typing_extensions import Never, Self, TypeAlias, Unpack, disjoint_base
 
-from ._answers import Cells, DexelRays, Distances, Membership, RayHits, Tag
+from ._answers import Cells, DexelRays, Distance, Distances, Membership, RayHit, RayHits, Tag
 from ._intervals import Intervals
 
 __all__ = [
@@ -69,6 +69,7 @@ __all__ = [
 
 _Rule: TypeAlias = Literal["certified", "sampled", "inner", "outer"]
 _Fill: TypeAlias = Literal["nonzero", "positive", "evenodd"]
+_To: TypeAlias = Literal["boundary", "solid", "complement"]
 _Order: TypeAlias = Literal["xyz", "zyx"]
 _StopReason: TypeAlias = Literal["tolerance", "budget", "exhausted"]
 _Answer: TypeAlias = Literal["yes", "no", "undecided"]
@@ -108,7 +109,7 @@ class Limits(TypedDict, total=False):
     progress: Callable[[float], object] | ProgressBar | Literal[True] | None
 
 @type_check_only
-class Taking(TypedDict, total=False):
+class Taking(Limits, total=False):
     fill: _Fill | None
     unit: str | None
     to_unit: str | None
@@ -246,15 +247,70 @@ class Solid:
     # An array holds one point, and the answer is a `Membership`, or many, and it is an array. No type says which.
     @overload
     def contains(self, points: ArrayLike, *, frame: Frame | Octree | None = None, **limits: Unpack[Limits]) -> Any: ...
+    @overload
     def distances(
         self,
-        points: ArrayLike,
+        points: _Point,
         *,
-        to: Literal["boundary", "solid", "complement"] = "boundary",
+        to: _To = "boundary",
+        tolerance: float | None = None,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> Distance: ...
+    @overload
+    def distances(
+        self,
+        points: _Points,
+        *,
+        to: _To = "boundary",
         tolerance: float | None = None,
         frame: Frame | Octree | None = None,
         **limits: Unpack[Limits],
     ) -> Distances: ...
+    @overload
+    def distances(
+        self,
+        points: ArrayLike,
+        *,
+        to: _To = "boundary",
+        tolerance: float | None = None,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> Any: ...
+    @overload
+    def rays(
+        self,
+        origins: _Point,
+        directions: _Point,
+        *,
+        on: Literal["outer", "inner"] = "inner",
+        last: float = ...,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> RayHit: ...
+    @overload
+    def rays(
+        self,
+        origins: _Points,
+        directions: ArrayLike,
+        *,
+        on: Literal["outer", "inner"] = "inner",
+        last: float = ...,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> RayHits: ...
+    @overload
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: _Points,
+        *,
+        on: Literal["outer", "inner"] = "inner",
+        last: float = ...,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> RayHits: ...
+    @overload
     def rays(
         self,
         origins: ArrayLike,
@@ -264,7 +320,7 @@ class Solid:
         last: float = ...,
         frame: Frame | Octree | None = None,
         **limits: Unpack[Limits],
-    ) -> RayHits: ...
+    ) -> Any: ...
     def placed(self, placement: Affine | ArrayLike) -> Csg | Mesh: ...
     def __or__(self, other: Solid, /) -> Csg | Octree: ...
     def __and__(self, other: Solid, /) -> Csg | Octree: ...
@@ -323,7 +379,7 @@ class Csg(Solid):
     @staticmethod
     def placed_of(solid: Solid, placement: Affine | ArrayLike) -> Csg: ...
     @staticmethod
-    def from_scene(text: str, folder: _Path | None = None) -> Csg: ...
+    def from_scene(text: str, folder: _Path | None = None, **limits: Unpack[Limits]) -> Csg: ...
     @property
     def bounds(self) -> _Doubles | None: ...
     def placed(self, placement: Affine | ArrayLike) -> Csg: ...
@@ -378,6 +434,16 @@ class Octree(Solid):
     @staticmethod
     def from_bytes(data: bytes) -> Octree: ...
     def to_bytes(self) -> bytes: ...
+    @staticmethod
+    def union_of(*octrees: Octree, **limits: Unpack[Limits]) -> Octree: ...
+    @staticmethod
+    def intersection_of(*octrees: Octree, **limits: Unpack[Limits]) -> Octree: ...
+    @staticmethod
+    def difference_of(*octrees: Octree, **limits: Unpack[Limits]) -> Octree: ...
+    @staticmethod
+    def xor_of(*octrees: Octree, **limits: Unpack[Limits]) -> Octree: ...
+    @staticmethod
+    def complement_of(octree: Octree, **limits: Unpack[Limits]) -> Octree: ...
     @property
     def frame(self) -> Frame: ...
     @property
@@ -395,7 +461,9 @@ class Octree(Solid):
     @property
     def metadata(self) -> dict[str, str]: ...
     def with_metadata(self, metadata: dict[str, str]) -> Octree: ...
-    def cells(self, *tags: Literal["empty", "branch", "partial", "full"]) -> Cells: ...
+    def cells(
+        self, *tags: Literal["empty", "branch", "partial", "full"] | Tag, **limits: Unpack[Limits]
+    ) -> Cells: ...
     def tag_at(self, at: _Indices) -> Tag: ...
     def bitmap(
         self,
@@ -581,7 +649,7 @@ class VoxelRecords:
     def edges(self) -> _Doubles: ...
     def depth_order(self, eye: ArrayLike) -> npt.NDArray[np.uint64]: ...
     def to_octree(
-        self, boundary: Literal["empty", "partial", "full"] = "partial", **limits: Unpack[Limits]
+        self, boundary: Literal["empty", "partial", "full"] | Tag = "partial", **limits: Unpack[Limits]
     ) -> Octree: ...
     def __len__(self) -> int: ...
 
@@ -590,6 +658,16 @@ class TriDexel:
     @staticmethod
     def from_bytes(data: bytes) -> TriDexel: ...
     def to_bytes(self) -> bytes: ...
+    @staticmethod
+    def union_of(*models: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
+    @staticmethod
+    def intersection_of(*models: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
+    @staticmethod
+    def difference_of(*models: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
+    @staticmethod
+    def xor_of(*models: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
+    @staticmethod
+    def complement_of(model: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
     @property
     def frame(self) -> Frame: ...
     @property
@@ -914,6 +992,7 @@ def render(
     cells: bool = False,
     background: tuple[int, int, int, int] = ...,
     samples: int = 4,
+    frame: Frame | Octree | None = None,
     **limits: Unpack[Limits],
 ) -> Picture: ...
 def open_path(path: _Path, **taking: Unpack[Taking]) -> _Opened: ...
