@@ -57,13 +57,14 @@ const ZONE: [(&str, &str); 5] =
 impl LazyOctree {
     /// An octree that knows its universe only. With `resume`, it begins with what a frozen octree of the same solid knows.
     #[new]
-    #[pyo3(signature = (solid, frame=None, *, resume=None))]
+    #[pyo3(signature = (solid, frame=None, *, resume=None, **limits))]
     fn new(
         solid: &Bound<'_, PyAny>,
         frame: Option<FrameLike>,
         #[pyo3(from_py_with = named::resume)] resume: Option<Bound<'_, Octree>>,
+        limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<LazyOctree> {
-        let py = solid.py();
+        let (py, limits) = (solid.py(), Limits::of(limits)?);
         let given = given(solid, "solid")?;
         let resume = resume.as_ref().map(|known| &known.get().octree);
         let frame = match (frame, resume) {
@@ -71,7 +72,7 @@ impl LazyOctree {
             (frame, _) => Wish { frame, depth: None }.of(py, &given, MAX_DEPTH)?,
         };
         let shape = given.shape;
-        let lazy = Limits::default().run(py, |control| match resume {
+        let lazy = limits.run(py, |control| match resume {
             Some(known) => Inner::resume(known, shape, &frame, control),
             None => {
                 shape.on(&frame, control)?;

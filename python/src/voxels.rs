@@ -129,11 +129,16 @@ impl VoxelRecords {
     }
 
     /// The order in which voxels are seen from the point `eye`, those in front first: indices of shape (n,).
-    fn depth_order<'py>(&self, eye: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    #[pyo3(signature = (eye, **limits))]
+    fn depth_order<'py>(
+        &self,
+        eye: &Bound<'py, PyAny>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (py, eye) = (eye.py(), arrays::triple(eye, "eye")?);
         let view = self.0.view();
         let order =
-            Limits::default().run(py, |control| view.depth_order(&Viewpoint::Perspective(eye), control))?;
+            Limits::of(limits)?.run(py, |control| view.depth_order(&Viewpoint::Perspective(eye), control))?;
         let count = order.len();
         Ok(arrays::array(py, order, &[count])?.into_any())
     }

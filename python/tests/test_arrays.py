@@ -172,6 +172,7 @@ def test_voxels(plate):
     assert np.isclose((records.edges()[inside] ** 3).sum(), octree.volume.lower)
     assert (np.diff(records.codes.astype(float)) > 0).all()
     assert sorted(records.depth_order([20, 20, 20]).tolist()) == list(range(len(records)))
+    assert (records.depth_order([20, 20, 20], threads=1) == records.depth_order([20, 20, 20])).all()
     own = lf.VoxelRecords(records.frame, records.codes, records.levels, records.kinds)
     assert len(own) == len(records) and own.to_octree().volume.lower == octree.volume.lower
     assert own.to_octree(lf.FULL) == own.to_octree("full") != own.to_octree(lf.PARTIAL) == own.to_octree()
@@ -211,7 +212,9 @@ def test_lazy(plate):
     assert lazy.refine(level=9, ray=([-1, 3.1, 0.51], [1, 0, 0])) and lazy.splits > before
     assert lazy.contains([[1, 1, 0.5], [4, 3, 0.5]]).tolist() == [1, 0]
     frozen = lazy.freeze()
-    again = lf.LazyOctree(plate, resume=frozen)
+    again = lf.LazyOctree(plate, resume=frozen, threads=1)
+    with pytest.raises(lf.LimitError):
+        lf.LazyOctree(plate, resume=frozen, max_nodes=3)
     assert again.volume == lazy.volume and again.freeze() == frozen
     with pytest.raises(lf.Error):
         lf.LazyOctree(lf.Csg.ball([0, 0, 0], 1), resume=frozen)
