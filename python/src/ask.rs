@@ -118,7 +118,8 @@ const DOUBLINGS: u32 = 64;
 /// A frame doubled until it holds a box: its cells stay whole, as long as there is a depth for them.
 fn doubled(mut frame: Inner, all: &Bounds) -> Result<Inner, Error> {
     for _ in 0..DOUBLINGS {
-        if all.is_within(&frame) {
+        // (The bounds of an octree are those of its frame, rounded outward.)
+        if *all == Bounds::of(&frame) || all.is_within(&frame) {
             break;
         }
         let (origin, edge) = (frame.origin(), frame.edge());

@@ -7,7 +7,10 @@ use leafless::{Control, Error};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{
+    AtomicBool, AtomicU64,
+    Ordering::{Acquire, Relaxed, Release},
+};
 use std::thread;
 use std::time::Duration;
 
@@ -92,16 +95,21 @@ impl Limits {
         let control = self.control(Some(&cancel), progress);
         let (found, stopped) = py.detach(|| -> PyResult<_> {
             let (waiting, control) = (thread::current(), &control);
+            // (A thread that has done its work is not finished at once.)
+            let is_done = &AtomicBool::new(false);
             thread::scope(|scope| {
                 let worker = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || {
                     let found = work(control);
+                    is_done.store(true, Release);
                     waiting.unpark();
                     found
                 })?;
                 let (mut told, mut stopped) = (0, None);
-                while !worker.is_finished() {
+                // (One that panics is only finished.)
+                let goes_on = || !is_done.load(Acquire) && !worker.is_finished();
+                while goes_on() {
                     thread::park_timeout(GLANCE);
-                    if stopped.is_none() && !worker.is_finished() {
+                    if stopped.is_none() && goes_on() {
                         stopped = Python::attach(|py| self.glance(py, &done, &mut told)).err();
                         if stopped.is_some() {
                             cancel.store(true, Relaxed);

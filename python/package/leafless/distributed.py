@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Optional, Tuple, TypeVar
 
 from . import _leafless
 from ._answers import Interference, MassProperties
@@ -119,8 +119,16 @@ def complement(a: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
     return finish(folder, a.level, top, _each(_complemented, codes, a=a, folder=folder), None)
 
 
-def _measured(code: int | None, octree: ShardedOctree, tolerance: float, absolute: float) -> tuple[MassSum | None, dict[int, str]]:
-    if code is not None and octree.shard(code) is None:
+def _present(code: int | None, octree: ShardedOctree) -> bool:
+    return code is None or octree.shard(code) is not None
+
+
+#: What a task found, or nothing if its shard is missing; and the shards that it found missing.
+Found = Tuple[Optional[R], "dict[int, str]"]
+
+
+def _measured(code: int | None, octree: ShardedOctree, tolerance: float, absolute: float) -> Found[MassSum]:
+    if not _present(code, octree):
         return None, octree.missing
     return octree.measure_part(code, tolerance=tolerance, absolute=absolute, threads=THREADS), {}
 
@@ -129,14 +137,18 @@ def measure(octree: ShardedOctree, *, tolerance: float = 1e-3, absolute: float =
     """Volume, centroid and inertia, as `ShardedOctree.measure`, each shard by a task. Sums are exact, so that their order does not
     matter. Shards that are missing are in doubt, and told in `octree.missing`."""
     absolute /= len(octree) + 1
-    codes: list[tuple[int | None]] = [(None,), *((code,) for code in octree.codes)]
-    total: MassSum | None = None
-    for part, missing in _each(_measured, codes, octree=octree, tolerance=tolerance, absolute=absolute):
+    top = octree.measure_part(tolerance=tolerance, absolute=absolute)
+    codes = octree.codes
+    found = _each(_measured, ((code,) for code in codes), octree=octree, tolerance=tolerance, absolute=absolute)
+    parts = [(code, part) for code, part in zip(codes, _told(octree, found)) if part is not None]
+    return octree.measure_joined(top, parts).properties
+
+
+def _told(octree: ShardedOctree, found: list[Found[R]]) -> list[R | None]:
+    """What tasks found; what they found missing is noted."""
+    for _, missing in found:
         octree.note_missing(missing)
-        if part is not None:
-            total = part if total is None else total + part
-    assert total is not None
-    return total.properties
+    return [part for part, _ in found]
 
 
 def _surface(code: int, octree: ShardedOctree, resolve: Literal["inner", "outer"]) -> tuple[Any, Any]:
@@ -148,8 +160,8 @@ def surface(octree: ShardedOctree, resolve: Literal["inner", "outer"] = "outer")
     return welded(_each(_surface, ((code,) for code in octree.surface_codes()), octree=octree, resolve=resolve))
 
 
-def _voxels(code: int | None, octree: ShardedOctree, outside: bool) -> tuple[VoxelRecords | None, dict[int, str]]:
-    if code is not None and octree.shard(code) is None:
+def _voxels(code: int | None, octree: ShardedOctree, outside: bool) -> Found[VoxelRecords]:
+    if not _present(code, octree):
         return None, octree.missing
     return octree.voxels_part(code, outside=outside, threads=THREADS), {}
 
@@ -157,12 +169,8 @@ def _voxels(code: int | None, octree: ShardedOctree, outside: bool) -> tuple[Vox
 def voxels(octree: ShardedOctree, *, outside: bool = False) -> VoxelRecords:
     """The voxels as records, as `Octree.voxels` of the joined octree, each shard by a task."""
     codes: list[tuple[int | None]] = [(None,), *((code,) for code in octree.codes)]
-    parts = []
-    for part, missing in _each(_voxels, codes, octree=octree, outside=outside):
-        octree.note_missing(missing)
-        if part is not None:
-            parts.append(part)
-    return octree.voxels_joined(parts)
+    parts = _told(octree, _each(_voxels, codes, octree=octree, outside=outside))
+    return octree.voxels_joined([part for part in parts if part is not None])
 
 
 def _interfered(placements: list[Affine], a: Solid, b: Solid, options: dict[str, Any]) -> list[Interference]:

@@ -441,29 +441,38 @@ class ShardedOctree:
         return total
 
     def measure_part(self, code: int | None = None, *, tolerance: float = 1e-3, absolute: float = 0.0, **limits: Unpack[Limits]) -> MassSum:
-        """What one shard adds to the measures of the whole, less what the top counts in doubt of its cell; without a code, what the top
-        knows. The sum of all is the measure of the whole, in any order."""
+        """What is known of the volume and the moments in the cell of a shard; without a code, what the top knows of all, and leaves open.
+        `measure_joined` adds them up."""
         frame = self.frame
         if code is None:
-            cells = self._open_cells()
             # What is open in the top is none of its doubt.
-            absolute += len(cells) * (frame.edge / 2**self.level) ** 3 * (1 + 1e-9)
+            absolute += len(self._open_cells()) * (frame.edge / 2**self.level) ** 3 * (1 + 1e-9)
             return measure_cell(self.top, frame, tolerance=tolerance, absolute=absolute, **limits)
-        shard = self.shard(code)
-        if shard is None:
-            raise LookupError(f"code: no shard of the cell {code} is there")
-        part = measure_cell(shard, frame, self.level, code, tolerance=tolerance, absolute=absolute, **limits)
-        return part - MassSum.unknown(frame, self.level, code)
+        return measure_cell(self._present(code), frame, self.level, code, tolerance=tolerance, absolute=absolute, **limits)
+
+    def measure_joined(self, top: MassSum, parts: Iterable[tuple[int, MassSum]]) -> MassSum:
+        """The sum of what is measured of the top and of shards, by their codes; each takes the place of what the top leaves open."""
+        for code, part in parts:
+            top = top - MassSum.unknown(self.frame, self.level, code) + part
+        return top
 
     def measure(self, *, tolerance: float = 1e-3, absolute: float = 0.0, **limits: Unpack[Limits]) -> MassProperties:
         """Volume, centroid and inertia, as `leafless.measure`: each shard is measured to the tolerance, and the sums are exact. Cells whose
         shards are missing are in doubt."""
         absolute /= len(self._entries) + 1
-        total = self.measure_part(tolerance=tolerance, absolute=absolute, **limits)
-        for code in self._entries:
-            if self.shard(code) is not None:
-                total = total + self.measure_part(code, tolerance=tolerance, absolute=absolute, **limits)
-        return total.properties
+        parts = (
+            (code, self.measure_part(code, tolerance=tolerance, absolute=absolute, **limits))
+            for code in self._entries
+            if self.shard(code) is not None
+        )
+        top = self.measure_part(tolerance=tolerance, absolute=absolute, **limits)
+        return self.measure_joined(top, parts).properties
+
+    def _present(self, code: int) -> Octree:
+        shard = self.shard(code)
+        if shard is None:
+            raise LookupError(f"code: no shard of the cell {code} is there")
+        return shard
 
     def _open_cells(self) -> npt.NDArray[np.uint64]:
         if self._open is None:
@@ -559,9 +568,7 @@ class ShardedOctree:
 
     def voxels_part(self, code: int | None = None, *, outside: bool = False, **limits: Unpack[Limits]) -> VoxelRecords:
         """The records of `voxels` in the cell of a shard; without a code, those of the top."""
-        octree = self.top if code is None else self.shard(code)
-        if octree is None:
-            raise LookupError(f"code: no shard of the cell {code} is there")
+        octree = self.top if code is None else self._present(code)
         found = octree.voxels(outside=outside, **limits)
         if code is None:
             return found
@@ -615,11 +622,8 @@ class ShardedOctree:
         folder = Folder(url)
         data, entries = bytearray(), []
         for code, entry in self._entries.items():
-            shard = self.shard(code)
-            if shard is None:
-                raise LookupError(f"shard {_name(self.level, code)} is missing: {self._missing.get(code)}")
             offset = len(data)
-            data += shard.to_bytes()
+            data += self._present(code).to_bytes()
             entries.append(dataclasses.replace(entry, path="shards.lfl.pack", offset=offset))
         folder.write("shards.lfl.pack", bytes(data))
         told = {"top": store(folder, TOP, self.top).told(), "shards": [entry.told() for entry in entries]}
