@@ -1,13 +1,14 @@
 //! Affine maps, which place solids.
 
+use crate::arguments::named;
 use crate::arrays::{self, doubles, triple};
-use crate::error::{OrRaise, refused};
+use crate::error::{OrRaise, called, refused};
 use leafless::Affine as Inner;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
-/// A map of space that moves, turns or stretches: a 3×4 or 4×4 matrix, whose numbers are taken as they are.
+/// A map of space that moves, turns or stretches: a `matrix` of 3×4 or 4×4 numbers, which are taken as they are.
 ///
 /// `map @ solid` is the solid moved by it, and `first @ second` the map that does what `second` does, and then `first`. Where a
 /// placement is asked for, any matrix of NumPy will do. `numpy.asarray` makes the 4×4 matrix of a map.
@@ -31,7 +32,7 @@ impl Affine {
     #[allow(non_upper_case_globals)]
     const __array_ufunc__: Option<u8> = None;
 
-    /// The map of a matrix of 3×4 numbers, [M | t], or 4×4.
+    /// The map of a `matrix` of 3×4 numbers, [M | t], or 4×4.
     #[new]
     fn new(matrix: &Bound<'_, PyAny>) -> PyResult<Affine> {
         affine(matrix, "matrix").map(Affine)
@@ -43,22 +44,31 @@ impl Affine {
         Affine(Inner::IDENTITY)
     }
 
-    /// Moves everything by `offset`.
+    /// Moves everything by `offset`, three numbers (model units).
     #[staticmethod]
     fn translation(offset: &Bound<'_, PyAny>) -> PyResult<Affine> {
-        Inner::translation(triple(offset, "offset")?).or_raise(offset.py()).map(Affine)
+        let found = Inner::translation(triple(offset, "offset")?).map_err(called([("placement", "offset")]));
+        found.or_raise(offset.py()).map(Affine)
     }
 
-    /// Turns by an angle in degrees around an axis through the origin, or through the point `about`: counter-clockwise as seen
-    /// from where the axis points to.
+    /// Turns by an angle, `degrees`, around an `axis` through the origin, or through the point `about`: counter-clockwise as seen
+    /// from where the axis points to. The axis may have any length but 0.
     #[staticmethod]
     #[pyo3(signature = (axis, degrees, about=None))]
-    fn rotation(axis: &Bound<'_, PyAny>, degrees: f64, about: Option<&Bound<'_, PyAny>>) -> PyResult<Affine> {
+    fn rotation(
+        axis: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = named::degrees)] degrees: f64,
+        about: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Affine> {
         let py = axis.py();
         let direction = triple(axis, "axis")?;
         let length = direction.iter().map(|c| c * c).sum::<f64>().sqrt();
-        if !(length > 0.0 && length.is_finite() && degrees.is_finite()) {
-            return Err(refused(py, "axis", "must not be zero, and all numbers must be finite"));
+        if !(length > 0.0 && length.is_finite()) {
+            let problem = format!("must be finite numbers that are not all zero, not {direction:?}");
+            return Err(refused(py, "axis", problem));
+        }
+        if !degrees.is_finite() {
+            return Err(refused(py, "degrees", format!("must be a finite number, not {degrees}")));
         }
         let [x, y, z] = direction.map(|c| c / length);
         let (sin, cos) = quarter(degrees);
@@ -81,19 +91,22 @@ impl Affine {
             // Numbers that are rounding and nothing else are zero.
             [a, b, c, at[i] - moved].map(|entry: f64| if entry.abs() < 1e-18 { 0.0 } else { entry })
         });
-        Inner::new(rows).or_raise(py).map(Affine)
+        Inner::new(rows).map_err(called([("placement", "about")])).or_raise(py).map(Affine)
     }
 
-    /// Stretches by a factor, or by one for each axis.
+    /// Stretches by a `factor`, or by three, one for each axis. A factor below 0 mirrors.
     #[staticmethod]
     fn scale(factor: &Bound<'_, PyAny>) -> PyResult<Affine> {
         let factors = match factor.extract::<f64>() {
             Ok(factor) => [factor; 3],
             Err(_) => triple(factor, "factor")?,
         };
+        if factors.contains(&0.0) {
+            return Err(refused(factor.py(), "factor", "must not be 0, which leaves nothing of a solid"));
+        }
         let [x, y, z] = factors;
         let rows = [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0]];
-        Inner::new(rows).or_raise(factor.py()).map(Affine)
+        Inner::new(rows).map_err(called([("placement", "factor")])).or_raise(factor.py()).map(Affine)
     }
 
     /// The 4×4 matrix.
@@ -108,10 +121,11 @@ impl Affine {
         self.0.inverse().or_raise(py).map(Affine)
     }
 
-    /// Where the map moves a point, or points of shape (n, 3).
+    /// Where the map moves `points` of shape (n, 3), or a single one of shape (3,).
     fn __call__<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let rows = arrays::Rows::of(points, "points")?;
-        let moved = rows.list().iter().map(|&point| self.0.apply(point)).collect();
+        let list = rows.list();
+        let moved = points.py().detach(|| list.iter().map(|&point| self.0.apply(point)).collect());
         arrays::one_or_all(arrays::rows(points.py(), moved)?.into_any(), rows.is_one)
     }
 
@@ -192,7 +206,7 @@ pub fn after(second: &Inner, first: &Inner) -> Result<Inner, leafless::Error> {
 }
 
 /// A map from an object of this class or from a matrix.
-pub fn affine(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Inner> {
+pub fn affine(given: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Inner> {
     if let Ok(known) = given.cast::<Affine>() {
         return Ok(known.get().0);
     }
@@ -204,7 +218,7 @@ pub fn affine(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Inner> {
 }
 
 /// Maps from one matrix, from an array of shape (n, 4, 4) or (n, 3, 4), or from a list of maps and matrices.
-pub fn affines(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Inner>> {
+pub fn affines(given: &Bound<'_, PyAny>, name: &'static str) -> PyResult<Vec<Inner>> {
     if given.cast::<Affine>().is_ok() {
         return Ok(vec![affine(given, name)?]);
     }
@@ -221,7 +235,7 @@ pub fn affines(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Inner>> {
     many(&array, name)
 }
 
-fn many(array: &Bound<'_, numpy::PyArrayDyn<f64>>, name: &str) -> PyResult<Vec<Inner>> {
+fn many(array: &Bound<'_, numpy::PyArrayDyn<f64>>, name: &'static str) -> PyResult<Vec<Inner>> {
     use numpy::{PyArrayMethods, PyUntypedArrayMethods};
     let py = array.py();
     let high = match *array.shape() {
@@ -230,7 +244,10 @@ fn many(array: &Bound<'_, numpy::PyArrayDyn<f64>>, name: &str) -> PyResult<Vec<I
             return Err(refused(
                 py,
                 name,
-                format!("must be a matrix of 3×4 or 4×4 numbers, not of shape {shape:?}"),
+                format!(
+                    "must be a matrix of 3×4 or 4×4 numbers, not of the shape {}",
+                    arrays::shape_text(shape)
+                ),
             ));
         }
     };
@@ -241,7 +258,7 @@ fn many(array: &Bound<'_, numpy::PyArrayDyn<f64>>, name: &str) -> PyResult<Vec<I
             return Err(refused(py, name, "the last row of a 4×4 matrix must be 0, 0, 0, 1"));
         }
         let row = |i: usize| [0, 1, 2, 3].map(|j| matrix[4 * i + j]);
-        Inner::new([row(0), row(1), row(2)]).or_raise(py)
+        Inner::new([row(0), row(1), row(2)]).map_err(called([("placement", name)])).or_raise(py)
     };
     numbers.chunks_exact(4 * high).map(one).collect()
 }

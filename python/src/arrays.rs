@@ -40,7 +40,7 @@ impl<'py> Rows<'py> {
                 return Err(refused(
                     given.py(),
                     name,
-                    format!("must have the shape (n, 3) or (3,), not {shape:?}"),
+                    format!("must have the shape (n, 3) or (3,), not {}", shape_text(shape)),
                 ));
             }
         };
@@ -69,13 +69,24 @@ pub fn required<'py, T: Element>(
     Ok(array.cast_into::<PyArrayDyn<T>>()?)
 }
 
-/// So many numbers.
-pub fn tuple<const N: usize>(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; N]> {
-    let array = doubles(given, name)?;
-    match <[f64; N]>::try_from(array.readonly().as_slice()?) {
-        Ok(numbers) if array.ndim() == 1 => Ok(numbers),
-        _ => Err(refused(given.py(), name, format!("must be {N} numbers"))),
+/// A shape as NumPy prints it.
+pub fn shape_text(shape: &[usize]) -> String {
+    match shape {
+        [one] => format!("({one},)"),
+        all => format!("({})", all.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
     }
+}
+
+/// Rows of one length.
+pub fn table<const N: usize>(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[f64; N]>> {
+    let array = doubles(given, name)?;
+    // An empty list has one axis.
+    if !matches!(*array.shape(), [0]) && !matches!(*array.shape(), [_, n] if n == N) {
+        let problem = format!("must have the shape (n, {N}), not {}", shape_text(array.shape()));
+        return Err(refused(given.py(), name, problem));
+    }
+    let numbers = array.readonly();
+    Ok(numbers.as_slice()?.as_chunks().0.to_vec())
 }
 
 /// Three numbers.
@@ -86,10 +97,14 @@ pub fn triple(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; 3]> {
     {
         return Ok(numbers);
     }
-    let rows = Rows::of(given, name)?;
-    match (rows.list(), rows.is_one) {
-        (&[row], true) => Ok(row),
-        _ => Err(refused(given.py(), name, "must be three numbers")),
+    let array = doubles(given, name)?;
+    match (array.shape(), array.readonly().as_slice()?) {
+        ([_], &[x, y, z]) => Ok([x, y, z]),
+        (shape, _) => Err(refused(
+            given.py(),
+            name,
+            format!("must be three numbers, not of the shape {}", shape_text(shape)),
+        )),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The frame that a question uses by default.
 
+use crate::arguments::{Deep, Depth, other_type};
 use crate::error::{OrRaise, refused};
 use crate::frame::Frame;
 use crate::octree::Octree;
@@ -19,7 +20,10 @@ impl<'a, 'py> FromPyObject<'a, 'py> for FrameLike {
     fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<FrameLike> {
         match given.cast::<Octree>() {
             Ok(octree) => Ok(FrameLike(*octree.get().octree.frame())),
-            Err(_) => Ok(FrameLike(given.extract::<Frame>()?.0)),
+            Err(_) => match given.cast::<Frame>() {
+                Ok(frame) => Ok(FrameLike(frame.get().0)),
+                Err(_) => Err(other_type(&given, "frame", "a Frame or an Octree")),
+            },
         }
     }
 }
@@ -30,24 +34,35 @@ pub struct Wish {
     /// The frame.
     pub frame: Option<FrameLike>,
     /// Its depth.
-    pub depth: Option<u8>,
+    pub depth: Option<Depth>,
 }
 
 impl Wish {
+    /// The frame that is given, as deep as is wished.
+    fn given(&self, py: Python<'_>) -> PyResult<Option<Inner>> {
+        let Some(FrameLike(frame)) = self.frame else { return Ok(None) };
+        self.depth.map_or(Ok(frame), |Deep(depth)| frame.with_depth(depth)).or_raise(py).map(Some)
+    }
+
+    /// The frame that is given where there is no solid to ask for one.
+    pub fn alone(&self, py: Python<'_>) -> PyResult<Inner> {
+        self.given(py)?.ok_or_else(|| refused(py, "frame", "must be given without a solid"))
+    }
+
     /// The frame to ask a solid on: the wished one, that of an octree or of a volume's voxels, or one around the solid, which is
     /// `deepest` deep where nothing limits the depth.
     pub fn of(&self, py: Python<'_>, solid: &Given, deepest: u8) -> PyResult<Inner> {
-        let deepest = self.depth.unwrap_or(deepest);
-        if let Some(FrameLike(frame)) = self.frame {
-            return self.depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py);
+        if let Some(frame) = self.given(py)? {
+            return Ok(frame);
         }
+        let deepest = self.depth.map_or(deepest, |Deep(depth)| depth);
         match solid.own {
             // Cells that keep surfaces are large, and say little.
             Some(own) if solid.keeps_surfaces => own.with_depth(deepest).or_raise(py),
             Some(own) => {
-                let own = self.depth.map_or(Ok(own), |depth| own.with_depth(depth)).or_raise(py)?;
+                let own = self.depth.map_or(Ok(own), |Deep(depth)| own.with_depth(depth)).or_raise(py)?;
                 // An expression may reach beyond the octree in it.
-                solid.bounds().map_or(Ok(own), |all| doubled(own, &all)).or_raise(py)
+                solid.bounds(py).map_or(Ok(own), |all| doubled(own, &all)).or_raise(py)
             }
             None => fitted(py, &bounds(py, solid)?, deepest),
         }
@@ -62,14 +77,14 @@ impl Wish {
         placements: &[Affine],
         deepest: u8,
     ) -> PyResult<Inner> {
-        let deepest = self.depth.unwrap_or(deepest);
-        if let Some(FrameLike(frame)) = self.frame {
-            return self.depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py);
+        if let Some(frame) = self.given(py)? {
+            return Ok(frame);
         }
+        let deepest = self.depth.map_or(deepest, |Deep(depth)| depth);
         let (mut all, second) = (bounds(py, a)?, bounds(py, b)?);
         for placement in placements {
             let Some(moved) = second.placed(placement) else {
-                return Err(refused(py, "placement", "moves the solid too far"));
+                return Err(refused(py, "placements", "must not move the solid beyond the doubles"));
             };
             all = all.hull(&moved);
         }
@@ -90,7 +105,7 @@ fn fitted(py: Python<'_>, Bounds { min, max }: &Bounds, depth: u8) -> PyResult<I
 
 /// A box that holds a solid, or all that is known of it.
 pub fn bounds(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
-    match (solid.bounds(), solid.own) {
+    match (solid.bounds(py), solid.own) {
         (Some(bounds), _) => Ok(bounds),
         (None, Some(own)) => Ok(Bounds::of(&own)),
         (None, None) => Err(refused(py, "frame", "must be given: no bounds of the solid are known")),

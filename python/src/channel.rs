@@ -1,9 +1,10 @@
 //! Values inside of solids.
 
+use crate::arguments::{Depth, named, other_type};
 use crate::arrays;
 use crate::ask::{FrameLike, Wish};
-use crate::error::{OrRaise, carried, refused};
-use crate::frame::{Frame, corners};
+use crate::error::{OrRaise, called, carried, refused};
+use crate::frame::{CORNERS, Frame, corners};
 use crate::interval::{Interval, intervals};
 use crate::octree::Octree;
 use crate::solid::given;
@@ -28,6 +29,12 @@ use pyo3::types::PyDict;
 /// array([24.5])
 #[pyclass(frozen, weakref, module = "leafless")]
 pub struct Channel(pub Inner);
+
+/// What the library calls the values.
+const NAMES: [(&str, &str); 3] = [("value", "values"), ("components", "values"), ("attribute", "values")];
+
+/// The default depth of cells with values.
+const DEPTH: u8 = 8;
 
 /// A function of Python that has values at points.
 struct Function {
@@ -76,11 +83,16 @@ fn read(found: &Bound<'_, PyAny>, count: usize) -> PyResult<(Vec<f64>, usize)> {
 
 #[pymethods]
 impl Channel {
-    /// The values of a function, of a volume's samples, or one value everywhere.
+    /// A channel of `values`: those of a function, those of a `Volume`, or one value everywhere (1 to 4 numbers).
     ///
-    /// A function gets points (shape (n, 3)) and returns values of shape (n,) or (n, components), NaN where there is none; it is
-    /// asked at the lower corner of the frame, for the number of components, and at the centres of cells that belong to the solid. Without a solid, give a frame. `depth` may differ from the
-    /// solid's, and `cell` ends cells at that edge, whatever the values. `dtype` is "uint8", "uint16", "uint32" or "float32".
+    /// A function gets points (shape (n, 3)) and returns values of shape (n,) or (n, components), NaN where there is none. It is
+    /// asked at the lower corner of the frame, for the number of components, and at the centres of cells that belong to the solid.
+    ///
+    /// A `Volume` has values between its samples. With `nearest=True` they are the nearest samples themselves, as labels must be.
+    ///
+    /// `solid` is the octree inside of which there are values. `frame` is a `Frame`, or an octree that has it; by default it is the solid's,
+    /// and without a solid it must be given. `depth` replaces its depth. `cell` (model units) ends cells at that edge, whatever the values.
+    /// `dtype` is what numbers are stored as: "uint8", "uint16", "uint32" or "float32".
     #[staticmethod]
     #[pyo3(signature = (values, solid=None, *, frame=None, depth=None, cell=None, dtype="float32", nearest=false, **limits))]
     #[allow(clippy::too_many_arguments)]
@@ -88,10 +100,10 @@ impl Channel {
         values: &Bound<'_, PyAny>,
         solid: Option<&Bound<'_, PyAny>>,
         frame: Option<FrameLike>,
-        depth: Option<u8>,
-        cell: Option<f64>,
-        dtype: &str,
-        nearest: bool,
+        #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
+        #[pyo3(from_py_with = named::cell)] cell: Option<f64>,
+        #[pyo3(from_py_with = named::dtype)] dtype: &str,
+        #[pyo3(from_py_with = named::nearest)] nearest: bool,
         limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Channel> {
         let py = values.py();
@@ -100,20 +112,22 @@ impl Channel {
             None => None,
             Some(solid) => match solid.cast::<Octree>() {
                 Ok(octree) => Some(octree.get().octree.clone()),
-                Err(_) => return Err(refused(py, "solid", "must be an Octree; build makes one")),
+                Err(_) => return Err(other_type(solid, "solid", "an Octree, which build makes of a solid")),
             },
         };
-        let frame = match (solid, frame) {
-            (Some(solid), None) => Wish { frame: None, depth }.of(py, &given(solid, "solid")?, 8)?,
-            (_, Some(FrameLike(frame))) => {
-                depth.map_or(Ok(frame), |depth| frame.with_depth(depth)).or_raise(py)?
-            }
-            (None, None) => return Err(refused(py, "frame", "must be given without a solid")),
+        let wish = Wish { frame, depth };
+        let frame = match solid {
+            Some(solid) => wish.of(py, &given(solid, "solid")?, DEPTH)?,
+            None => wish.alone(py)?,
         };
         let scalars = [ScalarType::U8, ScalarType::U16, ScalarType::U32, ScalarType::F32];
         let names = ["uint8", "uint16", "uint32", "float32"];
         let Some(scalar) = names.iter().position(|name| *name == dtype).map(|i| scalars[i]) else {
-            return Err(refused(py, "dtype", format!("must be one of {}", names.join(", "))));
+            return Err(refused(
+                py,
+                "dtype",
+                format!("must be one of '{}', not '{dtype}'", names.join("', '")),
+            ));
         };
         let attribute: Box<dyn Attribute + Send> = if let Ok(volume) = values.cast::<Volume>() {
             let way = if nearest { Interpolation::Nearest } else { Interpolation::Trilinear };
@@ -124,17 +138,23 @@ impl Channel {
             let (_, components) = read(&values.call1((probe,))?, 1)?;
             Box::new(Function { function: values.clone().unbind(), components })
         } else {
-            let value: Vec<f64> = match values.extract::<f64>() {
-                Ok(value) => vec![value],
-                Err(_) => arrays::doubles(values, "values")?.call_method0("tolist")?.extract()?,
-            };
-            Box::new(ConstantAttribute::new(&value).or_raise(py)?)
+            let value = arrays::doubles(values, "values")?;
+            if !matches!(value.shape(), [] | [1..=4]) {
+                let shape = arrays::shape_text(value.shape());
+                let problem =
+                    format!("must be 1 to 4 numbers, a function or a Volume, not of the shape {shape}");
+                return Err(refused(py, "values", problem));
+            }
+            let value = value.readonly();
+            Box::new(ConstantAttribute::new(value.as_slice()?).map_err(called(NAMES)).or_raise(py)?)
         };
         let value_type = ValueType::new(scalar, attribute.components() as u8).or_raise(py)?;
-        let detail = cell.map(Detail::uniform).transpose().or_raise(py)?;
+        let detail = cell.map(Detail::uniform).transpose();
+        let detail = detail.map_err(|_| refused(py, "cell", "must be a positive number"))?;
         let channel = limits.run(py, |control| {
             let solid = octree.as_ref().map(|octree| octree.view());
-            fill_channel(&*attribute, &FillOptions { value_type, frame, solid, detail }, control)
+            let options = FillOptions { value_type, frame, solid, detail };
+            fill_channel(&*attribute, &options, control).map_err(called(NAMES))
         })?;
         Ok(Channel(channel))
     }
@@ -163,29 +183,32 @@ impl Channel {
         self.0.bytes()
     }
 
-    /// The values at points (shape (n, 3)): shape (n,), or (n, components) for several; NaN where there is none.
+    /// The values at `points` (shape (n, 3)): shape (n,), or (n, components) for several; NaN where there is none.
     fn values_at<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = points.py();
         let rows = arrays::Rows::of(points, "points")?;
         let list = rows.list();
-        let mut found = vec![None; list.len()];
         let view = self.0.view().or_raise(py)?;
-        py.detach(|| view.values_at(list, &mut found));
         let components = self.components();
-        let numbers =
-            found.iter().flat_map(|value| value.unwrap_or([f64::NAN; 4]).into_iter().take(components));
-        let numbers: Vec<f64> = numbers.collect();
+        let numbers = py.detach(|| {
+            let mut found = vec![None; list.len()];
+            view.values_at(list, &mut found);
+            found
+                .iter()
+                .flat_map(|value| value.unwrap_or([f64::NAN; 4]).into_iter().take(components))
+                .collect()
+        });
         let shape = if components == 1 { vec![list.len()] } else { vec![list.len(), components] };
         arrays::one_or_all(arrays::array(py, numbers, &shape)?.into_any(), rows.is_one)
     }
 
-    /// Least, greatest, mean and integral of the values in an octree, or in a box: a dictionary of arrays and intervals; `None` where
-    /// nothing has a value.
+    /// Least, greatest, mean and integral of the values inside of `solid` (an octree), or inside of `bounds` (a lower and an upper corner), or of
+    /// all: a dictionary of arrays and intervals; `None` where nothing has a value.
     #[pyo3(signature = (solid=None, *, bounds=None, **limits))]
     fn summary<'py>(
         &self,
         py: Python<'py>,
-        solid: Option<&Octree>,
+        #[pyo3(from_py_with = named::solid)] solid: Option<Bound<'py, Octree>>,
         bounds: Option<&Bound<'py, PyAny>>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Option<Bound<'py, PyDict>>> {
@@ -197,8 +220,10 @@ impl Channel {
                 Some(Bounds { min, max })
             }
         };
-        let (view, solid) = (self.0.view().or_raise(py)?, solid.map(|solid| solid.octree.view()));
-        let found = limits.run(py, |control| view.summary(solid, bounds.as_ref(), control))?;
+        let (view, solid) =
+            (self.0.view().or_raise(py)?, solid.as_ref().map(|solid| solid.get().octree.view()));
+        let found = limits
+            .run(py, |control| view.summary(solid, bounds.as_ref(), control).map_err(called(CORNERS)))?;
         let Some(found) = found else { return Ok(None) };
         let count = self.components();
         let numbers = |all: [f64; 4]| arrays::array(py, all[..count].to_vec(), &[count]);

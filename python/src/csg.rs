@@ -1,16 +1,18 @@
 //! Expressions of half-spaces, and of any other solids.
 
+use crate::arguments::named;
 use crate::arrays::{self, triple};
-use crate::error::OrRaise;
+use crate::error::{OrRaise, called, refused};
 use crate::from_package;
 use crate::operators::expression;
 use crate::solid::{Given, Solid};
+use crate::work::Limits;
 use leafless::error::Error;
 use leafless::{AnySolid, Csg as Expression};
 use pyo3::IntoPyObjectExt;
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
-use pyo3::types::{PyList, PyTuple};
+use pyo3::types::{PyDict, PyList, PyTuple};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -54,29 +56,34 @@ macro_rules! made {
 
 #[pymethods]
 impl Csg {
-    /// A solid of another kind as an expression.
+    /// A `solid` of another kind as an expression.
     #[staticmethod]
     fn of<'py>(solid: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let py = solid.py();
         made!(py, Ok(expression(solid, "solid")?), "of", solid)
     }
 
-    /// The points p with normal · p + offset ≥ 0. The normal, of any length, points into the solid.
+    /// The points p with `normal` · p + `offset` ≥ 0. The normal, of any length, points into the solid.
     #[staticmethod]
-    fn half_space<'py>(normal: &Bound<'py, PyAny>, offset: f64) -> PyResult<Bound<'py, Csg>> {
+    fn half_space<'py>(
+        normal: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = named::offset)] offset: f64,
+    ) -> PyResult<Bound<'py, Csg>> {
         let (py, n) = (normal.py(), triple(normal, "normal")?);
         made!(py, Expression::half_space(n, offset), "half_space", n, offset)
     }
 
-    /// The points where a polynomial of degree two is not negative: ten coefficients, of xx, yy, zz, xy, yz, zx, x, y, z and 1.
+    /// The points where a polynomial of degree two is not negative: ten `coefficients`, of xx, yy, zz, xy, yz, zx, x, y, z and 1.
     #[staticmethod]
-    fn quadric<'py>(coefficients: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
-        let (py, coefficients) = (coefficients.py(), arrays::tuple::<10>(coefficients, "coefficients")?);
+    fn quadric<'py>(
+        py: Python<'py>,
+        #[pyo3(from_py_with = named::coefficients)] coefficients: [f64; 10],
+    ) -> PyResult<Bound<'py, Csg>> {
         let half = leafless::solid::HalfSpace::quadric(coefficients).map(Expression::from);
         made!(py, half, "quadric", coefficients)
     }
 
-    /// The block between two corners.
+    /// The block between its lower corner `min` and its upper corner `max`.
     ///
     /// >>> Csg.cuboid([0, 0, 0], [1, 2, 3]).bounds
     /// array([[0., 0., 0.],
@@ -87,85 +94,128 @@ impl Csg {
         made!(py, Expression::cuboid(a, b), "cuboid", a, b)
     }
 
-    /// The ball around a centre.
+    /// The ball of a `radius` around a `centre`.
     #[staticmethod]
-    fn ball<'py>(centre: &Bound<'py, PyAny>, radius: f64) -> PyResult<Bound<'py, Csg>> {
+    fn ball<'py>(
+        centre: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = named::radius)] radius: f64,
+    ) -> PyResult<Bound<'py, Csg>> {
         let (py, c) = (centre.py(), triple(centre, "centre")?);
         made!(py, Expression::ball(c, radius), "ball", c, radius)
     }
 
-    /// The ellipsoid around a centre with semi-axes along x, y and z.
+    /// The ellipsoid around a `centre` with the semi-axes `radii` along x, y and z.
     #[staticmethod]
     fn ellipsoid<'py>(centre: &Bound<'py, PyAny>, radii: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let (py, c, r) = (centre.py(), triple(centre, "centre")?, triple(radii, "radii")?);
-        made!(py, Expression::ellipsoid(c, r), "ellipsoid", c, r)
+        made!(py, Expression::ellipsoid(c, r).map_err(called([("radius", "radii")])), "ellipsoid", c, r)
     }
 
-    /// The cylinder around the z axis between two heights.
+    /// The cylinder of a `radius` around the z axis, between the heights `low` and `high`.
     #[staticmethod]
-    fn cylinder(py: Python<'_>, radius: f64, low: f64, high: f64) -> PyResult<Bound<'_, Csg>> {
-        made!(py, Expression::cylinder(radius, low, high), "cylinder", radius, low, high)
+    fn cylinder(
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::radius)] radius: f64,
+        #[pyo3(from_py_with = named::low)] low: f64,
+        #[pyo3(from_py_with = named::high)] high: f64,
+    ) -> PyResult<Bound<'_, Csg>> {
+        made!(py, Expression::cylinder(radius, low, high).map_err(height(low)), "cylinder", radius, low, high)
     }
 
-    /// The cylinder between two points on its axis.
+    /// The cylinder of a `radius` between two points on its axis, `start` and `end`.
     #[staticmethod]
     #[pyo3(signature = (start, end, radius))]
     fn cylinder_between<'py>(
         start: &Bound<'py, PyAny>,
         end: &Bound<'py, PyAny>,
-        radius: f64,
+        #[pyo3(from_py_with = named::radius)] radius: f64,
     ) -> PyResult<Bound<'py, Csg>> {
-        let (py, a, b) = (start.py(), triple(start, "start")?, triple(end, "end")?);
-        made!(py, Expression::cylinder_between(a, b, radius), "cylinder_between", a, b, radius)
+        let (py, [a, b]) = (start.py(), ends(start, end)?);
+        made!(
+            py,
+            Expression::cylinder_between(a, b, radius).map_err(called([ENDS[0], ENDS[1]])),
+            "cylinder_between",
+            a,
+            b,
+            radius
+        )
     }
 
-    /// The frustum of a cone around the z axis: its radii at the lower and at the upper height. One of them may be 0.
+    /// The frustum of a cone around the z axis, between the heights `low` and `high`, with the radius `bottom` at the lower and `top` at the upper
+    /// one. One of the radii may be 0.
     #[staticmethod]
-    fn frustum(py: Python<'_>, bottom: f64, top: f64, low: f64, high: f64) -> PyResult<Bound<'_, Csg>> {
-        made!(py, Expression::frustum(bottom, top, low, high), "frustum", bottom, top, low, high)
+    fn frustum(
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::bottom)] bottom: f64,
+        #[pyo3(from_py_with = named::top)] top: f64,
+        #[pyo3(from_py_with = named::low)] low: f64,
+        #[pyo3(from_py_with = named::high)] high: f64,
+    ) -> PyResult<Bound<'_, Csg>> {
+        let found = Expression::frustum(bottom, top, low, high).map_err(height(low));
+        let found = found
+            .map_err(called([("radius", if is_fit(bottom) && bottom >= 0.0 { "top" } else { "bottom" })]));
+        made!(py, found, "frustum", bottom, top, low, high)
     }
 
-    /// The frustum of a cone between two points on its axis, with the radii there.
+    /// The frustum of a cone between two points on its axis, `start` and `end`, with the two `radii` there. One of them may be 0.
     #[staticmethod]
     fn frustum_between<'py>(
         start: &Bound<'py, PyAny>,
         end: &Bound<'py, PyAny>,
-        radii: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = named::radii)] radii: [f64; 2],
     ) -> PyResult<Bound<'py, Csg>> {
-        let (py, a, b) = (start.py(), triple(start, "start")?, triple(end, "end")?);
-        let radii = arrays::tuple::<2>(radii, "radii")?;
-        made!(py, Expression::frustum_between(a, b, radii), "frustum_between", a, b, radii)
+        let (py, [a, b]) = (start.py(), ends(start, end)?);
+        made!(
+            py,
+            Expression::frustum_between(a, b, radii).map_err(called(ENDS)),
+            "frustum_between",
+            a,
+            b,
+            radii
+        )
     }
 
     /// The torus around the z axis: all points at most `minor` from the circle of the radius `major` in the plane z = 0.
     #[staticmethod]
-    fn torus(py: Python<'_>, major: f64, minor: f64) -> PyResult<Bound<'_, Csg>> {
+    fn torus(
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::major)] major: f64,
+        #[pyo3(from_py_with = named::minor)] minor: f64,
+    ) -> PyResult<Bound<'_, Csg>> {
         made!(py, Expression::torus(major, minor), "torus", major, minor)
     }
 
-    /// The block of a size with a corner at the origin, whose top face is `top` long along x: a wedge for 0.
+    /// The block of a `size` along x, y and z with a corner at the origin, whose top face is `top` long along x: a wedge for 0.
     #[staticmethod]
-    fn wedge<'py>(size: &Bound<'py, PyAny>, top: f64) -> PyResult<Bound<'py, Csg>> {
+    fn wedge<'py>(
+        size: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = named::top)] top: f64,
+    ) -> PyResult<Bound<'py, Csg>> {
         let (py, s) = (size.py(), triple(size, "size")?);
         made!(py, Expression::wedge(s, top), "wedge", s, top)
     }
 
-    /// The prism over a simple polygon in the plane of x and y (points of shape (n, 2)), between two heights.
+    /// The prism over a simple `polygon` in the plane of x and y (points of shape (n, 2)), between the heights `low` and `high`.
     #[staticmethod]
-    fn prism<'py>(polygon: &Bound<'py, PyAny>, low: f64, high: f64) -> PyResult<Bound<'py, Csg>> {
+    fn prism<'py>(
+        polygon: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = named::low)] low: f64,
+        #[pyo3(from_py_with = named::high)] high: f64,
+    ) -> PyResult<Bound<'py, Csg>> {
         let py = polygon.py();
-        let corners: Vec<[f64; 2]> =
-            arrays::doubles(polygon, "polygon")?.call_method0("tolist")?.extract()?;
-        made!(py, Expression::prism(&corners, low, high), "prism", corners, low, high)
+        let corners = arrays::table::<2>(polygon, "polygon")?;
+        let found = py.detach(|| Expression::prism(&corners, low, high)).map_err(height(low));
+        made!(py, found, "prism", corners, low, high)
     }
 
-    /// What lies in all half-spaces normal · p + offset ≥ 0, given as rows of four numbers.
+    /// What lies in all half-spaces normal · p + offset ≥ 0, given as `planes`: rows of four numbers, those of the normal first.
     #[staticmethod]
     fn convex<'py>(planes: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let py = planes.py();
-        let rows: Vec<[f64; 4]> = arrays::doubles(planes, "planes")?.call_method0("tolist")?.extract()?;
+        let rows = arrays::table::<4>(planes, "planes")?;
         let sides: Vec<_> = rows.iter().map(|&[a, b, c, d]| ([a, b, c], d)).collect();
-        made!(py, Expression::convex(&sides), "convex", rows)
+        let found = Expression::convex(&sides).map_err(called([("normal", "planes"), ("offset", "planes")]));
+        made!(py, found, "convex", rows)
     }
 
     /// No points.
@@ -180,23 +230,25 @@ impl Csg {
         made!(py, Ok(Expression::everything()), "everything",)
     }
 
-    /// What at least one of any number of solids contains: for many at once faster than `|` one after another.
+    /// What at least one of any number of `solids` contains: for many at once faster than `|` one after another.
     #[staticmethod]
     #[pyo3(signature = (*solids))]
     fn union_of<'py>(solids: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, Csg>> {
-        let whole = Expression::union_of(all(solids)?).or_raise(solids.py())?;
+        let parts = all(solids, "solids")?;
+        let whole = solids.py().detach(|| Expression::union_of(parts)).or_raise(solids.py())?;
         Csg::made(solids.py(), whole, "union_of", solids.clone())
     }
 
-    /// What all of any number of solids contain.
+    /// What all of any number of `solids` contain.
     #[staticmethod]
     #[pyo3(signature = (*solids))]
     fn intersection_of<'py>(solids: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, Csg>> {
-        let whole = Expression::intersection_of(all(solids)?).or_raise(solids.py())?;
+        let parts = all(solids, "solids")?;
+        let whole = solids.py().detach(|| Expression::intersection_of(parts)).or_raise(solids.py())?;
         Csg::made(solids.py(), whole, "intersection_of", solids.clone())
     }
 
-    /// What the first solid contains, and none of the others.
+    /// What the `first` solid contains, and none of the `others`.
     #[staticmethod]
     #[pyo3(signature = (first, *others))]
     fn difference_of<'py>(
@@ -204,27 +256,34 @@ impl Csg {
         others: &Bound<'py, PyTuple>,
     ) -> PyResult<Bound<'py, Csg>> {
         let py = first.py();
-        let away = Expression::union_of(all(others)?).or_raise(py)?;
-        let whole = expression(first, "first")?.difference(&away).or_raise(py)?;
+        let others_of = all(others, "others")?;
+        let own = expression(first, "first")?;
+        let whole = py.detach(|| match &others_of[..] {
+            // What is pickled as one difference has the fingerprint of `first - other`.
+            [other] => own.difference(other),
+            _ => own.difference(&Expression::union_of(others_of)?),
+        });
+        let whole = whole.or_raise(py)?;
         let arguments = [first.clone()].into_iter().chain(others.iter());
         Csg::made(py, whole, "difference_of", PyTuple::new(py, arguments.collect::<Vec<_>>())?)
     }
 
-    /// What an odd number of the solids contain.
+    /// What an odd number of the `solids` contain.
     #[staticmethod]
     #[pyo3(signature = (*solids))]
     fn xor_of<'py>(solids: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, Csg>> {
-        let whole = Expression::xor_of(all(solids)?).or_raise(solids.py())?;
+        let parts = all(solids, "solids")?;
+        let whole = solids.py().detach(|| Expression::xor_of(parts)).or_raise(solids.py())?;
         Csg::made(solids.py(), whole, "xor_of", solids.clone())
     }
 
-    /// What a solid leaves of space, as `~solid`.
+    /// What a `solid` leaves of space, as `~solid`.
     #[staticmethod]
     fn complement_of<'py>(solid: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         made!(solid.py(), Ok(expression(solid, "solid")?.complement()), "complement_of", solid)
     }
 
-    /// A solid moved by a map, as `placement @ solid`.
+    /// A `solid` moved by a `placement`, an `Affine` or a matrix, as `placement @ solid`.
     #[staticmethod]
     fn placed_of<'py>(solid: &Bound<'py, PyAny>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let map = crate::affine::affine(placement, "placement")?;
@@ -232,14 +291,20 @@ impl Csg {
         made!(solid.py(), moved, "placed_of", solid, crate::affine::Affine(map))
     }
 
-    /// The solid of a scene, a text in the language that OpenSCAD writes as `.csg`; files that it names lie in `folder`.
+    /// The solid of a scene, a `text` in the language that OpenSCAD writes as `.csg`; files that it names lie in `folder`, and `max_bytes` refuses
+    /// longer ones.
     ///
     /// >>> Csg.from_scene("difference() { cube([4, 4, 4]); cylinder(h = 9, r = 1); }").bounds[1]
     /// array([4., 4., 4.])
     #[staticmethod]
-    #[pyo3(signature = (text, folder=None))]
-    fn from_scene<'py>(py: Python<'py>, text: &str, folder: Option<PathBuf>) -> PyResult<Bound<'py, PyAny>> {
-        crate::files::scene(py, text, folder.as_deref(), Path::new("scene"))
+    #[pyo3(signature = (text, folder=None, **limits))]
+    fn from_scene<'py>(
+        py: Python<'py>,
+        #[pyo3(from_py_with = named::text)] text: &str,
+        #[pyo3(from_py_with = named::folder)] folder: Option<PathBuf>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        crate::files::scene(py, text, folder.as_deref(), Path::new("scene"), &Limits::of(limits)?)
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
@@ -297,7 +362,26 @@ fn steps<'py>(whole: &Bound<'py, Csg>) -> PyResult<Bound<'py, PyList>> {
     Ok(steps)
 }
 
+/// What the library calls the ends of an axis, and the radii there.
+const ENDS: [(&str, &str); 3] = [("from", "start"), ("to", "end"), ("radius", "radii")];
+
+/// The ends of an axis.
+fn ends(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<[[f64; 3]; 2]> {
+    let (a, b) = (triple(start, "start")?, triple(end, "end")?);
+    if a == b { Err(refused(start.py(), "end", "must be another point than start")) } else { Ok([a, b]) }
+}
+
+/// Whether a number is zero or of a magnitude that the library computes with.
+fn is_fit(number: f64) -> bool {
+    number == 0.0 || (2f64.powi(-256)..=2f64.powi(256)).contains(&number.abs())
+}
+
+/// The name of the height that is refused.
+fn height(low: f64) -> impl Fn(Error) -> Error {
+    called([("height", if is_fit(low) { "high" } else { "low" })])
+}
+
 /// Solids as expressions.
-fn all(solids: &Bound<'_, PyTuple>) -> PyResult<Vec<Expression>> {
-    solids.iter().map(|solid| expression(&solid, "solids")).collect()
+fn all(solids: &Bound<'_, PyTuple>, name: &str) -> PyResult<Vec<Expression>> {
+    solids.iter().map(|solid| expression(&solid, name)).collect()
 }

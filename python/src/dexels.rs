@@ -1,5 +1,6 @@
 //! Tri-dexel models.
 
+use crate::arguments::{Argument, Depth, named};
 use crate::arrays;
 use crate::ask::{FrameLike, Wish};
 use crate::error::{OrRaise, refused};
@@ -10,13 +11,13 @@ use crate::octree::Octree;
 use crate::solid::{Given, Solid, given};
 use crate::words;
 use crate::work::Limits;
-use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals};
+use leafless::dexel::{DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
 use leafless::op::{DexelOptions, octree_from_dexel_ends, octree_from_dexels};
 use leafless::surface::{DexelSolid as Inside, dual_contouring_dexels, marching_cubes_dexels};
-use leafless::{AnySolid, FillRule, Rule, TriDexel as Inner};
+use leafless::{AnySolid, Control, Error, FillRule, Rule, TriDexel as Inner};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::path::PathBuf;
 
 /// The default depth of a model: 256 rays along each axis of a face.
@@ -42,10 +43,32 @@ impl TriDexel {
         TriDexel { model, mapped: None }
     }
 
+    /// The refusal of an axis along which no rays run.
+    fn no_rays(&self, py: Python<'_>, axis: usize) -> PyErr {
+        let problem = format!(
+            "must be one along which rays run, 0, 1 or 2 for x, y and z, not {axis}; rays of this model run along {}",
+            self.directions()
+        );
+        refused(py, "axis", problem)
+    }
+
+    /// Any number of models, combined.
+    fn all_combined(
+        models: &Bound<'_, PyTuple>,
+        limits: Option<&Bound<'_, PyDict>>,
+        combine: impl FnOnce(&[TriDexelRef<'_>], &Control<'_>) -> Result<Inner, Error> + Send,
+    ) -> PyResult<TriDexel> {
+        let (py, limits) = (models.py(), Limits::of(limits)?);
+        let all: Vec<Bound<'_, TriDexel>> =
+            models.iter().map(|one| Argument::take(&one, "models")).collect::<PyResult<_>>()?;
+        let views: Vec<_> = all.iter().map(|one| *one.get().model.view()).collect();
+        limits.run(py, |control| combine(&views, control)).map(TriDexel::new)
+    }
+
     fn combined<'py>(
         py: Python<'py>,
         other: &Bound<'py, PyAny>,
-        combine: impl FnOnce(&Inner, &leafless::Control<'_>) -> Result<Inner, leafless::Error> + Send,
+        combine: impl FnOnce(&Inner, &Control<'_>) -> Result<Inner, Error> + Send,
     ) -> PyResult<Bound<'py, PyAny>> {
         let Ok(other) = other.cast::<TriDexel>() else { return Ok(py.NotImplemented().into_bound(py)) };
         let other = &other.get().model;
@@ -55,15 +78,58 @@ impl TriDexel {
 
 #[pymethods]
 impl TriDexel {
-    /// The model of a file's bytes.
+    /// The model of a file's bytes, `data`.
     #[staticmethod]
-    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<TriDexel> {
-        leafless::file::dexels::from_bytes(data).or_raise(py).map(TriDexel::new)
+    fn from_bytes(py: Python<'_>, #[pyo3(from_py_with = named::data)] data: &[u8]) -> PyResult<TriDexel> {
+        py.detach(|| leafless::file::dexels::from_bytes(data)).or_raise(py).map(TriDexel::new)
     }
 
     /// The bytes of its file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &leafless::file::dexels::to_bytes(&self.model).or_raise(py)?))
+        let bytes = py.detach(|| leafless::file::dexels::to_bytes(&self.model)).or_raise(py)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// The union of any number of `models` on one frame, as `|` makes it of two.
+    #[staticmethod]
+    #[pyo3(signature = (*models, **limits))]
+    fn union_of(models: &Bound<'_, PyTuple>, limits: Option<&Bound<'_, PyDict>>) -> PyResult<TriDexel> {
+        TriDexel::all_combined(models, limits, Inner::union_of)
+    }
+
+    /// What any number of `models` on one frame have in common, as `&` makes it of two.
+    #[staticmethod]
+    #[pyo3(signature = (*models, **limits))]
+    fn intersection_of(
+        models: &Bound<'_, PyTuple>,
+        limits: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<TriDexel> {
+        TriDexel::all_combined(models, limits, Inner::intersection_of)
+    }
+
+    /// The first of the `models` without the others, as `-` makes it of two.
+    #[staticmethod]
+    #[pyo3(signature = (*models, **limits))]
+    fn difference_of(models: &Bound<'_, PyTuple>, limits: Option<&Bound<'_, PyDict>>) -> PyResult<TriDexel> {
+        TriDexel::all_combined(models, limits, Inner::difference_of)
+    }
+
+    /// What an odd number of the `models` contain, as `^` makes it of two.
+    #[staticmethod]
+    #[pyo3(signature = (*models, **limits))]
+    fn xor_of(models: &Bound<'_, PyTuple>, limits: Option<&Bound<'_, PyDict>>) -> PyResult<TriDexel> {
+        TriDexel::all_combined(models, limits, Inner::xor_of)
+    }
+
+    /// What a `model` leaves of its frame, as `~model`.
+    #[staticmethod]
+    #[pyo3(signature = (model, **limits))]
+    fn complement_of(
+        #[pyo3(from_py_with = named::model)] model: Bound<'_, TriDexel>,
+        limits: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<TriDexel> {
+        let view = model.get().model.view();
+        Limits::of(limits)?.run(model.py(), |control| view.complement(control)).map(TriDexel::new)
     }
 
     /// The lattice: rays run through the centres of its finest cells.
@@ -91,37 +157,42 @@ impl TriDexel {
         self.model.view().bytes()
     }
 
-    /// The volume by the rays along an axis (cubic model units): no bound, but the sum of intervals.
+    /// The volume by the rays along an `axis`, 0, 1 or 2 for x, y and z (cubic model units): no bound, but the sum of intervals.
     #[pyo3(signature = (axis=2))]
-    fn volume(&self, py: Python<'_>, axis: usize) -> PyResult<f64> {
-        match self.model.view().statistics(axis) {
+    fn volume(&self, py: Python<'_>, #[pyo3(from_py_with = named::axis)] axis: usize) -> PyResult<f64> {
+        match py.detach(|| self.model.view().statistics(axis)) {
             Some(statistics) => Ok(statistics.volume),
-            None => Err(refused(py, "axis", "must be one along which rays run: 0, 1 or 2 for x, y and z")),
+            None => Err(self.no_rays(py, axis)),
         }
     }
 
-    /// The intervals along an axis as arrays: `ray` (indices of the ray on the other two axes, the lower first) of shape (n, 2),
+    /// The intervals along an `axis` (0, 1 or 2 for x, y and z) as arrays: `ray` (indices of the ray on the other two axes, the lower first) of shape (n, 2),
     /// `start` and `end` (coordinates) of shape (n,), and `material` of shape (n,).
-    fn rays<'py>(&self, py: Python<'py>, axis: usize) -> PyResult<Bound<'py, PyAny>> {
-        let Some(rays) = self.model.view().rays(axis) else {
-            return Err(refused(py, "axis", "must be one along which rays run: 0, 1 or 2 for x, y and z"));
-        };
-        let count = rays.interval_count() as usize;
-        let (mut ray, mut start, mut end, mut material) = (
-            Vec::with_capacity(count),
-            Vec::with_capacity(count),
-            Vec::with_capacity(count),
-            Vec::with_capacity(count),
-        );
-        let [first, second] = rays.window();
-        for at in second.flat_map(|v| first.clone().map(move |u| [u, v])) {
-            for dexel in rays.dexels(at) {
-                ray.push(at);
-                start.push(dexel.start.at);
-                end.push(dexel.end.at);
-                material.push(dexel.material);
+    fn rays<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = named::axis)] axis: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let Some(rays) = self.model.view().rays(axis) else { return Err(self.no_rays(py, axis)) };
+        let (ray, start, end, material) = py.detach(|| {
+            let count = rays.interval_count() as usize;
+            let (mut ray, mut start, mut end, mut material) = (
+                Vec::with_capacity(count),
+                Vec::with_capacity(count),
+                Vec::with_capacity(count),
+                Vec::with_capacity(count),
+            );
+            let [first, second] = rays.window();
+            for at in second.flat_map(|v| first.clone().map(move |u| [u, v])) {
+                for dexel in rays.dexels(at) {
+                    ray.push(at);
+                    start.push(dexel.start.at);
+                    end.push(dexel.end.at);
+                    material.push(dexel.material);
+                }
             }
-        }
+            (ray, start, end, material)
+        });
         let count = start.len();
         from_package!(py, "leafless._answers", "DexelRays")?.call1((
             arrays::rows(py, ray)?,
@@ -165,7 +236,7 @@ impl TriDexel {
     fn to_octree<'py>(
         &self,
         py: Python<'py>,
-        by_ends: bool,
+        #[pyo3(from_py_with = named::by_ends)] by_ends: bool,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, Octree>> {
         let view = self.model.view();
@@ -203,7 +274,10 @@ impl TriDexel {
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
         let py = other.py();
         match other.cast::<TriDexel>() {
-            Ok(other) => (self.model == other.get().model).into_py_any(py),
+            Ok(other) => {
+                let other = &other.get().model;
+                py.detach(|| self.model == *other).into_py_any(py)
+            }
             Err(_) => Ok(py.NotImplemented()),
         }
     }
@@ -256,10 +330,18 @@ impl DexelSolid {
     }
 }
 
-/// A tri-dexel model of a solid: where the rays through the centres of cells run inside.
+/// A tri-dexel model of a `solid`: where the rays through the centres of cells run inside.
 ///
-/// `normals` keeps the surface's normals at the ends, in 16 or 32 bits, so that surfaces have sharp edges; `surfaces` the numbers of
-/// the source's surfaces; `doubles` stores ends as doubles.
+/// `frame` is a `Frame`, or an octree that has it: its cube and its cells are those of the lattice. Without it, the frame is a cube around the
+/// solid. `depth` replaces the frame's depth; a cube around the solid has the depth 8 by default, which means 256 × 256 rays along an axis.
+///
+/// `directions` are the axes along which rays run: some of the letters "xyz". With the `rule` "sampled", the default, intervals are those of the
+/// solid on each ray; with "inner" those of its FULL cells, and with "outer" those of all cells that are not EMPTY. ("certified" is refused:
+/// an interval cannot be undecided.)
+///
+/// `normals` keeps the surface's normals at the ends, in 16 or 32 bits, so that surfaces have sharp edges; 0, the default, keeps none.
+/// `surfaces=True` keeps the numbers of the source's surfaces. `doubles=True` stores ends as doubles, in twice the memory; else they are off by
+/// up to 2^-31 of the frame's edge.
 #[pyfunction]
 #[pyo3(signature = (
     solid, frame=None, *, depth=None, directions="xyz", rule="sampled", normals=0, surfaces=false, doubles=false, **limits
@@ -268,25 +350,29 @@ impl DexelSolid {
 pub fn dexelize(
     solid: &Bound<'_, PyAny>,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
-    directions: &str,
-    rule: &str,
-    normals: u8,
-    surfaces: bool,
-    doubles: bool,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
+    #[pyo3(from_py_with = named::directions)] directions: &str,
+    #[pyo3(from_py_with = named::rule)] rule: &str,
+    #[pyo3(from_py_with = named::normals)] normals: u8,
+    #[pyo3(from_py_with = named::surfaces)] surfaces: bool,
+    #[pyo3(from_py_with = named::doubles)] doubles: bool,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<TriDexel> {
     let py = solid.py();
     let limits = Limits::of(limits)?;
     let rule: Rule = words::value(py, rule)?;
-    if !directions.chars().all(|axis| "xyz".contains(axis)) {
-        return Err(refused(py, "directions", "must be some of the letters x, y and z"));
+    if directions.is_empty() || !directions.chars().all(|axis| "xyz".contains(axis)) {
+        return Err(refused(
+            py,
+            "directions",
+            format!("must be some of the letters x, y and z, not '{directions}'"),
+        ));
     }
     let normals = match normals {
         0 => DexelNormals::None,
         16 => DexelNormals::Bits16,
         32 => DexelNormals::Bits32,
-        _ => return Err(refused(py, "normals", "must be 0, 16 or 32 bits")),
+        _ => return Err(refused(py, "normals", format!("must be 0, 16 or 32 bits, not {normals}"))),
     };
     let ends = if doubles { DexelEnds::Double } else { DexelEnds::Fixed };
     let format = DexelFormat { ends, normals, surfaces, ..DexelFormat::default() };

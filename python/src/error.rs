@@ -75,6 +75,17 @@ impl<T> OrRaise<T> for Result<T, Error> {
     }
 }
 
+/// Gives parameters of the library the names that they have in Python.
+pub fn called<const N: usize>(names: [(&'static str, &'static str); N]) -> impl Fn(Error) -> Error {
+    move |error| match error {
+        Error::Argument { name, problem } => {
+            let known = names.iter().find(|(own, _)| *own == name);
+            Error::Argument { name: known.map_or(name, |&(_, called)| called), problem }
+        }
+        other => other,
+    }
+}
+
 /// An exception about an argument, in the library's manner.
 pub fn refused(py: Python<'_>, name: &str, problem: impl std::fmt::Display) -> PyErr {
     let class = from_package!(py, "leafless._errors", "ArgumentError");

@@ -1,22 +1,23 @@
 //! Files: Leafless's own, and those of other programs.
 
+use crate::arguments::{Argument, named};
 use crate::csg::Csg;
 use crate::dexels::TriDexel;
-use crate::error::{OrRaise, refused};
+use crate::error::{OrRaise, called, refused};
 use crate::mesh::Mesh;
 use crate::note;
 use crate::octree::Octree;
 use crate::picture::Picture;
 use crate::volume::{Threshold, Volume, band, threshold};
 use crate::words;
-use crate::work::Limits;
+use crate::work::{Limits, afford};
 use leafless::error::FormatError;
 use leafless::exchange::{
     self, LengthUnit, MeshFile, MeshFormat, MeshOptions, NrrdEncoding, VolumeFile, VolumeFormat, WriteOptions,
 };
 use leafless::file::{self, dexels};
 use leafless::lattice::MAX_DEPTH;
-use leafless::scene::{is_scene, read_scene};
+use leafless::scene::{SceneOptions, is_scene};
 use leafless::{Error, Frame};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyTypeError, PyUserWarning};
@@ -55,12 +56,13 @@ fn content(bytes: &[u8], name: &Path) -> Option<Content> {
     }
 }
 
-/// How meshes and volumes in files are taken: `fill`, `unit`, `to_unit`, `scale`, `sew`, `threshold`.
+/// How meshes and volumes in files are taken: `fill`, `unit`, `to_unit`, `scale`, `sew`, `threshold`; and limits.
 struct Taking<'py> {
     fill: leafless::FillRule,
     options: MeshOptions,
     threshold: Option<Bound<'py, PyAny>>,
     sew: bool,
+    limits: Limits,
 }
 
 impl<'py> Taking<'py> {
@@ -70,22 +72,28 @@ impl<'py> Taking<'py> {
             options: MeshOptions::default(),
             threshold: None,
             sew: true,
+            limits: Limits::default(),
         };
+        let limits = PyDict::new(py);
         for (name, value) in given.into_iter().flat_map(|given| given.iter()) {
             if value.is_none() {
                 continue;
             }
-            let unit = || value.extract::<String>()?.parse::<LengthUnit>().or_raise(py);
+            let unit = |name| {
+                let unit = <&str>::take(&value, name)?.parse::<LengthUnit>();
+                unit.map_err(called([("unit", name)])).or_raise(py)
+            };
             match name.extract::<&str>()? {
-                "fill" => taking.fill = words::value(py, value.extract::<&str>()?)?,
-                "unit" => taking.options.unit = Some(unit()?),
-                "to_unit" => taking.options.target = Some(unit()?),
-                "scale" => taking.options.scale = value.extract()?,
-                "sew" => taking.sew = value.extract()?,
+                "fill" => taking.fill = words::value(py, <&str>::take(&value, "fill")?)?,
+                "unit" => taking.options.unit = Some(unit("unit")?),
+                "to_unit" => taking.options.target = Some(unit("to_unit")?),
+                "scale" => taking.options.scale = Argument::take(&value, "scale")?,
+                "sew" => taking.sew = Argument::take(&value, "sew")?,
                 "threshold" => taking.threshold = Some(value),
-                name => return Err(PyTypeError::new_err(format!("unexpected keyword argument '{name}'"))),
+                _ => limits.set_item(name, value)?,
             }
         }
+        taking.limits = Limits::of(Some(&limits))?;
         Ok(taking)
     }
 }
@@ -102,21 +110,22 @@ pub fn open_bytes<'py>(
     taking: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let taking = Taking::of(py, taking)?;
-    let of_file = |error: Error| error.of_file(&name);
+    let (limits, of_file) = (&taking.limits, |error: Error| error.of_file(&name));
+    limits.run_here(py, |control| afford(control, "the file", data.len() as u64))?;
     match content(data, &name) {
-        Some(Content::Solid) => solid(py, data).or_raise(py)?.into_object(py, None),
+        Some(Content::Solid) => limits.run(py, |_| stored(data))?.into_object(py, None),
         Some(Content::Volume) => {
-            let found = Limits::default().run(py, |_| exchange::read_volume(data, None).map_err(of_file))?;
+            let found = py.detach(|| exchange::read_volume(data, None).map_err(of_file)).or_raise(py)?;
             volume(py, found, &taking, note::threshold(data))
         }
         Some(Content::Mesh) => {
             let options = &taking.options;
-            let found = Limits::default().run(py, |_| exchange::read_mesh(data, options).map_err(of_file))?;
+            let found = limits.run(py, |_| exchange::read_mesh(data, options).map_err(of_file))?;
             mesh(py, found, &taking)
         }
         Some(Content::Scene) => {
             let text = std::str::from_utf8(data).map_err(|_| refused(py, "data", "is no text in UTF-8"))?;
-            scene(py, text, folder.as_deref(), &name)
+            scene(py, text, folder.as_deref(), &name, limits)
         }
         None => Err(unknown(py, &name)),
     }
@@ -137,18 +146,22 @@ pub fn open_path<'py>(
     taking: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let taken = Taking::of(py, taking)?;
-    let (bytes, content) = Limits::default().run(py, |_| {
+    let limits = &taken.limits;
+    let (bytes, content) = limits.run_here(py, |control| {
+        // (A pipe does not tell its length.)
+        let length = std::fs::metadata(&path).map_or(0, |metadata| metadata.len());
+        afford(control, "the file", length)?;
         let bytes = exchange::read_whole(&path).map_err(|error| error.of_file(&path))?;
         let content = content(&bytes, &path);
         Ok((bytes, content))
     })?;
     if let Some(Content::Solid) = content {
-        let found = solid(py, &bytes).map_err(|error| error.of_file(&path)).or_raise(py)?;
+        let found = limits.run(py, |_| stored(&bytes).map_err(|error| error.of_file(&path)))?;
         return found.into_object(py, None);
     }
     if let Some(Content::Volume) = content {
         // Samples may lie in a file beside the header.
-        let found = Limits::default().run(py, |_| exchange::open_volume(&path))?;
+        let found = py.detach(|| exchange::open_volume(&path)).or_raise(py)?;
         return volume(py, found, &taken, note::threshold(&bytes));
     }
     let folder = path.parent().map(Path::to_path_buf);
@@ -183,8 +196,8 @@ fn either(
     }
 }
 
-fn solid(py: Python<'_>, bytes: &[u8]) -> Result<Stored, Error> {
-    py.detach(|| either(|| file::from_bytes(bytes), || dexels::from_bytes(bytes)))
+fn stored(bytes: &[u8]) -> Result<Stored, Error> {
+    either(|| file::from_bytes(bytes), || dexels::from_bytes(bytes))
 }
 
 /// The solid in a Leafless file, mapped: nothing is copied, and only what is asked for is ever read. The file may be replaced, but
@@ -195,7 +208,7 @@ fn solid(py: Python<'_>, bytes: &[u8]) -> Result<Stored, Error> {
 pub fn map_path<'py>(
     py: Python<'py>,
     path: PathBuf,
-    verify: bool,
+    #[pyo3(from_py_with = named::verify)] verify: bool,
     checksum: Option<u64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let path = std::path::absolute(&path).map_err(|error| Error::Io(error).of_file(&path)).or_raise(py)?;
@@ -235,7 +248,7 @@ fn mesh<'py>(py: Python<'py>, found: MeshFile, taking: &Taking<'py>) -> PyResult
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
     }
     let unit = found.unit.map(|unit| unit.to_string());
-    let mesh = if taking.sew { Limits::default().run(py, |_| found.mesh.sewn())? } else { found.mesh };
+    let mesh = if taking.sew { py.detach(|| found.mesh.sewn()).or_raise(py)? } else { found.mesh };
     Ok(Mesh::bound(py, mesh, taking.fill, unit, None)?.into_any())
 }
 
@@ -250,9 +263,9 @@ fn volume<'py>(
         Some(given) => threshold(given)?,
         None => saved.unwrap_or((found.kind.half_range(), None)),
     };
-    let band = band(py, told)?;
+    let band = band(py, told, taking.threshold.as_ref())?;
     let (samples, grid) = (found.samples, found.grid);
-    let volume = Limits::default().run(py, |control| leafless::Volume::new(samples, &grid, band, control))?;
+    let volume = taking.limits.run(py, |control| leafless::Volume::new(samples, &grid, band, control))?;
     let volume = Bound::new(py, Volume::initial(volume, false, false, told)?)?.into_any();
     match found.placement {
         None => Ok(volume),
@@ -267,6 +280,7 @@ pub fn scene<'py>(
     text: &str,
     folder: Option<&Path>,
     name: &Path,
+    limits: &Limits,
 ) -> PyResult<Bound<'py, PyAny>> {
     // The recipe must find the files from anywhere.
     let here = |folder: &Path| {
@@ -274,8 +288,10 @@ pub fn scene<'py>(
     };
     let folder = folder.map(here).transpose().map_err(Error::Io).or_raise(py)?;
     let folder = folder.as_deref();
-    let whole = Limits::default().run(py, |_| {
-        let scene = read_scene(text, folder).map_err(|error| error.of_file(name))?;
+    let whole = limits.run(py, |control| {
+        let mut options = SceneOptions::default();
+        options.max_bytes = control.max_bytes;
+        let scene = options.read(text, folder).map_err(|error| error.of_file(name))?;
         let (min, max) = scene.bounds()?.unwrap_or(([0.0; 3], [1.0; 3]));
         // Octrees in it lie on a frame; all else can be asked on any.
         let frame = Frame::fitted(min, max, MAX_DEPTH).or_else(|_| Frame::new([0.0; 3], 1.0, MAX_DEPTH))?;
@@ -323,7 +339,8 @@ pub fn save_bytes<'py>(object: &Bound<'py, PyAny>, name: PathBuf) -> PyResult<Bo
         if extension != "lfl" {
             return wrong(".lfl");
         }
-        dexels::to_bytes(&model.get().model).or_raise(py)?
+        let model = &model.get().model;
+        py.detach(|| dexels::to_bytes(model)).or_raise(py)?
     } else if let Ok(mesh) = object.cast::<Mesh>() {
         let Some(format) = MeshFormat::from_extension(&extension) else {
             return wrong(".stl, .obj, .ply, .off or .3mf");
@@ -347,7 +364,7 @@ pub fn save_bytes<'py>(object: &Bound<'py, PyAny>, name: PathBuf) -> PyResult<Bo
     } else {
         let kind = object.get_type().name()?;
         return Err(PyTypeError::new_err(format!(
-            "a {kind} has no file of its own: build makes an Octree of a solid, and surface a Mesh"
+            "object: a {kind} has no file of its own: build makes an Octree of a solid, and surface a Mesh"
         )));
     };
     Ok(PyBytes::new(py, &bytes))

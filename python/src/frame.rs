@@ -1,12 +1,16 @@
 //! Where an octree lies, and how deep it may go.
 
-use crate::arrays::triple;
-use crate::error::{OrRaise, refused};
+use crate::arguments::{Deep, Depth, Level, named};
+use crate::arrays::{self, Rows, doubles, shape_text, triple};
+use crate::error::{OrRaise, called, refused};
 use leafless::Frame as Inner;
+use leafless::lattice::MAX_DEPTH;
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-/// A cube in model space, the *universe*, and how often it may be halved: the lattice of an octree.
+/// A cube in model space, the *universe*, and how often it may be halved: the lattice of an octree. Its lower corner is `origin` and its length
+/// `edge` (model units); it has 2^`depth` cells along each axis, `depth` from 1 to 20.
 ///
 /// >>> frame = Frame([0, 0, 0], 128.0, depth=10)
 /// >>> frame.cells, frame.cell_size
@@ -23,38 +27,55 @@ impl Frame {
     /// from 1 to 20.
     #[new]
     #[pyo3(signature = (origin, edge, depth))]
-    fn new(origin: &Bound<'_, PyAny>, edge: f64, depth: u8) -> PyResult<Frame> {
+    fn new(
+        origin: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = named::edge)] edge: f64,
+        #[pyo3(from_py_with = named::depth)] depth: Depth,
+    ) -> PyResult<Frame> {
         let py = origin.py();
-        Inner::new(triple(origin, "origin")?, edge, depth).or_raise(py).map(Frame)
+        Inner::new(triple(origin, "origin")?, edge, depth.0).or_raise(py).map(Frame)
     }
 
-    /// A cube around bounds (lower and upper corner), somewhat larger than these.
+    /// A cube around `bounds` (lower and upper corner), somewhat larger than these, of a `depth`.
     #[staticmethod]
-    #[pyo3(signature = (bounds, depth=20))]
-    fn around(bounds: &Bound<'_, PyAny>, depth: u8) -> PyResult<Frame> {
+    #[pyo3(signature = (bounds, depth=Deep(MAX_DEPTH)), text_signature = "(bounds, depth=20)")]
+    fn around(
+        bounds: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = named::depth)] depth: Depth,
+    ) -> PyResult<Frame> {
         let [min, max] = corners(bounds, "bounds")?;
-        Inner::around(min, max, depth).or_raise(bounds.py()).map(Frame)
+        Inner::around(min, max, depth.0).map_err(called(CORNERS)).or_raise(bounds.py()).map(Frame)
     }
 
-    /// A cube around bounds whose planes are round numbers, as near as the bounds allow: for parts with round dimensions,
+    /// A cube around `bounds` whose planes are round numbers, as near as the bounds allow, of a `depth`: for parts with round dimensions,
     /// whose plane faces then lie in planes of the lattice.
     #[staticmethod]
-    #[pyo3(signature = (bounds, depth=20))]
-    fn fitted(bounds: &Bound<'_, PyAny>, depth: u8) -> PyResult<Frame> {
+    #[pyo3(signature = (bounds, depth=Deep(MAX_DEPTH)), text_signature = "(bounds, depth=20)")]
+    fn fitted(
+        bounds: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = named::depth)] depth: Depth,
+    ) -> PyResult<Frame> {
         let [min, max] = corners(bounds, "bounds")?;
-        Inner::fitted(min, max, depth).or_raise(bounds.py()).map(Frame)
+        Inner::fitted(min, max, depth.0).map_err(called(CORNERS)).or_raise(bounds.py()).map(Frame)
     }
 
-    /// A cube around bounds with finest cells of the edge `cell`.
+    /// A cube around `bounds` with finest cells of the edge `cell`.
     #[staticmethod]
-    fn with_cells(bounds: &Bound<'_, PyAny>, cell: f64) -> PyResult<Frame> {
+    fn with_cells(
+        bounds: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = named::cell)] cell: f64,
+    ) -> PyResult<Frame> {
         let [min, max] = corners(bounds, "bounds")?;
-        Inner::with_cells(min, max, cell).or_raise(bounds.py()).map(Frame)
+        Inner::with_cells(min, max, cell).map_err(called(CORNERS)).or_raise(bounds.py()).map(Frame)
     }
 
-    /// The same cube with another depth.
-    fn with_depth(&self, py: Python<'_>, depth: u8) -> PyResult<Frame> {
-        self.0.with_depth(depth).or_raise(py).map(Frame)
+    /// The same cube with another `depth`.
+    fn with_depth(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::depth)] depth: Depth,
+    ) -> PyResult<Frame> {
+        self.0.with_depth(depth.0).or_raise(py).map(Frame)
     }
 
     /// The lower corner (model units).
@@ -87,15 +108,16 @@ impl Frame {
         self.0.cell_size()
     }
 
-    /// The cells of a level in which points lie, by their places in Morton order, an array of type uint64; 2^64 - 1 outside of the cube. A
-    /// point on a wall lies in the cell behind it.
-    fn codes<'py>(&self, points: &Bound<'py, PyAny>, level: u8) -> PyResult<Bound<'py, PyAny>> {
-        let py = points.py();
-        let frame = self.0;
-        if level > frame.depth() {
-            return Err(refused(py, "level", "is below the depth of the frame"));
-        }
-        let points = crate::arrays::Rows::of(points, "points")?;
+    /// The cells of a `level` in which `points` (shape (n, 3)) lie, by their codes (places in Morton order): an array of type uint64, with
+    /// 2^64 - 1 for a point outside of the cube. A point on a wall lies in the cell behind it.
+    fn codes<'py>(
+        &self,
+        points: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = named::level)] level: Level,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (py, frame) = (points.py(), self.0);
+        let level = level_of(py, &frame, level)?;
+        let points = Rows::of(points, "points")?;
         let list = points.list();
         let code = |point: &[f64; 3]| {
             let at = frame.cell_of(*point)?.map(|a| a >> (frame.depth() - level));
@@ -104,7 +126,7 @@ impl Frame {
         let codes: Vec<u64> =
             py.detach(|| list.iter().map(|point| code(point).unwrap_or(u64::MAX)).collect());
         let count = codes.len();
-        Ok(crate::arrays::array(py, codes, &[count])?.into_any())
+        Ok(arrays::array(py, codes, &[count])?.into_any())
     }
 
     fn __repr__(&self) -> String {
@@ -125,12 +147,28 @@ impl Frame {
 
 /// A lower and an upper corner.
 pub fn corners(given: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; 3]; 2]> {
-    let rows = crate::arrays::Rows::of(given, name)?;
-    match *rows.list() {
-        [min, max] => Ok([min, max]),
-        _ => Err(refused(given.py(), name, "must be a lower and an upper corner")),
+    let array = doubles(given, name)?;
+    match (array.shape(), array.readonly().as_slice()?) {
+        ([2, 3], &[a, b, c, d, e, f]) => Ok([[a, b, c], [d, e, f]]),
+        (shape, _) => {
+            let shape = shape_text(shape);
+            let problem = format!("must be a lower and an upper corner, of the shape (2, 3), not {shape}");
+            Err(refused(given.py(), name, problem))
+        }
     }
 }
+
+/// A level that a frame must have.
+pub fn level_of(py: Python<'_>, frame: &Inner, Deep(level): Level) -> PyResult<u8> {
+    if level <= frame.depth() {
+        return Ok(level);
+    }
+    let problem = format!("must be at most the depth of the frame, {}, not {level}", frame.depth());
+    Err(refused(py, "level", problem))
+}
+
+/// What the library calls the corners of bounds.
+pub const CORNERS: [(&str, &str); 2] = [("min", "bounds"), ("max", "bounds")];
 
 /// A hash of a frame: equal frames have equal ones.
 pub fn hash(frame: &Inner) -> u64 {

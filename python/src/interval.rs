@@ -1,5 +1,6 @@
 //! Intervals that contain the truth.
 
+use crate::arguments::named;
 use crate::arrays;
 use crate::error::refused;
 use crate::from_package;
@@ -8,7 +9,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::basic::CompareOp;
 use pyo3::prelude::*;
 
-/// Two numbers between which the truth lies: proven.
+/// Two numbers, `lower` and `upper`, between which the truth lies: proven.
 ///
 /// It prints the digits that mean something, and `in` asks whether a number is possible. A format of numbers is one of both ends, which are
 /// rounded outward, so that what is printed contains the truth.
@@ -35,10 +36,19 @@ impl Interval {
     /// The interval from `lower` to `upper`; of one number that number.
     #[new]
     #[pyo3(signature = (lower, upper=None))]
-    fn new(py: Python<'_>, lower: f64, upper: Option<f64>) -> PyResult<Interval> {
+    fn new(
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::lower)] lower: f64,
+        #[pyo3(from_py_with = named::upper)] upper: Option<f64>,
+    ) -> PyResult<Interval> {
+        if lower.is_nan() {
+            return Err(refused(py, "lower", "must not be NaN"));
+        }
         let upper = upper.unwrap_or(lower);
         let known = Bounds::new(lower, upper);
-        known.map(Interval).ok_or_else(|| refused(py, "upper", "must be a number that is not below lower"))
+        known.map(Interval).ok_or_else(|| {
+            refused(py, "upper", format!("must be a number that is not below lower, {lower}, not {upper}"))
+        })
     }
 
     /// Nothing below is possible.
@@ -126,10 +136,11 @@ impl Interval {
 /// Intervals in an array of a shape, as the package's class `Intervals` has them.
 pub fn intervals<'py>(
     py: Python<'py>,
-    all: impl IntoIterator<Item = Bounds>,
+    all: impl IntoIterator<Item = Bounds> + Send,
     shape: &[usize],
 ) -> PyResult<Bound<'py, PyAny>> {
-    let (lower, upper) = all.into_iter().map(|interval| (interval.lower, interval.upper)).unzip();
+    let (lower, upper) =
+        py.detach(|| all.into_iter().map(|interval| (interval.lower, interval.upper)).unzip());
     let ends = (arrays::array::<f64>(py, lower, shape)?, arrays::array::<f64>(py, upper, shape)?);
     from_package!(py, "leafless._intervals", "Intervals")?.call1(ends)
 }

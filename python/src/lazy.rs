@@ -1,8 +1,9 @@
 //! Octrees that are split on demand.
 
+use crate::arguments::{Level, named, other_type};
 use crate::arrays::triple;
 use crate::ask::{FrameLike, Wish};
-use crate::error::refused;
+use crate::error::{called, refused};
 use crate::frame::{Frame, corners};
 use crate::interval::Interval;
 use crate::octree::Octree;
@@ -19,7 +20,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-/// An octree that splits the cells you ask about, and remembers them.
+/// An octree that splits the cells of a `solid` that you ask about, and remembers them.
+///
+/// `frame` is the cube where it lies: a `Frame`, or an octree that has it. Without it, it is a cube around the solid. With `resume`, it begins
+/// with what an octree knows that `freeze` made of the same solid.
 ///
 /// >>> lazy = LazyOctree(Csg.ball([0, 0, 0], 1))
 /// >>> lazy.refine(level=4)
@@ -48,25 +52,31 @@ impl LazyOctree {
     }
 }
 
+/// What the library calls the parts of zones.
+const ZONE: [(&str, &str); 5] =
+    [("min", "bounds"), ("max", "bounds"), ("origin", "ray"), ("direction", "ray"), ("from", "ray")];
+
 #[pymethods]
 impl LazyOctree {
     /// An octree that knows its universe only. With `resume`, it begins with what a frozen octree of the same solid knows.
     #[new]
-    #[pyo3(signature = (solid, frame=None, *, resume=None))]
+    #[pyo3(signature = (solid, frame=None, *, resume=None, **limits))]
     fn new(
         solid: &Bound<'_, PyAny>,
         frame: Option<FrameLike>,
-        resume: Option<&Octree>,
+        #[pyo3(from_py_with = named::resume)] resume: Option<Bound<'_, Octree>>,
+        limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<LazyOctree> {
-        let py = solid.py();
+        let (py, limits) = (solid.py(), Limits::of(limits)?);
         let given = given(solid, "solid")?;
+        let resume = resume.as_ref().map(|known| &known.get().octree);
         let frame = match (frame, resume) {
-            (None, Some(known)) => *known.octree.frame(),
+            (None, Some(known)) => *known.frame(),
             (frame, _) => Wish { frame, depth: None }.of(py, &given, MAX_DEPTH)?,
         };
         let shape = given.shape;
-        let lazy = Limits::default().run(py, |control| match resume {
-            Some(known) => Inner::resume(&known.octree, shape, &frame, control),
+        let lazy = limits.run(py, |control| match resume {
+            Some(known) => Inner::resume(known, shape, &frame, control),
             None => {
                 shape.on(&frame, control)?;
                 Inner::new(shape, &frame)
@@ -75,17 +85,17 @@ impl LazyOctree {
         Ok(LazyOctree { lazy: Mutex::new(lazy), solid: solid.clone().unbind() })
     }
 
-    /// Splits undecided cells down to a level: all of them, or those in a box (`bounds`), around a `point`, or along a `ray` (origin and
+    /// Splits undecided cells down to a `level`: all of them, or those in a box (`bounds`), around a `point`, or along a `ray` (origin and
     /// direction). True if all is done; false if a limit came first (`max_splits`, `max_nodes`, `max_bytes`), and then what was
     /// found is kept.
     #[pyo3(signature = (level, *, bounds=None, point=None, ray=None, **limits))]
     fn refine(
         &self,
         py: Python<'_>,
-        level: u8,
+        #[pyo3(from_py_with = named::level)] level: Level,
         bounds: Option<&Bound<'_, PyAny>>,
         point: Option<&Bound<'_, PyAny>>,
-        ray: Option<[Bound<'_, PyAny>; 2]>,
+        ray: Option<&Bound<'_, PyAny>>,
         limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<bool> {
         let zone = match (bounds, point, ray) {
@@ -95,28 +105,30 @@ impl LazyOctree {
                 Zone::Box { min, max }
             }
             (None, Some(point), None) => Zone::Point(triple(point, "point")?),
-            (None, None, Some([origin, direction])) => Zone::Ray {
-                origin: triple(&origin, "origin")?,
-                direction: triple(&direction, "direction")?,
-                from: 0.0,
-                to: f64::INFINITY,
-            },
+            (None, None, Some(ray)) => {
+                let pair = || other_type(ray, "ray", "an origin and a direction");
+                let [origin, direction]: [Bound<'_, PyAny>; 2] = ray.extract().map_err(|_| pair())?;
+                let (origin, direction) = (triple(&origin, "ray")?, triple(&direction, "ray")?);
+                Zone::Ray { origin, direction, from: 0.0, to: f64::INFINITY }
+            }
             _ => return Err(refused(py, "bounds", "must be the only zone: bounds, point or ray")),
         };
         let limits = Limits::of(limits)?;
         let mut lazy = self.lock()?;
         let lazy = &mut *lazy;
-        let done = limits.run(py, |control| lazy.refine(&zone, level, control))?;
+        let done = limits.run(py, |control| lazy.refine(&zone, level.0, control).map_err(called(ZONE)))?;
         Ok(done == Refinement::Done)
     }
 
-    /// What is known of points (shape (n, 3)), without splitting.
+    /// What is known of `points` (shape (n, 3)), without splitting.
     fn contains<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = points.py();
         let rows = crate::arrays::Rows::of(points, "points")?;
         let list = rows.list();
         let lazy = self.lock()?;
-        let answers: Vec<Membership> = list.iter().map(|&point| lazy.contains(point)).collect();
+        let known = &*lazy;
+        let answers: Vec<Membership> =
+            py.detach(|| list.iter().map(|&point| known.contains(point)).collect());
         crate::solid::memberships(py, &answers, rows.is_one)
     }
 

@@ -2,12 +2,13 @@
 //! library with the interpreter released, and hands back what was found. What is easier said in Python is in `package/leafless`.
 //!
 //! From the bottom up: `error`, `work` (long work that can be watched and interrupted), `words` (what enumerations are called),
-//! `arrays`, `interval`, `frame` and `affine` are what values are taken from; `solid` is the class of all that has a shape, and
+//! `arguments` (what functions take), `arrays`, `interval`, `frame` and `affine` are what values are taken from; `solid` is the class of all that has a shape, and
 //! `ask` what is asked of it on which frame; `csg`, `mesh`, `octree` and the others are its kinds; `measures`, `pairs`, `surface`
 //! and `picture` are questions; `files` reads and writes, and `note` is what a volume adds to its file.
 
 mod affine;
 mod anywhere;
+mod arguments;
 mod arrays;
 mod ask;
 mod channel;
@@ -62,7 +63,7 @@ mod _leafless {
     #[pymodule_export]
     use super::octree::{Octree, Proof, build, frame_of};
     #[pymodule_export]
-    use super::pairs::{clearance, deviation, gap_at_least, interference};
+    use super::pairs::{clearance, deviation, frame_of_pair, gap_at_least, interference};
     #[pymodule_export]
     use super::picture::{Picture, render};
     #[pymodule_export]

@@ -1,6 +1,8 @@
 //! Volumes, areas and boxes, as intervals that contain the truth.
 
+use crate::arguments::{Depth, named};
 use crate::ask::{FrameLike, Wish};
+use crate::error::refused;
 use crate::from_package;
 use crate::interval::{Interval, intervals};
 use crate::octree::Proof;
@@ -13,8 +15,23 @@ use leafless::query;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Measures a solid: volume, centroid and inertia, until the width of the volume's interval is `tolerance` of it, or at most
+/// How narrow an interval is to be.
+pub fn wanted(py: Python<'_>, relative: f64, absolute: f64) -> PyResult<Tolerance> {
+    if absolute.is_nan() || absolute < 0.0 {
+        return Err(refused(
+            py,
+            "absolute",
+            format!("must be a number that is not negative, not {absolute}"),
+        ));
+    }
+    Ok(Tolerance { relative, absolute })
+}
+
+/// Measures a `solid`: volume, centroid and inertia, until the width of the volume's interval is `tolerance` of it, or at most
 /// `absolute` (cubic model units). Closed meshes are known to rounding at once.
+///
+/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
+/// `depth` replaces its depth.
 ///
 /// >>> found = measure(Csg.ball([0, 0, 0], 1), tolerance=1e-6)
 /// >>> 4.18879020478639 in found.volume, 0.0 in found.centroid[2]
@@ -23,16 +40,16 @@ use pyo3::types::PyDict;
 #[pyo3(signature = (solid, *, tolerance=1e-3, absolute=0.0, frame=None, depth=None, **limits))]
 pub fn measure<'py>(
     solid: &Bound<'py, PyAny>,
-    tolerance: f64,
-    absolute: f64,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: f64,
+    #[pyo3(from_py_with = named::absolute)] absolute: f64,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, limits) = (solid.py(), Limits::of(limits)?);
     let solid = given(solid, "solid")?;
     let frame = Wish { frame, depth }.of(py, &solid, MAX_DEPTH)?;
-    let tolerance = Tolerance { relative: tolerance, absolute };
+    let tolerance = wanted(py, tolerance, absolute)?;
     told(py, &limits.run(py, |control| query::measure(&solid.shape, &frame, tolerance, control))?)
 }
 
@@ -51,7 +68,10 @@ pub fn told<'py>(py: Python<'py>, found: &query::MassProperties) -> PyResult<Bou
     ))
 }
 
-/// The area of a solid's boundary, until the width of its interval is `tolerance` of it, or at most `absolute`.
+/// The area of the boundary of a `solid`, until the width of its interval is `tolerance` of it, or at most `absolute` (square model units).
+///
+/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
+/// `depth` replaces its depth.
 ///
 /// >>> 12.566370614359172 in surface_area(Csg.ball([0, 0, 0], 1), tolerance=0.01).area
 /// True
@@ -59,22 +79,25 @@ pub fn told<'py>(py: Python<'py>, found: &query::MassProperties) -> PyResult<Bou
 #[pyo3(signature = (solid, *, tolerance=1e-2, absolute=0.0, frame=None, depth=None, **limits))]
 pub fn surface_area<'py>(
     solid: &Bound<'py, PyAny>,
-    tolerance: f64,
-    absolute: f64,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: f64,
+    #[pyo3(from_py_with = named::absolute)] absolute: f64,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, limits) = (solid.py(), Limits::of(limits)?);
     let solid = given(solid, "solid")?;
     let frame = Wish { frame, depth }.of(py, &solid, MAX_DEPTH)?;
-    let tolerance = Tolerance { relative: tolerance, absolute };
+    let tolerance = wanted(py, tolerance, absolute)?;
     let found = limits.run(py, |control| query::surface_area(&solid.shape, &frame, tolerance, control))?;
     let answer = from_package!(py, "leafless._answers", "SurfaceArea")?;
     answer.call1((Interval(found.area), found.clipped, words::word(found.stop_reason), found.splits))
 }
 
-/// The bounding box of a solid, each side known to `tolerance` (model units; by default a millionth of the frame).
+/// The bounding box of a `solid`, each side known to `tolerance` (model units; by default a millionth of the frame).
+///
+/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
+/// `depth` replaces its depth.
 ///
 /// >>> box = bounding_box(Csg.ball([0, 0, 0], 1))
 /// >>> 1.0 in box.corners[1, 0]
@@ -83,9 +106,9 @@ pub fn surface_area<'py>(
 #[pyo3(signature = (solid, *, tolerance=None, frame=None, depth=None, **limits))]
 pub fn bounding_box<'py>(
     solid: &Bound<'py, PyAny>,
-    tolerance: Option<f64>,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: Option<f64>,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, limits) = (solid.py(), Limits::of(limits)?);

@@ -1,13 +1,14 @@
 //! Triangle meshes.
 
-use crate::arrays::{self, Rows, layout, required, shown};
+use crate::arguments::{named, other_type};
+use crate::arrays::{self, Rows, layout, shape_text, shown};
 use crate::error::{OrRaise, refused};
 use crate::from_package;
 use crate::solid::{Given, Solid};
 use crate::surface::SurfaceReport;
 use crate::words;
 use crate::work::Limits;
-use leafless::mesh::{AttributeDomain, MeshAttribute, MeshHistory};
+use leafless::mesh::{AttributeDomain, MeshAttribute, MeshHistory, MeshReport};
 use leafless::{Affine, AnySolid, FillRule, MeshSolid, TriangleMesh};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
@@ -18,7 +19,7 @@ use std::sync::Arc;
 /// A triangle mesh, and the solid that it encloses.
 ///
 /// Any mesh is a solid. For a closed mesh, the inside is exact. For a mesh with holes, fins or turned facets, the winding number
-/// decides by the fill rule: "nonzero" (at least ½ in magnitude), "positive" or "evenodd".
+/// decides by the rule `fill`: "nonzero" (at least ½ in magnitude), "positive" or "evenodd".
 ///
 /// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 /// >>> mesh = Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -45,7 +46,8 @@ impl Mesh {
         unit: Option<String>,
         surface: Option<SurfaceReport>,
     ) -> PyResult<Bound<'_, Mesh>> {
-        let solid = MeshSolid::new(mesh, fill).or_raise(py)?;
+        let mesh = mesh.into();
+        let solid = py.detach(|| MeshSolid::new(mesh, fill)).or_raise(py)?;
         Mesh::of_solid(py, solid, fill, unit, surface)
     }
 
@@ -69,10 +71,15 @@ impl Mesh {
             .map(|report| report.deviation)
     }
 
+    /// What is wrong with the mesh, found out once.
+    pub fn inspected(&self, py: Python<'_>) -> PyResult<MeshReport> {
+        py.detach(|| self.mesh.report()).or_raise(py)
+    }
+
     /// The mesh in another place.
     pub fn placed<'py>(&self, py: Python<'py>, placement: &Affine) -> PyResult<Bound<'py, Mesh>> {
-        let solid = MeshSolid::new(self.mesh.clone(), self.fill).or_raise(py)?;
-        let moved = solid.placed(placement).or_raise(py)?;
+        let moved =
+            py.detach(|| MeshSolid::new(self.mesh.clone(), self.fill)?.placed(placement)).or_raise(py)?;
         Mesh::of_solid(py, moved, self.fill, self.unit.clone(), None)
     }
 }
@@ -86,20 +93,19 @@ impl Mesh {
     fn new(
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
-        fill: &str,
+        #[pyo3(from_py_with = named::fill)] fill: &str,
     ) -> PyResult<PyClassInitializer<Mesh>> {
         let py = vertices.py();
         let fill = words::value(py, fill)?;
         let vertices = Rows::of(vertices, "vertices")?;
         let faces = indices(faces)?;
         let list = vertices.list();
-        let mesh = Limits::default().run_here(py, |_| {
+        let solid = Limits::default().run_here(py, |_| {
             let mut own = Vec::new();
             own.try_reserve_exact(list.len()).map_err(|_| leafless::Error::OutOfMemory)?;
             own.extend_from_slice(list);
-            TriangleMesh::new(own, faces)
+            MeshSolid::new(TriangleMesh::new(own, faces)?, fill)
         })?;
-        let solid = MeshSolid::new(mesh, fill).or_raise(py)?;
         let mesh = solid.mesh().clone();
         let given = Given::new(AnySolid::new(solid));
         let mesh = Mesh { mesh, fill, unit: None, surface: None };
@@ -111,7 +117,7 @@ impl Mesh {
     fn _restored<'py>(
         vertices: &Bound<'py, PyAny>,
         faces: &Bound<'py, PyAny>,
-        fill: &str,
+        #[pyo3(from_py_with = named::fill)] fill: &str,
         unit: Option<String>,
         surface_report: Option<SurfaceReport>,
         attributes: Vec<(String, Vec<String>, Bound<'py, PyAny>)>,
@@ -135,17 +141,26 @@ impl Mesh {
             bent_polygons,
             polygon_deviation,
         };
-        let mesh = TriangleMesh::with_attributes(vertices, indices(faces)?, attributes)
-            .and_then(|mesh| mesh.with_history(history))
-            .or_raise(py)?;
+        let faces = indices(faces)?;
+        let mesh = py.detach(|| {
+            let mesh = TriangleMesh::with_attributes(vertices, faces, attributes)?;
+            mesh.with_history(history)
+        });
+        let mesh = mesh.or_raise(py)?;
         Mesh::bound(py, mesh, words::value(py, fill)?, unit, surface_report)
     }
 
-    /// A mesh of trimesh, or of anything else that has `vertices` and `faces`.
+    /// A `mesh` of trimesh, or of anything else that has `vertices` and `faces`, with the rule `fill`.
     #[staticmethod]
     #[pyo3(signature = (mesh, *, fill="nonzero"))]
-    fn from_trimesh<'py>(mesh: &Bound<'py, PyAny>, fill: &str) -> PyResult<Bound<'py, PyAny>> {
-        let arguments = (mesh.getattr("vertices")?, mesh.getattr("faces")?);
+    fn from_trimesh<'py>(
+        mesh: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = named::fill)] fill: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (Ok(vertices), Ok(faces)) = (mesh.getattr("vertices"), mesh.getattr("faces")) else {
+            return Err(other_type(mesh, "mesh", "a mesh with vertices and faces, as one of trimesh is"));
+        };
+        let arguments = (vertices, faces);
         let fill_rule = PyDict::new(mesh.py());
         fill_rule.set_item("fill", fill)?;
         mesh.py().get_type::<Mesh>().call(arguments, Some(&fill_rule))
@@ -185,7 +200,7 @@ impl Mesh {
     /// Whether the triangles have no open edge.
     #[getter]
     fn is_closed(&self, py: Python<'_>) -> PyResult<bool> {
-        Ok(self.mesh.report().or_raise(py)?.is_closed())
+        Ok(self.inspected(py)?.is_closed())
     }
 
     /// How the mesh was made of a solid, if `surface` or `simplify` did.
@@ -203,7 +218,7 @@ impl Mesh {
 
     /// What is wrong with the mesh, if anything is: counts of bodies, open edges, turned facets and the like, as a dictionary.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let report = self.mesh.report().or_raise(py)?;
+        let report = self.inspected(py)?;
         let told = PyDict::new(py);
         let counts = [
             ("triangles", report.triangles),
@@ -237,8 +252,12 @@ impl Mesh {
         self.mesh.attributes().iter().map(|attribute| attribute.name().to_owned()).collect()
     }
 
-    /// The values of an attribute at the corners of triangles: shape (m, 3, components), NaN where there is none.
-    fn attribute<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    /// The values of the attribute called `name` at the corners of triangles: shape (m, 3, components), NaN where there is none.
+    fn attribute<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = named::name)] name: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let Some(attribute) = self.mesh.attribute(name) else {
             return Err(refused(py, "name", format!("no attribute is called '{name}'")));
         };
@@ -286,13 +305,11 @@ type History = ([u64; 5], [f64; 3]);
 /// The values of an attribute, shape (m, corners, components), at the first corner of each triangle or at all three.
 fn values<'py>(py: Python<'py>, attribute: &MeshAttribute, corners: usize) -> PyResult<Bound<'py, PyAny>> {
     let (count, components) = (attribute.len(), attribute.components());
-    let mut values = Vec::with_capacity(count * corners * components);
-    for triangle in 0..count {
-        for corner in 0..corners {
-            let value = attribute.value(triangle, corner).unwrap_or([f64::NAN; 4]);
-            values.extend_from_slice(&value[..components]);
-        }
-    }
+    let values = py.detach(|| {
+        let all = (0..count).flat_map(|triangle| (0..corners).map(move |corner| (triangle, corner)));
+        let value = |(triangle, corner)| attribute.value(triangle, corner).unwrap_or([f64::NAN; 4]);
+        all.flat_map(|at| value(at).into_iter().take(components)).collect()
+    });
     Ok(arrays::array(py, values, &[count, corners, components])?.into_any())
 }
 
@@ -308,7 +325,7 @@ fn read(name: &str, values: &Bound<'_, PyAny>) -> PyResult<MeshAttribute> {
             return Err(refused(
                 py,
                 name,
-                format!("must have values of triangles or of corners, not {shape:?}"),
+                format!("must have values of triangles or of corners, not {}", shape_text(shape)),
             ));
         }
     };
@@ -318,11 +335,14 @@ fn read(name: &str, values: &Bound<'_, PyAny>) -> PyResult<MeshAttribute> {
 /// Triples of indices, of integers of any type.
 fn indices(given: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 3]>> {
     let py = given.py();
-    let array = required::<i64>(given, "int64", "faces")?;
-    match *array.shape() {
-        // An empty list has one axis.
-        [_, 3] | [0] => {}
-        ref shape => return Err(refused(py, "faces", format!("must have the shape (n, 3), not {shape:?}"))),
+    let array = arrays::required::<i64>(given, "int64", "faces")?;
+    // An empty list has one axis.
+    if !matches!(array.shape(), [0] | [_, 3]) {
+        return Err(refused(
+            py,
+            "faces",
+            format!("must have the shape (n, 3), not {}", shape_text(array.shape())),
+        ));
     }
     let list = array.readonly();
     let index = |&index: &i64| {

@@ -1,29 +1,42 @@
 //! Octrees, and how they are built.
 
+use crate::arguments::{Argument, Deep, Depth, Level, named, other_type};
 use crate::arrays;
 use crate::ask::{FrameLike, Wish};
 use crate::channel::Channel;
-use crate::error::{OrRaise, refused};
-use crate::frame::{Frame, corners};
+use crate::error::{OrRaise, called, refused};
+use crate::frame::{CORNERS, Frame, corners, level_of};
 use crate::from_package;
 use crate::interval::Interval;
 use crate::shards::Shard;
 use crate::solid::{Given, Solid, given};
 use crate::voxels::VoxelRecords;
 use crate::words;
-use crate::work::Limits;
+use crate::work::{Limits, advance, afford};
 use leafless::octree::{CellFilter, LevelStatistics, Statistics};
-use leafless::op::build_extended_shard;
-use leafless::{AnySolid, Metadata, Octree as Inner, Rule, SurfaceOptions, Tag, build_extended};
+use leafless::{
+    AnySolid, Control, Error, Metadata, Octree as Inner, OctreeRef, Rule, SurfaceOptions, Tag,
+    build_extended, complement, op,
+};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::{PyBytes, PyDict, PyTuple};
 use std::path::PathBuf;
 
 /// The default depth of an octree.
 const DEPTH: u8 = 9;
 
-/// What cells prove.
+/// How many cells are listed before signals and limits are looked at again.
+const CHUNK: usize = 1 << 16;
+
+/// Bytes of a cell in the arrays of a list.
+const CELL: u64 = 1 + 1 + 3 * 4;
+
+/// Bytes of an open cell, as the library lists it and as a code.
+const OPEN_CELL: u64 = (size_of::<leafless::Cell>() + size_of::<u64>()) as u64;
+
+/// What cells prove: whether FULL cells are proven to lie inside (`full`), and EMPTY cells outside (`empty`), of a solid whose surfaces were
+/// moved before by at most `displacement` (model units).
 #[pyclass(frozen, eq, get_all, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct Proof {
@@ -40,7 +53,12 @@ impl Proof {
     /// What cells prove, as `octree.proof` tells it.
     #[new]
     #[pyo3(signature = (full, empty, displacement=0.0))]
-    fn new(py: Python<'_>, full: bool, empty: bool, displacement: f64) -> PyResult<Proof> {
+    fn new(
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::full)] full: bool,
+        #[pyo3(from_py_with = named::empty)] empty: bool,
+        #[pyo3(from_py_with = named::displacement)] displacement: f64,
+    ) -> PyResult<Proof> {
         leafless::Proof::new(full, empty).with_displacement(displacement).or_raise(py).map(Proof::from)
     }
 
@@ -108,14 +126,34 @@ impl Octree {
         let given = Given { keeps_surfaces, ..Given::new(AnySolid::new(octree.clone())) };
         Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(Octree { octree, mapped }))
     }
+
+    /// Any number of octrees, combined.
+    fn combined<'py>(
+        octrees: &Bound<'py, PyTuple>,
+        limits: Option<&Bound<'py, PyDict>>,
+        combine: impl FnOnce(&[OctreeRef<'_>], &Control<'_>) -> Result<Inner, Error> + Send,
+    ) -> PyResult<Bound<'py, Octree>> {
+        let (py, limits) = (octrees.py(), Limits::of(limits)?);
+        let all: Vec<Bound<'_, Octree>> =
+            octrees.iter().map(|one| Argument::take(&one, "octrees")).collect::<PyResult<_>>()?;
+        let views: Vec<_> = all.iter().map(|one| *one.get().octree.view()).collect();
+        let found =
+            limits.run(py, |control| combine(&views, control).map_err(called([("trees", "octrees")])))?;
+        Octree::bound(py, found)
+    }
+
+    /// What is counted once, when it is first asked for.
+    fn statistics_of_cells(&self, py: Python<'_>) -> Statistics {
+        py.detach(|| self.octree.statistics())
+    }
 }
 
 #[pymethods]
 impl Octree {
-    /// The octree of a file's bytes.
+    /// The octree of a file's bytes, `data`.
     #[staticmethod]
-    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Py<Octree>> {
-        let octree = leafless::file::from_bytes(data).or_raise(py)?;
+    fn from_bytes(py: Python<'_>, #[pyo3(from_py_with = named::data)] data: &[u8]) -> PyResult<Py<Octree>> {
+        let octree = py.detach(|| leafless::file::from_bytes(data)).or_raise(py)?;
         Ok(Octree::bound(py, octree)?.unbind())
     }
 
@@ -123,6 +161,59 @@ impl Octree {
     pub fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = Limits::default().run_here(py, |_| leafless::file::to_bytes(&self.octree))?;
         Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// The union of any number of octrees on one frame, as `|` makes it of two. An octree that keeps its surfaces costs one walk for all of
+    /// the `octrees`, where `|` costs one for each.
+    #[staticmethod]
+    #[pyo3(signature = (*octrees, **limits))]
+    fn union_of<'py>(
+        octrees: &Bound<'py, PyTuple>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        Octree::combined(octrees, limits, op::union_of)
+    }
+
+    /// What any number of `octrees` on one frame have in common, as `&` makes it of two.
+    #[staticmethod]
+    #[pyo3(signature = (*octrees, **limits))]
+    fn intersection_of<'py>(
+        octrees: &Bound<'py, PyTuple>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        Octree::combined(octrees, limits, op::intersection_of)
+    }
+
+    /// The first of the `octrees` without the others, as `-` makes it of two.
+    #[staticmethod]
+    #[pyo3(signature = (*octrees, **limits))]
+    fn difference_of<'py>(
+        octrees: &Bound<'py, PyTuple>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        Octree::combined(octrees, limits, op::difference_of)
+    }
+
+    /// What an odd number of the `octrees` contain, as `^` makes it of two.
+    #[staticmethod]
+    #[pyo3(signature = (*octrees, **limits))]
+    fn xor_of<'py>(
+        octrees: &Bound<'py, PyTuple>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        Octree::combined(octrees, limits, op::xor_of)
+    }
+
+    /// What an `octree` leaves of space, as `~octree`.
+    #[staticmethod]
+    #[pyo3(signature = (octree, **limits))]
+    fn complement_of<'py>(
+        #[pyo3(from_py_with = named::octree)] octree: Bound<'py, Octree>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, Octree>> {
+        let (py, view) = (octree.py(), octree.get().octree.view());
+        let found = Limits::of(limits)?.run(py, |control| complement(view, control))?;
+        Octree::bound(py, found)
     }
 
     /// Where it lies.
@@ -140,14 +231,14 @@ impl Octree {
     /// Between which numbers the volume of the cells lies (cubic model units). `measure` knows more of an octree that keeps its
     /// surfaces.
     #[getter]
-    fn volume(&self) -> Interval {
-        Interval(self.octree.statistics().volume())
+    fn volume(&self, py: Python<'_>) -> Interval {
+        Interval(self.statistics_of_cells(py).volume())
     }
 
     /// How many nodes are stored.
     #[getter]
-    fn node_count(&self) -> u64 {
-        self.octree.statistics().nodes()
+    fn node_count(&self, py: Python<'_>) -> u64 {
+        self.statistics_of_cells(py).nodes()
     }
 
     /// Bytes that the arrays take, in memory or where a file is mapped.
@@ -171,27 +262,42 @@ impl Octree {
     /// Level by level, a list of dictionaries: `level`, `nodes`, `empty`, `full`, `partial` (cells that end there), and `volume`, an
     /// interval of what the cells down to that level tell.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        told(py, &self.octree.statistics())
+        told(py, &self.statistics_of_cells(py))
     }
 
-    /// The `leafless.shards.Shard` of the octree: it knows the cells of the shard, and all others are PARTIAL.
+    /// The part of the octree that a `shard` (a `leafless.shards.Shard`) knows: an octree that has the cells of the shard. All other cells are
+    /// PARTIAL.
     #[pyo3(signature = (shard, **limits))]
     fn shard<'py>(
         &self,
         py: Python<'py>,
-        shard: Shard,
+        #[pyo3(from_py_with = named::shard)] shard: Bound<'py, Shard>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, Octree>> {
-        let view = self.octree.view();
-        let found = Limits::of(limits)?.run(py, |control| leafless::op::shard(view, shard.0, control))?;
+        let (view, shard) = (self.octree.view(), shard.get().0);
+        let found = Limits::of(limits)?.run(py, |control| op::shard(view, shard, control))?;
         Octree::bound(py, found)
     }
 
-    /// The cells of a level of which nothing is known, by their places in Morton order: of the top of that level these are the cells
-    /// that need a shard.
-    fn open_cells<'py>(&self, py: Python<'py>, level: u8) -> PyResult<Bound<'py, PyAny>> {
-        let cells = Limits::default().run(py, |_| self.octree.view().open_cells(level))?;
-        let codes: Vec<u64> = cells.iter().map(|cell| cell.morton()).collect();
+    /// The cells of a `level` of which nothing is known, by their codes (places in Morton order): an array of type uint64. In the top of that
+    /// level, these are the cells that need a shard. `max_bytes` is a limit of the array, with what is needed to make it.
+    #[pyo3(signature = (level, **limits))]
+    fn open_cells<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = named::level)] level: Level,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (limits, view) = (Limits::of(limits)?, self.octree.view());
+        let level = level_of(py, self.octree.frame(), level)?;
+        let codes = limits.run(py, |control| {
+            let cells = view.open_cells(level)?;
+            afford(control, "the list of open cells", cells.len() as u64 * OPEN_CELL)?;
+            let mut codes = Vec::new();
+            codes.try_reserve_exact(cells.len()).map_err(|_| Error::OutOfMemory)?;
+            codes.extend(cells.iter().map(|cell| cell.morton()));
+            Ok(codes)
+        })?;
         let count = codes.len();
         Ok(arrays::array(py, codes, &[count])?.into_any())
     }
@@ -206,46 +312,54 @@ impl Octree {
         Ok(told)
     }
 
-    /// The same octree with other metadata: a dictionary of texts.
-    fn with_metadata<'py>(
-        &self,
-        py: Python<'py>,
-        metadata: &Bound<'py, PyDict>,
-    ) -> PyResult<Bound<'py, Octree>> {
+    /// The same octree with other `metadata`: a dictionary of texts.
+    fn with_metadata<'py>(&self, metadata: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Octree>> {
+        let py = metadata.py();
+        let facts =
+            metadata.cast::<PyDict>().map_err(|_| other_type(metadata, "metadata", "a dict of texts"))?;
         let mut told = Metadata::new();
-        for (key, value) in metadata.iter() {
-            told.insert(key.extract::<String>()?, value.extract::<String>()?);
+        for (key, value) in facts.iter() {
+            let (key, value) = (<&str>::take(&key, "metadata")?, <&str>::take(&value, "metadata")?);
+            told.insert(key.to_owned(), value.to_owned());
         }
         Octree::bound(py, self.octree.with_metadata(told))
     }
 
     /// Cells as arrays: `level` of shape (n,), `at` (indices along x, y and z in cells of that level) of shape (n, 3), and `tag` (`Tag`) of
-    /// shape (n,). `tags` chooses among "empty", "partial", "full" and "branch" (cells that are cut). Without it, all cells that are not
-    /// cut are listed.
+    /// shape (n,). `tags` chooses among "empty", "partial", "full" and "branch" (cells that are cut), or the constants EMPTY, PARTIAL and
+    /// FULL. Without it, all cells that are not cut are listed. `max_bytes` is a limit of the arrays.
     ///
     /// >>> cells = build(Csg.cuboid([0, 0, 0], [1, 1, 1]), Frame([0, 0, 0], 2, 1)).cells("full")
     /// >>> cells.level, cells.at
     /// (array([1], dtype=uint8), array([[0, 0, 0]], dtype=uint32))
-    #[pyo3(signature = (*tags))]
-    fn cells<'py>(&self, py: Python<'py>, tags: Vec<String>) -> PyResult<Bound<'py, PyAny>> {
-        let filter = match tags.as_slice() {
-            [] => CellFilter::leaves(),
-            tags => {
-                let tags: Vec<Tag> =
-                    tags.iter().map(|tag| words::value_of(py, "tags", tag)).collect::<PyResult<_>>()?;
-                CellFilter::tags(&tags)
-            }
+    #[pyo3(signature = (*tags, **limits))]
+    fn cells<'py>(
+        &self,
+        tags: &Bound<'py, PyTuple>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = tags.py();
+        let limits = Limits::of(limits)?;
+        let tags = match tags.is_empty() {
+            true => vec![Tag::Empty, Tag::Partial, Tag::Full],
+            false => tags.iter().map(|tag| words::tag(&tag, "tags")).collect::<PyResult<_>>()?,
         };
-        let (level, tag, at) = Limits::default().run(py, |control| {
+        let (level, tag, at) = limits.run(py, |control| {
+            let filter = CellFilter::tags(&tags);
+            let statistics = self.octree.statistics();
+            let chosen = [Tag::Empty, Tag::Branch, Tag::Partial, Tag::Full]
+                .into_iter()
+                .filter(|tag| tags.contains(tag));
+            let count = chosen.fold(0, |sum: u64, tag| sum.saturating_add(statistics.cells(tag)));
+            afford(control, "the list of cells", count.saturating_mul(CELL))?;
             let (mut levels, mut tags, mut places) = (Vec::new(), Vec::new(), Vec::new());
+            // (Arrays of a damaged file may hold more cells than it says, so that their number is no bound.)
             for (i, found) in self.octree.view().cells(filter).enumerate() {
-                if i % (1 << 16) == 0 {
-                    if control.is_cancelled() {
-                        return Err(leafless::Error::Cancelled);
-                    }
-                    levels.try_reserve(1 << 16).map_err(|_| leafless::Error::OutOfMemory)?;
-                    tags.try_reserve(1 << 16).map_err(|_| leafless::Error::OutOfMemory)?;
-                    places.try_reserve(1 << 16).map_err(|_| leafless::Error::OutOfMemory)?;
+                if i % CHUNK == 0 {
+                    advance(control, i, count as usize)?;
+                    levels.try_reserve(CHUNK).map_err(|_| Error::OutOfMemory)?;
+                    tags.try_reserve(CHUNK).map_err(|_| Error::OutOfMemory)?;
+                    places.try_reserve(CHUNK).map_err(|_| Error::OutOfMemory)?;
                 }
                 levels.push(found.cell.level);
                 tags.push(found.tag as u8);
@@ -261,46 +375,60 @@ impl Octree {
         ))
     }
 
-    /// The tag of the finest cell with these indices along x, y and z.
-    fn tag_at<'py>(&self, py: Python<'py>, at: [u32; 3]) -> PyResult<Bound<'py, PyAny>> {
+    /// The tag of the finest cell `at` these indices along x, y and z.
+    fn tag_at<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = named::at)] at: [u32; 3],
+    ) -> PyResult<Bound<'py, PyAny>> {
         if at.iter().any(|&index| index >= self.octree.frame().cells()) {
             return Err(refused(py, "at", "must be a cell of the frame"));
         }
         from_package!(py, "leafless._answers", "Tag")?.call1((self.octree.view().tag_at(at) as u8,))
     }
 
-    /// The cells of a level as a volume, indexed [x, y, z]: an array of booleans, true where cells are FULL, or with `outer=True`
-    /// where they are not EMPTY. By default all of the finest level; a box of it by its first cell and the first beyond.
+    /// The cells of a `level` as a volume, indexed [x, y, z]: an array of booleans, true where cells are FULL, or with `outer=True`
+    /// where they are not EMPTY. The finest level is the default. `first` and `end` cut out a box: its first cell, and the first one beyond it, as
+    /// indices along x, y and z. `max_bytes` is a limit of the array, with what is needed to make it.
     #[pyo3(signature = (level=None, *, first=None, end=None, outer=false, **limits))]
     fn bitmap<'py>(
         &self,
         py: Python<'py>,
-        level: Option<u8>,
-        first: Option<[u32; 3]>,
-        end: Option<[u32; 3]>,
-        outer: bool,
+        #[pyo3(from_py_with = named::level)] level: Option<Level>,
+        #[pyo3(from_py_with = named::first)] first: Option<[u32; 3]>,
+        #[pyo3(from_py_with = named::end)] end: Option<[u32; 3]>,
+        #[pyo3(from_py_with = named::outer)] outer: bool,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let limits = Limits::of(limits)?;
-        let level = level.unwrap_or(self.octree.frame().depth());
-        let side = 1u32.checked_shl(level.into()).unwrap_or(0);
+        let deepest = self.octree.frame().depth();
+        let level = level.map_or(deepest, |Deep(level)| level);
+        let side = 1 << level;
         let (first, end) = (first.unwrap_or_default(), end.unwrap_or([side; 3]));
+        if level <= deepest && (0..3).any(|axis| first[axis] > end[axis] || end[axis] > side) {
+            let problem = format!("must not be before first, nor beyond the {side} cells of an axis");
+            return Err(refused(py, "end", problem));
+        }
         let view = self.octree.view();
-        let size = [0, 1, 2].map(|axis| end[axis].saturating_sub(first[axis]) as usize);
-        let words = view.bitmap_words(level, first, end).or_raise(py)? as usize;
+        let words = view.bitmap_words(level, first, end).or_raise(py)?;
+        let size = [0, 1, 2].map(|axis| (end[axis] - first[axis]) as usize);
         let bits = limits.run(py, |control| {
+            let count: usize = size.iter().product();
+            let bitmaps = if outer { 2 } else { 1 };
+            afford(control, "the bitmap", count as u64 + words * 8 * bitmaps)?;
+            let words = words as usize;
             let zeros = || {
                 let mut all = Vec::new();
-                all.try_reserve_exact(words).map_err(|_| leafless::Error::OutOfMemory)?;
+                all.try_reserve_exact(words).map_err(|_| Error::OutOfMemory)?;
                 all.resize(words, 0u64);
-                Ok::<_, leafless::Error>(all)
+                Ok::<_, Error>(all)
             };
             let mut inner = zeros()?;
             let mut upper = if outer { Some(zeros()?) } else { None };
             view.bitmap(level, first, end, &mut inner, upper.as_deref_mut(), control)?;
             let words = upper.unwrap_or(inner);
             let mut bits: Vec<bool> = Vec::new();
-            bits.try_reserve_exact(size.iter().product()).map_err(|_| leafless::Error::OutOfMemory)?;
+            bits.try_reserve_exact(count).map_err(|_| Error::OutOfMemory)?;
             let row = size[0].div_ceil(64);
             for row in words.chunks_exact(row.max(1)) {
                 bits.extend((0..size[0]).map(|x| row[x / 64] >> (x % 64) & 1 != 0));
@@ -313,12 +441,13 @@ impl Octree {
         flat.call_method("reshape", (size.to_vec(),), Some(&order))
     }
 
-    /// How a box (lower and upper corner) lies to the solid: "inside", "outside", "crossing" or "undecided".
+    /// How a box, whose `bounds` are its lower and its upper corner, lies to the solid: "inside", "outside", "crossing" or "undecided".
     fn classify_box<'py>(&self, bounds: &Bound<'py, PyAny>) -> PyResult<&'static str> {
         use leafless::query::Region;
         let py = bounds.py();
         let [min, max] = corners(bounds, "bounds")?;
-        Ok(match self.octree.classify_box(min, max).or_raise(py)? {
+        let found = py.detach(|| self.octree.classify_box(min, max).map_err(called(CORNERS)));
+        Ok(match found.or_raise(py)? {
             Region::Outside => "outside",
             Region::Inside => "inside",
             Region::Crossing => "crossing",
@@ -332,56 +461,58 @@ impl Octree {
         self.octree.channels().iter().map(|channel| channel.name().to_owned()).collect()
     }
 
-    /// A channel, by its name.
-    fn channel(&self, py: Python<'_>, name: &str) -> PyResult<Channel> {
+    /// The channel called `name`.
+    fn channel(&self, py: Python<'_>, #[pyo3(from_py_with = named::name)] name: &str) -> PyResult<Channel> {
         match self.octree.channel(name) {
             Some(channel) => Ok(Channel(channel.clone())),
             None => Err(refused(py, "name", format!("no channel is called '{name}'"))),
         }
     }
 
-    /// The same octree with a channel more, or with another one of that name.
+    /// The same octree with a `channel` more, or with another one of that `name`.
     fn with_channel<'py>(
         &self,
         py: Python<'py>,
-        name: &str,
-        channel: &Channel,
+        #[pyo3(from_py_with = named::name)] name: &str,
+        #[pyo3(from_py_with = named::channel)] channel: Bound<'py, Channel>,
     ) -> PyResult<Bound<'py, Octree>> {
-        Octree::bound(py, self.octree.with_channel(channel.0.with_name(name)).or_raise(py)?)
+        Octree::bound(py, self.octree.with_channel(channel.get().0.with_name(name)).or_raise(py)?)
     }
 
-    /// The octree of cells alone, to a depth: surfaces that it keeps decide them, and `rule` what is undecided there, as in `build`.
+    /// The octree of cells alone, to a `depth`: surfaces that it keeps decide them, and `rule` what is undecided there, as in `build`.
     #[pyo3(signature = (depth=None, *, rule="certified", **limits))]
     fn plain<'py>(
         &self,
         py: Python<'py>,
-        depth: Option<u8>,
-        rule: &str,
+        #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
+        #[pyo3(from_py_with = named::rule)] rule: &str,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, Octree>> {
         let rule: Rule = words::value(py, rule)?;
-        let depth = depth.unwrap_or(if self.keeps_surfaces() { DEPTH } else { self.octree.frame().depth() });
-        let found =
-            Limits::of(limits)?.run(py, |control| leafless::op::plain(&self.octree, depth, rule, control))?;
+        let own = if self.keeps_surfaces() { DEPTH } else { self.octree.frame().depth() };
+        let depth = depth.map_or(own, |Deep(depth)| depth);
+        let found = Limits::of(limits)?.run(py, |control| op::plain(&self.octree, depth, rule, control))?;
         Octree::bound(py, found)
     }
 
-    /// Its voxels as records, sorted by code; with the values of a channel at their centres.
+    /// Its voxels as records, sorted by code; with the values of a `channel` at their centres. Boundary voxels end at `boundary_depth`, the frame's
+    /// depth by default. `outside=True` lists the voxels outside, too.
     #[pyo3(signature = (channel=None, *, boundary_depth=None, outside=false, **limits))]
     fn voxels(
         &self,
         py: Python<'_>,
-        channel: Option<&Channel>,
-        boundary_depth: Option<u8>,
-        outside: bool,
+        #[pyo3(from_py_with = named::channel)] channel: Option<Bound<'_, Channel>>,
+        #[pyo3(from_py_with = named::boundary_depth)] boundary_depth: Option<Depth>,
+        #[pyo3(from_py_with = named::outside)] outside: bool,
         limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<VoxelRecords> {
         let limits = Limits::of(limits)?;
         let mut options = leafless::voxel::VoxelOptions::new().outside(outside);
-        if let Some(depth) = boundary_depth {
+        if let Some(Deep(depth)) = boundary_depth {
             options = options.boundary_depth(depth);
         }
-        let attribute = channel.map(|channel| &channel.0 as &dyn leafless::attribute::Attribute);
+        let attribute =
+            channel.as_ref().map(|channel| &channel.get().0 as &dyn leafless::attribute::Attribute);
         let view = self.octree.view();
         let records = limits
             .run(py, |control| leafless::voxel::VoxelRecords::of(view, &options, attribute, control))?;
@@ -392,20 +523,20 @@ impl Octree {
         let py = other.py();
         match other.cast::<Octree>() {
             Ok(other) => {
-                Ok((self.octree == other.get().octree).into_pyobject(py)?.to_owned().into_any().unbind())
+                let other = &other.get().octree;
+                py.detach(|| self.octree == *other).into_py_any(py)
             }
             Err(_) => Ok(py.NotImplemented()),
         }
     }
 
-    fn __hash__(&self) -> u64 {
-        crate::frame::hash(self.octree.frame()) ^ self.octree.statistics().nodes()
+    fn __hash__(&self, py: Python<'_>) -> u64 {
+        crate::frame::hash(self.octree.frame()) ^ self.statistics_of_cells(py).nodes()
     }
 
-    fn __repr__(&self) -> String {
-        let frame = self.octree.frame();
-        let (depth, nodes) = (frame.depth(), self.octree.statistics().nodes());
-        format!("<Octree: depth {depth}, {nodes} nodes, volume {}>", self.octree.statistics().volume())
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let (depth, known) = (self.octree.frame().depth(), self.statistics_of_cells(py));
+        format!("<Octree: depth {depth}, {} nodes, volume {}>", known.nodes(), known.volume())
     }
 
     /// By the bytes of its file; of a mapped one by the path and a checksum, which costs nothing.
@@ -446,14 +577,15 @@ pub fn told<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Vec<Bound
 
 /// Which surfaces are kept.
 fn kept_surfaces(surfaces: Option<&Bound<'_, PyAny>>) -> PyResult<Option<SurfaceOptions>> {
-    Ok(match surfaces {
-        None => None,
-        Some(kept) => match kept.extract::<bool>() {
-            Ok(false) => None,
-            Ok(true) => Some(SurfaceOptions { tolerance: None }),
-            Err(_) => Some(SurfaceOptions { tolerance: Some(kept.extract()?) }),
-        },
-    })
+    let Some(kept) = surfaces else { return Ok(None) };
+    if let Ok(all) = kept.extract::<bool>() {
+        return Ok(all.then_some(SurfaceOptions { tolerance: None }));
+    }
+    match kept.extract::<f64>() {
+        Ok(thick) if thick.is_finite() && thick > 0.0 => Ok(Some(SurfaceOptions { tolerance: Some(thick) })),
+        Ok(thick) => Err(refused(kept.py(), "surfaces", format!("must be a positive length, not {thick}"))),
+        Err(_) => Err(other_type(kept, "surfaces", "True, False or a number")),
+    }
 }
 
 /// The frame that an octree is built on.
@@ -473,13 +605,13 @@ fn frame_for(
     wish.of(py, solid, deepest)
 }
 
-/// The frame on which `build` would build a solid.
+/// The frame on which `build` would build a `solid` with the same `frame`, `depth` and `surfaces`.
 #[pyfunction]
 #[pyo3(signature = (solid, frame=None, *, depth=None, surfaces=None))]
 pub fn frame_of(
     solid: &Bound<'_, PyAny>,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     surfaces: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Frame> {
     let py = solid.py();
@@ -487,7 +619,7 @@ pub fn frame_of(
     frame_for(py, &solid, Wish { frame, depth }, kept_surfaces(surfaces)?.as_ref()).map(Frame)
 }
 
-/// An octree of a solid: cells are split until they are decided, or the frame's depth is reached.
+/// An octree of a `solid`: cells are split until they are decided, or the frame's depth is reached.
 ///
 /// `rule` says what becomes of cells that are undecided at the finest level. "certified" keeps the doubt, so every answer is
 /// proven. "sampled" asks at the centres of cells. "inner" calls undecided cells EMPTY, "outer" calls them FULL.
@@ -498,7 +630,7 @@ pub fn frame_of(
 /// `frame` is a `Frame`, or an octree whose frame is used. Without it, the frame is a cube around the solid. `depth` replaces the frame's
 /// depth; a cube around the solid has the depth 9 by default.
 ///
-/// `shard`, a `leafless.shards.Shard`, makes only the cells of that; all others are PARTIAL.
+/// With a `shard` (a `leafless.shards.Shard`), only the cells of the shard are made. All other cells are PARTIAL.
 ///
 /// >>> block = build(Csg.cuboid([0, 0, 0], [3, 2, 1]), depth=5)
 /// >>> block.volume, bool(block.proof)
@@ -508,10 +640,10 @@ pub fn frame_of(
 pub fn build<'py>(
     solid: &Bound<'py, PyAny>,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
-    rule: &str,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
+    #[pyo3(from_py_with = named::rule)] rule: &str,
     surfaces: Option<&Bound<'py, PyAny>>,
-    shard: Option<Shard>,
+    #[pyo3(from_py_with = named::shard)] shard: Option<Bound<'py, Shard>>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, Octree>> {
     let py = solid.py();
@@ -523,13 +655,14 @@ pub fn build<'py>(
     if surfaces.is_some() && rule != Rule::Certified {
         return Err(refused(py, "rule", "must be 'certified' with surfaces, which decide what cells do not"));
     }
+    let shard = shard.map(|shard| shard.get().0);
     let octree = limits.run(py, |control| match (&surfaces, shard) {
         (Some(options), None) => build_extended(&solid.shape, &frame, options, control),
-        (Some(options), Some(Shard(shard))) => {
-            build_extended_shard(&solid.shape, &frame, options, shard, control)
+        (Some(options), Some(shard)) => {
+            op::build_extended_shard(&solid.shape, &frame, options, shard, control)
         }
         (None, None) => leafless::build(&solid.shape, &frame, rule, control),
-        (None, Some(Shard(shard))) => leafless::build_shard(&solid.shape, &frame, rule, shard, control),
+        (None, Some(shard)) => leafless::build_shard(&solid.shape, &frame, rule, shard, control),
     })?;
     Octree::bound(py, octree)
 }

@@ -78,6 +78,7 @@ pub fn placed<'py>(solid: &Bound<'py, Solid>, placement: &Bound<'py, PyAny>) -> 
     if let Ok(mesh) = solid.cast::<Mesh>() {
         return Ok(mesh.get().placed(py, &map)?.into_any());
     }
-    let whole = expression(solid, "self")?.placed(&map).or_raise(py)?;
+    let own = expression(solid, "self")?;
+    let whole = py.detach(|| own.placed(&map)).or_raise(py)?;
     Ok(Csg::made(py, whole, "placed_of", (solid, crate::affine::Affine(map)))?.into_any())
 }

@@ -2,9 +2,11 @@
 
 use crate::affine::affines;
 use crate::anywhere::anywhere;
+use crate::arguments::{Depth, named};
 use crate::arrays;
 use crate::ask::{FrameLike, Wish};
 use crate::error::OrRaise;
+use crate::frame::Frame;
 use crate::from_package;
 use crate::interval::Interval;
 use crate::solid::{Given, given};
@@ -92,11 +94,14 @@ impl Pair {
         let placements = placements.map(|given| affines(given, "placements")).transpose()?;
         let places = placements.as_deref().unwrap_or(&[Affine::IDENTITY]);
         let frame = wish.of_both(py, [&a, &b], places, DEPTH)?;
-        // An octree is known on its own frame, all else on one around it.
+        // An octree is known on its own frame, all else on one around it, or around whatever comes to lie in the frame.
         let own = match (placements.is_some(), b.own) {
             (true, Some(own)) => own,
             (true, None) => {
-                let Bounds { min, max } = crate::ask::bounds(py, &b)?;
+                let Bounds { min, max } = match b.bounds(py) {
+                    Some(bounds) => bounds,
+                    None => moved_there(&frame, places).or_raise(py)?,
+                };
                 Inner::around(min, max, frame.depth()).or_raise(py)?
             }
             (false, _) => frame,
@@ -142,7 +147,11 @@ impl Pair {
     }
 }
 
-/// Whether two solids overlap, the second under a placement, or under each of many: then the answer is a list.
+/// Whether two solids overlap, `a` where it is and `b` under a placement, or under each of many: then the answer is a list. `placements` is an
+/// `Affine` or a matrix, or a sequence of them.
+///
+/// `frame` is the cube in which both are looked at: a `Frame`, or an octree that has it. Without it, it is a cube around both, under all
+/// placements. `depth` replaces its depth; 16 by default, or that of an octree.
 ///
 /// With a `tolerance` (cubic model units) the common volume is measured until its interval is no wider. Each placement may split
 /// `max_splits` cells, 100,000 by default.
@@ -158,9 +167,9 @@ pub fn interference<'py>(
     a: &Bound<'py, PyAny>,
     b: &Bound<'py, PyAny>,
     placements: Option<&Bound<'py, PyAny>>,
-    tolerance: f64,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: f64,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let pair = Pair::of(a, b, placements, Wish { frame, depth }, budgeted(limits)?)?;
@@ -173,8 +182,8 @@ pub fn interference<'py>(
     )
 }
 
-/// How far two solids are apart, to a tolerance (model units; by default a millionth of the frame), the second under a placement or
-/// under each of many.
+/// How far two solids are apart, to a `tolerance` (model units; by default a millionth of the frame): `a` where it is, and `b` under a placement,
+/// or under each of many. `placements`, `frame` and `depth` are those of `interference`.
 ///
 /// >>> found = clearance(Csg.ball([0, 0, 0], 1), Csg.ball([5, 0, 0], 2))
 /// >>> 2.0 in found.distance, found.points.round(3).tolist()
@@ -185,9 +194,9 @@ pub fn clearance<'py>(
     a: &Bound<'py, PyAny>,
     b: &Bound<'py, PyAny>,
     placements: Option<&Bound<'py, PyAny>>,
-    tolerance: Option<f64>,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: Option<f64>,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let pair = Pair::of(a, b, placements, Wish { frame, depth }, budgeted(limits)?)?;
@@ -201,7 +210,8 @@ pub fn clearance<'py>(
     )
 }
 
-/// Whether no point of one solid is nearer than `least` (model units) to one of the other: cheaper than the distance.
+/// Whether no point of `a` is nearer than `least` (model units) to one of `b`: cheaper than the distance. `placements`, `frame` and `depth` are
+/// those of `interference`.
 ///
 /// >>> gap_at_least(Csg.ball([0, 0, 0], 1), Csg.ball([5, 0, 0], 2), 1.9).verdict
 /// 'yes'
@@ -210,10 +220,10 @@ pub fn clearance<'py>(
 pub fn gap_at_least<'py>(
     a: &Bound<'py, PyAny>,
     b: &Bound<'py, PyAny>,
-    least: f64,
+    #[pyo3(from_py_with = named::least)] least: f64,
     placements: Option<&Bound<'py, PyAny>>,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let pair = Pair::of(a, b, placements, Wish { frame, depth }, budgeted(limits)?)?;
@@ -226,7 +236,31 @@ pub fn gap_at_least<'py>(
     )
 }
 
-/// How far the boundaries of two solids are from each other, to a tolerance (model units; by default a ten-thousandth of the frame).
+/// The frame on which `interference`, `clearance` and `gap_at_least` look at two solids, `a` and `b`, under these `placements`, with the same
+/// `frame` and `depth`. Whoever asks about the placements in several calls gives the frame to each of them, and gets the answers of one
+/// call; but a `b` without known bounds is prepared for the placements of each call.
+///
+/// >>> from leafless._leafless import frame_of_pair
+/// >>> a, b = Csg.ball([0, 0, 0], 1), Csg.ball([0, 0, 0], 2)
+/// >>> places = [Affine.translation([x, 0, 0]) for x in range(4, 8)]
+/// >>> frame = frame_of_pair(a, b, places)
+/// >>> apart = [clearance(a, b, place, frame=frame).distance for place in places]
+/// >>> apart == [found.distance for found in clearance(a, b, places)]
+/// True
+#[pyfunction]
+#[pyo3(signature = (a, b, placements=None, *, frame=None, depth=None))]
+pub fn frame_of_pair(
+    a: &Bound<'_, PyAny>,
+    b: &Bound<'_, PyAny>,
+    placements: Option<&Bound<'_, PyAny>>,
+    frame: Option<FrameLike>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
+) -> PyResult<Frame> {
+    Pair::of(a, b, placements, Wish { frame, depth }, Limits::default()).map(|pair| Frame(pair.frame))
+}
+
+/// How far the boundaries of two solids, `a` and `b`, are from each other, to a `tolerance` (model units; by default a ten-thousandth of the
+/// frame). `frame` and `depth` are those of `interference`.
 ///
 /// >>> found = deviation(Csg.ball([0, 0, 0], 1), Csg.ball([0.1, 0, 0], 1), tolerance=0.01)
 /// >>> 0.1 in found.distance, found.within(0.2)
@@ -236,9 +270,9 @@ pub fn gap_at_least<'py>(
 pub fn deviation<'py>(
     a: &Bound<'py, PyAny>,
     b: &Bound<'py, PyAny>,
-    tolerance: Option<f64>,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: Option<f64>,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = a.py();
@@ -260,10 +294,14 @@ pub fn deviation<'py>(
     ))
 }
 
-/// A box that holds what a solid becomes under a placement.
-impl Given {
-    pub fn placed(&self, placement: &Affine) -> Option<Bounds> {
-        let bounds = self.bounds().or_else(|| self.own.map(|own| Bounds::of(&own)))?;
-        bounds.placed(placement)
+/// A box that holds all that one placement or another moves into a frame.
+fn moved_there(frame: &Inner, placements: &[Affine]) -> Result<Bounds, Error> {
+    let universe = Bounds::of(frame);
+    let mut all: Option<Bounds> = None;
+    for placement in placements {
+        // What is beyond the doubles no frame can hold.
+        let Some(before) = universe.placed(&placement.inverse()?) else { continue };
+        all = Some(all.map_or(before, |all| all.hull(&before)));
     }
+    Ok(all.unwrap_or(universe))
 }

@@ -1,14 +1,16 @@
 //! Pictures.
 
-use crate::arrays::{layout, required, shown, tuple};
-use crate::ask::{self, Wish};
-use crate::error::{OrRaise, refused};
+use crate::arguments::named;
+use crate::arrays::{self, layout, required, shown};
+use crate::ask::{self, FrameLike, Wish};
+use crate::error::{OrRaise, called, refused};
 use crate::from_package;
 use crate::mesh::Mesh;
 use crate::octree::Octree;
-use crate::solid::{Given, given, is_solid};
+use crate::solid::{Given, given};
 use crate::work::Limits;
 use leafless::exchange::write_png;
+use leafless::lattice::MAX_DEPTH;
 use leafless::render::{
     self as pictures, Camera, Clip, FIELD_OF_VIEW, Finish, Layer, MeshEdges, MeshLayer, OctreeLayer, Outline,
     Shot, SliceLayer, SlicePlane, SolidLayer,
@@ -98,67 +100,80 @@ struct Shown {
     colour: [u8; 4],
 }
 
-/// Takes a picture of solids. A mesh with holes is shown by its triangles.
+/// Takes a picture of `solids`, of a `size` in pixels (width, height). A mesh with holes is shown by its triangles.
 ///
 /// One looks from an azimuth and an elevation in degrees, `view`; `colours` are triples or quadruples of 0 to 255, one for each solid;
 /// `clip` keeps what lies within planes a x + b y + c z + d ≥ 0, rows of four numbers; `slice` is one such plane a x + b y + c z + d = 0,
 /// and shows the cells of the first solid in it: EMPTY light blue, FULL blue, PARTIAL orange. `cells=True` shows octrees by their cells.
+/// `edges=False` leaves out the lines along sharp edges. `background` is a colour with its opacity, four numbers of 0 to 255. `samples` are
+/// those of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64.
+///
+/// `frame` is a `Frame`, or an octree that has it: the cube that the picture takes in, and in which solids are looked for. Without it, the
+/// picture takes in the solids as a whole. Octrees, and meshes with holes, are drawn as they are.
 ///
 /// >>> render(Csg.ball([0, 0, 0], 1), size=(320, 240))
 /// <Picture: 320 × 240 pixels>
 #[pyfunction]
 #[pyo3(signature = (
     *solids, size=[640, 480], view=FROM, colours=None, clip=None, slice=None, edges=true, cells=false,
-    background=[255; 4], samples=4, **limits
+    background=[255; 4], samples=4, frame=None, **limits
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn render(
     solids: &Bound<'_, PyTuple>,
-    size: [u32; 2],
-    view: [f64; 2],
-    colours: Option<Vec<Vec<u8>>>,
+    #[pyo3(from_py_with = named::size)] size: [u32; 2],
+    #[pyo3(from_py_with = named::view)] view: [f64; 2],
+    colours: Option<&Bound<'_, PyAny>>,
     clip: Option<&Bound<'_, PyAny>>,
-    slice: Option<&Bound<'_, PyAny>>,
-    edges: bool,
-    cells: bool,
-    background: [u8; 4],
-    samples: u32,
+    #[pyo3(from_py_with = named::slice)] slice: Option<[f64; 4]>,
+    #[pyo3(from_py_with = named::edges)] edges: bool,
+    #[pyo3(from_py_with = named::cells)] cells: bool,
+    #[pyo3(from_py_with = named::background)] background: [u8; 4],
+    #[pyo3(from_py_with = named::samples)] samples: u32,
+    frame: Option<FrameLike>,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Picture> {
     let (py, limits) = (solids.py(), Limits::of(limits)?);
-    let slice = slice.map(|plane| tuple::<4>(plane, "slice")).transpose()?;
     let mut scene = Vec::new();
     for (i, object) in solids.iter().enumerate() {
-        if !is_solid(&object) {
-            return Err(refused(py, "solids", "must be solids"));
-        }
-        let colour = match colours.as_ref().map(|all| all.get(i).map(Vec::as_slice)) {
-            None => COLOURS[i % COLOURS.len()].to_vec(),
-            Some(Some(own @ ([_, _, _] | [_, _, _, _]))) => own.to_vec(),
-            Some(_) => return Err(refused(py, "colours", "must be three or four numbers for each solid")),
+        let colour = match &colours {
+            None => {
+                let [red, green, blue] = COLOURS[i % COLOURS.len()];
+                [red, green, blue, 255]
+            }
+            Some(colours) => colour(colours, i, solids.len())?,
         };
-        let colour = [colour[0], colour[1], colour[2], colour.get(3).copied().unwrap_or(255)];
         let stored = object.cast::<Octree>().ok().map(|octree| octree.get().octree.clone());
         // A mesh with holes is shown as it is: its triangles.
         let open = match object.cast::<Mesh>() {
-            Ok(mesh) if !mesh.get().mesh.report().or_raise(py)?.is_closed() => Some(mesh.get().mesh.clone()),
+            Ok(mesh) if !mesh.get().inspected(py)?.is_closed() => Some(mesh.get().mesh.clone()),
             _ => None,
         };
         let solid = given(&object, "solids")?;
-        let frame = Wish::default().of(py, &solid, if slice.is_some() { CELLS } else { 20 })?;
+        // (An octree is drawn on its own frame.)
+        let frame = if stored.is_some() { None } else { frame };
+        let frame =
+            Wish { frame, depth: None }.of(py, &solid, if slice.is_some() { CELLS } else { MAX_DEPTH })?;
         scene.push(Shown { solid, stored, open, frame, colour });
     }
-    let mut points = Vec::new();
-    for shown in &scene {
-        let known = match &shown.open {
-            Some(mesh) => Bounds { min: mesh.bounds().0, max: mesh.bounds().1 },
-            None => tight(py, &shown.solid)?,
-        };
-        points.extend(known.corners());
-    }
-    if points.is_empty() {
+    if scene.is_empty() {
         return Err(refused(py, "solids", "must be one at least"));
     }
+    let mut points = Vec::new();
+    match frame {
+        Some(FrameLike(frame)) => points.extend(Bounds::of(&frame).corners()),
+        None => {
+            for shown in &scene {
+                let known = match &shown.open {
+                    Some(mesh) => Bounds { min: mesh.bounds().0, max: mesh.bounds().1 },
+                    None => tight(py, &shown.solid)?,
+                };
+                points.extend(known.corners());
+            }
+        }
+    }
+    let plane = slice.map(|[a, b, c, d]| SlicePlane::new([a, b, c], d)).transpose();
+    let plane = plane.map_err(called([("normal", "slice"), ("offset", "slice")])).or_raise(py)?;
     let aspect = f64::from(size[0]) / f64::from(size[1].max(1));
     let camera = match slice {
         None => Camera::fitted(&points, view, Some(FIELD_OF_VIEW), aspect),
@@ -170,19 +185,20 @@ pub fn render(
             Camera::fitted(&points, from, None, aspect)
         }
     };
-    let mut shot = Shot::new(camera.or_raise(py)?, size);
+    let names = [("from", "view"), ("lens", "view"), ("aspect", "size"), ("points", "solids")];
+    let mut shot = Shot::new(camera.map_err(called(names)).or_raise(py)?, size);
     shot.background = background;
     shot.samples = samples;
     if let Some(planes) = clip {
-        let planes = crate::arrays::doubles(planes, "clip")?.call_method1("reshape", ((-1, 4),))?;
-        let planes: Vec<[f64; 4]> = planes.call_method0("tolist")?.extract()?;
         let mut kept = Clip::new();
-        for plane in planes {
-            kept = kept.plane(plane).or_raise(py)?;
+        for plane in arrays::table(planes, "clip")? {
+            kept = kept
+                .plane(plane)
+                .map_err(called([("plane", "clip"), ("planes", "clip"), ("normal", "clip")]))
+                .or_raise(py)?;
         }
         shot.clip = kept;
     }
-    let plane = slice.map(|[a, b, c, d]| SlicePlane::new([a, b, c], d)).transpose().or_raise(py)?;
     let picture = limits.run(py, |control| {
         let mut layers: Vec<Box<dyn Layer + '_>> = Vec::new();
         for Shown { solid, stored, open, frame, colour } in &scene {
@@ -215,9 +231,25 @@ pub fn render(
     Ok(Picture(picture))
 }
 
+/// The colour of one of several solids.
+fn colour(colours: &Bound<'_, PyAny>, i: usize, count: usize) -> PyResult<[u8; 4]> {
+    let py = colours.py();
+    let problem = || {
+        let all =
+            format!("must be three or four whole numbers from 0 to 255 for each of the solids, {count} rows");
+        refused(py, "colours", all)
+    };
+    let own: Vec<u8> = colours.get_item(i).and_then(|row| row.extract()).map_err(|_| problem())?;
+    match own[..] {
+        [red, green, blue] => Ok([red, green, blue, 255]),
+        [red, green, blue, opacity] => Ok([red, green, blue, opacity]),
+        _ => Err(problem()),
+    }
+}
+
 /// A box around a solid.
 fn tight(py: Python<'_>, solid: &Given) -> PyResult<Bounds> {
-    match (solid.own, solid.bounds()) {
+    match (solid.own, solid.bounds(py)) {
         // The universe of an octree may be much larger than what is in it.
         (Some(own), _) => {
             let (shape, coarse) = (&solid.shape, own);

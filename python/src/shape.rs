@@ -26,6 +26,8 @@ use std::sync::Arc;
 ///   nothing.
 /// - `bounds`, an attribute of the class or of the object, or a property: a lower and an upper corner between which all of the shape lies.
 ///
+/// `arguments` and `named` ones are those of your `__init__`.
+///
 /// The methods are called from several threads, one at a time. Exceptions in them end the work, and come out of it.
 ///
 /// >>> import numpy as np

@@ -1,40 +1,47 @@
 //! Octrees in shards: building, cutting and joining them, and adding up what is measured of them.
 
+use crate::arguments::{Argument, Deep, Level, named, other_type};
 use crate::arrays;
 use crate::ask::FrameLike;
-use crate::error::{OrRaise, refused};
-use crate::frame::Frame;
-use crate::measures;
+use crate::error::{OrRaise, called, refused};
+use crate::frame::{Frame, level_of};
+use crate::measures::{self, wanted};
 use crate::octree::Octree;
 use crate::solid::{Given, Solid, given};
+use crate::words;
 use crate::work::Limits;
-use leafless::octree::OctreeRef;
+use leafless::octree::{OctreeRef, Statistics};
 use leafless::query;
 use leafless::solid::ShardedOctree;
 use leafless::surface::{Resolve, marching_cubes_in};
-use leafless::{AnySolid, Cell, Shard as Inner, Tolerance};
+use leafless::{AnySolid, Cell, Shard as Inner};
 use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-/// The cells that a shard knows: those down to a level, or those below one cell of a level. A cell is named by its place in Morton
-/// order among the 8^level of its level.
+/// The cells that a shard knows: those down to a level, or those below one cell of a level. A cell is named by its `level` and its `code`, the
+/// place in Morton order among the 8^level cells of the level.
 #[pyclass(frozen, eq, hash, from_py_object, module = "leafless.shards")]
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Shard(pub Inner);
 
 #[pymethods]
 impl Shard {
-    /// The cells down to a level. What would be split there stays PARTIAL.
+    /// The cells down to a `level`, from 0 to the depth of the frame. A cell that would be split there stays PARTIAL.
     #[staticmethod]
-    fn top(level: u8) -> Shard {
-        Shard(Inner::Top { level })
+    fn top(#[pyo3(from_py_with = named::level)] level: Level) -> Shard {
+        Shard(Inner::Top { level: level.0 })
     }
 
-    /// The cells in one cell, and those around it.
+    /// The cells in the cell with this `code` on a `level`, and those around the cell.
     #[staticmethod]
-    fn below(py: Python<'_>, level: u8, code: u64) -> PyResult<Shard> {
-        cell(py, level, code).map(|cell| Shard(Inner::Below(cell)))
+    fn below(
+        py: Python<'_>,
+        #[pyo3(from_py_with = named::level)] level: Level,
+        #[pyo3(from_py_with = named::code)] code: u64,
+    ) -> PyResult<Shard> {
+        cell(py, "code", level.0, code).map(|cell| Shard(Inner::Below(cell)))
     }
 
     /// The level.
@@ -71,10 +78,46 @@ impl Shard {
     }
 }
 
-/// The cell of a level at a place in Morton order.
-fn cell(py: Python<'_>, level: u8, code: u64) -> PyResult<Cell> {
-    Cell::from_morton(level, code)
-        .ok_or_else(|| refused(py, "code", "must be less than 8^level, for a level up to 20"))
+/// The cell of a level at a place in Morton order, which the parameter `name` tells.
+fn cell(py: Python<'_>, name: &str, level: u8, code: u64) -> PyResult<Cell> {
+    let problem = || format!("must be a code below 8^{level}, the number of cells of the level, not {code}");
+    Cell::from_morton(level, code).ok_or_else(|| refused(py, name, problem()))
+}
+
+/// The cell of a frame.
+fn cell_of(py: Python<'_>, frame: &leafless::Frame, level: Level, code: u64) -> PyResult<Cell> {
+    cell(py, "code", level_of(py, frame, level)?, code)
+}
+
+/// What the cells of a level on a frame have: pairs of a code and something else, which is told as `kind`.
+fn by_codes<'py, T>(
+    given: &Bound<'py, PyAny>,
+    frame: &leafless::Frame,
+    level: Level,
+    kind: &str,
+    take: impl Fn(&Bound<'py, PyAny>) -> PyResult<T>,
+) -> PyResult<Vec<(Cell, T)>> {
+    let py = given.py();
+    let level = level_of(py, frame, level)?;
+    let pair = |item: PyResult<Bound<'py, PyAny>>| {
+        let item = item?;
+        let pair: (Bound<'py, PyAny>, Bound<'py, PyAny>) =
+            item.extract().map_err(|_| other_type(&item, "shards", &format!("a code with {kind}")))?;
+        let code = Argument::take(&pair.0, "shards")?;
+        Ok((cell(py, "shards", level, code)?, take(&pair.1)?))
+    };
+    sequence(given, "shards", &format!("a sequence of codes with {kind}"))?.map(pair).collect()
+}
+
+/// What a sequence holds.
+fn sequence<'py>(
+    given: &Bound<'py, PyAny>,
+    name: &str,
+    kind: &str,
+) -> PyResult<impl Iterator<Item = PyResult<Bound<'py, PyAny>>> + use<'py>> {
+    given.try_iter().map_err(|error| {
+        if error.is_instance_of::<PyTypeError>(given.py()) { other_type(given, name, kind) } else { error }
+    })
 }
 
 /// What is known of the volume and the moments of a solid in some cells of its frame. Sums are exact, so that their order does not
@@ -85,16 +128,21 @@ pub struct MassSum(query::MassSum);
 
 #[pymethods]
 impl MassSum {
-    /// Of a cell of which nothing is known.
+    /// The sum of the cell with this `code` on a `level`, of which nothing is known. `frame` is a `Frame`, or an octree that has it.
     #[staticmethod]
-    fn unknown(py: Python<'_>, frame: FrameLike, level: u8, code: u64) -> PyResult<MassSum> {
-        query::MassSum::unknown(&frame.0, cell(py, level, code)?).or_raise(py).map(MassSum)
+    fn unknown(
+        py: Python<'_>,
+        frame: FrameLike,
+        #[pyo3(from_py_with = named::level)] level: Level,
+        #[pyo3(from_py_with = named::code)] code: u64,
+    ) -> PyResult<MassSum> {
+        query::MassSum::unknown(&frame.0, cell_of(py, &frame.0, level, code)?).or_raise(py).map(MassSum)
     }
 
-    /// The sum in bytes that `to_bytes` made.
+    /// The sum in `data`, the bytes that `to_bytes` made.
     #[staticmethod]
-    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<MassSum> {
-        query::MassSum::from_bytes(data).or_raise(py).map(MassSum)
+    fn from_bytes(py: Python<'_>, #[pyo3(from_py_with = named::data)] data: &[u8]) -> PyResult<MassSum> {
+        query::MassSum::from_bytes(data).map_err(called([("bytes", "data")])).or_raise(py).map(MassSum)
     }
 
     /// The sum as bytes, for another process of the same version.
@@ -132,8 +180,11 @@ impl MassSum {
     }
 }
 
-/// Measures the part of a solid in one cell of a frame, as `measure` does the whole; the tolerances concern the volume in the cell.
-/// Without `level` and `code` it is the whole frame.
+/// Measures the part of a `solid` in one cell of a `frame` (a `Frame`, or an octree that has it): volume, centroid and inertia, until the width of
+/// the interval of the volume in the cell is `tolerance` of it, or at most `absolute` (cubic model units).
+///
+/// The cell is the one with this `code` (place in Morton order) on a `level`. Without them, it is the whole frame. `max_splits` is how many
+/// times cells may be split.
 ///
 /// >>> from leafless.shards import measure_cell
 /// >>> ball, frame = Csg.ball([0, 0, 0], 1), Frame([-1, -1, -1], 2, 20)
@@ -141,25 +192,26 @@ impl MassSum {
 /// >>> 4.18879020478639 in sum(octants[1:], octants[0]).properties.volume
 /// True
 #[pyfunction]
-#[pyo3(signature = (solid, frame, level=0, code=0, *, tolerance=1e-3, absolute=0.0, **limits))]
+#[pyo3(signature = (solid, frame, level=Deep(0), code=0, *, tolerance=1e-3, absolute=0.0, **limits),
+    text_signature = "(solid, frame, level=0, code=0, *, tolerance=1e-3, absolute=0.0, **limits)")]
 pub fn measure_cell(
     solid: &Bound<'_, PyAny>,
     frame: FrameLike,
-    level: u8,
-    code: u64,
-    tolerance: f64,
-    absolute: f64,
+    #[pyo3(from_py_with = named::level)] level: Level,
+    #[pyo3(from_py_with = named::code)] code: u64,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: f64,
+    #[pyo3(from_py_with = named::absolute)] absolute: f64,
     limits: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<MassSum> {
     let (py, limits) = (solid.py(), Limits::of(limits)?);
-    let (solid, cell) = (given(solid, "solid")?, cell(py, level, code)?);
-    let tolerance = Tolerance { relative: tolerance, absolute };
+    let (solid, cell) = (given(solid, "solid")?, cell_of(py, &frame.0, level, code)?);
+    let tolerance = wanted(py, tolerance, absolute)?;
     let ask =
         |control: &leafless::Control<'_>| query::measure_in(&solid.shape, &frame.0, cell, tolerance, control);
     limits.run(py, ask).map(MassSum)
 }
 
-/// Puts together what several octrees on one frame know of one solid: a cell is FULL or EMPTY if one of them says so, and PARTIAL where
+/// Puts together what several `octrees` on one frame know of one solid: a cell is FULL or EMPTY if one of them says so, and PARTIAL where
 /// all leave it open. Surfaces that one of them keeps are kept. This is the reverse of cutting an octree into shards, byte for byte.
 ///
 /// >>> from leafless.shards import Shard, join
@@ -172,16 +224,21 @@ pub fn measure_cell(
 #[pyo3(signature = (octrees, **limits))]
 pub fn join<'py>(
     py: Python<'py>,
-    octrees: Vec<Py<Octree>>,
+    octrees: &Bound<'py, PyAny>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, Octree>> {
     let limits = Limits::of(limits)?;
-    let views: Vec<OctreeRef<'_>> = octrees.iter().map(|octree| *octree.get().octree.view()).collect();
-    Octree::bound(py, limits.run(py, |control| leafless::op::join(&views, control))?)
+    let all: Vec<Bound<'_, Octree>> = sequence(octrees, "octrees", "a sequence of octrees")?
+        .map(|one| Argument::take(&one?, "octrees"))
+        .collect::<PyResult<_>>()?;
+    let views: Vec<OctreeRef<'_>> = all.iter().map(|octree| *octree.get().octree.view()).collect();
+    let found = limits
+        .run(py, |control| leafless::op::join(&views, control).map_err(called([("trees", "octrees")])))?;
+    Octree::bound(py, found)
 }
 
-/// A solid of shards that are not joined: a top, and shards of cells of one level that it leaves open. A shard is looked at when one of
-/// its cells is asked for. A cell without a shard is PARTIAL.
+/// A solid of shards that are not joined: a `top`, and `shards` of cells of one `level` that the top leaves open, as pairs of the cell's code and
+/// the octree. A shard is looked at when one of its cells is asked for. A cell without a shard is PARTIAL.
 #[pyclass(extends = Solid, frozen, module = "leafless.shards")]
 pub struct ShardedSolid(ShardedOctree);
 
@@ -191,15 +248,15 @@ impl ShardedSolid {
     #[new]
     fn new(
         py: Python<'_>,
-        top: &Octree,
-        level: u8,
-        shards: Vec<(u64, Py<Octree>)>,
+        #[pyo3(from_py_with = named::top)] top: Bound<'_, Octree>,
+        #[pyo3(from_py_with = named::level)] level: Level,
+        shards: &Bound<'_, PyAny>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        let mut list = Vec::with_capacity(shards.len());
-        for (code, shard) in &shards {
-            list.push((cell(py, level, *code)?, shard.get().octree.clone()));
-        }
-        let sharded = ShardedOctree::new(top.octree.clone(), list).or_raise(py)?;
+        let top = &top.get().octree;
+        let octree =
+            |given: &Bound<'_, PyAny>| Ok(<Bound<'_, Octree>>::take(given, "shards")?.get().octree.clone());
+        let list = by_codes(shards, top.frame(), level, "an octree", octree)?;
+        let sharded = py.detach(|| ShardedOctree::new(top.clone(), list)).or_raise(py)?;
         let given = Given::new(AnySolid::new(sharded.clone()));
         Ok(PyClassInitializer::from(Solid::new(given)).add_subclass(ShardedSolid(sharded)))
     }
@@ -227,48 +284,51 @@ impl ShardedSolid {
     }
 }
 
-/// Level by level the nodes, the FULL and the PARTIAL cells.
-type Counts = Vec<[u64; 3]>;
-
-/// The statistics of a top and of shards by the codes of their cells, with the nodes, the FULL and the PARTIAL cells of each level.
+/// The statistics of a `top` and of `shards` of cells of a `level`, level by level as `Octree.statistics` tells them. A shard is a pair of the
+/// cell's code and of counts: of each level of the frame, the nodes, the FULL and the PARTIAL cells.
 #[pyfunction]
 pub fn joined_statistics<'py>(
     py: Python<'py>,
-    top: &Octree,
-    level: u8,
-    shards: Vec<(u64, Counts)>,
+    #[pyo3(from_py_with = named::top)] top: Bound<'py, Octree>,
+    #[pyo3(from_py_with = named::level)] level: Level,
+    shards: &Bound<'py, PyAny>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-    let frame = top.octree.frame();
-    let mut list = Vec::with_capacity(shards.len());
-    for (code, counts) in shards {
-        list.push((cell(py, level, code)?, leafless::octree::Statistics::of_counts(frame, &counts)));
-    }
-    crate::octree::told(py, &top.octree.statistics_with(&list).or_raise(py)?)
+    let top = &top.get().octree;
+    let frame = top.frame();
+    let counts = |given: &Bound<'py, PyAny>| {
+        let rows = sequence(given, "shards", "a sequence of counts")?;
+        rows.map(|row| Argument::take(&row?, "shards")).collect::<PyResult<Vec<[u64; 3]>>>()
+    };
+    let list = by_codes(shards, frame, level, "counts", counts)?;
+    let found = py.detach(|| {
+        let list: Vec<_> =
+            list.into_iter().map(|(cell, counts)| (cell, Statistics::of_counts(frame, &counts))).collect();
+        top.statistics_with(&list)
+    });
+    crate::octree::told(py, &found.or_raise(py)?)
 }
 
-/// The triangles of marching cubes in one cell, as vertices and faces: of the octree of the cell's shard, joined with those of the
-/// neighbours behind it. `resolve` says what undecided cells count as.
+/// The triangles of marching cubes in the cell with this `code` on a `level`, as vertices and faces. `octree` is the one of the cell's shard, joined
+/// with those of the neighbours behind it. `resolve` says whether undecided cells belong to the solid: "outer" (they do) or "inner" (they do
+/// not).
 #[pyfunction]
 #[pyo3(signature = (octree, level, code, resolve, **limits))]
 pub fn surface_in<'py>(
     py: Python<'py>,
-    octree: &Octree,
-    level: u8,
-    code: u64,
-    resolve: &str,
+    #[pyo3(from_py_with = named::octree)] octree: Bound<'py, Octree>,
+    #[pyo3(from_py_with = named::level)] level: Level,
+    #[pyo3(from_py_with = named::code)] code: u64,
+    #[pyo3(from_py_with = named::resolve)] resolve: &str,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-    let cell = cell(py, level, code)?;
-    let resolve = match resolve {
-        "inner" => Resolve::Inner,
-        "outer" => Resolve::Outer,
-        _ => return Err(refused(py, "resolve", "must be 'inner' or 'outer'")),
-    };
-    let view = octree.octree.view();
-    let mesh =
-        Limits::of(limits)?.run(py, |control| marching_cubes_in(view, Some(resolve), cell, control))?;
-    let (vertices, faces) = (mesh.vertices().to_vec(), mesh.triangles().to_vec());
-    let count = faces.len();
-    let faces = arrays::array(py, faces.into_flattened(), &[count, 3])?;
-    Ok((arrays::rows(py, vertices)?.into_any(), faces.into_any()))
+    let limits = Limits::of(limits)?;
+    let view = octree.get().octree.view();
+    let cell = cell_of(py, view.frame(), level, code)?;
+    let resolve: Resolve<'static> = words::value(py, resolve)?;
+    let (vertices, faces) = limits.run(py, |control| {
+        let mesh =
+            marching_cubes_in(view, Some(resolve), cell, control).map_err(called([("cell", "level")]))?;
+        Ok((mesh.vertices().to_vec(), mesh.triangles().to_vec()))
+    })?;
+    Ok((arrays::rows(py, vertices)?.into_any(), arrays::rows(py, faces)?.into_any()))
 }

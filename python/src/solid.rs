@@ -1,17 +1,18 @@
 //! What has a shape: the class of all solids, and the questions that arrays of points and rays put to any of them.
 
+use crate::arguments::named;
 use crate::arrays::{self, Rows};
 use crate::ask::{FrameLike, Wish};
-use crate::error::refused;
+use crate::error::{called, refused};
 use crate::from_package;
-use crate::interval::intervals;
+use crate::interval::{Interval, intervals};
 use crate::octree::Octree;
 use crate::operators::{self, Operator};
 use crate::shape;
 use crate::words;
-use crate::work::Limits;
+use crate::work::{Limits, advance};
 use leafless::lattice::MAX_DEPTH;
-use leafless::query::{DistanceTo, Obstacle, PointDistance, distances};
+use leafless::query::{DistanceTo, Obstacle, PointDistance, RayHit, distances};
 use leafless::solid::Prepared;
 use leafless::{
     AnySolid, Bounds, Control, Frame as Inner, Membership, Proof, Ray, Solid as _, cast_rays, contains,
@@ -25,6 +26,12 @@ use std::sync::{Arc, OnceLock};
 const FEW_POINTS: usize = 4096;
 const FEW_RAYS: usize = 256;
 const FEW_DISTANCES: usize = 16;
+
+/// How many points an octree is asked about before signals are looked at again.
+const CHUNK: usize = 1 << 16;
+
+/// What the library calls the parts of a ray.
+const RAY: [(&str, &str); 2] = [("origin", "origins"), ("direction", "directions")];
 
 /// The default tolerance of distances, as a part of the frame.
 const TOLERANCE: f64 = 1e-6;
@@ -52,8 +59,11 @@ impl Given {
     }
 
     /// A box that holds the solid, if one is known.
-    pub fn bounds(&self) -> Option<Bounds> {
-        *self.known_bounds.get_or_init(|| self.shape.bounds())
+    pub fn bounds(&self, py: Python<'_>) -> Option<Bounds> {
+        match self.known_bounds.get() {
+            Some(&known) => known,
+            None => py.detach(|| *self.known_bounds.get_or_init(|| self.shape.bounds())),
+        }
     }
 
     /// The solid itself.
@@ -124,13 +134,13 @@ impl Solid {
     /// the solid; `bounding_box` proves how large that is.
     #[getter]
     fn bounds<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let bounds = given(slf, "self")?.bounds();
+        let bounds = given(slf, "self")?.bounds(slf.py());
         let array = bounds.map(|bounds| arrays::rows(slf.py(), vec![bounds.min, bounds.max]));
         Ok(array.transpose()?.map(Bound::into_any))
     }
 
-    /// What tells the shape from others: solids with the same fingerprint give the same answers. `None` if nothing does, as of a shape of
-    /// Python's.
+    /// A text that tells the solid from others: solids with the same fingerprint give the same answers. `None` if a part of the solid has none, as
+    /// shapes written in Python.
     #[getter]
     fn fingerprint(slf: &Bound<'_, Self>) -> PyResult<Option<String>> {
         let (py, solid) = (slf.py(), given(slf, "self")?);
@@ -140,6 +150,9 @@ impl Solid {
     /// Whether points lie inside. `points` has the shape (n, 3), in model units. The answer is an array of the codes of `Membership`, of type
     /// uint8; compare it, as in `points[part.contains(points) == INSIDE]`. A single point has a single answer. A point in an undecided cell of an octree is UNDECIDED, and so is a point outside of the frame about which
     /// nothing is known. On the boundary both answers are right.
+    ///
+    /// `frame` is the cube whose cells are asked: a `Frame`, or an octree that has it. Without it, an octree is asked on its own frame, and any
+    /// other solid on a cube around it.
     ///
     /// >>> ball = Csg.ball([0, 0, 0], 1)
     /// >>> ball.contains([[0, 0, 0.999], [0, 0, 1.001]])
@@ -162,7 +175,14 @@ impl Solid {
         match slf.cast::<Octree>() {
             Ok(octree) if frame.is_none() && !solid.keeps_surfaces => {
                 let view = octree.get().octree.view();
-                limits.run_if(long, py, |_| view.contains_many(list, &mut answers))?;
+                limits.run_if(long, py, |control| {
+                    let chunks = list.chunks(CHUNK).zip(answers.chunks_mut(CHUNK)).enumerate();
+                    for (i, (points, answers)) in chunks {
+                        advance(control, i * CHUNK, list.len())?;
+                        view.contains_many(points, answers)?;
+                    }
+                    Ok(())
+                })?;
             }
             _ => {
                 let frame = Wish { frame, depth: None }.of(py, &solid, MAX_DEPTH)?;
@@ -171,13 +191,15 @@ impl Solid {
             }
         }
         // What lies beyond the frame, and beyond the box that holds the solid, is proven outside.
-        if let Some(bounds) = solid.bounds() {
+        if let Some(bounds) = solid.bounds(py) {
             let is_beyond = |axis: usize, x: f64| x < bounds.min[axis] || x > bounds.max[axis];
-            for (answer, point) in answers.iter_mut().zip(list) {
-                if *answer == Membership::Undecided && (0..3).any(|axis| is_beyond(axis, point[axis])) {
-                    *answer = Membership::Outside;
+            py.detach(|| {
+                for (answer, point) in answers.iter_mut().zip(list) {
+                    if *answer == Membership::Undecided && (0..3).any(|axis| is_beyond(axis, point[axis])) {
+                        *answer = Membership::Outside;
+                    }
                 }
-            }
+            });
         }
         memberships(py, &answers, points.is_one)
     }
@@ -187,17 +209,22 @@ impl Solid {
     /// `to="solid"` measures to the solid (0 inside), `to="complement"` to what is not solid (0 outside).
     ///
     /// The answer is a `Distances`: `distance` (`Intervals`), `nearest` (points of the boundary), `surface` (numbers of triangles or surfaces
-    /// there) and `undecided` (where the interval is wider than the tolerance).
+    /// there) and `undecided` (where the interval is wider than the tolerance). A single point has a `Distance`, whose `distance` is an
+    /// `Interval`.
+    ///
+    /// `frame` is the cube that is searched: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
     ///
     /// >>> found = Csg.ball([0, 0, 0], 1).distances([[3, 0, 4], [0, 0.5, 0]], tolerance=1e-9)
     /// >>> found.distance.middle.round(6)
     /// array([ 4. , -0.5])
+    /// >>> 4 in Csg.ball([0, 0, 0], 1).distances([3, 0, 4]).distance
+    /// True
     #[pyo3(signature = (points, *, to="boundary", tolerance=None, frame=None, **limits))]
     fn distances<'py>(
         slf: &Bound<'py, Self>,
         points: &Bound<'py, PyAny>,
-        to: &str,
-        tolerance: Option<f64>,
+        #[pyo3(from_py_with = named::to)] to: &str,
+        #[pyo3(from_py_with = named::tolerance)] tolerance: Option<f64>,
         frame: Option<FrameLike>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -211,26 +238,30 @@ impl Solid {
         let found = limits.run_if(list.len() > FEW_DISTANCES || solid.calls_python, py, |control| {
             distances(&solid.shape, &frame, list, to, tolerance, control)
         })?;
-        distances_found(py, &found, tolerance)
+        distances_found(py, &found, tolerance, points.is_one)
     }
 
-    /// Where rays first meet the solid. Origins and directions have the shape (n, 3); a single origin or direction is used for all rays.
+    /// Where rays first meet the solid. `origins` and `directions` have the shape (n, 3); a single origin or direction is used for all rays.
     /// Distances count multiples of a direction's length. `on="inner"` stops a ray where the solid is proven to be, `on="outer"` where
     /// the solid may be. `last` ends all rays at that distance.
     ///
     /// The answer is a `RayHits`: `hit`, `distance` (`Intervals`), `normal` and `surface`. Before the lower end of a distance the ray is
-    /// proven outside, at the upper end inside.
+    /// proven outside, at the upper end inside. A single origin with a single direction has a `RayHit`, whose `distance` is an `Interval`.
+    ///
+    /// `frame` is the cube that is searched: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
     ///
     /// >>> hits = Csg.ball([0, 0, 0], 1).rays([[-2, 0.6, 0], [-2, 2, 0]], [1, 0, 0])
     /// >>> hits.hit, 1.2 in hits.distance[0]
     /// (array([ True, False]), True)
+    /// >>> Csg.ball([0, 0, 0], 1).rays([-2, 0, 0], [1, 0, 0]).hit
+    /// True
     #[pyo3(signature = (origins, directions, *, on="inner", last=f64::INFINITY, frame=None, **limits))]
     fn rays<'py>(
         slf: &Bound<'py, Self>,
         origins: &Bound<'py, PyAny>,
         directions: &Bound<'py, PyAny>,
-        on: &str,
-        last: f64,
+        #[pyo3(from_py_with = named::on)] on: &str,
+        #[pyo3(from_py_with = named::last)] last: f64,
         frame: Option<FrameLike>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -244,7 +275,13 @@ impl Solid {
             (n, m) if n == m => n,
             (n, _) if directions.is_one => n,
             (_, m) if origins.is_one => m,
-            _ => return Err(refused(py, "directions", "must be as many as origins")),
+            (n, m) => {
+                return Err(refused(
+                    py,
+                    "directions",
+                    format!("must be one, or as many as origins, {n}, not {m}"),
+                ));
+            }
         };
         let (from, along) = (origins.list(), directions.list());
         let at = |list: &[[f64; 3]], i: usize| if list.len() == 1 { list[0] } else { list[i] };
@@ -252,20 +289,14 @@ impl Solid {
             let mut rays = Vec::new();
             rays.try_reserve_exact(count).map_err(|_| leafless::Error::OutOfMemory)?;
             for i in 0..count {
-                rays.push(Ray::new(at(from, i), at(along, i))?.until(last)?);
+                rays.push(Ray::new(at(from, i), at(along, i)).map_err(called(RAY))?.until(last)?);
             }
             cast_rays(&solid.shape, &frame, &rays, on, control)
         })?;
-        let unknown = leafless::Interval::exactly(f64::INFINITY);
-        let hit = arrays::array(py, found.iter().map(Option::is_some).collect(), &[count])?;
-        let distance = intervals(py, found.iter().map(|hit| hit.map_or(unknown, |hit| hit.t)), &[count])?;
-        let normal = found.iter().map(|hit| hit.map_or([f64::NAN; 3], |hit| hit.normal)).collect();
-        let surface = found.iter().map(|hit| number(hit.and_then(|hit| hit.surface))).collect();
-        let answer = from_package!(py, "leafless._answers", "RayHits")?;
-        answer.call1((hit, distance, arrays::rows(py, normal)?, arrays::array(py, surface, &[count])?))
+        rays_found(py, &found, origins.is_one && directions.is_one)
     }
 
-    /// The solid moved by an `Affine` or a matrix. A mesh stays a mesh; any other solid becomes an expression. Meshes and expressions are
+    /// The solid moved by a `placement`, an `Affine` or a matrix. A mesh stays a mesh; any other solid becomes an expression. Meshes and expressions are
     /// moved exactly. The cells of an octree blur by about one cell, unless the map moves by whole cells or quarter turns.
     fn placed<'py>(slf: &Bound<'py, Self>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         operators::placed(slf, placement)
@@ -336,17 +367,49 @@ fn distances_found<'py>(
     py: Python<'py>,
     found: &[PointDistance],
     tolerance: f64,
+    is_one: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let count = found.len();
-    let distance = intervals(py, found.iter().map(|found| found.distance), &[count])?;
-    let nearest = found.iter().map(|found| found.nearest.map_or([f64::NAN; 3], |near| near.point)).collect();
-    let surface = found.iter().map(|found| number(found.nearest.and_then(|near| near.surface))).collect();
+    let near = |found: &PointDistance| found.nearest.map_or([f64::NAN; 3], |near| near.point);
+    let number = |found: &PointDistance| number(found.nearest.and_then(|near| near.surface));
     // (Of what is proven not to be there, both ends are infinite, and the width is no number.)
-    let undecided = found.iter().map(|found| found.distance.width() > tolerance).collect();
+    let is_wide = |found: &PointDistance| found.distance.width() > tolerance;
+    if let (&[one], true) = (found, is_one) {
+        let answer = from_package!(py, "leafless._answers", "Distance")?;
+        let nearest = arrays::array(py, near(&one).to_vec(), &[3])?;
+        return answer.call1((Interval(one.distance), nearest, number(&one), is_wide(&one)));
+    }
+    let count = found.len();
+    let (nearest, surface, undecided) = py.detach(|| {
+        let nearest = found.iter().map(near).collect();
+        (nearest, found.iter().map(number).collect(), found.iter().map(is_wide).collect())
+    });
     from_package!(py, "leafless._answers", "Distances")?.call1((
-        distance,
+        intervals(py, found.iter().map(|found| found.distance), &[count])?,
         arrays::rows(py, nearest)?,
         arrays::array(py, surface, &[count])?,
         arrays::array(py, undecided, &[count])?,
+    ))
+}
+
+fn rays_found<'py>(py: Python<'py>, found: &[Option<RayHit>], is_one: bool) -> PyResult<Bound<'py, PyAny>> {
+    let unknown = leafless::Interval::exactly(f64::INFINITY);
+    let distance = |hit: &Option<RayHit>| hit.map_or(unknown, |hit| hit.t);
+    let normal = |hit: &Option<RayHit>| hit.map_or([f64::NAN; 3], |hit| hit.normal);
+    let number = |hit: &Option<RayHit>| number(hit.and_then(|hit| hit.surface));
+    if let ([one], true) = (found, is_one) {
+        let answer = from_package!(py, "leafless._answers", "RayHit")?;
+        let normal = arrays::array(py, normal(one).to_vec(), &[3])?;
+        return answer.call1((one.is_some(), Interval(distance(one)), normal, number(one)));
+    }
+    let count = found.len();
+    let (hit, normal, surface) = py.detach(|| {
+        let hit = found.iter().map(Option::is_some).collect();
+        (hit, found.iter().map(normal).collect(), found.iter().map(number).collect())
+    });
+    from_package!(py, "leafless._answers", "RayHits")?.call1((
+        arrays::array(py, hit, &[count])?,
+        intervals(py, found.iter().map(distance), &[count])?,
+        arrays::rows(py, normal)?,
+        arrays::array(py, surface, &[count])?,
     ))
 }

@@ -1,11 +1,13 @@
 //! Surfaces as triangle meshes.
 
+use crate::arguments::{Depth, named};
 use crate::ask::{self, FrameLike, Wish};
 use crate::error::refused;
 use crate::mesh::Mesh;
 use crate::octree::Octree;
 use crate::solid::given;
 use crate::volume::Volume;
+use crate::words::{self, Word};
 use crate::work::Limits;
 use leafless::surface::{self as surfaces, Resolve, Snap, VertexPlacement};
 use leafless::{Bounds, Error, FillRule, TriangleMesh, marching_cubes};
@@ -27,7 +29,8 @@ const SNAP: Snap = Snap::Fat;
 /// What `method` of a report may be.
 const METHODS: [&str; 6] = ["faces", "adaptive", "cubes", "nets", "shrink", "simplify"];
 
-/// How a mesh was made of a solid.
+/// How a mesh was made of a solid: by a `method`, with what is proven of the `deviation` of the mesh from the solid's boundary (`from_mesh` says
+/// whether it is only that from another mesh), and the number of `intersecting_pairs` of triangles.
 #[pyclass(frozen, eq, get_all, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct SurfaceReport {
@@ -48,12 +51,13 @@ impl SurfaceReport {
     #[new]
     fn new(
         py: Python<'_>,
-        method: &str,
-        deviation: f64,
-        from_mesh: bool,
-        intersecting_pairs: u64,
+        #[pyo3(from_py_with = named::method)] method: &str,
+        #[pyo3(from_py_with = named::deviation)] deviation: f64,
+        #[pyo3(from_py_with = named::from_mesh)] from_mesh: bool,
+        #[pyo3(from_py_with = named::intersecting_pairs)] intersecting_pairs: u64,
     ) -> PyResult<SurfaceReport> {
-        let unknown = || refused(py, "method", format!("must be one of {}", METHODS.join(", ")));
+        let unknown =
+            || refused(py, "method", format!("must be one of '{}', not '{method}'", METHODS.join("', '")));
         let method = METHODS.into_iter().find(|known| *known == method).ok_or_else(unknown)?;
         Ok(SurfaceReport { method, deviation, from_mesh, intersecting_pairs })
     }
@@ -75,7 +79,6 @@ impl SurfaceReport {
 /// What `surface` may make.
 #[derive(Clone, Copy, PartialEq)]
 enum Method {
-    Any,
     Faces,
     Adaptive,
     Cubes,
@@ -83,7 +86,18 @@ enum Method {
     Shrink,
 }
 
-/// The surface of a solid as a closed triangle mesh.
+impl Word for Method {
+    const NAME: &'static str = "method";
+    const ALL: &'static [(&'static str, Method)] = &[
+        ("faces", Method::Faces),
+        ("adaptive", Method::Adaptive),
+        ("cubes", Method::Cubes),
+        ("nets", Method::Nets),
+        ("shrink", Method::Shrink),
+    ];
+}
+
+/// The surface of a `solid` as a closed triangle mesh.
 ///
 /// `method` is one of these. Without it, the first method that suits the solid is taken.
 ///
@@ -95,8 +109,14 @@ enum Method {
 /// - "shrink": coplanar shrink, with few triangles where the cells make a plane.
 ///
 /// `tolerance` (model units) is how far "faces" and "adaptive" may be from the solid; the default is a thousandth of the longest side.
-/// `mesh.surface_report.deviation` is what is proven of that distance. `resolve` says whether undecided cells of an octree belong to the
-/// solid: "outer" (they do) or "inner" (they do not).
+/// `mesh.surface_report.deviation` is what is proven of that distance.
+///
+/// `frame` is the cube in which the surface is looked for: a `Frame`, or an octree that has it. `depth` replaces its depth. Neither they nor
+/// `tolerance` have a meaning for the cells of an octree or the voxels of a volume, and are refused there. A volume with a `frame` or a `depth`
+/// is asked there as any other solid is.
+///
+/// `resolve` says whether undecided cells of an octree belong to the solid: "outer" (they do, the default) or "inner" (they do not). It is
+/// refused where no cells of an octree make the mesh.
 ///
 /// >>> mesh = surface(Csg.cuboid([0, 0, 0], [3, 2, 1]))
 /// >>> len(mesh.faces), mesh.surface_report.method
@@ -105,85 +125,79 @@ enum Method {
 #[pyo3(signature = (solid, *, tolerance=None, method=None, resolve=None, frame=None, depth=None, **limits))]
 pub fn surface<'py>(
     solid: &Bound<'py, PyAny>,
-    tolerance: Option<f64>,
-    method: Option<&str>,
-    resolve: Option<&str>,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: Option<f64>,
+    #[pyo3(from_py_with = named::method)] method: Option<&str>,
+    #[pyo3(from_py_with = named::resolve)] resolve: Option<&str>,
     frame: Option<FrameLike>,
-    depth: Option<u8>,
+    #[pyo3(from_py_with = named::depth)] depth: Option<Depth>,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, Mesh>> {
     let (py, limits) = (solid.py(), Limits::of(limits)?);
-    let method = match method {
-        None => Method::Any,
-        Some("faces") => Method::Faces,
-        Some("adaptive") => Method::Adaptive,
-        Some("cubes") => Method::Cubes,
-        Some("nets") => Method::Nets,
-        Some("shrink") => Method::Shrink,
-        Some(other) => {
-            let problem =
-                format!("must be one of 'faces', 'adaptive', 'cubes', 'nets', 'shrink', not '{other}'");
-            return Err(refused(py, "method", problem));
-        }
-    };
-    let resolve = match resolve {
-        None | Some("outer") => Resolve::Outer,
-        Some("inner") => Resolve::Inner,
-        Some(_) => return Err(refused(py, "resolve", "must be 'outer' or 'inner'")),
-    };
+    let method: Option<Method> = method.map(|method| words::value(py, method)).transpose()?;
+    let resolve: Option<Resolve<'static>> = resolve.map(|resolve| words::value(py, resolve)).transpose()?;
     let samples = solid.cast::<Volume>().ok().map(|volume| volume.get().volume.clone());
-    if let Some(volume) = samples.filter(|_| matches!(method, Method::Any | Method::Cubes) && depth.is_none())
-    {
-        let mesh = limits.run(py, |control| surfaces::marching_cubes_volume(&volume, control))?;
-        return made(
-            py,
-            mesh,
-            SurfaceReport {
-                method: "cubes",
-                deviation: f64::INFINITY,
-                from_mesh: false,
-                intersecting_pairs: 0,
-            },
-        );
-    }
     let stored = solid.cast::<Octree>().ok().map(|octree| octree.get().octree.clone());
     let stored = stored.filter(|octree| octree.view().cuts().is_none());
     let solid = given(solid, "solid")?;
     let wish = Wish { frame, depth };
-    if let Some(octree) = stored.filter(|_| !matches!(method, Method::Faces | Method::Adaptive)) {
-        let mesh = limits.run(py, |control| match method {
-            Method::Nets => surfaces::surface_nets(octree.view(), Some(resolve), control),
-            Method::Shrink => surfaces::coplanar_shrink(octree.view(), SNAP, Some(resolve), control),
-            _ => marching_cubes(octree.view(), Some(resolve), control),
-        })?;
-        let method = match method {
-            Method::Nets => "nets",
-            Method::Shrink => "shrink",
-            _ => "cubes",
-        };
-        return made(
+    // A parameter without a meaning is refused, so that nobody believes that it was heeded.
+    let without = |name: &str, is_given: bool, why: &str| {
+        if is_given { Err(refused(py, name, format!("has no meaning here: {why}"))) } else { Ok(()) }
+    };
+    let equal = |mesh, method| {
+        let method = words::word(method);
+        made(
             py,
             mesh,
             SurfaceReport { method, deviation: f64::INFINITY, from_mesh: false, intersecting_pairs: 0 },
-        );
+        )
+    };
+    let by_own_cells = !matches!(method, Some(Method::Faces | Method::Adaptive));
+    if let Some(octree) = stored.filter(|_| by_own_cells) {
+        let why = "the cells of the octree make the mesh; 'adaptive' asks them as a solid";
+        without("tolerance", tolerance.is_some(), why)?;
+        without("frame", frame.is_some(), why)?;
+        without("depth", depth.is_some(), why)?;
+        let resolve = Some(resolve.unwrap_or(Resolve::Outer));
+        let mesh = limits.run(py, |control| match method {
+            Some(Method::Nets) => surfaces::surface_nets(octree.view(), resolve, control),
+            Some(Method::Shrink) => surfaces::coplanar_shrink(octree.view(), SNAP, resolve, control),
+            _ => marching_cubes(octree.view(), resolve, control),
+        })?;
+        return equal(mesh, method.unwrap_or(Method::Cubes));
     }
-    if let Method::Cubes | Method::Shrink | Method::Nets = method {
+    without(
+        "resolve",
+        resolve.is_some(),
+        "only cells of a stored octree are undecided; 'cubes', 'nets' and 'shrink' take them as they are",
+    )?;
+    if let Some(volume) =
+        samples.filter(|_| matches!(method, None | Some(Method::Cubes)) && depth.is_none() && frame.is_none())
+    {
+        without(
+            "tolerance",
+            tolerance.is_some(),
+            "the voxels of the volume make the mesh; 'adaptive' heeds it",
+        )?;
+        let mesh = limits.run(py, |control| surfaces::marching_cubes_volume(&volume, control))?;
+        return equal(mesh, Method::Cubes);
+    }
+    if let Some(method @ (Method::Cubes | Method::Shrink | Method::Nets)) = method {
+        without(
+            "tolerance",
+            tolerance.is_some(),
+            "cells of one size make the mesh; 'faces' and 'adaptive' heed it",
+        )?;
         let frame = wish.of(py, &solid, EQUAL)?;
-        let name = if method == Method::Shrink { "shrink" } else { "cubes" };
         let mesh = limits.run(py, |control| match method {
             Method::Nets => {
                 let octree = leafless::build(&solid.shape, &frame, leafless::Rule::Sampled, control)?;
-                surfaces::surface_nets(octree.view(), Some(resolve), control)
+                surfaces::surface_nets(octree.view(), Some(Resolve::Outer), control)
             }
             Method::Shrink => surfaces::coplanar_shrink_solid(&solid.shape, &frame, SNAP, control),
             _ => surfaces::marching_cubes_solid(&solid.shape, &frame, VertexPlacement::Crossing, control),
         })?;
-        let method = if method == Method::Nets { "nets" } else { name };
-        return made(
-            py,
-            mesh,
-            SurfaceReport { method, deviation: f64::INFINITY, from_mesh: false, intersecting_pairs: 0 },
-        );
+        return equal(mesh, method);
     }
     let bounds = match frame {
         Some(FrameLike(frame)) => Bounds::of(&frame),
@@ -193,7 +207,7 @@ pub fn surface<'py>(
     let tolerance = tolerance.unwrap_or(TOLERANCE * longest);
     let (deep, fine) = (wish.of(py, &solid, DEEP)?, wish.of(py, &solid, FINE)?);
     let (mesh, report) = limits.run(py, |control| {
-        if method != Method::Adaptive {
+        if method != Some(Method::Adaptive) {
             match surfaces::boundary(&solid.shape, &deep, tolerance, control) {
                 Ok(found) => {
                     let report = found.report();
@@ -203,7 +217,7 @@ pub fn surface<'py>(
                     return Ok((found.into_mesh(), report));
                 }
                 // Of what is not bounded by surfaces the other method makes one.
-                Err(Error::Argument { name, .. }) if method == Method::Any && name != "tolerance" => {}
+                Err(Error::Argument { name, .. }) if method.is_none() && name != "tolerance" => {}
                 Err(error) => return Err(error),
             }
         }
@@ -216,12 +230,12 @@ pub fn surface<'py>(
     made(py, mesh, report)
 }
 
-/// The same mesh with fewer triangles. Both meshes are within `tolerance` (model units) of each other: proven, for open meshes too.
+/// The same `mesh` with fewer triangles. Both meshes are within `tolerance` (model units) of each other: proven, for open meshes too.
 #[pyfunction]
 #[pyo3(signature = (mesh, tolerance, **limits))]
 pub fn simplify<'py>(
-    mesh: &Bound<'py, Mesh>,
-    tolerance: f64,
+    #[pyo3(from_py_with = named::mesh)] mesh: Bound<'py, Mesh>,
+    #[pyo3(from_py_with = named::tolerance)] tolerance: f64,
     limits: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, Mesh>> {
     let (py, own) = (mesh.py(), mesh.get());

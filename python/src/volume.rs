@@ -1,7 +1,8 @@
 //! Arrays of samples as solids.
 
+use crate::arguments::{Argument, named, other_type};
 use crate::arrays::{self, layout, shown, triple};
-use crate::error::{OrRaise, refused};
+use crate::error::{OrRaise, called, refused};
 use crate::frame::Frame;
 use crate::from_package;
 use crate::solid::{Given, Solid};
@@ -15,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
-/// A 3-D array of samples as a solid: its voxels with values in a band.
+/// A 3-D `array` of samples as a solid: its voxels with values in a band.
 ///
 /// The array is indexed [x, y, z]. With `order="zyx"` it is indexed [z, y, x], as in SimpleITK and tifffile. It may hold booleans, uint8,
 /// uint16, int16 or float32.
@@ -89,20 +90,27 @@ pub fn threshold(given: &Bound<'_, PyAny>) -> PyResult<Threshold> {
     if let Ok(told) = given.extract::<(f64, Option<f64>)>() {
         return Ok(told);
     }
-    match arrays::tuple(given, "threshold") {
+    match <[f64; 2]>::take(given, "threshold") {
         Ok([low, high]) => Ok((low, Some(high))),
-        Err(_) => Err(refused(given.py(), "threshold", "must be one number, or a least and a greatest one")),
+        Err(error) if error.is_instance_of::<PyTypeError>(given.py()) => {
+            Err(other_type(given, "threshold", "one number, or a least and a greatest one"))
+        }
+        Err(error) => Err(error),
     }
 }
 
-/// Which values are inside.
-pub fn band(py: Python<'_>, threshold: Threshold) -> PyResult<Band> {
+/// Which values are inside. A refusal shows what was given, if the threshold was not read from a file.
+pub fn band(py: Python<'_>, threshold: Threshold, given: Option<&Bound<'_, PyAny>>) -> PyResult<Band> {
     let band = match threshold {
         (low, None) => Band::at_least(low),
         (f64::NEG_INFINITY, Some(high)) => Band::at_most(high),
         (low, Some(high)) => Band::between(low, high),
     };
-    band.or_raise(py)
+    band.map_err(|_| {
+        let found = given.map_or_else(|| format!("{threshold:?}"), |given| given.to_string());
+        let problem = format!("must be a number, or a least and a greatest one, not {found}");
+        refused(py, "threshold", problem)
+    })
 }
 
 impl Volume {
@@ -128,7 +136,7 @@ impl Volume {
         threshold: Option<&Bound<'_, PyAny>>,
         origin: Option<&Bound<'_, PyAny>>,
         spacing: Option<&Bound<'_, PyAny>>,
-        order: &str,
+        #[pyo3(from_py_with = named::order)] order: &str,
         limits: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<PyClassInitializer<Volume>> {
         let py = array.py();
@@ -136,7 +144,7 @@ impl Volume {
         let axes_reversed = match order {
             "xyz" => false,
             "zyx" => true,
-            _ => return Err(refused(py, "order", "must be 'xyz' or 'zyx'")),
+            _ => return Err(refused(py, "order", format!("must be 'xyz' or 'zyx', not '{order}'"))),
         };
         let origin = origin.map_or(Ok([0.0; 3]), |origin| triple(origin, "origin"))?;
         let spacing = match spacing {
@@ -161,8 +169,9 @@ impl Volume {
             }
         };
         let told = threshold.map_or(Ok((middle, None)), self::threshold)?;
-        let band = band(py, told)?;
-        let grid = VoxelGrid::new(extents, origin, spacing).or_raise(py)?;
+        let band = band(py, told, threshold)?;
+        let names = [("corner", "origin"), ("extents", "array")];
+        let grid = VoxelGrid::new(extents, origin, spacing).map_err(called(names)).or_raise(py)?;
         let volume = limits.run(py, |control| Inner::new(samples, &grid, band, control))?;
         Volume::initial(volume, kind == "bool", axes_reversed, told)
     }
@@ -188,9 +197,10 @@ impl Volume {
             Samples::Bits(words) => {
                 let (row, [x, y, z]) =
                     (own.volume.grid().words(), own.volume.grid().extents().map(|n| n as usize));
-                let lines = words.values().chunks_exact(row).take(y * z);
-                let bits: Vec<bool> =
-                    lines.flat_map(|line| (0..x).map(move |i| line[i / 64] >> (i % 64) & 1 != 0)).collect();
+                let bits: Vec<bool> = slf.py().detach(|| {
+                    let lines = words.values().chunks_exact(row).take(y * z);
+                    lines.flat_map(|line| (0..x).map(move |i| line[i / 64] >> (i % 64) & 1 != 0)).collect()
+                });
                 let order = PyDict::new(slf.py());
                 order.set_item("order", if own.axes_reversed { "C" } else { "F" })?;
                 let flat = arrays::array(slf.py(), bits, &[x * y * z])?;
@@ -229,7 +239,7 @@ impl Volume {
         self.volume.grid().frame().or_raise(py).map(Frame)
     }
 
-    /// The same samples with another threshold, without reading them again.
+    /// The same samples with another `threshold`, without reading them again.
     #[pyo3(signature = (threshold, **limits))]
     fn with_threshold(
         &self,
@@ -238,16 +248,17 @@ impl Volume {
     ) -> PyResult<Py<Volume>> {
         let py = threshold.py();
         let told = self::threshold(threshold)?;
-        let band = band(py, told)?;
+        let band = band(py, told, Some(threshold))?;
         let volume = Limits::of(limits)?.run(py, |control| self.volume.with_band(band, control))?;
         Py::new(py, Volume::initial(volume, self.is_boolean, self.axes_reversed, told)?)
     }
 
-    /// The value between samples at points (shape (n, 3)): NaN beyond the grid.
+    /// The value between samples at `points` (shape (n, 3)): NaN beyond the grid.
     fn values_at<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let rows = arrays::Rows::of(points, "points")?;
-        let values: Vec<f64> =
-            rows.list().iter().map(|&point| self.volume.value_at(point).unwrap_or(f64::NAN)).collect();
+        let list = rows.list();
+        let value = |&point: &[f64; 3]| self.volume.value_at(point).unwrap_or(f64::NAN);
+        let values: Vec<f64> = points.py().detach(|| list.iter().map(value).collect());
         let count = values.len();
         arrays::one_or_all(arrays::array(points.py(), values, &[count])?.into_any(), rows.is_one)
     }

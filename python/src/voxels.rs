@@ -1,7 +1,8 @@
 //! Voxels as records.
 
-use crate::arrays::{self, layout, required, shown};
-use crate::error::{OrRaise, refused};
+use crate::arguments::named;
+use crate::arrays::{self, layout, required, shape_text, shown};
+use crate::error::{OrRaise, called, refused};
 use crate::frame::Frame;
 use crate::from_package;
 use crate::octree::{Octree, Proof};
@@ -9,13 +10,13 @@ use crate::words;
 use crate::work::Limits;
 use leafless::Tag;
 use leafless::voxel::{Viewpoint, VoxelRecords as Inner};
-use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{Element, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Voxels as records, sorted by code: arrays of `codes`, `levels`, `kinds` (`VoxelKind`: 0 outside, 1 inside, 2 boundary,
-/// 3 refined) and `values`, which are views of the library's own memory.
+/// 3 refined) and `values`, which are views of the library's own memory. `frame` is their lattice.
 ///
 /// >>> records = build(Csg.cuboid([0, 0, 0], [3, 1, 1]), Frame([0, 0, 0], 4, 2)).voxels()
 /// >>> len(records), records.corners().tolist()
@@ -29,16 +30,16 @@ impl VoxelRecords {
     #[new]
     #[pyo3(signature = (frame, codes, levels, kinds, values=None))]
     fn new(
-        frame: Frame,
+        #[pyo3(from_py_with = named::frame)] frame: Bound<'_, Frame>,
         codes: &Bound<'_, PyAny>,
         levels: &Bound<'_, PyAny>,
         kinds: &Bound<'_, PyAny>,
         values: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<VoxelRecords> {
         let py = codes.py();
-        let codes = required::<u64>(codes, "uint64", "codes")?.readonly().as_slice()?.to_vec();
-        let levels = required::<u8>(levels, "uint8", "levels")?.readonly().as_slice()?.to_vec();
-        let kinds = required::<u8>(kinds, "uint8", "kinds")?.readonly().as_slice()?.to_vec();
+        let codes = list::<u64>(codes, "uint64", "codes")?;
+        let levels = list::<u8>(levels, "uint8", "levels")?;
+        let kinds = list::<u8>(kinds, "uint8", "kinds")?;
         let (components, values) = match values {
             None => (0, Vec::new()),
             Some(values) => {
@@ -50,15 +51,33 @@ impl VoxelRecords {
                         return Err(refused(
                             py,
                             "values",
-                            format!("must have the shape (n,) or (n, m), not {shape:?}"),
+                            format!("must have the shape (n,) or (n, m), not {}", shape_text(shape)),
                         ));
                     }
                 };
                 (components, values.readonly().as_slice()?.to_vec())
             }
         };
-        let records = Inner::from_arrays(&frame.0, codes, levels, kinds, components, values);
-        records.or_raise(py).map(VoxelRecords)
+        for (name, count) in [("levels", levels.len()), ("kinds", kinds.len())] {
+            if count != codes.len() {
+                return Err(refused(
+                    py,
+                    name,
+                    format!("must be as many as codes, {}, not {count}", codes.len()),
+                ));
+            }
+        }
+        if values.len() != components * codes.len() {
+            let count = values.len() / components.max(1);
+            return Err(refused(
+                py,
+                "values",
+                format!("must be as many as codes, {}, not {count}", codes.len()),
+            ));
+        }
+        let frame = frame.get().0;
+        let records = py.detach(|| Inner::from_arrays(&frame, codes, levels, kinds, components, values));
+        records.map_err(called([("records", "codes")])).or_raise(py).map(VoxelRecords)
     }
 
     /// Records of your own with what else a list that the library made says, as it was pickled.
@@ -114,39 +133,45 @@ impl VoxelRecords {
     /// The lower corners of voxels (model units), shape (n, 3).
     fn corners<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let view = self.0.view();
-        let all = (0..view.len()).map(|i| view.corner(i).unwrap_or([f64::NAN; 3])).collect();
+        let all = py.detach(|| (0..view.len()).map(|i| view.corner(i).unwrap_or([f64::NAN; 3])).collect());
         Ok(arrays::rows(py, all)?.into_any())
     }
 
     /// The edges of voxels (model units), shape (n,).
     fn edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let view = self.0.view();
-        let all: Vec<f64> = (0..view.len()).map(|i| view.edge(i).unwrap_or(f64::NAN)).collect();
+        let all: Vec<f64> = py.detach(|| (0..view.len()).map(|i| view.edge(i).unwrap_or(f64::NAN)).collect());
         let count = all.len();
         Ok(arrays::array(py, all, &[count])?.into_any())
     }
 
-    /// The order in which voxels are seen from a point, those in front first: indices of shape (n,).
-    fn depth_order<'py>(&self, eye: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    /// The order in which voxels are seen from the point `eye`, those in front first: indices of shape (n,).
+    #[pyo3(signature = (eye, **limits))]
+    fn depth_order<'py>(
+        &self,
+        eye: &Bound<'py, PyAny>,
+        limits: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let (py, eye) = (eye.py(), arrays::triple(eye, "eye")?);
         let view = self.0.view();
         let order =
-            Limits::default().run(py, |control| view.depth_order(&Viewpoint::Perspective(eye), control))?;
+            Limits::of(limits)?.run(py, |control| view.depth_order(&Viewpoint::Perspective(eye), control))?;
         let count = order.len();
         Ok(arrays::array(py, order, &[count])?.into_any())
     }
 
-    /// The octree of the voxels. `boundary` says what boundary voxels become: "partial", "full" or "empty".
-    #[pyo3(signature = (boundary="partial", **limits))]
+    /// The octree of the voxels. `boundary` says what boundary voxels become: "partial" (the default), "full" or "empty", or one of the constants
+    /// PARTIAL, FULL and EMPTY.
+    #[pyo3(signature = (boundary=None, **limits), text_signature = "($self, boundary='partial', **limits)")]
     fn to_octree<'py>(
         &self,
         py: Python<'py>,
-        boundary: &str,
+        boundary: Option<&Bound<'py, PyAny>>,
         limits: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, Octree>> {
-        let boundary: Tag = words::value_of(py, "boundary", boundary)?;
+        let boundary = boundary.map_or(Ok(Tag::Partial), |tag| words::tag(tag, "boundary"))?;
         if boundary == Tag::Branch {
-            return Err(refused(py, "boundary", "must be one of 'empty', 'partial', 'full'"));
+            return Err(refused(py, "boundary", "must be one of 'empty', 'partial', 'full', not 'branch'"));
         }
         let view = self.0.view();
         let octree = Limits::of(limits)?.run(py, |control| view.to_octree(boundary, control))?;
@@ -170,4 +195,14 @@ impl VoxelRecords {
         let known = (words::word(view.exterior()), words::word(view.boundary()), Proof::from(view.proof()));
         Ok((again, (slf.get().frame(), arrays, known).into_bound_py_any(slf.py())?))
     }
+}
+
+/// Whole numbers in a list.
+fn list<T: Element + Copy>(given: &Bound<'_, PyAny>, kind: &str, name: &str) -> PyResult<Vec<T>> {
+    let array = required::<T>(given, kind, name)?;
+    if array.ndim() != 1 {
+        let shape = shape_text(array.shape());
+        return Err(refused(given.py(), name, format!("must have the shape (n,), not {shape}")));
+    }
+    Ok(array.readonly().as_slice()?.to_vec())
 }

@@ -1,7 +1,10 @@
 //! The words that stand for the library's enumerations in Python.
 
+use crate::arguments::other_type;
 use crate::error::refused;
+use crate::from_package;
 use leafless::query::{DistanceTo, GapVerdict, Obstacle, Overlap, StopReason};
+use leafless::surface::Resolve;
 use leafless::{FillRule, Rule, Tag};
 use pyo3::prelude::*;
 
@@ -26,6 +29,19 @@ pub fn value_of<W: Word>(py: Python<'_>, name: &str, word: &str) -> PyResult<W> 
             let words: Vec<_> = W::ALL.iter().map(|(own, _)| format!("'{own}'")).collect();
             Err(refused(py, name, format!("must be one of {}, not '{word}'", words.join(", "))))
         }
+    }
+}
+
+/// A tag, by its word or as the package's constant.
+pub fn tag(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Tag> {
+    let py = given.py();
+    if given.is_instance(&from_package!(py, "leafless._answers", "Tag")?)? {
+        let word = given.getattr("name")?.extract::<String>()?.to_lowercase();
+        return value_of(py, name, &word);
+    }
+    match given.extract::<&str>() {
+        Ok(word) => value_of(py, name, word),
+        Err(_) => Err(other_type(given, name, "a str or a Tag")),
     }
 }
 
@@ -63,6 +79,10 @@ words! {
     Obstacle as "on" {
         "outer" => Obstacle::Upper,
         "inner" => Obstacle::Full,
+    }
+    Resolve<'static> as "resolve" {
+        "outer" => Resolve::Outer,
+        "inner" => Resolve::Inner,
     }
     Tag as "tag" {
         "empty" => Tag::Empty,

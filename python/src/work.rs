@@ -1,5 +1,6 @@
 //! Long work: the interpreter is released, Ctrl-C interrupts, progress is reported, limits hold.
 
+use crate::arguments::Argument;
 use crate::error::{OrRaise, raised};
 use crate::from_package;
 use leafless::{Control, Error};
@@ -18,6 +19,25 @@ const GLANCE: Duration = Duration::from_millis(50);
 
 /// Bytes of the stack of the thread that works, as much as a main thread has.
 const STACK: usize = 8 << 20;
+
+/// Refuses what is known to take more bytes than the caller allows.
+pub fn afford(control: &Control<'_>, what: &'static str, needed: u64) -> Result<(), Error> {
+    match control.max_bytes.filter(|&limit| needed > limit) {
+        Some(limit) => Err(Error::TooLarge { what, needed, limit }),
+        None => Ok(()),
+    }
+}
+
+/// Tells how much is done, and refuses to go on when the caller cancelled.
+pub fn advance(control: &Control<'_>, done: usize, all: usize) -> Result<(), Error> {
+    if control.is_cancelled() {
+        return Err(Error::Cancelled);
+    }
+    if let Some(progress) = control.progress {
+        progress(done as f64 / all.max(1) as f64);
+    }
+    Ok(())
+}
 
 /// The keyword arguments that all long work takes: `threads`, `max_nodes`, `max_bytes`, `max_splits`, `progress`.
 #[derive(Default)]
@@ -38,10 +58,10 @@ impl Limits {
                 continue;
             }
             match name.extract::<&str>()? {
-                "threads" => limits.threads = value.extract()?,
-                "max_nodes" => limits.max_nodes = Some(value.extract()?),
-                "max_bytes" => limits.max_bytes = Some(value.extract()?),
-                "max_splits" => limits.max_splits = Some(value.extract()?),
+                "threads" => limits.threads = Argument::take(&value, "threads")?,
+                "max_nodes" => limits.max_nodes = Argument::take(&value, "max_nodes")?,
+                "max_bytes" => limits.max_bytes = Argument::take(&value, "max_bytes")?,
+                "max_splits" => limits.max_splits = Argument::take(&value, "max_splits")?,
                 "progress" if value.is(PyBool::new(value.py(), false)) => {}
                 "progress" => {
                     let reporter = from_package!(value.py(), "leafless._progress", "reporter")?;

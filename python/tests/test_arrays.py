@@ -117,6 +117,13 @@ def test_cells_add_up(plate):
     partial = (edges[cells.tag == lf.PARTIAL] ** 3).sum()
     assert np.isclose(full, octree.volume.lower) and np.isclose(full + partial, octree.volume.upper)
     assert len(octree.cells("full")) == (cells.tag == lf.FULL).sum()
+    for tag in (lf.FULL, lf.PARTIAL, lf.EMPTY, lf.Tag.BRANCH):
+        assert (octree.cells(tag).at == octree.cells(tag.name.lower()).at).all()
+    assert len(octree.cells("full", lf.EMPTY, lf.FULL)) == len(octree.cells("empty", "full"))
+    # The constants of points are numbers, too, and none of them is a tag.
+    for wrong in (lf.INSIDE, 3, None):
+        with pytest.raises(TypeError, match="^tags: "):
+            octree.cells(wrong)
     assert np.isclose((edges**3).sum(), octree.frame.edge**3)
     assert octree.tag_at([0, 0, 0]) in tuple(lf.Tag)
     with pytest.raises(lf.ArgumentError, match="^at: "):
@@ -165,8 +172,10 @@ def test_voxels(plate):
     assert np.isclose((records.edges()[inside] ** 3).sum(), octree.volume.lower)
     assert (np.diff(records.codes.astype(float)) > 0).all()
     assert sorted(records.depth_order([20, 20, 20]).tolist()) == list(range(len(records)))
+    assert (records.depth_order([20, 20, 20], threads=1) == records.depth_order([20, 20, 20])).all()
     own = lf.VoxelRecords(records.frame, records.codes, records.levels, records.kinds)
     assert len(own) == len(records) and own.to_octree().volume.lower == octree.volume.lower
+    assert own.to_octree(lf.FULL) == own.to_octree("full") != own.to_octree(lf.PARTIAL) == own.to_octree()
     assert not records.codes.flags.writeable
     heat = lf.Channel.fill(3.5, octree)
     assert (octree.voxels(heat).values[inside] == 3.5).all()
@@ -203,7 +212,9 @@ def test_lazy(plate):
     assert lazy.refine(level=9, ray=([-1, 3.1, 0.51], [1, 0, 0])) and lazy.splits > before
     assert lazy.contains([[1, 1, 0.5], [4, 3, 0.5]]).tolist() == [1, 0]
     frozen = lazy.freeze()
-    again = lf.LazyOctree(plate, resume=frozen)
+    again = lf.LazyOctree(plate, resume=frozen, threads=1)
+    with pytest.raises(lf.LimitError):
+        lf.LazyOctree(plate, resume=frozen, max_nodes=3)
     assert again.volume == lazy.volume and again.freeze() == frozen
     with pytest.raises(lf.Error):
         lf.LazyOctree(lf.Csg.ball([0, 0, 0], 1), resume=frozen)

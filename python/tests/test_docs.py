@@ -1,6 +1,8 @@
 """Examples in docstrings run, and everything public has a docstring."""
 
+import dataclasses
 import doctest
+import enum
 import inspect
 import re
 from pathlib import Path
@@ -10,10 +12,15 @@ import pytest
 import leafless
 
 
+#: What is public, and what the extension module has for octrees in shards and for pairs in batches.
+PUBLIC = {name: getattr(leafless, name) for name in [*leafless.__all__, "map", "open"]}
+INNER = ["MassSum", "Shard", "ShardedSolid", "frame_of", "frame_of_pair", "join", "joined_statistics", "measure_cell", "surface_in"]
+ALL = PUBLIC | {name: getattr(leafless._leafless, name) for name in INNER}
+
+
 def documented():
     yield "leafless", leafless
-    for name in [*leafless.__all__, "map", "open"]:
-        thing = getattr(leafless, name)
+    for name, thing in ALL.items():
         yield name, thing
         if inspect.isclass(thing):
             for inner, member in vars(thing).items():
@@ -43,6 +50,44 @@ def test_everything_is_documented(name, thing):
     if type(thing).__name__ in ("member_descriptor", "property") and name.split(".")[0] in ("Intervals",):
         return
     assert thing.__doc__ and thing.__doc__.strip(), name
+
+
+def callables():
+    for name, thing in ALL.items():
+        if not inspect.isclass(thing):
+            if callable(thing):
+                yield name, thing, thing.__doc__
+            continue
+        # (Answers are not made by callers.)
+        if not dataclasses.is_dataclass(thing) and not issubclass(thing, (enum.Enum, Exception)):
+            yield name, thing, thing.__doc__
+            for inner in vars(thing):
+                member = getattr(thing, inner)
+                if not inner.startswith("_") and callable(member):
+                    yield f"{name}.{inner}", member, f"{member.__doc__} {thing.__doc__}"
+
+
+def parameters(thing):
+    """The names of what a function takes; those of limits are told on the page and in the package's docstring."""
+    try:
+        all = inspect.signature(thing).parameters
+    except ValueError:
+        return []
+    return [name for name in all if name not in ("self", "cls", "limits", "taking") and not name.startswith("_")]
+
+
+CALLABLES = list(callables())
+
+
+@pytest.mark.parametrize("name, thing, told", CALLABLES, ids=[name for name, *_ in CALLABLES])
+def test_parameters_are_explained(name, thing, told):
+    quoted = " ".join(re.findall(r"`([^`]*)`", told))
+    assert [parameter for parameter in parameters(thing) if not re.search(rf"\b{parameter}\b", quoted)] == []
+
+
+def test_parameters_are_found():
+    assert parameters(leafless.build)[:3] == ["solid", "frame", "depth"] and "depth" in parameters(leafless.Frame)
+    assert sum(len(parameters(thing)) for _, thing, _ in CALLABLES) > 150
 
 
 def test_examples_are_many():

@@ -5,6 +5,7 @@ import pytest
 
 import leafless as lf
 from conftest import PLATE_VOLUME
+from leafless._leafless import frame_of_pair
 
 
 def kinds(csg):
@@ -45,6 +46,32 @@ def test_one_placement_has_one_answer():
         lf.interference(BLOCK, BLOCK, np.eye(2))
 
 
+def test_batches_on_the_frame_of_all_are_one_call():
+    pairs = [
+        (BLOCK, lf.Csg.ball([0, 0, 0], 1)),
+        (BLOCK, lf.surface(lf.Csg.ball([0, 0, 0], 1), tolerance=0.01)),
+        (lf.build(BLOCK, depth=6), lf.build(lf.Csg.ball([0, 0, 0], 1), depth=6)),
+        (BLOCK, lf.build(lf.Csg.ball([0, 0, 0], 1), depth=6)),
+    ]
+    places = np.stack([lf.Affine.translation([x, 0.1, 0.2]).matrix for x in (3.5, 4, 9, -0.5)])
+    given = lf.Frame([-20, -20, -20], 40, 9)
+
+    def gap(a, b, places, **named):
+        return lf.gap_at_least(a, b, 0.75, places, **named)
+
+    for a, b in pairs:
+        for wish in ({}, {"depth": 12}, {"frame": given}, {"frame": given, "depth": 11}):
+            frame = frame_of_pair(a, b, places, **wish)
+            assert frame_of_pair(a, b, places[:1], frame=frame) == frame
+            for ask in (lf.interference, lf.clearance, gap):
+                whole = ask(a, b, places, max_splits=500, **wish)
+                batches = [places[:1], places[1:3], places[3:]]
+                parts = [one for batch in batches for one in ask(a, b, batch, max_splits=500, frame=frame)]
+                # (Answers that hold arrays are not equal to their like.)
+                assert [vars(one) | {"points": None} for one in parts] == [vars(one) | {"points": None} for one in whole]
+    assert frame_of_pair(BLOCK, BLOCK).edge < frame_of_pair(BLOCK, BLOCK, places).edge
+
+
 def test_contact_is_not_overlap():
     pin, bore = lf.Csg.cylinder(2, -5, 5), lf.Csg.cuboid([-9, -9, 0], [9, 9, 1]) - lf.Csg.cylinder(2, -1, 2)
     assert lf.interference(pin, bore).verdict == "disjoint"
@@ -64,6 +91,76 @@ def test_a_given_frame_stands_for_bounds():
     assert 512 - 4 / 3 * np.pi in lf.build(around, frame, surfaces=True).volume
     with pytest.raises(lf.ArgumentError, match="frame"):
         lf.build(around, surfaces=True)
+
+
+class Unbounded(lf.Shape):
+    """A ball that does not say where it lies."""
+
+    def distance(self, points):
+        return (np.linalg.norm(points, axis=1) - 1) * (1 - 1e-12)
+
+
+def test_a_given_frame_stands_for_bounds_under_placements():
+    frame = lf.Frame([-4, -4, -4], 8, 6)
+    block = lf.Csg.cuboid([2, -1, -1], [3, 1, 1])
+    places = [lf.Affine.translation([x, 0, 0]) for x in (0, -1.5, 1.5)]
+    for solid in (Unbounded(), ~(~lf.Csg.ball([0, 0, 0], 1))):
+        found = lf.interference(block, solid, places, frame=frame, max_splits=20_000)
+        assert [one.verdict for one in found[:2]] == ["disjoint"] * 2 and found[2].verdict != "disjoint"
+        near = lf.clearance(block, solid, places[:2], frame=frame, tolerance=0.25, max_splits=20_000)
+        assert 1 in near[0].distance and 2.5 in near[1].distance and near[0].distance.upper < 1.5
+        # (What may lie beyond the frame may be as near as it likes.)
+        gaps = lf.gap_at_least(block, solid, 4, places[:2], frame=frame, max_splits=20_000)
+        assert [one.verdict for one in gaps] == ["no", "no"]
+        # Where it is moved from, the frame does not matter.
+        far = lf.Affine.translation([-100, 0, 0])
+        assert lf.interference(block, far.inverse() @ solid, far, frame=frame, max_splits=20_000).verdict == "disjoint"
+        assert lf.interference(solid, block, places, frame=frame, max_splits=20_000)[0].verdict == "disjoint"
+    for ask in (lf.interference, lf.clearance, lf.deviation):
+        with pytest.raises(lf.ArgumentError, match="^frame: "):
+            ask(block, Unbounded())
+    assert lf.deviation(Unbounded(), lf.Csg.ball([0, 0, 0], 1), frame=frame, max_splits=3000).distance.lower == 0
+
+
+def test_a_given_frame_is_what_a_picture_takes_in():
+    frame = lf.Frame([-2, -2, -2], 4, 20)
+    with pytest.raises(lf.ArgumentError, match="^frame: "):
+        lf.render(Unbounded(), size=(40, 30))
+    shown = np.isfinite(lf.render(Unbounded(), size=(80, 60), frame=frame).depth).mean()
+    ball = lf.Csg.ball([0, 0, 0], 1)
+    assert 0.02 < shown < np.isfinite(lf.render(ball, size=(80, 60)).depth).mean() / 2
+    # Half of it lies in the frame.
+    half = lf.render(ball, size=(80, 60), view=(0, 0), frame=lf.Frame([0, -2, -2], 4, 20))
+    assert np.isfinite(half.depth).sum() < 0.75 * np.isfinite(lf.render(ball, size=(80, 60), view=(0, 0), frame=frame).depth).sum()
+    octree = lf.build(ball, depth=5)
+    assert np.isfinite(lf.render(octree, size=(80, 60), frame=frame).depth).mean() < 0.3
+
+
+def test_surfaces_ignore_nothing():
+    ball = lf.Csg.ball([0, 0, 0], 1)
+    octree, volume = lf.build(ball, depth=5), lf.Volume(np.ones((4, 4, 4), np.uint8), 1)
+    frame = lf.Frame([-2, -2, -2], 8, 5)
+    refused = [
+        (octree, {"depth": 6}),
+        (octree, {"frame": frame}),
+        (octree, {"tolerance": 0.1}),
+        (octree, {"method": "nets", "depth": 6}),
+        (octree, {"method": "adaptive", "resolve": "inner"}),
+        (volume, {"tolerance": 0.1}),
+        (volume, {"method": "cubes", "tolerance": 0.1}),
+        (volume, {"resolve": "inner"}),
+        (ball, {"method": "cubes", "tolerance": 0.1}),
+        (ball, {"method": "nets", "resolve": "inner"}),
+        (ball, {"resolve": "outer"}),
+    ]
+    for solid, named in refused:
+        with pytest.raises(lf.ArgumentError, match=f"^{list(named)[-1]}: has no meaning"):
+            lf.surface(solid, **named)
+    # What is heeded makes another mesh.
+    assert len(lf.surface(volume, frame=frame, depth=3)) != len(lf.surface(volume))
+    assert len(lf.surface(volume, method="cubes", frame=frame)) != len(lf.surface(volume))
+    coarse, fine = (lf.surface(octree, method="adaptive", tolerance=tolerance) for tolerance in (0.5, 0.05))
+    assert len(coarse) < len(fine)
 
 
 def test_deviation():

@@ -226,9 +226,24 @@ def test_rays_share_what_is_one():
     assert hits.hit.tolist() == [True, False]
     with pytest.raises(lf.ArgumentError, match="directions"):
         CUBE.rays(np.zeros((3, 3)), np.ones((2, 3)))
-    with pytest.raises(lf.ArgumentError, match="direction"):
+    with pytest.raises(lf.ArgumentError, match="^directions: "):
         CUBE.rays([0, 0, 0], [0, 0, 0])
-    assert CUBE.rays([-1, 2, 2], [1, 0, 0], last=0.5).hit.tolist() == [False]
+
+
+def test_one_question_has_one_answer():
+    near = CUBE.distances([5, 2, 2], tolerance=1e-6)
+    many = CUBE.distances([[5, 2, 2]], tolerance=1e-6)
+    assert isinstance(near, lf.Distance) and isinstance(near.distance, lf.Interval) and near.distance == many.distance[0]
+    assert near.nearest.shape == (3,) and (near.nearest == many.nearest[0]).all()
+    assert near.surface == many.surface[0] and near.undecided is False and many.undecided.tolist() == [False]
+    assert CUBE.distances([5, 2, 2], tolerance=0).undecided == CUBE.distances([[5, 2, 2]], tolerance=0).undecided[0]
+    hit, hits = CUBE.rays([-1, 2, 2], [1, 0, 0]), CUBE.rays([[-1, 2, 2]], [1, 0, 0])
+    assert isinstance(hit, lf.RayHit) and hit.hit is True and hit.distance == hits.distance[0] and 1 in hit.distance
+    assert hit.normal.shape == (3,) and (hit.normal == hits.normal[0]).all() and hit.surface == hits.surface[0]
+    missed = CUBE.rays([-1, 2, 2], [1, 0, 0], last=0.5)
+    assert missed.hit is False and missed.distance.lower == np.inf and np.isnan(missed.normal).all() and missed.surface == -1
+    for several in (CUBE.rays([[-1, 2, 2]], [[1, 0, 0]]), CUBE.rays([-1, 2, 2], [[1, 0, 0]])):
+        assert isinstance(several, lf.RayHits) and len(several) == 1
 
 
 def test_what_has_no_bounds_needs_a_frame():

@@ -56,7 +56,7 @@ def test_formats_are_rounded_outward():
 
 @pytest.mark.parametrize("ends", [(2, 1), (np.nan, 1), (1, np.nan)])
 def test_intervals_are_refused(ends):
-    with pytest.raises(lf.ArgumentError, match="^upper: "):
+    with pytest.raises(lf.ArgumentError, match="^(lower|upper): "):
         lf.Interval(*ends)
 
 
@@ -109,7 +109,7 @@ def test_frame():
     for refused in [([0, 0, 0], -1, 5), ([0, 0, 0], 1, 0), ([0, 0, 0], 1, 21), ([np.nan, 0, 0], 1, 5), ([0, 0], 1, 5)]:
         with pytest.raises(lf.ArgumentError):
             lf.Frame(*refused)
-    with pytest.raises(OverflowError):
+    with pytest.raises(lf.ArgumentError, match="^depth: "):
         lf.Frame([0, 0, 0], 1, -3)
 
 

@@ -3,6 +3,7 @@
 import gc
 import os
 import signal
+import sys
 import threading
 import time
 import weakref
@@ -48,21 +49,76 @@ def test_signal_handlers_run_and_their_exceptions_come_out():
         signal.signal(signal.SIGALRM, before)
 
 
+def questions():
+    """Questions that take some time, and whose arrays NumPy need not convert."""
+    ball, turned = lf.Csg.ball([0, 0, 0], 1), lf.Affine.rotation([1, 2, 3], 40)
+    octree, model, mesh = lf.build(ball, depth=7), lf.dexelize(ball, depth=7), lf.surface(ball, tolerance=3e-4)
+    data, model_data = octree.to_bytes(), model.to_bytes()
+    twin, model_twin = lf.Octree.from_bytes(data), lf.TriDexel.from_bytes(model_data)
+    points = np.random.default_rng(0).uniform(-1, 1, (30_000, 3))
+    channel = lf.Channel.fill(lambda points: points[:, 0], octree, depth=5)
+    volume, records = lf.Volume(octree.bitmap(), spacing=0.01), octree.voxels()
+    lazy = lf.LazyOctree(ball)
+    lazy.refine(6)
+    # A mesh remembers what it found out.
+    fresh = [mesh.placed(turned) for _ in range(30)]
+    return {
+        "Affine.__call__": lambda: turned(points),
+        "Channel.values_at": lambda: channel.values_at(points),
+        "Frame.codes": lambda: octree.frame.codes(points, 5),
+        "LazyOctree.contains": lambda: lazy.contains(points),
+        "Mesh.placed": lambda: mesh.placed(turned),
+        "Mesh.report": lambda: fresh.pop().report(),
+        "Octree.__eq__": lambda: octree == twin,
+        "Octree.open_cells": lambda: octree.open_cells(6),
+        "Octree.contains": lambda: octree.contains(points[:4000]),
+        "Octree.from_bytes": lambda: lf.Octree.from_bytes(data),
+        "Octree.to_bytes": octree.to_bytes,
+        "Solid.contains": lambda: ball.contains(points[:4000]),
+        "Solid.distances": lambda: ball.distances(points[:10]),
+        "TriDexel.__eq__": lambda: model == model_twin,
+        "TriDexel.from_bytes": lambda: lf.TriDexel.from_bytes(model_data),
+        "TriDexel.rays": lambda: model.rays(1),
+        "TriDexel.to_bytes": model.to_bytes,
+        "TriDexel.volume": lambda: model.volume(1),
+        "Volume.values_at": lambda: volume.values_at(points),
+        "VoxelRecords.corners": records.corners,
+        "measure": lambda: lf.measure(hard(), frame=FRAME, tolerance=0.0, max_splits=1000),
+    }
+
+
+def lets_others_run(ask, patience=10.0):
+    """Whether another thread runs while a question is answered."""
+    ran, gate = [], threading.Lock()
+    ask()
+    gate.acquire()
+
+    def wait():
+        with gate:
+            ran.append(1)
+
+    other = threading.Thread(target=wait)
+    other.start()
+    before = sys.getswitchinterval()
+    # From here on a thread keeps the interpreter until it gives it away, and only the question may do so.
+    sys.setswitchinterval(1000)
+    try:
+        gate.release()
+        end = time.monotonic() + patience
+        while not ran and time.monotonic() < end:
+            ask()
+        return bool(ran)
+    finally:
+        sys.setswitchinterval(before)
+        other.join()
+
+
 def test_other_threads_go_on():
-    counted = [0]
-    done = threading.Event()
+    assert [name for name, ask in questions().items() if not lets_others_run(ask)] == []
 
-    def count():
-        while not done.is_set():
-            counted[0] += 1
-            time.sleep(0.001)
 
-    thread = threading.Thread(target=count)
-    thread.start()
-    lf.measure(hard(), frame=FRAME, tolerance=0.0, max_splits=300_000)
-    done.set()
-    thread.join()
-    assert counted[0] > 3
+def test_what_keeps_the_interpreter_is_found():
+    assert not lets_others_run(lambda: sum(range(1000)), patience=0.2)
 
 
 def test_progress_is_reported():
@@ -95,9 +151,84 @@ def test_limits():
     with pytest.raises(lf.LimitError, match="bytes"):
         lf.build(ball, depth=9, max_bytes=1000)
     assert lf.measure(ball, max_splits=10, tolerance=0).stop_reason == "budget"
-    for wrong in (-1, "many", 1.5):
-        with pytest.raises((TypeError, OverflowError)):
+    for wrong, error in ((-1, lf.ArgumentError), ("many", TypeError), (1.5, TypeError)):
+        with pytest.raises(error, match="^max_nodes: "):
             lf.build(ball, max_nodes=wrong)
+
+
+def test_limits_of_arrays_and_files(tmp_path):
+    octree = lf.build(lf.Csg.ball([0, 0, 0], 1), depth=6)
+    count = len(octree.cells())
+    assert len(octree.cells(max_bytes=14 * count)) == count
+    with pytest.raises(lf.LimitError, match="cells"):
+        octree.cells(max_bytes=14 * count - 1)
+    # The library's list, and a code for each cell.
+    codes = octree.open_cells(6)
+    assert (octree.open_cells(6, max_bytes=24 * len(codes)) == codes).all()
+    with pytest.raises(lf.LimitError, match="open cells"):
+        octree.open_cells(6, max_bytes=24 * len(codes) - 1)
+    # A word for each row, and a byte for each cell.
+    needed = 64 * 64 * 8 + 64**3
+    assert octree.bitmap(max_bytes=needed).shape == (64, 64, 64)
+    with pytest.raises(lf.LimitError, match="bitmap"):
+        octree.bitmap(max_bytes=needed - 1)
+    with pytest.raises(lf.LimitError):
+        octree.bitmap(outer=True, max_bytes=needed)
+    for object, name in ((octree, "ball.lfl"), (lf.surface(octree), "ball.stl")):
+        path = tmp_path / name
+        lf.save(object, path)
+        size = path.stat().st_size
+        lf.open(path, max_bytes=size)
+        with pytest.raises(lf.LimitError, match="file"):
+            lf.open(path, max_bytes=size - 1)
+        with pytest.raises(lf.LimitError, match="file"):
+            lf.open(f"file://{path}", max_bytes=size - 1)
+        heard = []
+        lf.open(path, progress=heard.append)
+        assert heard[-1] == 1
+    (tmp_path / "part.csg").write_text('import("ball.stl");')
+    assert lf.open(tmp_path / "part.csg", max_bytes=size).bounds is not None
+    with pytest.raises(lf.Error):
+        lf.open(tmp_path / "part.csg", max_bytes=size - 1)
+
+
+def test_limits_of_set_operations():
+    frame = lf.Frame([-2, -2, -2], 4, 6)
+    balls = [lf.Csg.ball([x, 0, 0], 1) for x in (-0.5, 0, 0.5)]
+    a, b, c = (lf.build(ball, frame) for ball in balls)
+    several = [
+        (lf.Octree.union_of, a | b | c),
+        (lf.Octree.intersection_of, a & b & c),
+        (lf.Octree.difference_of, a - b - c),
+        (lf.Octree.xor_of, a ^ b ^ c),
+    ]
+    for combined, expected in several:
+        assert combined(a, b, c) == expected and combined(a, b, c, threads=1) == expected
+        with pytest.raises(lf.LimitError):
+            combined(a, b, c, max_nodes=3)
+    assert lf.Octree.complement_of(a) == ~a and lf.Octree.union_of(a) == a
+    kept = lf.Octree.union_of(*(lf.build(ball, frame, surfaces=True) for ball in balls))
+    assert kept.keeps_surfaces and lf.measure(kept).volume.middle == pytest.approx((a | b | c).volume.middle, rel=0.02)
+    one, other = (lf.dexelize(lf.Csg.ball([x, 0, 0], 1), frame) for x in (0, 0.5))
+    assert lf.TriDexel.union_of(one, other) == one | other and lf.TriDexel.difference_of(one, other) == one - other
+    assert lf.TriDexel.intersection_of(one, other) == one & other and lf.TriDexel.xor_of(one, other) == one ^ other
+    assert lf.TriDexel.complement_of(one) == ~one
+    with pytest.raises(lf.LimitError):
+        lf.TriDexel.union_of(one, other, max_bytes=100)
+
+
+def test_octrees_heed_those_who_stop_them():
+    octree = lf.build(lf.Csg.ball([0, 0, 0], 1), depth=8)
+    points = np.tile(np.random.default_rng(0).uniform(-1.5, 1.5, (1 << 20, 3)), (8, 1))
+
+    def stop(part):
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        octree.contains(points, progress=stop)
+    # The answers do not depend on how many points are asked about at once.
+    many, beyond = octree.contains(points[: 3 << 16]), points[1 << 16 :][:1000]
+    assert (many[1 << 16 :][:1000] == octree.contains(beyond)).all() and set(many) == {0, 1, 2}
 
 
 def test_threads_at_once():

@@ -39,6 +39,8 @@ def solids() -> tuple[lf.Csg, lf.Octree]:
     plate = lf.Csg.cuboid([0, 0, 0], (8, 6, 1)) - lf.Csg.cylinder_between([4, 3, -1], np.array([4, 3, 2]), 1)
     octree = lf.build(plate, depth=5, rule="sampled", threads=1, progress=lambda part: None)
     assert_type(octree - ~octree, lf.Octree)
+    assert_type(lf.Octree.union_of(octree, ~octree, max_bytes=1 << 30), lf.Octree)
+    assert_type(octree.cells(lf.FULL, "partial", max_bytes=1 << 30), lf.Cells)
     assert_type(octree | Ball(1) | Cube(2) | plate, lf.Csg)
     assert_type(lf.Affine.translation([1, 0, 0]) @ plate, lf.Csg)
     assert_type(np.eye(4) @ lf.surface(plate), lf.Mesh)
@@ -51,10 +53,14 @@ def questions(plate: lf.Csg, other: lf.Solid, points: Doubles) -> list[float]:
     assert_type(plate.contains([1, 2, 0.5]), lf.Membership)
     assert_type(plate.contains([[1, 2, 0.5], [0, 0, 9]]), npt.NDArray[np.uint8])
     assert_type(plate.contains(points), Any)
-    found = plate.distances(points, to="solid", tolerance=1e-3)
+    found: lf.Distances = plate.distances(points, to="solid", tolerance=1e-3)
     assert_type(found.nearest[~found.undecided], Doubles)
     assert_type(found.distance[:2].upper, Doubles)
-    assert_type(plate.rays(points, [0, 0, 1], on="outer").hit, npt.NDArray[np.bool_])
+    assert_type(plate.distances([1, 2, 0.5]).distance, lf.Interval)
+    assert_type(plate.distances([[1, 2, 0.5], [0, 0, 9]]).distance, lf.Intervals)
+    assert_type(plate.rays([[1, 2, 0.5], [0, 0, 9]], [0, 0, 1], on="outer").hit, npt.NDArray[np.bool_])
+    assert_type(plate.rays([1, 2, 9], [0, 0, -1]).hit, bool)
+    assert_type(plate.rays(points, [0, 0, 1], last=9), Any)
     places = [lf.Affine.translation([0, 0, z]) for z in (0, 1, 2)]
     if lf.interference(plate, other, places[1]).verdict == "overlapping":
         low, high = mass.volume

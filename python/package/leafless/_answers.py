@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ._intervals import Intervals
+from ._leafless import Interval
 
 if TYPE_CHECKING:
     from typing import Literal, TypeAlias
@@ -52,6 +54,20 @@ class VoxelKind(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
+class Distance:
+    """How far a point is from a solid."""
+
+    #: The distance.
+    distance: Interval
+    #: A point of the boundary that is as near, shape (3,); NaN if none is known.
+    nearest: npt.NDArray[np.float64]
+    #: The number of the triangle or surface there; −1 if none is known.
+    surface: int
+    #: Whether the interval is wider than the tolerance.
+    undecided: bool
+
+
+@dataclass(frozen=True, eq=False)
 class Distances:
     """How far points are from a solid."""
 
@@ -66,6 +82,20 @@ class Distances:
 
     def __len__(self) -> int:
         return len(self.distance)
+
+
+@dataclass(frozen=True, eq=False)
+class RayHit:
+    """Where a ray first meets a solid."""
+
+    #: Whether anything stopped the ray.
+    hit: bool
+    #: Before the lower end the ray is proven outside, at the upper end inside; infinite without a hit.
+    distance: Interval
+    #: The outward normal at the hit, shape (3,); NaN without a hit.
+    normal: npt.NDArray[np.float64]
+    #: The number of the triangle that was hit; −1 if none is known.
+    surface: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,7 +251,9 @@ class Deviation:
     stop_reason: _StopReason
 
     def within(self, distance: float) -> _Answer:
-        """Whether the boundaries are within a distance of each other: "yes", "no" or "undecided"."""
+        """Whether the boundaries are within a `distance` (model units) of each other: "yes", "no" or "undecided"."""
+        if not isinstance(distance, Real):
+            raise TypeError(f"distance: must be a number, not {type(distance).__name__}")
         if self.distance <= distance:
             return "yes"
         return "no" if self.distance > distance else "undecided"
@@ -263,7 +295,7 @@ class DexelRays:
 
 
 for _kind in (
-    *(Membership, Tag, VoxelKind, Distances, RayHits, MassProperties, SurfaceArea, BoundingBox),
+    *(Membership, Tag, VoxelKind, Distance, Distances, RayHit, RayHits, MassProperties, SurfaceArea, BoundingBox),
     *(Interference, Clearance, Gap, Deviation, Cells, DexelRays),
 ):
     _kind.__module__ = "leafless"

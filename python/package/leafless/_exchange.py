@@ -24,6 +24,13 @@ def _plain(given: npt.ArrayLike, name: str) -> npt.NDArray[Any]:
         raise ArgumentError(f"{name}: must be an array of numbers ({error})") from None
 
 
+def is_lossy(given: object) -> bool:
+    """Whether `float` would drop something of an object, or does not take it."""
+    if isinstance(given, np.ndarray):
+        return given.ndim > 0 or given.dtype.kind not in "biuf" or np.ma.is_masked(given)
+    return isinstance(given, (complex, np.complexfloating))
+
+
 def numbers(given: npt.ArrayLike, kind: str, name: str) -> npt.NDArray[Any]:
     """An array of one type that lies in memory row after row. Digits may be rounded; what else would be lost is refused."""
     array = _plain(given, name)
@@ -35,7 +42,7 @@ def numbers(given: npt.ArrayLike, kind: str, name: str) -> npt.NDArray[Any]:
             raise TypeError(f"{name}: must be whole numbers, not {array.dtype}")
         least, greatest = np.iinfo(kind).min, np.iinfo(kind).max
         if array.min() < least or array.max() > greatest:
-            raise ArgumentError(f"{name}: must be from {least} to {greatest}")
+            raise ArgumentError(f"{name}: must be whole numbers from {least} to {greatest}")
     return np.require(array, kind, ["C", "A"])
 
 
@@ -43,7 +50,7 @@ def samples(array: npt.ArrayLike, axes_reversed: bool) -> tuple[npt.NDArray[Any]
     """The array with x varying fastest, the name of its type, and the numbers of samples along x, y and z."""
     array = _plain(array, "array")
     if array.ndim != 3:
-        raise ValueError(f"array: must have three axes, not {array.ndim}")
+        raise ArgumentError(f"array: must have three axes, not {array.ndim}")
     # In the order z, y, x the last axis varies fastest in memory, as NumPy likes it.
     reversed_ = array if axes_reversed else array.transpose()
     kind = reversed_.dtype.newbyteorder("=").name

@@ -6,6 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from . import _leafless
+from ._errors import ArgumentError
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -21,6 +22,16 @@ def _name(url: str) -> str:
     """The name of the file at a URL, without what is asked of a server. In a chain (`zip://part.stl::https://…`) it is the first name."""
     first = next(part for part in url.split("::") if "://" in part)
     return first.partition("?")[0].rsplit("/", 1)[-1]
+
+
+def _path(path: str | os.PathLike[str]) -> str:
+    try:
+        found = os.fspath(path)
+    except TypeError:
+        found = path  # type: ignore[assignment]
+    if not isinstance(found, str):
+        raise TypeError(f"path: must be a str or a path, not {type(path).__name__}")
+    return found
 
 
 def _fsspec() -> Any:
@@ -41,6 +52,8 @@ def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | Tri
     was saved here remembers its threshold. For other files the default is the middle of what the type of the samples can be: 127.5 for
     uint8, 32767.5 for uint16, −0.5 for signed integers, 0 for floating point. A mask of zeros and ones therefore needs `threshold=0.5`.
 
+    `max_bytes` refuses longer files, those that a scene names too; `threads` and `progress` are those of long work.
+
     >>> import os, tempfile
     >>> path = os.path.join(tempfile.mkdtemp(), "ball.lfl")
     >>> save(build(Csg.ball([0, 0, 0], 1), depth=5), path)
@@ -49,13 +62,16 @@ def open(path: str | os.PathLike[str], **taking: Unpack[Taking]) -> Octree | Tri
     """
     url = _url(path)
     if url is None:
-        return _leafless.open_path(os.fspath(path), **taking)
+        return _leafless.open_path(_path(path), **taking)
     with _fsspec().open(url, "rb") as file:
-        return _leafless.open_bytes(file.read(), _name(url), **taking)
+        limit = taking.get("max_bytes")
+        # One byte more than is allowed, and the file is refused.
+        data = file.read(limit + 1 if isinstance(limit, int) else -1)
+        return _leafless.open_bytes(data, _name(url), **taking)
 
 
 def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDexel:
-    """The octree or the tri-dexel model in a file, mapped: nothing is copied, and only what is asked for is ever read, so that it takes
+    """The octree or the tri-dexel model in the file at `path`, mapped: nothing is copied, and only what is asked for is ever read, so that it takes
     microseconds whatever the size. The pages are shared with all processes that map the file.
 
     The file may be replaced or removed, but must not be made shorter or written to as long as the object is there. Of a file that is
@@ -70,13 +86,13 @@ def map(path: str | os.PathLike[str], *, verify: bool = False) -> Octree | TriDe
     <Membership.INSIDE: 1>
     """
     if _url(path) is not None:
-        raise ValueError(f"path: only a file of this machine can be mapped, not {path}; open reads it")
-    return _leafless.map_path(os.fspath(path), verify=verify)
+        raise ArgumentError(f"path: only a file of this machine can be mapped, not {path}; open reads it")
+    return _leafless.map_path(_path(path), verify=verify)
 
 
 def save(object: Octree | TriDexel | Mesh | Volume | Picture, path: str | os.PathLike[str]) -> None:
-    """Writes an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd, with its threshold) or a
-    `Picture` (.png).
+    """Writes an `object`: an `Octree` or a `TriDexel` (.lfl), a `Mesh` (.stl, .obj, .ply, .off, .3mf), a `Volume` (.nrrd, with its threshold)
+    or a `Picture` (.png).
 
     `path` is a path, or a URL of any kind that fsspec can write to. A file at a path is replaced as a whole: at any moment there is the
     old one or the new one.
@@ -89,7 +105,7 @@ def save(object: Octree | TriDexel | Mesh | Volume | Picture, path: str | os.Pat
     """
     url = _url(path)
     if url is None:
-        _leafless.save_path(object, os.fspath(path))
+        _leafless.save_path(object, _path(path))
         return
     data = _leafless.save_bytes(object, _name(url))
     with _fsspec().open(url, "wb") as file:

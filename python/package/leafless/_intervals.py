@@ -11,7 +11,7 @@ from ._leafless import Interval
 
 
 class Intervals:
-    """An array of intervals: two arrays of one shape, between which the truth lies.
+    """An array of intervals: two arrays of one shape, `lower` and `upper`, between which the truth lies.
 
     >>> bounds = Intervals([1.0, 2.0], [1.5, 2.0])
     >>> bounds[0], bounds.width
@@ -60,7 +60,7 @@ class Intervals:
             return np.where(self.lower == self.upper, 0.0, self.upper - self.lower)
 
     def contain(self, values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Where values lie in their intervals: an array of booleans."""
+        """Where `values` lie in their intervals: an array of booleans."""
         values = np.asarray(values)
         return (self.lower <= values) & (values <= self.upper)
 

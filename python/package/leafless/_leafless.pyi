@@ -1,7 +1,7 @@
 # The types of the extension module: its classes and functions, the words they take, and the dictionaries they give.
 # It tells no `__eq__`, so that strict checkers find comparisons of different kinds, which are never true.
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from os import PathLike
 from typing import (
     Any,
@@ -27,11 +27,13 @@ from ._answers import (
     Clearance,
     Deviation,
     DexelRays,
+    Distance,
     Distances,
     Gap,
     Interference,
     MassProperties,
     Membership,
+    RayHit,
     RayHits,
     SurfaceArea,
     Tag,
@@ -65,6 +67,7 @@ __all__ = [
     "deviation",
     "dexelize",
     "frame_of",
+    "frame_of_pair",
     "gap_at_least",
     "interference",
     "join",
@@ -85,6 +88,7 @@ __all__ = [
 
 _Rule: TypeAlias = Literal["certified", "sampled", "inner", "outer"]
 _Fill: TypeAlias = Literal["nonzero", "positive", "evenodd"]
+_To: TypeAlias = Literal["boundary", "solid", "complement"]
 _Order: TypeAlias = Literal["xyz", "zyx"]
 _Method: TypeAlias = Literal["faces", "adaptive", "cubes", "nets", "shrink"]
 
@@ -124,7 +128,7 @@ class Limits(TypedDict, total=False):
     progress: Callable[[float], object] | ProgressBar | Literal[True] | None
 
 @type_check_only
-class Taking(TypedDict, total=False):
+class Taking(Limits, total=False):
     fill: _Fill | None
     unit: str | None
     to_unit: str | None
@@ -266,15 +270,70 @@ class Solid:
     # An array holds one point, and the answer is a `Membership`, or many, and it is an array. No type says which.
     @overload
     def contains(self, points: ArrayLike, *, frame: Frame | Octree | None = None, **limits: Unpack[Limits]) -> Any: ...
+    @overload
     def distances(
         self,
-        points: ArrayLike,
+        points: _Point,
         *,
-        to: Literal["boundary", "solid", "complement"] = "boundary",
+        to: _To = "boundary",
+        tolerance: float | None = None,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> Distance: ...
+    @overload
+    def distances(
+        self,
+        points: _Points,
+        *,
+        to: _To = "boundary",
         tolerance: float | None = None,
         frame: Frame | Octree | None = None,
         **limits: Unpack[Limits],
     ) -> Distances: ...
+    @overload
+    def distances(
+        self,
+        points: ArrayLike,
+        *,
+        to: _To = "boundary",
+        tolerance: float | None = None,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> Any: ...
+    @overload
+    def rays(
+        self,
+        origins: _Point,
+        directions: _Point,
+        *,
+        on: Literal["outer", "inner"] = "inner",
+        last: float = ...,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> RayHit: ...
+    @overload
+    def rays(
+        self,
+        origins: _Points,
+        directions: ArrayLike,
+        *,
+        on: Literal["outer", "inner"] = "inner",
+        last: float = ...,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> RayHits: ...
+    @overload
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: _Points,
+        *,
+        on: Literal["outer", "inner"] = "inner",
+        last: float = ...,
+        frame: Frame | Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> RayHits: ...
+    @overload
     def rays(
         self,
         origins: ArrayLike,
@@ -284,7 +343,7 @@ class Solid:
         last: float = ...,
         frame: Frame | Octree | None = None,
         **limits: Unpack[Limits],
-    ) -> RayHits: ...
+    ) -> Any: ...
     def placed(self, placement: Affine | ArrayLike) -> Csg | Mesh: ...
     def __or__(self, other: Solid, /) -> Csg | Octree: ...
     def __and__(self, other: Solid, /) -> Csg | Octree: ...
@@ -343,7 +402,7 @@ class Csg(Solid):
     @staticmethod
     def placed_of(solid: Solid, placement: Affine | ArrayLike) -> Csg: ...
     @staticmethod
-    def from_scene(text: str, folder: _Path | None = None) -> Csg: ...
+    def from_scene(text: str, folder: _Path | None = None, **limits: Unpack[Limits]) -> Csg: ...
     @property
     def bounds(self) -> _Doubles | None: ...
     def placed(self, placement: Affine | ArrayLike) -> Csg: ...
@@ -404,6 +463,16 @@ class Octree(Solid):
     @staticmethod
     def from_bytes(data: bytes) -> Octree: ...
     def to_bytes(self) -> bytes: ...
+    @staticmethod
+    def union_of(*octrees: Octree, **limits: Unpack[Limits]) -> Octree: ...
+    @staticmethod
+    def intersection_of(*octrees: Octree, **limits: Unpack[Limits]) -> Octree: ...
+    @staticmethod
+    def difference_of(*octrees: Octree, **limits: Unpack[Limits]) -> Octree: ...
+    @staticmethod
+    def xor_of(*octrees: Octree, **limits: Unpack[Limits]) -> Octree: ...
+    @staticmethod
+    def complement_of(octree: Octree, **limits: Unpack[Limits]) -> Octree: ...
     @property
     def frame(self) -> Frame: ...
     @property
@@ -419,11 +488,13 @@ class Octree(Solid):
     def as_truth(self) -> Octree: ...
     def statistics(self) -> list[Level]: ...
     def shard(self, shard: Shard, **limits: Unpack[Limits]) -> Octree: ...
-    def open_cells(self, level: int) -> npt.NDArray[np.uint64]: ...
+    def open_cells(self, level: int, **limits: Unpack[Limits]) -> npt.NDArray[np.uint64]: ...
     @property
     def metadata(self) -> dict[str, str]: ...
     def with_metadata(self, metadata: dict[str, str]) -> Octree: ...
-    def cells(self, *tags: Literal["empty", "branch", "partial", "full"]) -> Cells: ...
+    def cells(
+        self, *tags: Literal["empty", "branch", "partial", "full"] | Tag, **limits: Unpack[Limits]
+    ) -> Cells: ...
     def tag_at(self, at: _Indices) -> Tag: ...
     def bitmap(
         self,
@@ -532,7 +603,14 @@ class Shape(Solid):
 
 @final
 class LazyOctree:
-    def __new__(cls, solid: Solid, frame: Frame | Octree | None = None, *, resume: Octree | None = None) -> Self: ...
+    def __new__(
+        cls,
+        solid: Solid,
+        frame: Frame | Octree | None = None,
+        *,
+        resume: Octree | None = None,
+        **limits: Unpack[Limits],
+    ) -> Self: ...
     def refine(
         self,
         level: int,
@@ -609,9 +687,9 @@ class VoxelRecords:
     def values(self) -> _Doubles: ...
     def corners(self) -> _Doubles: ...
     def edges(self) -> _Doubles: ...
-    def depth_order(self, eye: ArrayLike) -> npt.NDArray[np.uint64]: ...
+    def depth_order(self, eye: ArrayLike, **limits: Unpack[Limits]) -> npt.NDArray[np.uint64]: ...
     def to_octree(
-        self, boundary: Literal["empty", "partial", "full"] = "partial", **limits: Unpack[Limits]
+        self, boundary: Literal["empty", "partial", "full"] | Tag = "partial", **limits: Unpack[Limits]
     ) -> Octree: ...
     def __len__(self) -> int: ...
 
@@ -620,6 +698,16 @@ class TriDexel:
     @staticmethod
     def from_bytes(data: bytes) -> TriDexel: ...
     def to_bytes(self) -> bytes: ...
+    @staticmethod
+    def union_of(*models: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
+    @staticmethod
+    def intersection_of(*models: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
+    @staticmethod
+    def difference_of(*models: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
+    @staticmethod
+    def xor_of(*models: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
+    @staticmethod
+    def complement_of(model: TriDexel, **limits: Unpack[Limits]) -> TriDexel: ...
     @property
     def frame(self) -> Frame: ...
     @property
@@ -707,8 +795,15 @@ def frame_of(
     depth: int | None = None,
     surfaces: bool | float | None = None,
 ) -> Frame: ...
+def frame_of_pair(
+    a: Solid,
+    b: Solid,
+    placements: Affine | Sequence[Affine] | ArrayLike | None = None,
+    *,
+    frame: Frame | Octree | None = None,
+    depth: int | None = None,
+) -> Frame: ...
 @final
-@disjoint_base
 class Shard:
     @staticmethod
     def top(level: int) -> Shard: ...
@@ -721,7 +816,6 @@ class Shard:
     def __hash__(self) -> int: ...
 
 @final
-@disjoint_base
 class MassSum:
     @staticmethod
     def unknown(frame: Frame | Octree, level: int, code: int) -> MassSum: ...
@@ -732,19 +826,18 @@ class MassSum:
     def frame(self) -> Frame: ...
     @property
     def properties(self) -> MassProperties: ...
-    def __add__(self, other: MassSum) -> MassSum: ...
-    def __sub__(self, other: MassSum) -> MassSum: ...
+    def __add__(self, other: MassSum, /) -> MassSum: ...
+    def __sub__(self, other: MassSum, /) -> MassSum: ...
 
 @final
-@disjoint_base
 class ShardedSolid(Solid):
-    def __new__(cls, top: Octree, level: int, shards: Sequence[tuple[int, Octree]]) -> Self: ...
+    def __new__(cls, top: Octree, level: int, shards: Iterable[tuple[int, Octree]]) -> Self: ...
     @property
     def frame(self) -> Frame: ...
 
-def join(octrees: Sequence[Octree], **limits: Unpack[Limits]) -> Octree: ...
+def join(octrees: Iterable[Octree], **limits: Unpack[Limits]) -> Octree: ...
 def joined_statistics(
-    top: Octree, level: int, shards: Sequence[tuple[int, Sequence[tuple[int, int, int]]]]
+    top: Octree, level: int, shards: Iterable[tuple[int, Iterable[tuple[int, int, int]]]]
 ) -> list[Level]: ...
 def measure_cell(
     solid: Solid,
@@ -929,6 +1022,7 @@ def render(
     cells: bool = False,
     background: _Indices = ...,
     samples: int = 4,
+    frame: Frame | Octree | None = None,
     **limits: Unpack[Limits],
 ) -> Picture: ...
 def open_path(path: _Path, **taking: Unpack[Taking]) -> _Opened: ...

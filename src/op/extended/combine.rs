@@ -208,7 +208,7 @@ impl Walk<'_> {
             self.operands.iter().map(|(tree, flip)| Planes::uniform(tree.exterior()).complement_if(*flip));
         let one = match self.combination {
             Combination::Known => {
-                return all.map(|planes| planes.tag(0)).try_fold(Tag::Partial, |all, tag| both(all, tag));
+                return all.map(|planes| planes.tag(0)).try_fold(Tag::Partial, both);
             }
             Combination::All { .. } => all.reduce(Planes::intersection),
             Combination::Odd => all.reduce(|a, b| {
