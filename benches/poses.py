@@ -1,6 +1,6 @@
 """Ten thousand poses of an interference on two worker processes of Dask, beside one process.
 
-    python benches/poses.py MESH [POSES]
+python benches/poses.py MESH [POSES]
 """
 
 import sys
@@ -27,7 +27,10 @@ def main(path, count=10_000):
     start = time.perf_counter()
     expected = lf.interference(part, part, places)
     print(f"one process, all processors: {time.perf_counter() - start:.2f} s")
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, memory_limit=0) as cluster, Client(cluster):
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, memory_limit=0) as cluster,
+        Client(cluster),
+    ):
         distributed.sweep(abs, [1, 2])
         for batch in (64, 256, 1024):
             start = time.perf_counter()

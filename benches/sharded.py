@@ -58,7 +58,14 @@ def sharded(path, depth, level):
         start = time.perf_counter()
         volume = distributed.measure(parts, tolerance=0).volume
         measured = time.perf_counter() - start
-        told = {"s": seconds, "MB": memory, "shards": len(parts), "bytes": parts.nbytes, "volume": str(volume), "measure s": measured}
+        told = {
+            "s": seconds,
+            "MB": memory,
+            "shards": len(parts),
+            "bytes": parts.nbytes,
+            "volume": str(volume),
+            "measure s": measured,
+        }
         if depth <= 12:
             told["sha256"] = hashlib.sha256(parts.join().to_bytes()).hexdigest()
         print(json.dumps(told))
@@ -71,4 +78,9 @@ if __name__ == "__main__":
     else:
         path, depth, level = sys.argv[1], sys.argv[2], (sys.argv[3:] or ["4"])[0]
         for arguments in (["single", path, depth], ["sharded", path, depth, level]):
-            print(arguments[0], subprocess.run([sys.executable, __file__, *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout.strip())
+            print(
+                arguments[0],
+                subprocess.run(
+                    [sys.executable, __file__, *arguments], check=True, stdout=subprocess.PIPE, text=True
+                ).stdout.strip(),
+            )

@@ -22,9 +22,12 @@ FRAME = lf.Frame([-0.3, -0.2, -4.1], 9.0, 7)
 def client():
     """Two worker processes."""
     dask_distributed = pytest.importorskip("distributed")
-    with dask_distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0
-    ) as cluster, dask_distributed.Client(cluster) as client:
+    with (
+        dask_distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0
+        ) as cluster,
+        dask_distributed.Client(cluster) as client,
+    ):
         yield client
 
 
@@ -37,7 +40,10 @@ def test_builds_and_operations_are_those_of_one_process(client, tmp_path, surfac
     tool = distributed.build(TOOL, tmp_path / "tool", FRAME, level=2, surfaces=surfaces)
     cut = distributed.combine("difference", parts, tool, tmp_path / "cut")
     assert cut.manifest == shards.combine("difference", parts, tool, tmp_path / "cut-alone").manifest
-    assert distributed.complement(parts, tmp_path / "not").manifest == shards.complement(parts, tmp_path / "not-alone").manifest
+    assert (
+        distributed.complement(parts, tmp_path / "not").manifest
+        == shards.complement(parts, tmp_path / "not-alone").manifest
+    )
     again = distributed.split(parts.join(), tmp_path / "split", level=2)
     assert again.join() == parts.join()
     found, expected = distributed.measure(cut, tolerance=1e-3), cut.measure(tolerance=1e-3)
@@ -116,9 +122,12 @@ def test_a_worker_that_dies_is_replaced(tmp_path):
     (tmp_path / "died").touch()
     expected = lf.build(Slow(marker, os.getpid()), frame).to_bytes()
     (tmp_path / "died").unlink()
-    with dask_distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0
-    ) as cluster, dask_distributed.Client(cluster):
+    with (
+        dask_distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0
+        ) as cluster,
+        dask_distributed.Client(cluster),
+    ):
         parts = build_with_a_victim(tmp_path, frame, marker)
     assert os.path.exists(marker), "no worker died"
     assert parts.join().to_bytes() == expected

@@ -3,6 +3,7 @@
 import dataclasses
 import doctest
 import enum
+import importlib
 import inspect
 import re
 from pathlib import Path
@@ -94,11 +95,30 @@ def test_examples_are_many():
     assert len(EXAMPLES) >= 25
 
 
-PAGES = [Path(__file__).parent.parent.parent / "docs" / "python.md", Path(__file__).parent.parent / "README.md"]
+@pytest.mark.parametrize("name", ["shards", "distributed"])
+def test_modules_are_documented_and_run(name):
+    if name == "distributed":
+        pytest.importorskip("dask")
+    module = importlib.import_module(f"leafless.{name}")
+    for public in module.__all__:
+        thing = getattr(module, public)
+        assert thing.__doc__ and thing.__doc__.strip(), public
+        for inner, member in vars(thing).items() if inspect.isclass(thing) else ():
+            assert inner.startswith("_") or member.__doc__, f"{public}.{inner}"
+    report = []
+    test = doctest.DocTestParser().get_doctest(module.__doc__, {}, name, None, 0)
+    results = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test, out=report.append)
+    assert results.attempted > 3 and results.failed == 0, "".join(report)
+
+
+DOCS = Path(__file__).parent.parent.parent / "docs"
+PAGES = [DOCS / "python.md", DOCS / "scale.md", Path(__file__).parent.parent / "README.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_pages_run(page):
+    if page.name == "scale.md":
+        pytest.importorskip("distributed")
     blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
     report = []
     test = doctest.DocTestParser().get_doctest("".join(blocks), {}, page.name, str(page), 0)

@@ -65,7 +65,12 @@ def test_queries_of_shards(whole, parts):
         found, expected = (solid.rays(rows, directions, on=on) for solid in (parts, whole))
         assert (found.hit == expected.hit).all()
         assert (found.distance.lower == expected.distance.lower).all()
-    for box in ([[1, 1, 0.2], [2, 2, 0.8]], [[3.5, 2.5, 0.1], [4.5, 3.5, 0.9]], [[-3, -3, 3], [-2, -2, 3.5]], [[0, 0, 0], [8, 6, 1]]):
+    for box in (
+        [[1, 1, 0.2], [2, 2, 0.8]],
+        [[3.5, 2.5, 0.1], [4.5, 3.5, 0.9]],
+        [[-3, -3, 3], [-2, -2, 3.5]],
+        [[0, 0, 0], [8, 6, 1]],
+    ):
         assert parts.classify_box(box) == whole.classify_box(box)
     solid = parts.solid()
     assert lf.interference(solid, TOOL, tolerance=0.5).verdict == "overlapping"
@@ -106,7 +111,10 @@ def test_sums_in_any_order(parts):
 @pytest.mark.parametrize("operation", ["union", "intersection", "difference", "xor"])
 @pytest.mark.parametrize("surfaces", [None, True])
 def test_set_operations(tmp_path, operation, surfaces):
-    a, b = (shards.build(solid, tmp_path / name, FRAME, level=2, surfaces=surfaces) for solid, name in ((PLATE, "a"), (TOOL, "b")))
+    a, b = (
+        shards.build(solid, tmp_path / name, FRAME, level=2, surfaces=surfaces)
+        for solid, name in ((PLATE, "a"), (TOOL, "b"))
+    )
     found = shards.combine(operation, a, b, tmp_path / "c")
     expected = shards.OPERATIONS[operation](a.join(), b.join())
     assert found.join().to_bytes() == expected.to_bytes()
@@ -230,7 +238,18 @@ def hostile():
     for path in ("../a.lfl", "/etc/passwd", "a/../../b", "", "..\\a", "http://elsewhere/a", None, 3):
         yield {**whole, "top": {**good, "path": path}}
         yield {**whole, "shards": [{**shard, "path": path}]}
-    for entry in ({"bytes": -1}, {"bytes": 1e9}, {"offset": -1}, {"code": 8}, {"code": -1}, {"levels": 3}, {"levels": [[1, 2]] * 4}, {"levels": [[-1, 0, 0]] * 4}, {"levels": [[0, 0, 0]] * 3}, {"sha256": None}):
+    for entry in (
+        {"bytes": -1},
+        {"bytes": 1e9},
+        {"offset": -1},
+        {"code": 8},
+        {"code": -1},
+        {"levels": 3},
+        {"levels": [[1, 2]] * 4},
+        {"levels": [[-1, 0, 0]] * 4},
+        {"levels": [[0, 0, 0]] * 3},
+        {"sha256": None},
+    ):
         yield {**whole, "shards": [{**shard, **entry}]}
     yield {**whole, "shards": [shard, shard]}
     yield {**whole, "shards": [{**shard, "code": 3}, {**shard, "code": 2}]}
@@ -308,7 +327,12 @@ def test_pieces_of_the_library(whole):
         join([whole, lf.build(TOOL, FRAME)])
     with pytest.raises(lf.FrameMismatchError):
         join([whole, lf.build(TOOL, FRAME.with_depth(6))])
-    for wrong in (lambda: Shard.below(1, 8), lambda: whole.shard(Shard.top(8)), lambda: whole.open_cells(8), lambda: join([])):
+    for wrong in (
+        lambda: Shard.below(1, 8),
+        lambda: whole.shard(Shard.top(8)),
+        lambda: whole.open_cells(8),
+        lambda: join([]),
+    ):
         with pytest.raises(lf.ArgumentError):
             wrong()
     for level in (-1, 7, 20):

@@ -89,6 +89,7 @@ __all__ = [
 _Rule: TypeAlias = Literal["certified", "sampled", "inner", "outer"]
 _Fill: TypeAlias = Literal["nonzero", "positive", "evenodd"]
 _To: TypeAlias = Literal["boundary", "solid", "complement"]
+_Operation: TypeAlias = Literal["union", "intersection", "difference", "xor"]
 _Order: TypeAlias = Literal["xyz", "zyx"]
 _Method: TypeAlias = Literal["faces", "adaptive", "cubes", "nets", "shrink"]
 

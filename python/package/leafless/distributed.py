@@ -29,10 +29,22 @@ from typing import TYPE_CHECKING, Any, Literal, Optional, Tuple, TypeVar
 from . import _leafless
 from ._answers import Interference, MassProperties
 from ._leafless import Affine, Frame, MassSum, Mesh, Octree, VoxelRecords
-from .shards import Entry, Folder, Operation, Recipe, ShardedOctree, combined, combined_top, complemented, finish, recipe, store_shard, welded
+from .shards import (
+    Entry,
+    Folder,
+    Recipe,
+    ShardedOctree,
+    combined,
+    combined_top,
+    complemented,
+    finish,
+    recipe,
+    store_shard,
+    welded,
+)
 
 if TYPE_CHECKING:
-    from ._leafless import Solid, _Rule
+    from ._leafless import Solid, _Operation, _Rule
 
 __all__ = ["build", "combine", "complement", "interference", "measure", "split", "surface", "sweep", "voxels"]
 
@@ -92,15 +104,17 @@ def split(octree: Octree, url: str | os.PathLike[str], *, level: int = 3) -> Sha
     from .shards import Shard
 
     folder, top = Folder(url), octree.shard(Shard.top(level))
-    made = _each(_split, ((code,) for code in top.open_cells(level).tolist()), octree=octree, folder=folder, level=level)
+    made = _each(
+        _split, ((code,) for code in top.open_cells(level).tolist()), octree=octree, folder=folder, level=level
+    )
     return finish(folder, level, top, made, None)
 
 
-def _combined(code: int, operation: Operation, a: ShardedOctree, b: ShardedOctree, folder: Folder) -> Entry | bytes:
+def _combined(code: int, operation: _Operation, a: ShardedOctree, b: ShardedOctree, folder: Folder) -> Entry | bytes:
     return combined(folder, operation, a, b, code)
 
 
-def combine(operation: Operation, a: ShardedOctree, b: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
+def combine(operation: _Operation, a: ShardedOctree, b: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
     """A set operation on two sharded octrees, as `leafless.shards.combine`: "union", "intersection", "difference" or "xor"."""
     folder, top = Folder(url), combined_top(operation, a, b)
     codes = ((code,) for code in top.open_cells(a.level).tolist())
@@ -178,12 +192,16 @@ def _interfered(placements: list[Affine], a: Solid, b: Solid, options: dict[str,
     return found
 
 
-def interference(a: Solid, b: Solid, placements: Sequence[Any], *, batch: int = 256, **options: Any) -> list[Interference]:
+def interference(
+    a: Solid, b: Solid, placements: Sequence[Any], *, batch: int = 256, **options: Any
+) -> list[Interference]:
     """What `leafless.interference` tells of two solids under many placements of the second, `batch` of them by a task. The options are
-    those of `leafless.interference`. Without a `frame`, that for all placements is found first."""
+    those of `leafless.interference`, and so are the verdicts: all tasks look at the frame of all placements."""
     placed = [placement if isinstance(placement, Affine) else Affine(placement) for placement in placements]
     if not placed:
         return []
+    frame = _leafless.frame_of_pair(a, b, placed, frame=options.pop("frame", None), depth=options.pop("depth", None))
+    options["frame"] = frame
     parts = [(placed[first : first + batch],) for first in range(0, len(placed), batch)]
     found = _each(_interfered, parts, a=a, b=b, options=options)
     return [verdict for part in found for verdict in part]

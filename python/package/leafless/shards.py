@@ -35,7 +35,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _files, _leafless
-from ._answers import MassProperties, Membership, RayHits, VoxelKind
+from ._answers import MassProperties, Membership, VoxelKind
 from ._errors import FormatError
 from ._leafless import (
     Frame,
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
-    from ._leafless import Limits, Level, Solid, _Rule
+    from ._leafless import Level, Limits, Solid, _Operation, _Rule
 
 __all__ = [
     "MassSum",
@@ -77,9 +77,7 @@ TOP = "top.lfl"
 FORMAT = "leafless shards"
 VERSION = 1
 
-#: Set operations of two sharded octrees.
-Operation = Literal["union", "intersection", "difference", "xor"]
-
+#: Set operations of two octrees, by what they are called.
 OPERATIONS: dict[str, Callable[[Octree, Octree], Any]] = {
     "union": lambda a, b: a | b,
     "intersection": lambda a, b: a & b,
@@ -146,7 +144,9 @@ class Folder:
         """Reads a file, or a range of it."""
         if self._is_remote:
             filesystem, path = _files._fsspec().core.url_to_fs(self.path(name))
-            data: bytes = filesystem.cat_file(path, None if size is None else offset, None if size is None else offset + size)
+            data: bytes = filesystem.cat_file(
+                path, None if size is None else offset, None if size is None else offset + size
+            )
             return data
         with Path(self.path(name)).open("rb") as file:
             file.seek(offset)
@@ -224,7 +224,12 @@ def _checked(manifest: Any, url: str) -> dict[str, Any]:
         if not isinstance(entry, dict) or not isinstance(entry.get("path"), str):
             return False
         path = PurePosixPath(entry["path"])
-        is_inside = not path.is_absolute() and ".." not in path.parts and "\\" not in entry["path"] and "://" not in entry["path"]
+        is_inside = (
+            not path.is_absolute()
+            and ".." not in path.parts
+            and "\\" not in entry["path"]
+            and "://" not in entry["path"]
+        )
         numbers = whole(entry.get("bytes"), 0, 2**63) and whole(entry.get("offset", 0), 0, 2**63)
         return is_inside and bool(path.parts) and numbers and isinstance(entry.get("sha256"), str)
 
@@ -233,8 +238,13 @@ def _checked(manifest: Any, url: str) -> dict[str, Any]:
             return False
         levels = entry.get("levels")
         count = manifest["frame"]["depth"] - manifest["level"]
-        return isinstance(levels, list) and len(levels) == count and all(
-            isinstance(level, list) and len(level) == 3 and all(whole(count, 0, 2**63) for count in level) for level in levels
+        return (
+            isinstance(levels, list)
+            and len(levels) == count
+            and all(
+                isinstance(level, list) and len(level) == 3 and all(whole(count, 0, 2**63) for count in level)
+                for level in levels
+            )
         )
 
     def refuse(what: str) -> FormatError:
@@ -355,8 +365,7 @@ class ShardedOctree:
             if path.stat().st_size != entry.bytes:
                 raise FormatError(f"{path}: has {path.stat().st_size} bytes, not {entry.bytes}")
             if self._verify:
-                with path.open("rb") as file:
-                    self._compare(hashlib.file_digest(file, "sha256").hexdigest() if hasattr(hashlib, "file_digest") else hashlib.sha256(file.read()).hexdigest(), entry)
+                self._compare(hashlib.sha256(path.read_bytes()).hexdigest(), entry)
             octree = _files.map(path, verify=self._verify)
         else:
             data = self._folder.read(entry.path, entry.offset, entry.bytes)
@@ -388,7 +397,9 @@ class ShardedOctree:
                 raise FormatError("does not split its cell")
         except (OSError, ValueError) as error:
             self._missing[code] = reason = f"{type(error).__name__}: {error}"
-            warnings.warn(f"shard {_name(self.level, code)} of {self.url} is PARTIAL: {reason}", MissingShardWarning, stacklevel=3)
+            warnings.warn(
+                f"shard {_name(self.level, code)} of {self.url} is PARTIAL: {reason}", MissingShardWarning, stacklevel=3
+            )
             return None
         self._shards[code] = octree
         if len(self._shards) > self._keep:
@@ -446,7 +457,9 @@ class ShardedOctree:
         total: int = self._manifest["top"]["bytes"] + sum(entry.bytes for entry in self._entries.values())
         return total
 
-    def measure_part(self, code: int | None = None, *, tolerance: float = 1e-3, absolute: float = 0.0, **limits: Unpack[Limits]) -> MassSum:
+    def measure_part(
+        self, code: int | None = None, *, tolerance: float = 1e-3, absolute: float = 0.0, **limits: Unpack[Limits]
+    ) -> MassSum:
         """What is known of the volume and the moments in the cell of a shard; without a code, what the top knows of all, and leaves open.
         `measure_joined` adds them up."""
         frame = self.frame
@@ -454,7 +467,9 @@ class ShardedOctree:
             # What is open in the top is none of its doubt.
             absolute += len(self._open_cells()) * (frame.edge / 2**self.level) ** 3 * (1 + 1e-9)
             return measure_cell(self.top, frame, tolerance=tolerance, absolute=absolute, **limits)
-        return measure_cell(self._present(code), frame, self.level, code, tolerance=tolerance, absolute=absolute, **limits)
+        return measure_cell(
+            self._present(code), frame, self.level, code, tolerance=tolerance, absolute=absolute, **limits
+        )
 
     def measure_joined(self, top: MassSum, parts: Iterable[tuple[int, MassSum]]) -> MassSum:
         """The sum of what is measured of the top and of shards, by their codes; each takes the place of what the top leaves open."""
@@ -489,7 +504,9 @@ class ShardedOctree:
         """Whether points lie inside, as `Octree.contains`. Only the shards of cells in which the top leaves points undecided are
         looked at, one after the other."""
         rows = np.asarray(points, dtype=np.float64)
-        answers = np.atleast_1d(np.asarray(self.top.contains(rows.reshape(-1, 3) if rows.ndim == 1 else rows), dtype=np.uint8)).copy()
+        answers = np.atleast_1d(
+            np.asarray(self.top.contains(rows.reshape(-1, 3) if rows.ndim == 1 else rows), dtype=np.uint8)
+        ).copy()
         places = rows.reshape(-1, 3)
         codes = self.frame.codes(places, self.level)
         undecided = np.flatnonzero((answers == Membership.UNDECIDED) & np.isin(codes, list(self._entries)))
@@ -514,8 +531,17 @@ class ShardedOctree:
         low = np.array(frame.origin) + at * size
         return codes, low - slack, low + size + slack
 
-    def rays(self, origins: ArrayLike, directions: ArrayLike, *, on: Literal["inner", "outer"] = "inner", last: float = float("inf"), **limits: Unpack[Limits]) -> RayHits:
-        """Where rays first meet the solid, as `Octree.rays`. Only shards of cells that rays pass are looked at."""
+    def rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        *,
+        on: Literal["inner", "outer"] = "inner",
+        last: float = float("inf"),
+        **limits: Unpack[Limits],
+    ) -> Any:
+        """Where rays first meet the solid, as `Octree.rays`: a `RayHits`, or a `RayHit` of a single ray. Only shards of cells that rays pass
+        are looked at."""
         from_, along = (np.asarray(given, dtype=np.float64).reshape(-1, 3) for given in (origins, directions))
         from_, along = np.broadcast_arrays(from_, along)
         codes, low, high = self._boxes()
@@ -540,7 +566,9 @@ class ShardedOctree:
         chosen = [code for code, is_met in zip(codes, meets) if is_met]
         return join(list(self.octrees(chosen))).classify_box(box)
 
-    def surface_part(self, code: int, resolve: Literal["inner", "outer"] = "outer", **limits: Unpack[Limits]) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
+    def surface_part(
+        self, code: int, resolve: Literal["inner", "outer"] = "outer", **limits: Unpack[Limits]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
         """The vertices and faces of `surface` in one cell of the level: of its shard, and of those of the neighbours behind it."""
         near = [self.part(code)]
         near += [self.part(neighbour) for neighbour in _behind(self.level, code)]
@@ -554,7 +582,9 @@ class ShardedOctree:
     def surface_codes(self) -> list[int]:
         """The cells of the level in which the surface may have triangles."""
         if self.keeps_surfaces:
-            raise ValueError("an octree that keeps surfaces has few and large cells: join it, and take leafless.surface of that")
+            raise ValueError(
+                "an octree that keeps surfaces has few and large cells: join it, and take leafless.surface of that"
+            )
         # Outside of the frame, before the first cell and behind the last, all is EMPTY.
         count = 2**self.level
         full, maybe = np.zeros((2, count + 2, count + 2, count + 2), dtype=bool)
@@ -592,7 +622,11 @@ class ShardedOctree:
             stack = [(int(top.levels[i]), int(top.codes[i]) >> 3 * (depth - int(top.levels[i])))]
             while stack:
                 at, cell = stack.pop()
-                first, end = np.searchsorted(present, [cell << 3 * (level - at), (cell + 1) << 3 * (level - at)]) if at <= level else (0, 0)
+                first, end = (
+                    np.searchsorted(present, [cell << 3 * (level - at), (cell + 1) << 3 * (level - at)])
+                    if at <= level
+                    else (0, 0)
+                )
                 if first == end:
                     if not is_whole[i]:
                         codes.append(cell << 3 * (depth - at))
@@ -602,9 +636,15 @@ class ShardedOctree:
                 is_whole[i] = False
                 if at < level:
                     stack.extend((at + 1, cell << 3 | octant) for octant in range(8))
-        all_codes = np.concatenate([top.codes[is_whole], np.array(codes, dtype=np.uint64), *(part.codes for part in parts[1:])])
-        all_levels = np.concatenate([top.levels[is_whole], np.array(levels, dtype=np.uint8), *(part.levels for part in parts[1:])])
-        all_kinds = np.concatenate([top.kinds[is_whole], np.array(kinds, dtype=np.uint8), *(part.kinds for part in parts[1:])])
+        all_codes = np.concatenate(
+            [top.codes[is_whole], np.array(codes, dtype=np.uint64), *(part.codes for part in parts[1:])]
+        )
+        all_levels = np.concatenate(
+            [top.levels[is_whole], np.array(levels, dtype=np.uint8), *(part.levels for part in parts[1:])]
+        )
+        all_kinds = np.concatenate(
+            [top.kinds[is_whole], np.array(kinds, dtype=np.uint8), *(part.kinds for part in parts[1:])]
+        )
         order = np.argsort(all_codes, kind="stable")
         return VoxelRecords(self.frame, all_codes[order], all_levels[order], all_kinds[order])
 
@@ -621,7 +661,11 @@ class ShardedOctree:
         for code, reason in missing.items():
             if code not in self._missing:
                 self._missing[code] = reason
-                warnings.warn(f"shard {_name(self.level, code)} of {self.url} is PARTIAL: {reason}", MissingShardWarning, stacklevel=3)
+                warnings.warn(
+                    f"shard {_name(self.level, code)} of {self.url} is PARTIAL: {reason}",
+                    MissingShardWarning,
+                    stacklevel=3,
+                )
 
     def pack(self, url: str | os.PathLike[str]) -> ShardedOctree:
         """A copy whose shards lie in one file, one after the other: for object storage, where they are read by ranges."""
@@ -721,7 +765,11 @@ def recipe(
     surfaces: bool | float | None,
 ) -> Recipe:
     """How shards of a solid are built, on the frame that `leafless.build` takes."""
-    whole = frame if isinstance(frame, Frame) and depth is None else _leafless.frame_of(solid, frame, depth=depth, surfaces=surfaces)
+    whole = (
+        frame
+        if isinstance(frame, Frame) and depth is None
+        else _leafless.frame_of(solid, frame, depth=depth, surfaces=surfaces)
+    )
     if not 0 <= level < whole.depth:
         raise ValueError(f"level: must be 0 to {whole.depth - 1}, above the frame's depth")
     return Recipe(whole, level, rule, surfaces)
@@ -744,7 +792,9 @@ def build(
     `level` is that of the shards' cells: there are at most 8^level shards, and about 4^level for a solid with a smooth surface."""
     how, folder = recipe(solid, frame, depth, level, rule, surfaces), Folder(url)
     top = how.top(solid, **limits)
-    made = (store_shard(folder, level, code, how.below(solid, code, **limits)) for code in top.open_cells(level).tolist())
+    made = (
+        store_shard(folder, level, code, how.below(solid, code, **limits)) for code in top.open_cells(level).tolist()
+    )
     return finish(folder, level, top, made, solid.fingerprint)
 
 
@@ -758,9 +808,7 @@ def split(octree: Octree, url: str | os.PathLike[str], *, level: int = 3, **limi
     return finish(folder, level, top, made, None)
 
 
-def combine(
-    operation: Operation, a: ShardedOctree, b: ShardedOctree, url: str | os.PathLike[str]
-) -> ShardedOctree:
+def combine(operation: _Operation, a: ShardedOctree, b: ShardedOctree, url: str | os.PathLike[str]) -> ShardedOctree:
     """A set operation on two sharded octrees on one frame, shard by shard: "union", "intersection", "difference" or "xor". Where a shard is
     missing, the result is PARTIAL unless the other operand decides it."""
     folder, top = Folder(url), combined_top(operation, a, b)
@@ -768,7 +816,7 @@ def combine(
     return finish(folder, a.level, top, made, None)
 
 
-def combined_top(operation: Operation, a: ShardedOctree, b: ShardedOctree) -> Octree:
+def combined_top(operation: _Operation, a: ShardedOctree, b: ShardedOctree) -> Octree:
     """The top of a result; the cells that it leaves open need shards."""
     if operation not in OPERATIONS:
         raise ValueError(f"operation: must be one of {', '.join(OPERATIONS)}, not {operation!r}")
@@ -778,7 +826,7 @@ def combined_top(operation: Operation, a: ShardedOctree, b: ShardedOctree) -> Oc
     return top
 
 
-def combined(folder: Folder, operation: Operation, a: ShardedOctree, b: ShardedOctree, code: int) -> Entry | bytes:
+def combined(folder: Folder, operation: _Operation, a: ShardedOctree, b: ShardedOctree, code: int) -> Entry | bytes:
     """One shard of a result."""
     found: Octree = OPERATIONS[operation](a.part(code), b.part(code))
     return store_shard(folder, a.level, code, found.shard(Shard.below(a.level, code)))
