@@ -12,6 +12,9 @@ use crate::lattice::{Cell, VolumeMoments};
 use crate::memory;
 use alloc::vec::Vec;
 
+/// An element, its planes, and the number of a cell there.
+type Place = (usize, Planes, u32);
+
 impl OctreeRef<'_> {
     /// What the PARTIAL cells keep of the surfaces that cross them; `None` if they keep nothing. O(records).
     pub fn cuts(&self) -> Option<CutCounts> {
@@ -233,9 +236,8 @@ impl<'a> OctreeRef<'a> {
         }
     }
 
-    /// The PARTIAL cell of the planes in which a cell lies: its element, the planes of that and the number there, or nothing if it is
-    /// the universe; and its level.
-    fn partial_above(&self, cell: Cell) -> Option<(Option<(usize, Planes, u32)>, u8)> {
+    /// The PARTIAL cell of the planes in which a cell lies: its place, or nothing if it is the universe; and its level.
+    fn partial_above(&self, cell: Cell) -> Option<(Option<Place>, u8)> {
         match self.root_tag() {
             Tag::Branch => {}
             Tag::Partial => return Some((None, 0)),
