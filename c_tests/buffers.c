@@ -42,6 +42,14 @@ static leafless_status levels(void *buffer, uint64_t capacity, uint64_t *count) 
     return leafless_octree_levels(octree, (leafless_statistics *)buffer, capacity, count);
 }
 
+static leafless_status open_cells(void *buffer, uint64_t capacity, uint64_t *count) {
+    return leafless_octree_open_cells(octree, 4, (uint64_t *)buffer, capacity, count);
+}
+
+static leafless_status statistics_with(void *buffer, uint64_t capacity, uint64_t *count) {
+    return leafless_octree_statistics_with(octree, 1, NULL, 0, NULL, 0, (leafless_statistics *)buffer, capacity, count);
+}
+
 static leafless_status sections(void *buffer, uint64_t capacity, uint64_t *count) {
     leafless_file_info probe = LEAFLESS_INIT(leafless_file_info);
     const leafless_status status =
@@ -146,6 +154,8 @@ int main(void) {
     check(octree_bytes, 1, 1);
     check(stl_bytes, 1, 1);
     check(levels, sizeof(leafless_statistics), sizeof(leafless_statistics));
+    check(open_cells, sizeof(uint64_t), sizeof(uint64_t));
+    check(statistics_with, sizeof(leafless_statistics), sizeof(leafless_statistics));
     check(sections, sizeof(leafless_file_section), named);
     check(file_sections, sizeof(leafless_file_section), named);
     check(vertices, 3 * sizeof(double), 3 * sizeof(double));

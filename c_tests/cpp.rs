@@ -272,7 +272,11 @@ impl Translator<'_> {
                 i += 1;
             } else if let Some(arrays) = self.arrays_in(&list[i..]) {
                 for array in &list[i..i + arrays] {
-                    made.parameters.push((format!("span<const {}> {}", array.element(), array.name), None));
+                    let element = match self.is_handle(&array.base) {
+                        true => format!("{} *const", array.base),
+                        false => array.element(),
+                    };
+                    made.parameters.push((format!("span<const {element}> {}", array.name), None));
                     made.arguments.push(pointer_to(array));
                     if array.name != p.name {
                         made.before.push(format!("detail::same_size({name}.size(), {}.size());", array.name));
@@ -359,16 +363,20 @@ impl Translator<'_> {
         made
     }
 
-    /// How many arrays of numbers or structs begin here that have one count.
+    /// How many arrays of numbers, structs or objects begin here that have one count.
     fn arrays_in(&self, list: &[Parameter]) -> Option<usize> {
-        let is_array = |p: &Parameter| p.is_input() && !self.is_handle(&p.base);
+        let is_array = |p: &Parameter| match self.is_handle(&p.base) {
+            true => p.is_const && p.pointers == 2,
+            false => p.is_input(),
+        };
         let count = list.iter().take_while(|p| is_array(p)).count();
         let counter = list.get(count).filter(|_| count > 0)?;
         let is_counter = counter.pointers == 0
             && (counter.name.ends_with("count") || counter.name.ends_with("length"))
             && counter.base == "uint64_t";
         // A struct before numbers belongs to something else.
-        let is_one = count == 1 || list[..count].iter().all(|p| !p.base.starts_with("leafless_"));
+        let is_struct = |p: &Parameter| p.base.starts_with("leafless_") && !self.is_handle(&p.base);
+        let is_one = count == 1 || !list[..count].iter().any(is_struct);
         (is_counter && is_one).then_some(count)
     }
 

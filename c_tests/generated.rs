@@ -29,10 +29,11 @@ const SECTIONS: &[Section] = &[
     Section { title: "Scenes", files: &["scene"] },
     Section { title: "Octrees", files: &["metadata", "octree", "op"] },
     Section { title: "Extended octrees", files: &["extended"] },
+    Section { title: "Shards: octrees in parts", files: &["shard"] },
     Section { title: "Points and boxes", files: &["contains", "point_cursor"] },
     Section { title: "Cells of octrees", files: &["cursor", "cells", "bitmap"] },
     Section { title: "Rays, columns, heights", files: &["rays", "columns"] },
-    Section { title: "Volumes, areas, bounding boxes", files: &["content", "measure"] },
+    Section { title: "Volumes, areas, bounding boxes", files: &["content", "measure", "mass_sum"] },
     Section {
         title: "Distance and interference",
         files: &["distance", "interference", "clearance", "deviation"],

@@ -350,6 +350,11 @@ fn extended() {
 }
 
 #[test]
+fn shards() {
+    run("shards", C99, Link::Static, &[]);
+}
+
+#[test]
 fn interferences() {
     run("interference", C99, Link::Static, &[]);
 }
@@ -469,6 +474,7 @@ fn examples() {
         ("cpp/part.cpp", CPP17),
         ("cpp/faces.cpp", CPP17),
         ("cpp/move_part.cpp", CPP17),
+        ("cpp/shards.cpp", CPP17),
     ];
     for (name, standard) in examples {
         let source = root().join("examples").join(name);

@@ -2587,6 +2587,286 @@ static void extended_octrees(void) {
     leafless_octree_free(extended);
 }
 
+/* Octrees in parts: all pointers, all numbers. The frame has 4 levels. */
+static void shards(void) {
+    static const uint32_t not_a_level[] = {5, 20, 21, 255, 256, 257, UINT32_MAX}, not_a_kind[] = {2, 255, 256, UINT32_MAX};
+    static const uint64_t not_a_code[] = {8, 64, UINT64_C(1) << 32, UINT64_C(1) << 63, UINT64_MAX};
+    static const double not_a_tolerance[] = {NAN, -INFINITY, -1};
+    static const uint64_t codes[2] = {0, 1}, same[2] = {1, 1}, *const bad_codes = (const uint64_t *)WRONG(CHECK_CUBE);
+    const leafless_shard top = {0, 1, LEAFLESS_SHARD_KIND_TOP};
+    leafless_shard bad = top;
+    void *out = fresh();
+    void *never = UNTOUCHED;
+    leafless_octree **result = (leafless_octree **)&never;
+    leafless_solid **solid_result = (leafless_solid **)&never;
+    leafless_octree *const bad_octree = (leafless_octree *)WRONG(octree);
+    leafless_solid *const bad_solid = (leafless_solid *)WRONG(solid);
+    leafless_frame *const bad_frame = (leafless_frame *)WRONG(&frame);
+    leafless_options *const bad_options = (leafless_options *)WRONG(&options);
+    const leafless_shard *const bad_shard = (const leafless_shard *)WRONG(&top);
+    leafless_cut_options cuts = LEAFLESS_INIT(leafless_cut_options);
+    leafless_mass_sum sum = LEAFLESS_INIT(leafless_mass_sum), shorter, *const bad_sum = (leafless_mass_sum *)WRONG(out);
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+    leafless_statistics levels[10];
+    const leafless_octree *list[2];
+    uint64_t number = 77;
+    size_t i;
+    memset(levels, 0, sizeof levels);
+    list[0] = list[1] = octree;
+    OK(leafless_mass_sum_unknown(&frame, 0, 0, &sum));
+
+    NULL_POINTER(leafless_octree_build_shard, solid, leafless_octree_build_shard(NULL, &frame, 0, &top, NULL, result));
+    NULL_POINTER(leafless_octree_build_shard, frame, leafless_octree_build_shard(solid, NULL, 0, &top, NULL, result));
+    NULL_POINTER(leafless_octree_build_shard, shard, leafless_octree_build_shard(solid, &frame, 0, NULL, NULL, result));
+    NULL_POINTER(leafless_octree_build_shard, octree, leafless_octree_build_shard(solid, &frame, 0, &top, NULL, NULL));
+    NULL_POINTER(leafless_octree_build_extended_shard, solid,
+                 leafless_octree_build_extended_shard(NULL, &frame, NULL, &top, NULL, result));
+    NULL_POINTER(leafless_octree_build_extended_shard, frame,
+                 leafless_octree_build_extended_shard(solid, NULL, NULL, &top, NULL, result));
+    NULL_POINTER(leafless_octree_build_extended_shard, shard,
+                 leafless_octree_build_extended_shard(solid, &frame, NULL, NULL, NULL, result));
+    NULL_POINTER(leafless_octree_build_extended_shard, octree,
+                 leafless_octree_build_extended_shard(solid, &frame, NULL, &top, NULL, NULL));
+    NULL_POINTER(leafless_octree_shard, octree, leafless_octree_shard(NULL, &top, NULL, result));
+    NULL_POINTER(leafless_octree_shard, shard, leafless_octree_shard(octree, NULL, NULL, result));
+    NULL_POINTER(leafless_octree_shard, result, leafless_octree_shard(octree, &top, NULL, NULL));
+    NULL_POINTER(leafless_octree_join, octrees, leafless_octree_join(NULL, 2, NULL, result));
+    NULL_POINTER(leafless_octree_join, result, leafless_octree_join(list, 2, NULL, NULL));
+    BAD_NUMBER(leafless_octree_join, count, leafless_octree_join(list, 0, NULL, result));
+    BAD_NUMBER(leafless_octree_join, count, leafless_octree_join(NULL, 0, NULL, result));
+    NULL_POINTER(leafless_octree_open_cells, octree, leafless_octree_open_cells(NULL, 1, NULL, 0, &number));
+    NULL_POINTER(leafless_octree_open_cells, codes, leafless_octree_open_cells(octree, 1, NULL, 1, &number));
+    NULL_POINTER(leafless_octree_open_cells, count, leafless_octree_open_cells(octree, 1, NULL, 0, NULL));
+    NULL_POINTER(leafless_octree_statistics_with, octree,
+                 leafless_octree_statistics_with(NULL, 1, NULL, 0, NULL, 0, NULL, 0, &number));
+    NULL_POINTER(leafless_octree_statistics_with, codes,
+                 leafless_octree_statistics_with(octree, 1, NULL, 2, levels, 10, NULL, 0, &number));
+    NULL_POINTER(leafless_octree_statistics_with, levels,
+                 leafless_octree_statistics_with(octree, 1, codes, 2, NULL, 10, NULL, 0, &number));
+    NULL_POINTER(leafless_octree_statistics_with, joined,
+                 leafless_octree_statistics_with(octree, 1, NULL, 0, NULL, 0, NULL, 5, &number));
+    NULL_POINTER(leafless_octree_statistics_with, count,
+                 leafless_octree_statistics_with(octree, 1, NULL, 0, NULL, 0, NULL, 0, NULL));
+    NULL_POINTER(leafless_solid_from_shards, top, leafless_solid_from_shards(NULL, 1, codes, list, 2, solid_result));
+    NULL_POINTER(leafless_solid_from_shards, codes, leafless_solid_from_shards(octree, 1, NULL, list, 2, solid_result));
+    NULL_POINTER(leafless_solid_from_shards, octrees, leafless_solid_from_shards(octree, 1, codes, NULL, 2, solid_result));
+    NULL_POINTER(leafless_solid_from_shards, solid, leafless_solid_from_shards(octree, 1, codes, list, 2, NULL));
+    list[1] = NULL;
+    NULL_POINTER(leafless_octree_join, octrees, leafless_octree_join(list, 2, NULL, result));
+    NULL_POINTER(leafless_solid_from_shards, octrees, leafless_solid_from_shards(octree, 1, codes, list, 2, solid_result));
+    list[1] = octree;
+    NULL_POINTER(leafless_solid_measure_cell, solid,
+                 leafless_solid_measure_cell(NULL, &frame, 1, 0, 0.1, 0, NULL, (leafless_mass_sum *)out));
+    NULL_POINTER(leafless_solid_measure_cell, frame,
+                 leafless_solid_measure_cell(solid, NULL, 1, 0, 0.1, 0, NULL, (leafless_mass_sum *)out));
+    NULL_POINTER(leafless_solid_measure_cell, sum, leafless_solid_measure_cell(solid, &frame, 1, 0, 0.1, 0, NULL, NULL));
+    NULL_POINTER(leafless_mass_sum_unknown, frame, leafless_mass_sum_unknown(NULL, 1, 0, (leafless_mass_sum *)out));
+    NULL_POINTER(leafless_mass_sum_unknown, sum, leafless_mass_sum_unknown(&frame, 1, 0, NULL));
+    NULL_POINTER(leafless_mass_sum_add, a, leafless_mass_sum_add(NULL, &sum, (leafless_mass_sum *)out));
+    NULL_POINTER(leafless_mass_sum_add, b, leafless_mass_sum_add(&sum, NULL, (leafless_mass_sum *)out));
+    NULL_POINTER(leafless_mass_sum_add, sum, leafless_mass_sum_add(&sum, &sum, NULL));
+    NULL_POINTER(leafless_mass_sum_subtract, a, leafless_mass_sum_subtract(NULL, &sum, (leafless_mass_sum *)out));
+    NULL_POINTER(leafless_mass_sum_subtract, b, leafless_mass_sum_subtract(&sum, NULL, (leafless_mass_sum *)out));
+    NULL_POINTER(leafless_mass_sum_subtract, sum, leafless_mass_sum_subtract(&sum, &sum, NULL));
+    NULL_POINTER(leafless_mass_sum_measures, sum, leafless_mass_sum_measures(NULL, (leafless_measures *)out));
+    NULL_POINTER(leafless_mass_sum_measures, measures, leafless_mass_sum_measures(&sum, NULL));
+    untouched();
+    CHECK(never == UNTOUCHED && number == 77);
+
+    MISALIGNED(leafless_octree_build_shard, solid,
+               leafless_octree_build_shard(bad_solid, &frame, 0, &top, NULL, result));
+    MISALIGNED(leafless_octree_build_shard, frame,
+               leafless_octree_build_shard(solid, bad_frame, 0, &top, NULL, result));
+    MISALIGNED(leafless_octree_build_shard, shard,
+               leafless_octree_build_shard(solid, &frame, 0, bad_shard, NULL, result));
+    MISALIGNED(leafless_octree_build_shard, options,
+               leafless_octree_build_shard(solid, &frame, 0, &top, bad_options, result));
+    MISALIGNED(leafless_octree_build_shard, octree,
+               leafless_octree_build_shard(solid, &frame, 0, &top, NULL, (leafless_octree **)WRONG(out)));
+    MISALIGNED(leafless_octree_build_extended_shard, solid,
+               leafless_octree_build_extended_shard(bad_solid, &frame, NULL, &top, NULL, result));
+    MISALIGNED(leafless_octree_build_extended_shard, frame,
+               leafless_octree_build_extended_shard(solid, bad_frame, NULL, &top, NULL, result));
+    MISALIGNED(leafless_octree_build_extended_shard, cuts,
+               leafless_octree_build_extended_shard(solid, &frame, (leafless_cut_options *)WRONG(&cuts), &top, NULL, result));
+    MISALIGNED(leafless_octree_build_extended_shard, shard,
+               leafless_octree_build_extended_shard(solid, &frame, NULL, bad_shard, NULL, result));
+    MISALIGNED(leafless_octree_build_extended_shard, options,
+               leafless_octree_build_extended_shard(solid, &frame, NULL, &top, bad_options, result));
+    MISALIGNED(leafless_octree_build_extended_shard, octree,
+               leafless_octree_build_extended_shard(solid, &frame, NULL, &top, NULL, (leafless_octree **)WRONG(out)));
+    MISALIGNED(leafless_octree_shard, octree, leafless_octree_shard(bad_octree, &top, NULL, result));
+    MISALIGNED(leafless_octree_shard, shard, leafless_octree_shard(octree, bad_shard, NULL, result));
+    MISALIGNED(leafless_octree_shard, options, leafless_octree_shard(octree, &top, bad_options, result));
+    MISALIGNED(leafless_octree_shard, result, leafless_octree_shard(octree, &top, NULL, (leafless_octree **)WRONG(out)));
+    MISALIGNED(leafless_octree_join, octrees,
+               leafless_octree_join((const leafless_octree *const *)WRONG(list), 2, NULL, result));
+    MISALIGNED(leafless_octree_join, options, leafless_octree_join(list, 2, bad_options, result));
+    MISALIGNED(leafless_octree_join, result, leafless_octree_join(list, 2, NULL, (leafless_octree **)WRONG(out)));
+    MISALIGNED(leafless_octree_open_cells, octree, leafless_octree_open_cells(bad_octree, 1, NULL, 0, &number));
+    MISALIGNED(leafless_octree_open_cells, codes,
+               leafless_octree_open_cells(octree, 1, (uint64_t *)WRONG(out), 1, &number));
+    MISALIGNED(leafless_octree_open_cells, count,
+               leafless_octree_open_cells(octree, 1, NULL, 0, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_octree_statistics_with, octree,
+               leafless_octree_statistics_with(bad_octree, 1, NULL, 0, NULL, 0, NULL, 0, &number));
+    MISALIGNED(leafless_octree_statistics_with, codes,
+               leafless_octree_statistics_with(octree, 1, bad_codes, 2, levels, 10, NULL, 0, &number));
+    MISALIGNED(leafless_octree_statistics_with, levels,
+               leafless_octree_statistics_with(octree, 1, codes, 2, (const leafless_statistics *)WRONG(levels), 10, NULL, 0,
+                                               &number));
+    MISALIGNED(leafless_octree_statistics_with, joined,
+               leafless_octree_statistics_with(octree, 1, NULL, 0, NULL, 0, (leafless_statistics *)WRONG(levels), 5,
+                                               &number));
+    MISALIGNED(leafless_octree_statistics_with, count,
+               leafless_octree_statistics_with(octree, 1, NULL, 0, NULL, 0, NULL, 0, (uint64_t *)WRONG(out)));
+    MISALIGNED(leafless_solid_from_shards, top,
+               leafless_solid_from_shards(bad_octree, 1, codes, list, 2, solid_result));
+    MISALIGNED(leafless_solid_from_shards, codes,
+               leafless_solid_from_shards(octree, 1, bad_codes, list, 2, solid_result));
+    MISALIGNED(leafless_solid_from_shards, octrees,
+               leafless_solid_from_shards(octree, 1, codes, (const leafless_octree *const *)WRONG(list), 2, solid_result));
+    MISALIGNED(leafless_solid_from_shards, solid,
+               leafless_solid_from_shards(octree, 1, codes, list, 2, (leafless_solid **)WRONG(out)));
+    list[1] = bad_octree;
+    MISALIGNED(leafless_octree_join, octrees, leafless_octree_join(list, 2, NULL, result));
+    MISALIGNED(leafless_solid_from_shards, octrees,
+               leafless_solid_from_shards(octree, 1, codes, list, 2, solid_result));
+    list[1] = octree;
+    MISALIGNED(leafless_solid_measure_cell, solid,
+               leafless_solid_measure_cell(bad_solid, &frame, 1, 0, 0.1, 0, NULL, (leafless_mass_sum *)out));
+    MISALIGNED(leafless_solid_measure_cell, frame,
+               leafless_solid_measure_cell(solid, bad_frame, 1, 0, 0.1, 0, NULL, (leafless_mass_sum *)out));
+    MISALIGNED(leafless_solid_measure_cell, options,
+               leafless_solid_measure_cell(solid, &frame, 1, 0, 0.1, 0, bad_options, (leafless_mass_sum *)out));
+    MISALIGNED(leafless_solid_measure_cell, sum,
+               leafless_solid_measure_cell(solid, &frame, 1, 0, 0.1, 0, NULL, bad_sum));
+    MISALIGNED(leafless_mass_sum_unknown, frame,
+               leafless_mass_sum_unknown(bad_frame, 1, 0, (leafless_mass_sum *)out));
+    MISALIGNED(leafless_mass_sum_unknown, sum, leafless_mass_sum_unknown(&frame, 1, 0, bad_sum));
+    MISALIGNED(leafless_mass_sum_add, a, leafless_mass_sum_add(bad_sum, &sum, (leafless_mass_sum *)out));
+    MISALIGNED(leafless_mass_sum_add, b, leafless_mass_sum_add(&sum, bad_sum, (leafless_mass_sum *)out));
+    MISALIGNED(leafless_mass_sum_add, sum, leafless_mass_sum_add(&sum, &sum, bad_sum));
+    MISALIGNED(leafless_mass_sum_subtract, a, leafless_mass_sum_subtract(bad_sum, &sum, (leafless_mass_sum *)out));
+    MISALIGNED(leafless_mass_sum_subtract, b, leafless_mass_sum_subtract(&sum, bad_sum, (leafless_mass_sum *)out));
+    MISALIGNED(leafless_mass_sum_subtract, sum, leafless_mass_sum_subtract(&sum, &sum, bad_sum));
+    MISALIGNED(leafless_mass_sum_measures, sum, leafless_mass_sum_measures(bad_sum, (leafless_measures *)out));
+    MISALIGNED(leafless_mass_sum_measures, measures,
+               leafless_mass_sum_measures(&sum, (leafless_measures *)WRONG(out)));
+
+    for (i = 0; i < COUNT(not_a_kind); i++) {
+        bad.kind = not_a_kind[i];
+        BAD_NUMBER(leafless_octree_build_shard, shard.kind,
+                   leafless_octree_build_shard(solid, &frame, 0, &bad, NULL, result));
+        BAD_NUMBER(leafless_octree_build_extended_shard, shard.kind,
+                   leafless_octree_build_extended_shard(solid, &frame, NULL, &bad, NULL, result));
+        BAD_NUMBER(leafless_octree_shard, shard.kind, leafless_octree_shard(octree, &bad, NULL, result));
+    }
+    for (i = 0; i < 2 * COUNT(not_a_level); i++) {
+        const uint32_t level = not_a_level[i / 2];
+        bad = top;
+        bad.kind = i % 2 == 0 ? LEAFLESS_SHARD_KIND_TOP : LEAFLESS_SHARD_KIND_BELOW;
+        bad.level = level;
+        BAD_NUMBER(leafless_octree_build_shard, shard.level,
+                   leafless_octree_build_shard(solid, &frame, 0, &bad, NULL, result));
+        BAD_NUMBER(leafless_octree_build_extended_shard, shard.level,
+                   leafless_octree_build_extended_shard(solid, &frame, NULL, &bad, NULL, result));
+        BAD_NUMBER(leafless_octree_shard, shard.level, leafless_octree_shard(octree, &bad, NULL, result));
+        BAD_NUMBER(leafless_octree_open_cells, level, leafless_octree_open_cells(octree, level, NULL, 0, &number));
+        BAD_NUMBER(leafless_octree_statistics_with, level,
+                   leafless_octree_statistics_with(octree, level, NULL, 0, NULL, 0, NULL, 0, &number));
+        BAD_NUMBER(leafless_solid_from_shards, level,
+                   leafless_solid_from_shards(octree, level, NULL, NULL, 0, solid_result));
+        BAD_NUMBER(leafless_solid_measure_cell, level,
+                   leafless_solid_measure_cell(solid, &frame, level, 0, 0.1, 0, NULL, (leafless_mass_sum *)out));
+        BAD_NUMBER(leafless_mass_sum_unknown, level,
+                   leafless_mass_sum_unknown(&frame, level, 0, (leafless_mass_sum *)out));
+    }
+    BAD_NUMBER(leafless_octree_statistics_with, level,
+               leafless_octree_statistics_with(octree, 4, NULL, 0, NULL, 0, NULL, 0, &number));
+    for (i = 0; i < COUNT(not_a_code); i++) {
+        uint64_t two[2] = {0, 0};
+        two[1] = not_a_code[i];
+        bad = top;
+        bad.code = not_a_code[i];
+        BAD_NUMBER(leafless_octree_build_shard, shard.code,
+                   leafless_octree_build_shard(solid, &frame, 0, &bad, NULL, result));
+        bad.kind = LEAFLESS_SHARD_KIND_BELOW;
+        BAD_NUMBER(leafless_octree_build_shard, shard.code,
+                   leafless_octree_build_shard(solid, &frame, 0, &bad, NULL, result));
+        BAD_NUMBER(leafless_octree_build_extended_shard, shard.code,
+                   leafless_octree_build_extended_shard(solid, &frame, NULL, &bad, NULL, result));
+        BAD_NUMBER(leafless_octree_shard, shard.code, leafless_octree_shard(octree, &bad, NULL, result));
+        BAD_NUMBER(leafless_octree_statistics_with, codes,
+                   leafless_octree_statistics_with(octree, 1, two, 2, levels, 10, NULL, 0, &number));
+        BAD_NUMBER(leafless_solid_from_shards, codes,
+                   leafless_solid_from_shards(octree, 1, two, list, 2, solid_result));
+        BAD_NUMBER(leafless_solid_measure_cell, code,
+                   leafless_solid_measure_cell(solid, &frame, 1, two[1], 0.1, 0, NULL, (leafless_mass_sum *)out));
+        BAD_NUMBER(leafless_mass_sum_unknown, code,
+                   leafless_mass_sum_unknown(&frame, 1, two[1], (leafless_mass_sum *)out));
+    }
+    BAD_NUMBER(leafless_octree_build_shard, rule, leafless_octree_build_shard(solid, &frame, 4, &top, NULL, result));
+    cuts.tolerance_model = -1;
+    BAD_NUMBER(leafless_octree_build_extended_shard, tolerance,
+               leafless_octree_build_extended_shard(solid, &frame, &cuts, &top, NULL, result));
+    BAD_NUMBER(leafless_solid_from_shards, codes, leafless_solid_from_shards(octree, 1, same, list, 2, solid_result));
+    BAD_NUMBER(leafless_solid_from_shards, codes,
+               leafless_solid_from_shards(octree, 1, codes, list, UINT64_MAX, solid_result));
+    BAD_NUMBER(leafless_octree_join, octrees, leafless_octree_join(list, UINT64_MAX, NULL, result));
+    for (i = 0; i < 20; i++) {
+        if (i != 10) {
+            BAD_NUMBER(leafless_octree_statistics_with, level_count,
+                       leafless_octree_statistics_with(octree, 1, codes, 2, levels, i, NULL, 0, &number));
+        }
+    }
+    for (i = 0; i < COUNT(not_a_tolerance); i++) {
+        BAD_NUMBER(leafless_solid_measure_cell, tolerance,
+                   leafless_solid_measure_cell(solid, &frame, 1, 0, not_a_tolerance[i], 0, NULL, (leafless_mass_sum *)out));
+        BAD_NUMBER(leafless_solid_measure_cell, tolerance,
+                   leafless_solid_measure_cell(solid, &frame, 1, 0, 0, not_a_tolerance[i], NULL, (leafless_mass_sum *)out));
+    }
+    /* A sum that was cut off is none. */
+    shorter = sum;
+    shorter.struct_size -= 4;
+    BAD_NUMBER(leafless_mass_sum_add, a, leafless_mass_sum_add(&shorter, &sum, (leafless_mass_sum *)out));
+    BAD_NUMBER(leafless_mass_sum_measures, sum, leafless_mass_sum_measures(&shorter, (leafless_measures *)out));
+    untouched();
+    CHECK(never == UNTOUCHED && number == 77);
+
+    MAY_BE_NULL(leafless_octree_build_shard, options,
+                leafless_octree_build_shard(solid, &frame, 0, &top, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_build_extended_shard, cuts,
+                leafless_octree_build_extended_shard(solid, &frame, NULL, &top, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_build_extended_shard, options,
+                leafless_octree_build_extended_shard(solid, &frame, NULL, &top, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_shard, options, leafless_octree_shard(octree, &top, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_join, options, leafless_octree_join(list, 2, NULL, result));
+    leafless_octree_free(*result);
+    MAY_BE_NULL(leafless_octree_open_cells, codes, leafless_octree_open_cells(octree, 1, NULL, 0, &number));
+    MAY_BE_NULL(leafless_octree_statistics_with, codes,
+                leafless_octree_statistics_with(octree, 1, NULL, 0, levels, 0, NULL, 0, &number));
+    MAY_BE_NULL(leafless_octree_statistics_with, levels,
+                leafless_octree_statistics_with(octree, 1, codes, 0, NULL, 0, NULL, 0, &number));
+    MAY_BE_NULL(leafless_octree_statistics_with, joined,
+                leafless_octree_statistics_with(octree, 1, NULL, 0, NULL, 0, NULL, 0, &number));
+    CHECK(number == 5);
+    MAY_BE_NULL(leafless_solid_from_shards, codes,
+                leafless_solid_from_shards(octree, 1, NULL, list, 0, solid_result));
+    leafless_solid_free(*solid_result);
+    MAY_BE_NULL(leafless_solid_from_shards, octrees,
+                leafless_solid_from_shards(octree, 1, codes, NULL, 0, solid_result));
+    leafless_solid_free(*solid_result);
+    MAY_BE_NULL(leafless_solid_measure_cell, options,
+                leafless_solid_measure_cell(solid, &frame, 1, 0, 0.1, 0, NULL, &sum));
+    OK(leafless_mass_sum_measures(&sum, &measures));
+    (void)fresh();
+}
+
 int main(void) {
     octree = check_ball(4, LEAFLESS_RULE_CERTIFIED);
     mesh = check_cube();
@@ -2600,6 +2880,7 @@ int main(void) {
     misaligned();
     numbers();
     extended_octrees();
+    shards();
     lazy_octrees();
     cells_and_faces();
     volumes_and_surfaces();

@@ -16,6 +16,7 @@ static leafless_tridexel *tridexel;
 static leafless_tridexel_editor *editor;
 static leafless_boundary *boundary;
 static leafless_layout *layout;
+static leafless_mass_sum unknown;
 static uint8_t *file;
 static uint64_t file_length;
 static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
@@ -35,6 +36,11 @@ static const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1};
     FILLS(leafless_stored_surface_info, leafless_octree_surface_at(extended, 0, out, NULL, 0, NULL, 0))                \
     FILLS(leafless_cursor_info, leafless_cursor_describe(cursor, out))                                                 \
     FILLS(leafless_measures, leafless_solid_measure(solid, &frame, 0.1, 0, NULL, out))                                 \
+    FILLS(leafless_mass_sum, leafless_solid_measure_cell(solid, &frame, 1, 3, 0.1, 0, NULL, out))                      \
+    FILLS(leafless_mass_sum, leafless_mass_sum_unknown(&frame, 1, 3, out))                                             \
+    FILLS(leafless_mass_sum, leafless_mass_sum_add(&unknown, &unknown, out))                                           \
+    FILLS(leafless_mass_sum, leafless_mass_sum_subtract(&unknown, &unknown, out))                                      \
+    FILLS(leafless_measures, leafless_mass_sum_measures(&unknown, out))                                                \
     FILLS(leafless_surface_area, leafless_solid_surface_area(solid, &frame, 0.1, 0, NULL, out))                        \
     FILLS(leafless_section_area, leafless_solid_section_area(solid, &frame, zero, up, 0.1, 0, NULL, out))              \
     FILLS(leafless_boundary_report, leafless_boundary_describe(boundary, out))                                         \
@@ -187,6 +193,8 @@ int main(void) {
     OK(leafless_bay_add_item(bay, solid, 1, NULL, &number));
     OK(leafless_layout_new(bay, NULL, &layout));
     OK(leafless_layout_place(layout, 0, unit, &number));
+    unknown = LEAFLESS_INIT(leafless_mass_sum);
+    OK(leafless_mass_sum_unknown(&frame, 1, 5, &unknown));
     leafless_bay_free(bay);
     leafless_solid_free(container);
     for (which = 0;; which++) {

@@ -50,20 +50,21 @@
  *   12. Scenes
  *   13. Octrees
  *   14. Extended octrees
- *   15. Points and boxes
- *   16. Cells of octrees
- *   17. Rays, columns, heights
- *   18. Volumes, areas, bounding boxes
- *   19. Distance and interference
- *   20. Layouts: solids in a container
- *   21. Octrees that are split on demand
- *   22. Attributes
- *   23. Channels
- *   24. Voxel records
- *   25. Surfaces
- *   26. Tri-dexel models
- *   27. Files of octrees and tri-dexel models
- *   28. Pictures
+ *   15. Shards: octrees in parts
+ *   16. Points and boxes
+ *   17. Cells of octrees
+ *   18. Rays, columns, heights
+ *   19. Volumes, areas, bounding boxes
+ *   20. Distance and interference
+ *   21. Layouts: solids in a container
+ *   22. Octrees that are split on demand
+ *   23. Attributes
+ *   24. Channels
+ *   25. Voxel records
+ *   26. Surfaces
+ *   27. Tri-dexel models
+ *   28. Files of octrees and tri-dexel models
+ *   29. Pictures
  *
  * RULES that hold for all functions
  *
@@ -2625,7 +2626,156 @@ leafless_status leafless_octree_surface_at(const leafless_octree *octree, uint32
 leafless_status leafless_octree_cell_function(const leafless_octree *octree, uint32_t level,
     const uint32_t cell[3], leafless_cell_function *function);
 
-/* ---- 15. Points and boxes ----------------------------------------------------------------------------- */
+/* ---- 15. Shards: octrees in parts --------------------------------------------------------------------- */
+
+/// Which cells a shard knows.
+LEAFLESS_ENUM(leafless_shard_kind, uint32_t) {
+    LEAFLESS_SHARD_KIND_TOP = 0,  ///< The cells down to a level. What would be split there stays PARTIAL.
+    LEAFLESS_SHARD_KIND_BELOW = 1,  ///< The cells in one cell, and the cells that contain it.
+};
+
+/// The cells that a shard of an octree knows. The shard knows nothing of other cells: they are PARTIAL.
+///
+/// An octree is cut at a level into its top, and into one shard for each cell of that level that the top
+/// leaves open (leafless_octree_open_cells). Every shard is an octree on the frame of the whole, and true of
+/// the whole solid. leafless_octree_join puts shards together again.
+///
+/// The code of a cell is its place in Morton order among the 8^level cells of its level. Bit 3k of the code
+/// is bit k of the cell's place along x, bit 3k + 1 is that along y, bit 3k + 2 that along z.
+typedef struct leafless_shard {
+    uint64_t code;  ///< The code of the cell; 0 for a top.
+    uint32_t level;  ///< The level of the cell, or the last level of a top: 0 to the depth of the frame.
+    leafless_shard_kind kind;  ///< A leafless_shard_kind.
+} leafless_shard;
+
+/// Builds one shard of the octree of a solid: the cells of the shard are those that leafless_octree_build
+/// makes. All other cells are PARTIAL, whatever the rule. Time and memory are linear in the cells of the
+/// shard and on the way to it.
+///
+/// Joining the top and the shards of all cells that it leaves open (leafless_octree_join) makes the octree
+/// that leafless_octree_build makes, byte for byte.
+///
+/// - Buffers: `frame` and `shard`, one struct each; `options`, one struct or NULL; `octree`, one pointer.
+///   `rule` is a leafless_rule.
+/// - Result: `*octree`.
+/// - Errors: as leafless_octree_build; LEAFLESS_E_ARGUMENT also if the frame does not have the cells of the
+///   shard.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_bytes` where the depth or the solid is not your own
+///   choice.
+leafless_status leafless_octree_build_shard(const leafless_solid *solid, const leafless_frame *frame,
+    leafless_rule rule, const leafless_shard *shard, const leafless_options *options,
+    leafless_octree **octree);
+
+/// Builds one shard of the extended octree of a solid: the cells of the shard are those that
+/// leafless_octree_build_extended makes. All other cells are PARTIAL, and nothing is known of them.
+///
+/// - Buffers: `frame` and `shard`, one struct each; `cuts`, one struct or NULL; `options`, one struct or
+///   NULL; `octree`, one pointer.
+/// - Result: `*octree`.
+/// - Errors: as leafless_octree_build_extended; LEAFLESS_E_ARGUMENT also if the frame does not have the cells
+///   of the shard.
+/// - Ownership: give `*octree` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_bytes` where the depth or the solid is not your own
+///   choice.
+leafless_status leafless_octree_build_extended_shard(const leafless_solid *solid, const leafless_frame *frame,
+    const leafless_cut_options *cuts, const leafless_shard *shard, const leafless_options *options,
+    leafless_octree **octree);
+
+/// Cuts a shard off an octree. The shard is the octree that leafless_octree_build_shard or
+/// leafless_octree_build_extended_shard makes of the solid that the octree was built from.
+///
+/// - Buffers: `shard`, one struct; `options`, one struct or NULL; `result`, one pointer.
+/// - Result: `*result`, without metadata and channels.
+/// - Errors: LEAFLESS_E_ARGUMENT if the octree's frame does not have the cells of the shard;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: `octree` stays as it is; give `*result` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octree, any numbers; damage in an octree that was mapped unverified is an error or
+///   reads as PARTIAL.
+leafless_status leafless_octree_shard(const leafless_octree *octree, const leafless_shard *shard,
+    const leafless_options *options, leafless_octree **result);
+
+/// Puts together what several octrees on one frame know of one solid. A cell is FULL or EMPTY if one of the
+/// octrees says so. It is PARTIAL where all octrees leave it open. Surfaces of a PARTIAL cell are kept if one
+/// of the octrees keeps them.
+///
+/// This is the reverse of cutting an octree into shards: the result is the whole, byte for byte. The cell of
+/// a missing shard is PARTIAL. The octrees may overlap. Where two of them keep surfaces of one cell, the
+/// surfaces of the first one are kept.
+///
+/// Time is linear in the cells that are cut in one octree and known in another one, plus the memory traffic
+/// of what is copied.
+///
+/// - Buffers: `octrees`, `count` handles; `options`, one struct or NULL; `result`, one pointer.
+/// - Result: `*result`, without metadata and channels.
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT
+///   if `count` is 0, or if one octree says FULL where another one says EMPTY: they are not of one solid;
+///   LEAFLESS_E_DAMAGED; LEAFLESS_E_LIMIT; LEAFLESS_E_CANCELLED; LEAFLESS_E_NO_MEMORY.
+/// - Ownership: the octrees stay as they are; give `*result` back with leafless_octree_free.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any octrees; damage in ones that were mapped unverified is an error or reads as
+///   PARTIAL.
+leafless_status leafless_octree_join(const leafless_octree *const *octrees, uint64_t count,
+    const leafless_options *options, leafless_octree **result);
+
+/// The codes of the cells of a level of which an octree knows nothing. Each of them is PARTIAL, or lies in a
+/// PARTIAL cell, and no surfaces are kept there. If the octree is a top of that level, each of these cells
+/// needs a shard. O(cells of the levels above, and of the result).
+///
+/// - Buffers: `codes`, room for `capacity` numbers, or NULL to ask for the count only; `count`, one number.
+/// - Result: `codes`, ascending, as in leafless_shard; `*count`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is greater than the octree's depth; LEAFLESS_E_BUFFER if the
+///   capacity is too small; LEAFLESS_E_LIMIT if there are more than 2^24 cells; LEAFLESS_E_DAMAGED;
+///   LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any octree, any number.
+leafless_status leafless_octree_open_cells(const leafless_octree *octree, uint32_t level, uint64_t *codes,
+    uint64_t capacity, uint64_t *count);
+
+/// The statistics of the octree that leafless_octree_join makes of a top and its shards, level by level.
+/// Nothing is joined: a shard is told by its counts, which leafless_octree_levels gives on the machine that
+/// has the shard. The cell of a missing shard is PARTIAL. O(cells × depth).
+///
+/// Only `nodes`, `full` and `partial` of the counts are read.
+///
+/// - Buffers: `codes`, `code_count` numbers as in leafless_shard, which ascend: the cells of the shards, all
+///   of level `level`; `levels`, `level_count` structs: depth + 1 of the first shard, from the universe on,
+///   then those of the second one, and so on; `joined`, room for `capacity` structs, or NULL to ask for the
+///   count only; `count`, one number.
+/// - Result: `*count`, depth + 1; `joined`, the levels of the whole as leafless_octree_levels gives them. The
+///   last one has the volume.
+/// - Errors: LEAFLESS_E_ARGUMENT if `level` is not less than the depth, a code is not less than 8^level, the
+///   codes do not ascend, `level_count` is not `code_count` × (depth + 1), a cell is not open in `octree`, or
+///   a shard does not split its cell: join such a shard and the top (leafless_octree_join), and pass the
+///   result as the top; LEAFLESS_E_BUFFER if the capacity is too small; LEAFLESS_E_NO_MEMORY.
+/// - Untrusted input: any octree, any numbers; of wrong counts the statistics are wrong.
+leafless_status leafless_octree_statistics_with(const leafless_octree *octree, uint32_t level,
+    const uint64_t *codes, uint64_t code_count, const leafless_statistics *levels, uint64_t level_count,
+    leafless_statistics *joined, uint64_t capacity, uint64_t *count);
+
+/// A top and its shards as a solid on their universe. The solid answers as the joined octree does
+/// (leafless_octree_join, leafless_solid_from_octree), and nothing is joined. The library looks at a shard
+/// when one of its cells is asked for, so that a file that is mapped is not read before. The cell of a
+/// missing shard is PARTIAL.
+///
+/// The solid keeps no list of surfaces. To build its extended octree, join the shards.
+///
+/// - Buffers: `codes`, `count` numbers as in leafless_shard, in any order: the cells of the shards, all of
+///   level `level`; `octrees`, `count` handles: the shards; `solid`, one pointer.
+/// - Result: `*solid`. O(shards).
+/// - Errors: LEAFLESS_E_FRAME if the frames differ; LEAFLESS_E_NULL, also of an element; LEAFLESS_E_ARGUMENT
+///   if `level` is greater than the depth, a code is not less than 8^level, or two shards have one cell;
+///   LEAFLESS_E_NO_MEMORY. Asking the solid returns LEAFLESS_E_DAMAGED if an octree was mapped unverified and
+///   its links are damaged.
+/// - Ownership: the solid shares the octrees, which may be freed; give `*solid` back with
+///   leafless_solid_free.
+/// - Untrusted input: any octrees, any numbers.
+leafless_status leafless_solid_from_shards(const leafless_octree *top, uint32_t level, const uint64_t *codes,
+    const leafless_octree *const *octrees, uint64_t count, leafless_solid **solid);
+
+/* ---- 16. Points and boxes ----------------------------------------------------------------------------- */
 
 /// The answer to a point query.
 LEAFLESS_ENUM(leafless_membership, uint8_t) {
@@ -2781,7 +2931,7 @@ leafless_status leafless_point_table_contains(const leafless_point_table *table,
 leafless_status leafless_point_table_contains_many(const leafless_point_table *table,
     const double *points_model, uint64_t count, leafless_membership *memberships);
 
-/* ---- 16. Cells of octrees ----------------------------------------------------------------------------- */
+/* ---- 17. Cells of octrees ----------------------------------------------------------------------------- */
 
 /// Where a cursor stands.
 typedef struct leafless_cursor_info {
@@ -3020,7 +3170,7 @@ leafless_status leafless_octree_bitmap(const leafless_octree *octree, uint32_t l
     const uint32_t min_cell[3], const uint32_t max_cell[3], const leafless_options *options, uint64_t *inner,
     uint64_t *outer, uint64_t capacity, uint64_t *count);
 
-/* ---- 17. Rays, columns, heights ----------------------------------------------------------------------- */
+/* ---- 18. Rays, columns, heights ----------------------------------------------------------------------- */
 
 /// A half-line or a segment: the points origin + t · direction with 0 ≤ t ≤ t_last. A coordinate is zero or
 /// has a magnitude between 2^-256 and 2^256.
@@ -3235,7 +3385,7 @@ leafless_status leafless_solid_heights(const leafless_solid *solid, const leafle
     uint32_t axis, const uint32_t first[2], const uint32_t end[2], leafless_side side,
     const leafless_options *options, leafless_interval *heights_model, uint64_t capacity, uint64_t *count);
 
-/* ---- 18. Volumes, areas, bounding boxes --------------------------------------------------------------- */
+/* ---- 19. Volumes, areas, bounding boxes --------------------------------------------------------------- */
 
 /// How many finest cells of a solid lie in a region, between bounds. A cell where the region is FULL lies in
 /// it, one where it is EMPTY does not, and one where it is PARTIAL may: so the bounds hold whether a cell
@@ -3487,7 +3637,80 @@ leafless_status leafless_solid_section_area(const leafless_solid *solid, const l
 leafless_status leafless_solid_bounding_box(const leafless_solid *solid, const leafless_frame *frame,
     double tolerance_model, const leafless_options *options, leafless_extent *extent);
 
-/* ---- 19. Distance and interference -------------------------------------------------------------------- */
+/// What is known of the volume and the moments of a solid in some cells of its frame.
+///
+/// Sums are exact: they are the same in any order, and subtracting what was added leaves what there was. So
+/// several machines can measure the cells of one solid, and one of them adds up.
+///
+/// The struct has no pointers. A program may store it or send it to another machine as it lies in memory.
+/// Only the version of the library that made a sum reads it. The functions refuse bytes that are no sum; they
+/// cannot tell every damage.
+typedef struct leafless_mass_sum {
+    uint32_t struct_size;  ///< sizeof(leafless_mass_sum).
+    uint8_t bytes[404];  ///< For the library alone.
+} leafless_mass_sum;
+
+/// Measures the part of a solid in one cell of a frame, as leafless_solid_measure measures the whole. The
+/// tolerances concern the volume in the cell. A solid that knows its own moments is split all the same.
+///
+/// If the solid is an octree without surfaces, and both tolerances are 0, the sum over all cells of a level
+/// has the measures of the whole octree.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not
+///   matter; `sum`, one struct. `code` is that of a cell of level `level`, as in leafless_shard.
+/// - Result: `*sum`.
+/// - Errors: as leafless_solid_measure; LEAFLESS_E_ARGUMENT also if the frame does not have the cell.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own
+///   choice.
+leafless_status leafless_solid_measure_cell(const leafless_solid *solid, const leafless_frame *frame,
+    uint32_t level, uint64_t code, double relative, double absolute_model, const leafless_options *options,
+    leafless_mass_sum *sum);
+
+/// The sum of a cell of which nothing is known. Adding it to a sum takes nothing from what that sum proves.
+///
+/// To measure a top and its shards: take the sum of the top in the whole universe (level 0, code 0). For each
+/// shard subtract the unknown sum of its cell, and add the sum of the shard in that cell.
+///
+/// - Buffers: `frame` and `sum`, one struct each. `code` is that of a cell of level `level`, as in
+///   leafless_shard.
+/// - Result: `*sum`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the frame does not have the cell.
+/// - Untrusted input: any numbers.
+leafless_status leafless_mass_sum_unknown(const leafless_frame *frame, uint32_t level, uint64_t code,
+    leafless_mass_sum *sum);
+
+/// The sum over the cells of two sums.
+///
+/// - Buffers: `a`, `b` and `sum`, one struct each; `sum` may be `a` or `b`.
+/// - Result: `*sum`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if the result is more than the
+///   universe holds: then a cell was added twice; LEAFLESS_E_FRAME if the frames differ.
+/// - Untrusted input: any bytes; of damaged sums the result is wrong.
+leafless_status leafless_mass_sum_add(const leafless_mass_sum *a, const leafless_mass_sum *b,
+    leafless_mass_sum *sum);
+
+/// The sum over the cells of `a` without those of `b`, which are some of them. What `a` proves, the result
+/// proves. Splits are counted together.
+///
+/// - Buffers: as leafless_mass_sum_add.
+/// - Result: `*sum`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if less than nothing would be
+///   left; LEAFLESS_E_FRAME if the frames differ.
+/// - Untrusted input: any bytes; of damaged sums the result is wrong.
+leafless_status leafless_mass_sum_subtract(const leafless_mass_sum *a, const leafless_mass_sum *b,
+    leafless_mass_sum *sum);
+
+/// Volume, centroid and inertia of what is in the cells of a sum. `is_exact` is false.
+///
+/// - Buffers: `sum` and `measures`, one struct each.
+/// - Result: `*measures`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `sum` is no sum of this version, or if the frame's universe is too small
+///   for cells of level 20.
+/// - Untrusted input: any bytes; of a damaged sum the measures are wrong.
+leafless_status leafless_mass_sum_measures(const leafless_mass_sum *sum, leafless_measures *measures);
+
+/* ---- 20. Distance and interference -------------------------------------------------------------------- */
 
 /// What a distance is measured to.
 LEAFLESS_ENUM(leafless_distance_to, uint32_t) {
@@ -3942,7 +4165,7 @@ leafless_status leafless_solid_deviation(const leafless_solid *a, const leafless
     const leafless_frame *frame, double tolerance_model, double within_model, const leafless_options *options,
     leafless_deviation *deviation);
 
-/* ---- 20. Layouts: solids in a container --------------------------------------------------------------- */
+/* ---- 21. Layouts: solids in a container --------------------------------------------------------------- */
 
 /// The ways in which an item may be turned.
 LEAFLESS_ENUM(leafless_orientations, uint32_t) {
@@ -4274,7 +4497,7 @@ leafless_status leafless_layout_search(leafless_layout *layout, const leafless_s
 leafless_status leafless_layout_measure(const leafless_layout *layout, double relative,
     const leafless_options *options, leafless_layout_measures *measures);
 
-/* ---- 21. Octrees that are split on demand ------------------------------------------------------------- */
+/* ---- 22. Octrees that are split on demand ------------------------------------------------------------- */
 
 /// What can be said of a lazy octree at once.
 typedef struct leafless_lazy_info {
@@ -4436,7 +4659,7 @@ leafless_status leafless_lazy_splits(const leafless_lazy *lazy, uint64_t *splits
 leafless_status leafless_lazy_freeze(const leafless_lazy *lazy, const leafless_options *options,
     leafless_octree **octree);
 
-/* ---- 22. Attributes ----------------------------------------------------------------------------------- */
+/* ---- 23. Attributes ----------------------------------------------------------------------------------- */
 
 /// What is known of the values in the interior of a box.
 LEAFLESS_ENUM(leafless_range_kind, uint32_t) {
@@ -4675,7 +4898,7 @@ leafless_status leafless_attribute_from_mesh(const leafless_mesh *mesh, const ch
 leafless_status leafless_attribute_from_mesh_values(const leafless_mesh *mesh, const double *values,
     uint64_t count, uint32_t components, bool per_corner, leafless_attribute **attribute);
 
-/* ---- 23. Channels ------------------------------------------------------------------------------------- */
+/* ---- 24. Channels ------------------------------------------------------------------------------------- */
 
 /// The type of the numbers of a channel. Numbers are rounded to the nearest one of the type, to an even
 /// integer half-way.
@@ -5074,7 +5297,7 @@ leafless_status leafless_octree_carry_channels(const leafless_octree *octree,
     const leafless_carry_rule *rules, uint64_t rule_count, const leafless_options *options,
     leafless_octree **result);
 
-/* ---- 24. Voxel records -------------------------------------------------------------------------------- */
+/* ---- 25. Voxel records -------------------------------------------------------------------------------- */
 
 /// What a voxel is: a number in the array `kinds`.
 LEAFLESS_ENUM(leafless_voxel_kind, uint8_t) {
@@ -5226,7 +5449,7 @@ leafless_status leafless_octree_from_voxels(const leafless_frame *lattice, const
     const uint8_t *levels, const leafless_voxel_kind *kinds, uint64_t count, leafless_tag boundary,
     const leafless_options *options, leafless_octree **octree);
 
-/* ---- 25. Surfaces ------------------------------------------------------------------------------------- */
+/* ---- 26. Surfaces ------------------------------------------------------------------------------------- */
 
 /// How a surface is made.
 LEAFLESS_ENUM(leafless_surface_method, uint32_t) {
@@ -5616,7 +5839,7 @@ typedef struct leafless_simplified {
 leafless_status leafless_mesh_simplify(const leafless_mesh *mesh, double tolerance_model,
     const leafless_options *options, leafless_simplified *report, leafless_mesh **simple);
 
-/* ---- 26. Tri-dexel models ----------------------------------------------------------------------------- */
+/* ---- 27. Tri-dexel models ----------------------------------------------------------------------------- */
 
 /// The axes that rays run along. The numbers may be added.
 LEAFLESS_ENUM(leafless_axes, uint32_t) {
@@ -6230,7 +6453,7 @@ leafless_status leafless_tridexel_voxels(const leafless_tridexel *tridexel, cons
     const uint8_t *colours, uint64_t colour_count, leafless_long_voxel *voxels, uint64_t capacity,
     uint64_t *count);
 
-/* ---- 27. Files of octrees and tri-dexel models -------------------------------------------------------- */
+/* ---- 28. Files of octrees and tri-dexel models -------------------------------------------------------- */
 
 /// Major version of the file format that this library writes, and the only one that it reads.
 #define LEAFLESS_FORMAT_MAJOR 0
@@ -6351,7 +6574,7 @@ leafless_status leafless_tridexel_read(const leafless_source *source, leafless_t
 /// - Untrusted input: any model.
 leafless_status leafless_tridexel_write(const leafless_tridexel *tridexel, const leafless_sink *sink);
 
-/* ---- 28. Pictures ------------------------------------------------------------------------------------- */
+/* ---- 29. Pictures ------------------------------------------------------------------------------------- */
 
 /// From where a picture is taken. leafless_camera_fitted sets all of it; a host may as well.
 typedef struct leafless_camera {

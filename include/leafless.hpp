@@ -443,6 +443,8 @@ public:
         const leafless_interval *band = nullptr, const leafless_options *options = nullptr);
     [[nodiscard]] static returns<leafless::solid> from_scene(const leafless::scene &scene,
         const leafless_frame &frame);
+    [[nodiscard]] static returns<leafless::solid> from_shards(const leafless::octree &top, uint32_t level,
+        span<const uint64_t> codes, span<const leafless_octree *const> octrees);
     returns<void> contains_many(const leafless_frame &frame, span<const point> points_model,
         const leafless_options *options, span<leafless_membership> memberships) const;
     [[nodiscard]] returns<leafless_region> classify_box(const leafless_frame &frame, const point &min_model,
@@ -474,6 +476,9 @@ public:
         const point &point_model, const point &normal, double relative, double absolute_model,
         const leafless_options *options = nullptr) const;
     [[nodiscard]] returns<leafless_extent> bounding_box(const leafless_frame &frame, double tolerance_model,
+        const leafless_options *options = nullptr) const;
+    [[nodiscard]] returns<leafless_mass_sum> measure_cell(const leafless_frame &frame, uint32_t level,
+        uint64_t code, double relative, double absolute_model,
         const leafless_options *options = nullptr) const;
     returns<void> distances(const leafless_frame &frame, span<const point> points_model,
         leafless_distance_to to, double tolerance_model, const leafless_options *options,
@@ -581,6 +586,19 @@ public:
     [[nodiscard]] returns<leafless_stored_surface_info> surface_at(uint32_t surface, span<double> terms,
         span<double> placements) const;
     [[nodiscard]] returns<leafless_cell_function> cell_function(uint32_t level, const cell_index &cell) const;
+    [[nodiscard]] static returns<leafless::octree> build_shard(const leafless::solid &solid,
+        const leafless_frame &frame, leafless_rule rule, const leafless_shard &shard,
+        const leafless_options *options = nullptr);
+    [[nodiscard]] static returns<leafless::octree> build_extended_shard(const leafless::solid &solid,
+        const leafless_frame &frame, const leafless_cut_options *cuts, const leafless_shard &shard,
+        const leafless_options *options = nullptr);
+    [[nodiscard]] returns<leafless::octree> shard(const leafless_shard &shard,
+        const leafless_options *options = nullptr) const;
+    [[nodiscard]] static returns<leafless::octree> join(span<const leafless_octree *const> octrees,
+        const leafless_options *options = nullptr);
+    [[nodiscard]] returns<std::vector<uint64_t>> open_cells(uint32_t level) const;
+    [[nodiscard]] returns<std::vector<leafless_statistics>> statistics_with(uint32_t level,
+        span<const uint64_t> codes, span<const leafless_statistics> levels) const;
     [[nodiscard]] returns<leafless_membership> contains(const point &point_model) const;
     returns<void> contains_many(span<const point> points_model, span<leafless_membership> memberships) const;
     [[nodiscard]] returns<leafless_tag> tag_at(const cell_index &cell) const;
@@ -915,6 +933,12 @@ returns<void> frame_check(const leafless_frame &frame);
     uint32_t index);
 [[nodiscard]] returns<std::tuple<point, point>> frame_cell_bounds(const leafless_frame &frame,
     const cell_index &cell, uint32_t level);
+[[nodiscard]] returns<leafless_mass_sum> mass_sum_unknown(const leafless_frame &frame, uint32_t level,
+    uint64_t code);
+[[nodiscard]] returns<leafless_mass_sum> mass_sum_add(const leafless_mass_sum &a, const leafless_mass_sum &b);
+[[nodiscard]] returns<leafless_mass_sum> mass_sum_subtract(const leafless_mass_sum &a,
+    const leafless_mass_sum &b);
+[[nodiscard]] returns<leafless_measures> mass_sum_measures(const leafless_mass_sum &sum);
 [[nodiscard]] returns<uint64_t> voxels_find(const leafless_frame &lattice, const uint64_t *codes,
     const uint8_t *levels, span<const leafless_voxel_kind> kinds, const cell_index &cell, uint32_t level);
 [[nodiscard]] returns<std::vector<uint64_t>> voxels_order(const leafless_frame &lattice,
@@ -1388,6 +1412,15 @@ inline returns<leafless::solid> solid::from_scene(const leafless::scene &scene, 
     return detail::finish(status, leafless::solid(solid_handle));
 }
 
+inline returns<leafless::solid> solid::from_shards(const leafless::octree &top, uint32_t level,
+    span<const uint64_t> codes, span<const leafless_octree *const> octrees) {
+    detail::same_size(codes.size(), octrees.size());
+    leafless_solid *solid_handle = nullptr;
+    const leafless_status status = leafless_solid_from_shards(top.get(), level, codes.data(), octrees.data(),
+        codes.size(), &solid_handle);
+    return detail::finish(status, leafless::solid(solid_handle));
+}
+
 inline returns<void> solid::contains_many(const leafless_frame &frame, span<const point> points_model,
     const leafless_options *options, span<leafless_membership> memberships) const {
     detail::same_size(points_model.size(), memberships.size());
@@ -1518,6 +1551,14 @@ inline returns<leafless_extent> solid::bounding_box(const leafless_frame &frame,
     const leafless_status status = leafless_solid_bounding_box(get(), &frame, tolerance_model, options,
         &extent);
     return detail::finish(status, extent);
+}
+
+inline returns<leafless_mass_sum> solid::measure_cell(const leafless_frame &frame, uint32_t level,
+    uint64_t code, double relative, double absolute_model, const leafless_options *options) const {
+    leafless_mass_sum sum = LEAFLESS_INIT(leafless_mass_sum);
+    const leafless_status status = leafless_solid_measure_cell(get(), &frame, level, code, relative,
+        absolute_model, options, &sum);
+    return detail::finish(status, sum);
 }
 
 inline returns<void> solid::distances(const leafless_frame &frame, span<const point> points_model,
@@ -1923,6 +1964,64 @@ inline returns<leafless_cell_function> octree::cell_function(uint32_t level, con
     leafless_cell_function function{};
     const leafless_status status = leafless_octree_cell_function(get(), level, cell.data(), &function);
     return detail::finish(status, function);
+}
+
+inline returns<leafless::octree> octree::build_shard(const leafless::solid &solid,
+    const leafless_frame &frame, leafless_rule rule, const leafless_shard &shard,
+    const leafless_options *options) {
+    leafless_octree *octree_handle = nullptr;
+    const leafless_status status = leafless_octree_build_shard(solid.get(), &frame, rule, &shard, options,
+        &octree_handle);
+    return detail::finish(status, leafless::octree(octree_handle));
+}
+
+inline returns<leafless::octree> octree::build_extended_shard(const leafless::solid &solid,
+    const leafless_frame &frame, const leafless_cut_options *cuts, const leafless_shard &shard,
+    const leafless_options *options) {
+    leafless_octree *octree_handle = nullptr;
+    const leafless_status status = leafless_octree_build_extended_shard(solid.get(), &frame, cuts, &shard,
+        options, &octree_handle);
+    return detail::finish(status, leafless::octree(octree_handle));
+}
+
+inline returns<leafless::octree> octree::shard(const leafless_shard &shard,
+    const leafless_options *options) const {
+    leafless_octree *result_handle = nullptr;
+    const leafless_status status = leafless_octree_shard(get(), &shard, options, &result_handle);
+    return detail::finish(status, leafless::octree(result_handle));
+}
+
+inline returns<leafless::octree> octree::join(span<const leafless_octree *const> octrees,
+    const leafless_options *options) {
+    leafless_octree *result_handle = nullptr;
+    const leafless_status status = leafless_octree_join(octrees.data(), octrees.size(), options,
+        &result_handle);
+    return detail::finish(status, leafless::octree(result_handle));
+}
+
+inline returns<std::vector<uint64_t>> octree::open_cells(uint32_t level) const {
+    std::uint64_t count = 0;
+    std::vector<uint64_t> codes;
+    leafless_status status = leafless_octree_open_cells(get(), level, nullptr, 0, &count);
+    if (status == LEAFLESS_OK) {
+        codes.resize(static_cast<std::size_t>(count));
+        status = leafless_octree_open_cells(get(), level, codes.data(), codes.size(), &count);
+    }
+    return detail::finish(status, std::move(codes));
+}
+
+inline returns<std::vector<leafless_statistics>> octree::statistics_with(uint32_t level,
+    span<const uint64_t> codes, span<const leafless_statistics> levels) const {
+    std::uint64_t count = 0;
+    std::vector<leafless_statistics> joined;
+    leafless_status status = leafless_octree_statistics_with(get(), level, codes.data(), codes.size(),
+        levels.data(), levels.size(), nullptr, 0, &count);
+    if (status == LEAFLESS_OK) {
+        joined.resize(static_cast<std::size_t>(count));
+        status = leafless_octree_statistics_with(get(), level, codes.data(), codes.size(), levels.data(),
+            levels.size(), joined.data(), joined.size(), &count);
+    }
+    return detail::finish(status, std::move(joined));
 }
 
 inline returns<leafless_membership> octree::contains(const point &point_model) const {
@@ -3104,6 +3203,31 @@ inline returns<std::tuple<point, point>> frame_cell_bounds(const leafless_frame 
     const leafless_status status = leafless_frame_cell_bounds(&frame, cell.data(), level, min_model.data(),
         max_model.data());
     return detail::finish(status, std::tuple<point, point>(min_model, max_model));
+}
+
+inline returns<leafless_mass_sum> mass_sum_unknown(const leafless_frame &frame, uint32_t level,
+    uint64_t code) {
+    leafless_mass_sum sum = LEAFLESS_INIT(leafless_mass_sum);
+    const leafless_status status = leafless_mass_sum_unknown(&frame, level, code, &sum);
+    return detail::finish(status, sum);
+}
+
+inline returns<leafless_mass_sum> mass_sum_add(const leafless_mass_sum &a, const leafless_mass_sum &b) {
+    leafless_mass_sum sum = LEAFLESS_INIT(leafless_mass_sum);
+    const leafless_status status = leafless_mass_sum_add(&a, &b, &sum);
+    return detail::finish(status, sum);
+}
+
+inline returns<leafless_mass_sum> mass_sum_subtract(const leafless_mass_sum &a, const leafless_mass_sum &b) {
+    leafless_mass_sum sum = LEAFLESS_INIT(leafless_mass_sum);
+    const leafless_status status = leafless_mass_sum_subtract(&a, &b, &sum);
+    return detail::finish(status, sum);
+}
+
+inline returns<leafless_measures> mass_sum_measures(const leafless_mass_sum &sum) {
+    leafless_measures measures = LEAFLESS_INIT(leafless_measures);
+    const leafless_status status = leafless_mass_sum_measures(&sum, &measures);
+    return detail::finish(status, measures);
 }
 
 inline returns<uint64_t> voxels_find(const leafless_frame &lattice, const uint64_t *codes,

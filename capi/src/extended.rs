@@ -25,6 +25,16 @@ pub struct leafless_cut_options {
 // SAFETY: numbers.
 unsafe impl Sized32 for leafless_cut_options {}
 
+/// Which surfaces the host wants.
+///
+/// # Safety
+/// As [`sized`].
+pub(super) unsafe fn surface_options(cuts: *const leafless_cut_options) -> Result<SurfaceOptions, Failure> {
+    // SAFETY: the caller's promise.
+    let tolerance = unsafe { sized(cuts, "cuts")? }.tolerance_model;
+    Ok(SurfaceOptions { tolerance: (tolerance != 0.0).then_some(tolerance) })
+}
+
 /// What the PARTIAL cells of an octree keep of the surfaces that cross them.
 #[derive(Clone, Copy)]
 #[repr(C)]
@@ -130,9 +140,8 @@ pub unsafe extern "C" fn leafless_octree_build_extended(
     guard(|| unsafe {
         let solid = &shared(solid, "solid")?.solid;
         let frame = self::frame(frame)?;
-        let tolerance = sized(cuts, "cuts")?.tolerance_model;
+        let surfaces = surface_options(cuts)?;
         let octree = out(octree, "octree")?;
-        let surfaces = SurfaceOptions { tolerance: (tolerance != 0.0).then_some(tolerance) };
         octree.write(give(controlled(options, |control| build_extended(solid, &frame, &surfaces, control))?))
     })
 }

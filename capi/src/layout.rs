@@ -120,6 +120,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             kind, number_count, placement_count, terms, term_count, has_origin, origin_number, origin
         }
         leafless_cell_function { surfaces, surface_count, table }
+        leafless_shard { code, level, kind }
         leafless_octree_info { struct_size,
             frame, elements, bricks, channels, bytes, proof, root, exterior, is_binary, is_clipped
         }
@@ -165,6 +166,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             volume_model, centroid_model, inertia_origin_model, inertia_centroid_model, proof, splits, level,
             measured, has_centroid, is_clipped, is_exact
         }
+        leafless_mass_sum { struct_size, bytes }
         leafless_surface_area { struct_size, area_model, splits, level, measured, is_clipped }
         leafless_boundary_report {
             struct_size, deviation_model, intersecting_pairs, cells, splits, surfaces, regions, faces
@@ -241,6 +243,7 @@ fn write_all(to: &mut dyn Write) -> fmt::Result {
             LEAFLESS_STORED_SURFACE_KIND_PLANE, LEAFLESS_STORED_SURFACE_KIND_QUADRIC, LEAFLESS_STORED_SURFACE_KIND_POWERS,
             LEAFLESS_STORED_SURFACE_KIND_TORUS, LEAFLESS_STORED_SURFACE_KIND_SLAB
         }
+        leafless_shard_kind { LEAFLESS_SHARD_KIND_TOP, LEAFLESS_SHARD_KIND_BELOW }
         leafless_proven {
             LEAFLESS_PROVEN_NOTHING, LEAFLESS_PROVEN_FULL, LEAFLESS_PROVEN_EMPTY, LEAFLESS_PROVEN_BOTH
         }

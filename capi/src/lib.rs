@@ -51,6 +51,7 @@
 //! | `scene` | scenes in the language of OpenSCAD's CSG dumps |
 //! | `op` | building, resolving, Booleans |
 //! | `extended` | extended octrees: surfaces that PARTIAL cells keep |
+//! | `shard` | octrees in parts: built, cut, joined, counted, and asked as one solid |
 //! | `contains` | points, boxes |
 //! | `cursor` | cursors on the nodes of an octree |
 //! | `point_cursor` | cursors and tables for points |
@@ -76,6 +77,7 @@
 //! | `placing` | layouts: what stands where, and whether it may |
 //! | `layout_search` | layouts: placing what is left, and what all of it amounts to |
 //! | `measure` | volume, centroid, inertia, areas of surfaces and sections, bounding boxes of solids |
+//! | `mass_sum` | measures of the cells of a frame, which add up exactly |
 //! | `tridexel` | tri-dexel models: made of solids, described, metadata |
 //! | `tridexel_read` | cells, rays and intervals of tri-dexel models, statistics |
 //! | `tridexel_op` | set algebra of tri-dexel models, what they store |
@@ -122,6 +124,7 @@ mod layer_surface;
 mod layout;
 mod layout_search;
 mod lazy;
+mod mass_sum;
 mod measure;
 mod mesh;
 mod mesh_arrays;
@@ -142,6 +145,7 @@ mod point_cursor;
 mod polyhedron;
 mod rays;
 mod scene;
+mod shard;
 mod solid;
 mod solid_boundary;
 mod source;
@@ -193,6 +197,7 @@ pub use layer_surface::*;
 pub use layout::*;
 pub use layout_search::*;
 pub use lazy::*;
+pub use mass_sum::*;
 pub use measure::*;
 pub use mesh::*;
 pub use mesh_arrays::*;
@@ -211,6 +216,7 @@ pub use point_cursor::*;
 pub use polyhedron::*;
 pub use rays::*;
 pub use scene::*;
+pub use shard::*;
 pub use solid::*;
 pub use solid_boundary::*;
 pub use source::*;

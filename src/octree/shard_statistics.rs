@@ -34,10 +34,12 @@ impl Octree {
             // PARTIAL cells above it become nodes, but for those that the shard before has made nodes.
             let is_new = |level| before.is_none_or(|before| before.ancestor(level) != cell.ancestor(level));
             for level in (open..=cell.level).filter(|&level| is_new(level)) {
-                counts[usize::from(level)].nodes += 1;
-                counts[usize::from(level)].partial = counts[usize::from(level)].partial.saturating_sub(1);
+                // (A mapped level table may hold anything.)
+                let at = usize::from(level);
+                counts[at].nodes = counts[at].nodes.saturating_add(1);
+                counts[at].partial = counts[at].partial.saturating_sub(1);
                 if level < cell.level {
-                    counts[usize::from(level) + 1].partial += 8;
+                    counts[at + 1].partial = counts[at + 1].partial.saturating_add(8);
                 }
             }
             for (sum, own) in counts.iter_mut().zip(levels).skip(usize::from(cell.level) + 1) {

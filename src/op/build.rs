@@ -101,12 +101,14 @@ fn build_cells<C: Classifier>(
         let builder = Builder { classifier, frame, rule, shard, levels, parallel };
         let mut writer = Writer::new(&job, frame.depth(), rule.is_binary() && shard.is_none());
         let root = hand.worker.root()?;
-        if !matches!(root, Verdict::Partial(_)) {
+        let is_last = shard.is_some_and(|shard| shard.last(frame.depth()) == 0);
+        if !matches!(root, Verdict::Partial(_)) || is_last {
             job.advance(WHOLE);
         }
         let tag = match root {
             Verdict::Empty => Tag::Empty,
             Verdict::Full => Tag::Full,
+            Verdict::Partial(_) if is_last => Tag::Partial,
             Verdict::Undecided => rule.resolved(Planes::uniform(Tag::Partial))?.tag(0),
             Verdict::Partial(part) => builder.cell(0, Cell::ROOT, &part, &mut hand, &mut writer)?,
         };

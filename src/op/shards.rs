@@ -14,7 +14,7 @@ use crate::octree::{Octree, OctreeRef};
 /// missing is a PARTIAL cell. The trees may overlap; where two keep surfaces of the same cell, those of the first are kept.
 /// Moments are those of the first that has them. The result has no metadata and no channels.
 ///
-/// Time is linear in the cells where several trees are cut, plus the memory traffic of what is copied.
+/// Time is linear in the cells that are cut in one tree and known in another one, plus the memory traffic of what is copied.
 ///
 /// # Errors
 /// [`Error::Argument`] if there is no tree, or one says FULL where another one says EMPTY: they are not of one solid;

@@ -52,6 +52,7 @@ fn check<S: Solid>(solid: &S, frame: &Frame, way: Way, level: u8) {
     let whole = way.whole(solid, frame);
     let expected = bytes(&whole);
     let mut built = vec![way.shard(solid, frame, Shard::Top { level })];
+    assert_eq!(built[0].statistics().levels()[usize::from(level)].nodes, 0, "{way:?}, level {level}");
     for cell in built[0].view().open_cells(level).unwrap() {
         built.push(way.shard(solid, frame, Shard::Below(cell)));
     }
@@ -319,6 +320,14 @@ fn what_is_refused() {
     let views = [*tree.view(), *other.view()];
     assert!(matches!(join(&views, &alone()), Err(Error::Argument { name: "trees", .. })));
     assert!(matches!(join(&[], &alone()), Err(Error::Argument { name: "trees", .. })));
+    // One decides a cell at once, of which the other decides parts otherwise.
+    let octant = build(&Csg::cuboid([0.0; 3], [0.5; 3]).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
+    let parts = build(&Csg::ball([0.25; 3], 0.2).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
+    let beside = build(&Csg::ball([0.75; 3], 0.2).unwrap(), &frame, Rule::Certified, &alone()).unwrap();
+    for (one, other) in [(&octant, &parts), (&parts, &octant), (&parts, &beside)] {
+        let result = join(&[*one.view(), *other.view()], &alone());
+        assert!(matches!(result, Err(Error::Argument { name: "trees", .. })));
+    }
     let coarse = build(&part(), &unit(3), Rule::Certified, &alone()).unwrap();
     assert!(matches!(join(&[*tree.view(), *coarse.view()], &alone()), Err(Error::FrameMismatch { .. })));
     // Of one solid by two rules something is known together that neither knows alone, or they contradict each other.

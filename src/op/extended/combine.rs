@@ -15,7 +15,7 @@ use crate::octree::cuts::{CellCut, Cut, Cuts, CutsRef, Head, StoredMoments, Surf
 use crate::octree::links::Windows;
 use crate::octree::view::{OctreeRef, starts_half_way};
 use crate::octree::writer::Writer;
-use crate::octree::{Octree, Planes, Proof, Tag};
+use crate::octree::{CellFilter, Octree, Planes, Proof, Tag};
 use crate::parallel::each;
 use crate::solid::OCTANTS;
 use alloc::boxed::Box;
@@ -151,11 +151,13 @@ fn both(one: Tag, other: Tag) -> Result<Tag, Error> {
     match (one, other) {
         (Tag::Partial, known) | (known, Tag::Partial) => Ok(known),
         (one, other) if one == other => Ok(one),
-        _ => {
-            let problem = "are not of one solid: one says FULL where another one says EMPTY";
-            Err(Error::Argument { name: "trees", problem })
-        }
+        _ => Err(contradiction()),
     }
+}
+
+fn contradiction() -> Error {
+    let problem = "are not of one solid: one says FULL where another one says EMPTY";
+    Error::Argument { name: "trees", problem }
 }
 
 /// What is known of a cell that is to be split.
@@ -286,6 +288,21 @@ impl Walk<'_> {
             }
             _ => Cut::None,
         }
+    }
+
+    /// Refuses operands that decide a part of a cell otherwise than the whole cell is decided.
+    fn agree(&self, cell: Cell, settled: Tag, open: &[(u32, Side)]) -> Result<(), Error> {
+        let opposite = if settled == Tag::Full { Tag::Empty } else { Tag::Full };
+        let first = cell.first_at(self.frame.depth()).at;
+        let edge = 1 << (self.frame.depth() - cell.level);
+        let against = CellFilter::tags(&[opposite]).within(first, first.map(|at| at + edge));
+        for (of, side) in open {
+            let is_split = matches!(side, Side::Element { .. } | Side::Octant { .. });
+            if is_split && self.operand(*of).0.cells(against).next().is_some() {
+                return Err(contradiction());
+            }
+        }
+        Ok(())
     }
 
     /// What becomes of a cell of which these operands know something without deciding it, and all others know nothing.
@@ -530,7 +547,11 @@ impl Threads<'_, '_> {
                 Met::Open(side) => memory::push(&mut open, (of, side))?,
             }
         }
-        Ok(if settled == Tag::Partial { self.walk.known(cell, open) } else { Fate::Settled(settled) })
+        if settled == Tag::Partial {
+            return Ok(self.walk.known(cell, open));
+        }
+        self.walk.agree(cell, settled, &open)?;
+        Ok(Fate::Settled(settled))
     }
 
     /// The element level of the element in which the children of a cell lie.

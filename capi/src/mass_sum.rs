@@ -1,0 +1,171 @@
+//! Measures of the cells of a frame, which add up exactly: for solids that several machines measure.
+
+use super::boundary::{Failure, Sized32, filled, guard, output, shared, sized};
+use super::control::{controlled, leafless_options};
+use super::frame::{frame, leafless_frame};
+use super::measure::leafless_measures;
+use super::shard::{cell_of, renamed};
+use super::solid::leafless_solid;
+use super::status::leafless_status;
+use leafless::Tolerance;
+use leafless::query::{MassSum, measure_in};
+
+/// What is known of the volume and the moments of a solid in some cells of its frame.
+///
+/// Sums are exact: they are the same in any order, and subtracting what was added leaves what there was. So several machines can measure
+/// the cells of one solid, and one of them adds up.
+///
+/// The struct has no pointers. A program may store it or send it to another machine as it lies in memory. Only the version of the
+/// library that made a sum reads it. The functions refuse bytes that are no sum; they cannot tell every damage.
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub struct leafless_mass_sum {
+    /// sizeof(leafless_mass_sum).
+    pub struct_size: u32,
+    /// For the library alone.
+    pub bytes: [u8; 404],
+}
+
+output!(leafless_mass_sum);
+const _: () = assert!(MassSum::BYTES == 404);
+
+// SAFETY: numbers.
+unsafe impl Sized32 for leafless_mass_sum {}
+
+impl From<MassSum> for leafless_mass_sum {
+    fn from(sum: MassSum) -> leafless_mass_sum {
+        leafless_mass_sum { struct_size: size_of::<leafless_mass_sum>() as u32, bytes: sum.to_bytes() }
+    }
+}
+
+/// The sum at `pointer`.
+///
+/// # Safety
+/// As [`sized`].
+unsafe fn sum_of(pointer: *const leafless_mass_sum, name: &'static str) -> Result<MassSum, Failure> {
+    if pointer.is_null() {
+        return Err(Failure::Null { name });
+    }
+    // SAFETY: the caller's promise.
+    let given = unsafe { sized(pointer, name)? };
+    // What a shorter struct does not have was lost when it was written, and is not zero.
+    if (given.struct_size as usize) < size_of::<leafless_mass_sum>() {
+        return Err(Failure::Argument { name, problem: "is too short for a sum of this version" });
+    }
+    let problem = "is no sum of this version, or is damaged";
+    MassSum::from_bytes(&given.bytes).map_err(|_| Failure::Argument { name, problem })
+}
+
+/// Measures the part of a solid in one cell of a frame, as leafless_solid_measure measures the whole. The tolerances concern the volume
+/// in the cell. A solid that knows its own moments is split all the same.
+///
+/// If the solid is an octree without surfaces, and both tolerances are 0, the sum over all cells of a level has the measures of the
+/// whole octree.
+///
+/// - Buffers: `frame`, one struct; `options`, one struct or NULL, of which `max_nodes` and `max_bytes` do not matter; `sum`, one struct.
+///   `code` is that of a cell of level `level`, as in leafless_shard.
+/// - Result: `*sum`.
+/// - Errors: as leafless_solid_measure; LEAFLESS_E_ARGUMENT also if the frame does not have the cell.
+/// - Threads: any; uses as many as `options` says.
+/// - Untrusted input: any solid, any numbers; set `max_splits` where the depth or the solid is not your own choice.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_solid_measure_cell(
+    solid: *const leafless_solid,
+    frame: *const leafless_frame,
+    level: u32,
+    code: u64,
+    relative: f64,
+    absolute_model: f64,
+    options: *const leafless_options,
+    sum: *mut leafless_mass_sum,
+) -> leafless_status {
+    guard(|| unsafe {
+        let solid = &shared(solid, "solid")?.solid;
+        let frame = self::frame(frame)?;
+        let cell = cell_of(&frame, level, code, ["level", "code"])?;
+        let sum = filled(sum, "sum")?;
+        let tolerance = Tolerance { relative, absolute: absolute_model };
+        sum.write(controlled(options, |control| measure_in(solid, &frame, cell, tolerance, control))?.into())
+    })
+}
+
+/// The sum of a cell of which nothing is known. Adding it to a sum takes nothing from what that sum proves.
+///
+/// To measure a top and its shards: take the sum of the top in the whole universe (level 0, code 0). For each shard subtract the
+/// unknown sum of its cell, and add the sum of the shard in that cell.
+///
+/// - Buffers: `frame` and `sum`, one struct each. `code` is that of a cell of level `level`, as in leafless_shard.
+/// - Result: `*sum`.
+/// - Errors: LEAFLESS_E_ARGUMENT if the frame does not have the cell.
+/// - Untrusted input: any numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mass_sum_unknown(
+    frame: *const leafless_frame,
+    level: u32,
+    code: u64,
+    sum: *mut leafless_mass_sum,
+) -> leafless_status {
+    guard(|| unsafe {
+        let frame = self::frame(frame)?;
+        let cell = cell_of(&frame, level, code, ["level", "code"])?;
+        filled(sum, "sum")?.write(MassSum::unknown(&frame, cell)?.into())
+    })
+}
+
+/// The sum over the cells of two sums.
+///
+/// - Buffers: `a`, `b` and `sum`, one struct each; `sum` may be `a` or `b`.
+/// - Result: `*sum`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if the result is more than the universe holds: then a cell
+///   was added twice; LEAFLESS_E_FRAME if the frames differ.
+/// - Untrusted input: any bytes; of damaged sums the result is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mass_sum_add(
+    a: *const leafless_mass_sum,
+    b: *const leafless_mass_sum,
+    sum: *mut leafless_mass_sum,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (sum_of(a, "a")?, sum_of(b, "b")?);
+        let sum = filled(sum, "sum")?;
+        sum.write(a.plus(&b).map_err(|error| renamed(error.into(), "b"))?.into())
+    })
+}
+
+/// The sum over the cells of `a` without those of `b`, which are some of them. What `a` proves, the result proves. Splits are counted
+/// together.
+///
+/// - Buffers: as leafless_mass_sum_add.
+/// - Result: `*sum`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `a` or `b` is no sum of this version, or if less than nothing would be left; LEAFLESS_E_FRAME if the
+///   frames differ.
+/// - Untrusted input: any bytes; of damaged sums the result is wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mass_sum_subtract(
+    a: *const leafless_mass_sum,
+    b: *const leafless_mass_sum,
+    sum: *mut leafless_mass_sum,
+) -> leafless_status {
+    guard(|| unsafe {
+        let (a, b) = (sum_of(a, "a")?, sum_of(b, "b")?);
+        let sum = filled(sum, "sum")?;
+        sum.write(a.minus(&b).map_err(|error| renamed(error.into(), "b"))?.into())
+    })
+}
+
+/// Volume, centroid and inertia of what is in the cells of a sum. `is_exact` is false.
+///
+/// - Buffers: `sum` and `measures`, one struct each.
+/// - Result: `*measures`.
+/// - Errors: LEAFLESS_E_ARGUMENT if `sum` is no sum of this version, or if the frame's universe is too small for cells of level 20.
+/// - Untrusted input: any bytes; of a damaged sum the measures are wrong.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn leafless_mass_sum_measures(
+    sum: *const leafless_mass_sum,
+    measures: *mut leafless_measures,
+) -> leafless_status {
+    guard(|| unsafe {
+        let sum = sum_of(sum, "sum")?;
+        filled(measures, "measures")?.write(sum.properties()?.into())
+    })
+}
