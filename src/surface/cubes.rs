@@ -111,7 +111,10 @@ pub fn marching_cubes_in(
     control: &Control<'_>,
 ) -> Result<TriangleMesh, Error> {
     let depth = tree.frame().depth();
-    if cell.level + BLOCK_LEVELS > depth || cell.at.iter().any(|&a| a >> cell.level != 0) {
+    if cell.level > depth
+        || cell.level + BLOCK_LEVELS > depth
+        || cell.at.iter().any(|&a| a >> cell.level != 0)
+    {
         return Err(Error::Argument {
             name: "cell",
             problem: "must be one of the frame, with 4³ finest cells at least",

@@ -4,10 +4,11 @@ use crate::common::{Random, alone, repeated, shapes};
 use leafless::op::{build_extended_shard, join, shard};
 use leafless::query::{MassSum, Obstacle, measure_in};
 use leafless::solid::ShardedOctree;
+use leafless::surface::{Resolve, marching_cubes_in};
 use leafless::{
     Affine, AnySolid, Callback, Cell, Control, Csg, Error, FillRule, Frame, Membership, MeshSolid, Octree,
     Ray, Rule, Shard, Solid, SurfaceOptions, Tag, TriangleMesh, Verdict, build, build_extended, build_shard,
-    cast_rays, contains, measure, union,
+    cast_rays, contains, marching_cubes, measure, union,
 };
 use proptest::prelude::*;
 
@@ -260,6 +261,39 @@ fn large_enough_for_threads() {
             for threads in [1, 4] {
                 let joined = join(&views, &Control { threads, ..Control::default() }).unwrap();
                 assert!(bytes(&joined) == bytes(&whole), "{way:?}, {threads} threads");
+            }
+        }
+    }
+}
+
+/// The triangles of a mesh by the places of their corners.
+fn places(meshes: &[TriangleMesh]) -> Vec<[[u64; 3]; 3]> {
+    let corner = |mesh: &TriangleMesh, vertex: u32| mesh.vertices()[vertex as usize].map(f64::to_bits);
+    let all = meshes.iter().flat_map(|mesh| mesh.triangles().iter().map(move |t| t.map(|v| corner(mesh, v))));
+    let mut all: Vec<_> = all.collect();
+    all.sort_unstable();
+    all
+}
+
+#[test]
+fn surfaces_cell_by_cell() {
+    for depth in [2, 3, 5, 6] {
+        // Of the second one the surface lies in walls of the universe, too.
+        for solid in [part(), Csg::cuboid([-1.0, 0.2, 0.0], [0.7, 2.0, 0.6]).unwrap()] {
+            let tree = build(&solid, &unit(depth), Rule::Certified, &alone()).unwrap();
+            for resolve in [Resolve::Inner, Resolve::Outer] {
+                let whole = marching_cubes(tree.view(), Some(resolve), &alone()).unwrap();
+                for level in 0..=(depth - 2).min(2) {
+                    let cells = (0..1 << (3 * level)).map(|code| Cell::from_morton(level, code).unwrap());
+                    let part = |cell| marching_cubes_in(tree.view(), Some(resolve), cell, &alone()).unwrap();
+                    let parts: Vec<_> = cells.map(part).collect();
+                    assert_eq!(places(&parts), places(std::slice::from_ref(&whole)), "{depth}, {level}");
+                }
+            }
+            for (level, at) in [(depth - 1, [0; 3]), (1, [2, 0, 0]), (u8::MAX, [0; 3])] {
+                let refused =
+                    marching_cubes_in(tree.view(), Some(Resolve::Inner), Cell { level, at }, &alone());
+                assert!(matches!(refused, Err(Error::Argument { name: "cell", .. })), "{level}");
             }
         }
     }
