@@ -419,13 +419,21 @@ const WAYS: &[Way] = &[
     },
     Way {
         name: "shards that are not joined",
-        through: &["ShardedOctree", "solid/stored/sharded.rs new", "op/shards.rs shard"],
+        through: &[
+            "ShardedOctree",
+            "solid/stored/sharded.rs new",
+            "solid/stored/sharded.rs top",
+            "solid/stored/sharded.rs shards",
+            "op/shards.rs shard",
+        ],
         make: |a| {
             let top = shard(a.tree.view(), Shard::Top { level: 2 }, &CONTROL)?;
             let cells = top.view().open_cells(2)?;
             let one = |cell| Ok((cell, shard(a.tree.view(), Shard::Below(cell), &CONTROL)?));
             let shards = cells.into_iter().map(one).collect::<Result<Vec<_>, Error>>()?;
-            asked(&ShardedOctree::new(top, shards)?)
+            let whole = ShardedOctree::new(top, shards)?;
+            let again = whole.shards().map(|(cell, shard)| (cell, shard.clone()));
+            asked(&ShardedOctree::new(whole.top().clone(), again)?)
         },
         proven: SAME,
     },
