@@ -304,6 +304,9 @@ def test_by_urls_and_ranges(whole, parts):
     memory.pipe("/packed/plate/shards.lfl.pack", bytes(data))
     with pytest.warns(MissingShardWarning):
         assert len(shards.open("memory://packed/plate").check()) == 1
+    local = parts.pack(parts.url + "-packed")
+    assert local.join().to_bytes() == whole.to_bytes() and not local.missing
+    assert len(os.listdir(local.url)) == 3
     remote = shards.build(PLATE, "memory://built/plate", FRAME, level=1)
     assert remote.join().to_bytes() == whole.to_bytes()
 

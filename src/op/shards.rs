@@ -11,7 +11,8 @@ use crate::octree::{Octree, OctreeRef};
 /// open. Surfaces of a PARTIAL cell are kept, if one of them does.
 ///
 /// This is the reverse of cutting an octree into [shards](Shard), plain or extended: the bytes are those of the whole. A shard that is
-/// missing is a PARTIAL cell. The trees may overlap; where two keep surfaces of the same cell, those of the first are kept.
+/// missing is a PARTIAL cell. The trees may overlap. A cell of which one keeps surfaces ends there: what others know of its parts is
+/// passed over, and if two keep surfaces of it, those of the first are kept.
 /// Moments are those of the first that has them. The result has no metadata and no channels.
 ///
 /// Time is linear in the cells that are cut in one tree and known in another one, plus the memory traffic of what is copied.
