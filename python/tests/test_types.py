@@ -41,6 +41,11 @@ def test_the_stub_is_true_of_the_module(tmp_path):
     assert code == 0, told
 
 
+def test_the_package_passes(tmp_path, cache):
+    told, code = run(tmp_path, "mypy", *PLAIN, f"--cache-dir={cache}", "-p", "leafless")
+    assert code == 0, told
+
+
 def test_a_typed_program_passes(tmp_path, cache):
     told, code = run(tmp_path, "mypy", *PLAIN, f"--cache-dir={cache}", str(TESTS / "typed_program.py"))
     assert code == 0, told

@@ -65,16 +65,20 @@ class Intervals:
         return (self.lower <= values) & (values <= self.upper)
 
     def __lt__(self, other: Intervals | Interval | npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        return self.upper < _ends(other)[0]
+        found: npt.NDArray[np.bool_] = np.less(self.upper, _ends(other)[0])
+        return found
 
     def __le__(self, other: Intervals | Interval | npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        return self.upper <= _ends(other)[0]
+        found: npt.NDArray[np.bool_] = np.less_equal(self.upper, _ends(other)[0])
+        return found
 
     def __gt__(self, other: Intervals | Interval | npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        return self.lower > _ends(other)[1]
+        found: npt.NDArray[np.bool_] = np.greater(self.lower, _ends(other)[1])
+        return found
 
     def __ge__(self, other: Intervals | Interval | npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        return self.lower >= _ends(other)[1]
+        found: npt.NDArray[np.bool_] = np.greater_equal(self.lower, _ends(other)[1])
+        return found
 
     # Whether an axis is left, and with it an array, depends on how many there are.
     def __contains__(self, value: object) -> bool:
