@@ -77,6 +77,25 @@ def test_queries_of_shards(whole, parts):
     assert pickle.loads(pickle.dumps(solid)).contains([1, 1, 0.5]) == lf.INSIDE
 
 
+def test_queries_of_shards_that_keep_surfaces(tmp_path):
+    frame = FRAME.with_depth(10)
+    whole = lf.build(PLATE, frame, surfaces=True)
+    parts = shards.build(PLATE, tmp_path, frame, level=1, surfaces=True)
+    assert len(parts) > 2
+    rows = points()
+    answers = parts.contains(rows)
+    assert (answers == whole.contains(rows)).all() and (answers != lf.UNDECIDED).mean() > 0.99
+    directions = np.random.default_rng(4).normal(size=(len(rows), 3))
+    found, expected = (solid.rays(rows, directions) for solid in (parts, whole))
+    assert (found.hit == expected.hit).all()
+    both = np.maximum(found.distance.lower, expected.distance.lower) <= np.minimum(
+        found.distance.upper, expected.distance.upper
+    )
+    assert both[found.hit].all()
+    for box in ([[1, 1, 0.2], [2, 2, 0.8]], [[3.5, 2.5, 0.1], [4.5, 3.5, 0.9]], [[0, 0, 0], [8, 6, 1]]):
+        assert parts.classify_box(box) == whole.classify_box(box)
+
+
 def test_measures_are_those_of_the_whole(whole, parts):
     found, expected = parts.measure(tolerance=0), lf.measure(whole, tolerance=0)
     assert found.volume == expected.volume
