@@ -79,7 +79,9 @@ fn in_shards(a: &OctreeRef<'_>, sure: bool) {
 }
 
 /// The top, the shards of its open cells, and what they are together.
-fn cut_and_joined(a: &OctreeRef<'_>, sure: bool) -> Option<(Octree, Vec<(Cell, Octree)>, Octree)> {
+type CutAndJoined = (Octree, Vec<(Cell, Octree)>, Octree);
+
+fn cut_and_joined(a: &OctreeRef<'_>, sure: bool) -> Option<CutAndJoined> {
     let level = a.frame().depth().min(1);
     let top = sharp(shard(a, Shard::Top { level }, &BUDGET), sure)?;
     let mut shards = Vec::new();
