@@ -109,7 +109,7 @@ pub fn build_extended<S: Solid>(
     build_cells(solid, frame, options, None, control)
 }
 
-/// Builds the cells of a [`Shard`] of what [`build_extended`] makes: of all others nothing is known. [`join`](super::join) makes of
+/// Builds the cells of a [`Shard`] of what [`build_extended`] makes: of all others nothing is known. [`join`](crate::op::join) makes of
 /// the top and of the shards of all cells that it leaves open the octree that [`build_extended`] makes, byte for byte.
 ///
 /// # Errors
