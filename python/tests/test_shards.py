@@ -147,6 +147,8 @@ def test_surfaces_close_across_shards(whole, parts):
     for resolve in ("inner", "outer"):
         found, expected = parts.surface(resolve), lf.surface(whole, method="cubes", resolve=resolve)
         assert found.is_closed
+        # All cells that are not decided are finest ones.
+        assert lf.deviation(found, PLATE).distance.upper < 2 * FRAME.cell_size
         assert len(found.vertices) == len(expected.vertices) and len(found.faces) == len(expected.faces)
         place = lambda mesh: np.unique(mesh.vertices[mesh.faces].reshape(-1, 9), axis=0)
         assert (place(found) == place(expected)).all()
