@@ -70,11 +70,12 @@ fn in_shards(a: &OctreeRef<'_>, sure: bool) {
         let all: Vec<_> = shards.iter().map(|(cell, own)| (*cell, own.statistics())).collect();
         assert!(top.statistics_with(&all).is_ok_and(|found| found == joined.statistics()));
     }
-    if let Ok(solid) = ShardedOctree::new(top, shards) {
+    // (Surfaces would be split down to the depth.)
+    if a.cuts().is_none()
+        && let Ok(solid) = ShardedOctree::new(top, shards)
+    {
         let built = build(&solid, a.frame(), Rule::Certified, &BUDGET);
-        if let (true, Ok(built)) = (sure && a.cuts().is_none(), built) {
-            assert!(built == joined);
-        }
+        assert!(!sure || built.is_err() || built.is_ok_and(|built| built == joined));
     }
 }
 
