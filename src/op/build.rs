@@ -50,7 +50,7 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
 ///
 /// ```
 /// use leafless::op::join;
-/// use leafless::{Control, Csg, Frame, Rule, Shard, build, build_shard};
+/// use leafless::{Control, Csg, Frame, Rule, Shard, build, build_shard, file};
 /// let (frame, control) = (Frame::new([-1.0; 3], 2.0, 7)?, Control::default());
 /// let ball = Csg::ball([0.1, 0.0, 0.0], 0.75)?;
 /// let make = |shard| build_shard(&ball, &frame, Rule::Certified, shard, &control);
@@ -61,7 +61,7 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
 /// assert_eq!(trees.len(), 1 + 56);
 /// let views: Vec<_> = trees.iter().map(|tree| *tree.view()).collect();
 /// let whole = build(&ball, &frame, Rule::Certified, &control)?;
-/// assert_eq!(join(&views, &control)?.to_bytes()?, whole.to_bytes()?);
+/// assert_eq!(file::to_bytes(&join(&views, &control)?)?, file::to_bytes(&whole)?);
 /// # Ok::<(), leafless::Error>(())
 /// ```
 pub fn build_shard<S: Solid>(
