@@ -1,4 +1,5 @@
-//! Points, rays and distances of a mesh in batches, as `peers/python_queries.py` asks them from Python: what a call costs beyond Rust.
+//! Points, rays and distances of a mesh in batches, as `peers/python_queries.py` asks them from Python: what
+//! a call costs beyond Rust.
 //!
 //! ```text
 //! cargo bench -p leafless-benches --bench batches -- MESH

@@ -4,8 +4,8 @@
 //! cargo bench --bench channels
 //! ```
 //!
-//! A ball of 512 cells per axis with channels of four kinds: what they take, and how long they are filled, asked
-//! and carried through a Boolean.
+//! A ball of 512 cells per axis with channels of four kinds: what they take, and how long they are filled,
+//! asked and carried through a Boolean.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::attribute::{

@@ -1,7 +1,8 @@
-//! How fast the measures of solids close in on the truth: the width of the interval against the number of splits.
+//! How fast the measures of solids close in on the truth: the width of the interval against the number of
+//! splits.
 //!
-//! `cargo bench --bench convergence` prints a table and writes the picture `benches/convergence.svg`. No clock is read:
-//! the figures are the same on every machine.
+//! `cargo bench --bench convergence` prints a table and writes the picture `benches/convergence.svg`. No
+//! clock is read: the figures are the same on every machine.
 
 use leafless::query::surface_area;
 use leafless::{Affine, Control, Csg, Error, Frame, Interval, measure};

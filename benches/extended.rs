@@ -4,8 +4,9 @@
 //! cargo bench --bench extended
 //! ```
 //!
-//! A plate of 80 × 60 × 10 with twenty bores of radius 2.5, aligned with the lattice and turned by a rational rotation: built, mapped
-//! and asked for one point, points anywhere in its box, rays from outside to its middle, volume to 10^-6.
+//! A plate of 80 × 60 × 10 with twenty bores of radius 2.5, aligned with the lattice and turned by a rational
+//! rotation: built, mapped and asked for one point, points anywhere in its box, rays from outside to its
+//! middle, volume to 10^-6.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::query::Obstacle;

@@ -1,10 +1,12 @@
-//! Set operations of extended octrees, on one thread: bores in a plate, balls out of a block, one by one and at once.
+//! Set operations of extended octrees, on one thread: bores in a plate, balls out of a block, one by one and
+//! at once.
 //!
 //! ```text
 //! cargo bench --bench extended_booleans
 //! ```
 //!
-//! Medians of several runs, wall clock. Sizes are those of the file; widths those of the volume after 2^20 splits.
+//! Medians of several runs, wall clock. Sizes are those of the file; widths those of the volume after 2^20
+//! splits.
 
 use leafless::op::difference_of;
 use leafless::{

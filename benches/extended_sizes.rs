@@ -4,8 +4,8 @@
 //! cargo bench -p leafless-benches --bench extended_sizes
 //! ```
 //!
-//! It draws `extended.svg`, too. Bytes are those of the file; the width is that of the volume's interval, of extended trees after 4096,
-//! 2^16 and 2^20 splits. `README.md` has the table.
+//! It draws `extended.svg`, too. Bytes are those of the file; the width is that of the volume's interval, of
+//! extended trees after 4096, 2^16 and 2^20 splits. `README.md` has the table.
 
 use leafless::{
     Affine, Control, Csg, Error, Frame, Interval, Octree, Rule, Solid, SurfaceOptions, build, build_extended,

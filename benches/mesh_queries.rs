@@ -1,14 +1,14 @@
-//! Single questions to a mesh's solid, without an octree: rays, distances and points, one by one and in a batch. On one
-//! thread, processor time, medians of five rounds.
+//! Single questions to a mesh's solid, without an octree: rays, distances and points, one by one and in a
+//! batch. On one thread, processor time, medians of five rounds.
 //!
 //! ```text
 //! LEAFLESS_MODELS=/path/to/models cargo bench --bench mesh_queries -- [QUESTIONS [TIMES]]
 //! ```
 //!
-//! 1000 questions of each kind unless told otherwise. Each triangle is divided in four so many TIMES beforehand (0). The frame has
-//! depth 20. `peers/mesh_queries.cpp`, `.py` and
-//! `peers/src/bin/mesh_queries.rs` ask other programs the same, `peers/mesh_queries.c` asks through the C interface; see
-//! `benches/README.md`.
+//! 1000 questions of each kind unless told otherwise. Each triangle is divided in four so many TIMES
+//! beforehand (0). The frame has depth 20. `peers/mesh_queries.cpp`, `.py` and
+//! `peers/src/bin/mesh_queries.rs` ask other programs the same, `peers/mesh_queries.c` asks through the C
+//! interface; see `benches/README.md`.
 
 use leafless::query::{
     DistanceTo, Obstacle, PointDistance, RayHit, StopReason, cast_rays, contains, distances, ray_spans,

@@ -1,5 +1,6 @@
-//! Questions to a triangle mesh, the same for Leafless and its peers: rays and points at random. All numbers are rounded to
-//! single precision, so that no program asks about others. `peers/mesh_queries.h` makes the same in C.
+//! Questions to a triangle mesh, the same for Leafless and its peers: rays and points at random. All numbers
+//! are rounded to single precision, so that no program asks about others. `peers/mesh_queries.h` makes the
+//! same in C.
 
 type Vector = [f64; 3];
 

@@ -4,10 +4,10 @@
 //! LEAFLESS_MODELS=/path/to/models cargo bench --bench rays
 //! ```
 //!
-//! A million rays of a camera, in scan order, to their first hit: parallel ones and those of a perspective view, on
-//! the bunny and on the machined part at 1024³, decided at cell centres as the peers' grids are. The camera stands
-//! as that of the peers: eye at the centre of the bounding box + 2 D w, D its diagonal, w along (1, 0.7, 0.5), half
-//! width D/2.
+//! A million rays of a camera, in scan order, to their first hit: parallel ones and those of a perspective
+//! view, on the bunny and on the machined part at 1024³, decided at cell centres as the peers' grids are. The
+//! camera stands as that of the peers: eye at the centre of the bounding box + 2 D w, D its diagonal, w along
+//! (1, 0.7, 0.5), half width D/2.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use leafless::query::{Obstacle, RayHit};

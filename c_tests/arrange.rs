@@ -1,16 +1,16 @@
 //! Arranges the header: cbindgen writes all types before all functions, a reader wants sections.
 //!
-//! A section is made of files of `capi/src`, and what it declares stands in the order of these files, so that a type comes
-//! before the functions that take it. Comments are wrapped, short ones stand behind what they explain, and parameters fill
-//! their lines.
+//! A section is made of files of `capi/src`, and what it declares stands in the order of these files, so that
+//! a type comes before the functions that take it. Comments are wrapped, short ones stand behind what they
+//! explain, and parameters fill their lines.
 
 use std::fmt::Write;
 
 /// Columns of a line.
 const WIDTH: usize = 110;
 
-/// How the types of numbers begin that stand for members of an enumeration, of 32 and of 8 bits. In the header
-/// they are the enumeration.
+/// How the types of numbers begin that stand for members of an enumeration, of 32 and of 8 bits. In the
+/// header they are the enumeration.
 const NUMBERS: [&str; 2] = ["Number_", "Byte_"];
 
 /// A part of the header.
@@ -148,7 +148,8 @@ fn body(lines: &[String], out: &mut String) {
     }
 }
 
-/// Code in which structs go by the names that their typedefs have, and numbers by those of their enumerations.
+/// Code in which structs go by the names that their typedefs have, and numbers by those of their
+/// enumerations.
 fn plain(code: &str) -> String {
     let code = NUMBERS.iter().fold(code.to_string(), |code, number| code.replace(number, ""));
     if code.starts_with("typedef struct ") { code } else { code.replace("struct leafless_", "leafless_") }
@@ -204,7 +205,8 @@ fn defined_at(source: &str, name: &str) -> Option<usize> {
     })
 }
 
-/// The declarations of `raw` in sections, and the list of these; `read` gives the text of a file of `capi/src`.
+/// The declarations of `raw` in sections, and the list of these; `read` gives the text of a file of
+/// `capi/src`.
 pub fn arranged(raw: &str, sections: &[Section], read: impl Fn(&str) -> String) -> (String, String) {
     let mut items = items(raw);
     // Each with the section, the file in it and the place in the file where it is defined.

@@ -1,5 +1,5 @@
-//! Makes `include/leafless.hpp` of `include/leafless.h`: every function of the C interface as a member of a class, or as a
-//! function, by the rules that stand at the top of the result.
+//! Makes `include/leafless.hpp` of `include/leafless.h`: every function of the C interface as a member of a
+//! class, or as a function, by the rules that stand at the top of the result.
 
 use std::fmt::Write;
 

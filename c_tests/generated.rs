@@ -4,7 +4,8 @@
 //! LEAFLESS_BLESS=1 cargo test --test c_api generated
 //! ```
 //!
-//! writes it anew. What it begins with is `include/preface.h`; the functions in C are those of `include/helpers.h`.
+//! writes it anew. What it begins with is `include/preface.h`; the functions in C are those of
+//! `include/helpers.h`.
 
 use crate::arrange::{Section, arranged};
 use crate::cpp;
@@ -209,7 +210,8 @@ fn every_error_has_a_status() {
     }
 }
 
-/// The rule for names in the preface: members begin with the name of their enumeration, and UNDECIDED is one number.
+/// The rule for names in the preface: members begin with the name of their enumeration, and UNDECIDED is one
+/// number.
 #[test]
 fn members_of_enumerations_go_by_its_name() {
     let mut members = 0;

@@ -125,8 +125,8 @@ impl Kit {
         command
     }
 
-    /// Builds both libraries, with the function that panics. As a part of what `cargo test` has built: with the same
-    /// features of all packages, so that only the interface is left to compile.
+    /// Builds both libraries, with the function that panics. As a part of what `cargo test` has built: with
+    /// the same features of all packages, so that only the interface is left to compile.
     fn build(&mut self) -> Result<(), String> {
         let mut command = self.rust("cargo");
         command.args(["build", "--lib", "--features", "leafless-capi/test"]);

@@ -5,8 +5,8 @@
 //! LEAFLESS_C_CHECK=valgrind cargo test --test c_api     # also: address, address-all, thread
 //! ```
 //!
-//! The libraries are built as these tests are, by the same profile, of the same compiled parts. Every program is compiled and linked as a user would do it, and run; `README.md` here tells what each
-//! is for.
+//! The libraries are built as these tests are, by the same profile, of the same compiled parts. Every program
+//! is compiled and linked as a user would do it, and run; `README.md` here tells what each is for.
 
 #![cfg(unix)]
 
@@ -312,7 +312,8 @@ fn options() {
     run("options", C99, Link::Static, &[]);
 }
 
-/// Structs that the library fills, by older and newer programs; the program tries every function that fills one.
+/// Structs that the library fills, by older and newer programs; the program tries every function that fills
+/// one.
 #[test]
 fn outputs() {
     let (header, program) = (text("include/leafless.h"), text("c_tests/outputs.c"));
@@ -453,7 +454,8 @@ fn header_example() {
     std::fs::write(&source, format!("{includes}int main(void) {{\n{}\n{end}", lines.join("\n"))).unwrap();
     let program = kit().compile("header_example", &[source], C99, Link::Static);
     let told = kit().run(&program, &[]);
-    // A ball of radius 0.75 with a bore of radius 0.25: what is left is 4π/3 times the third power of half the bore's length.
+    // A ball of radius 0.75 with a bore of radius 0.25: what is left is 4π/3 times the third power of half
+    // the bore's length.
     let bounds: Vec<f64> = told.split(" to ").map(|bound| bound.trim().parse().unwrap()).collect();
     let truth = 4.0 / 3.0 * std::f64::consts::PI * (0.75f64.powi(2) - 0.25f64.powi(2)).powf(1.5);
     assert!(bounds[0] <= truth && truth <= bounds[1] && bounds[1] - bounds[0] < 0.2, "{told} {truth}");

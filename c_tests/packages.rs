@@ -228,7 +228,8 @@ fn open_cascade() {
         let (lower, upper) = line.split_once(" to ").unwrap_or((line, line));
         [lower, upper].map(|bound| bound.trim().parse::<f64>().unwrap())
     };
-    // The block less its bore, of 4345 square millimetres in all. What lies within the deflection of its facets is not known.
+    // The block less its bore, of 4345 square millimetres in all. What lies within the deflection of its
+    // facets is not known.
     let truth = 40.0 * 24.0 * 16.0 - std::f64::consts::PI * 6.0 * 6.0 * 16.0;
     let [[by_them, _], triangles, distances] =
         ["volume by Open CASCADE", "volume by triangles", "volume by distances"].map(bounds);
@@ -546,7 +547,8 @@ fn installed_by_cargo_c() {
     let words = line.split_whitespace().skip(1);
     let words = words.map(|word| if word.starts_with('/') { prefix.as_os_str() } else { word.as_ref() });
     succeed(kit.rust("cargo").args(words).arg("--libdir").arg("lib"));
-    // The same files as by the program of this repository, but for those of CMake and of the static library alone.
+    // The same files as by the program of this repository, but for those of CMake and of the static library
+    // alone.
     let files = |prefix: &Path| {
         let told = succeed(Command::new("find").args([".", "!", "-type", "d"]).current_dir(prefix));
         let mut files: Vec<String> = told.lines().map(str::to_owned).collect();

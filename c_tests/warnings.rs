@@ -1,4 +1,5 @@
-//! Both headers are silent under whatever compilers warn of, so that a host program can be as strict as it likes.
+//! Both headers are silent under whatever compilers warn of, so that a host program can be as strict as it
+//! likes.
 
 use crate::kit::{Kit, Standard, kit, output, skipped};
 use crate::{CPP17, root};
@@ -21,7 +22,8 @@ const CLANG: [&str; 7] = [
     "-Wno-unknown-warning-option",
 ];
 
-/// Every standard that the headers support with a program that uses what they define in C or C++: macros, functions, templates.
+/// Every standard that the headers support with a program that uses what they define in C or C++: macros,
+/// functions, templates.
 const PROGRAMS: [(Standard, &str); 7] = [
     (Standard::C("c99"), "header_c.c"),
     (Standard::C("c11"), "header_c.c"),

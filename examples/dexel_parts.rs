@@ -1,8 +1,8 @@
-//! The parts of a paper as tri-dexel models: honeycomb core, square tube, round tube, a complex part, the difference of two
-//! spheres, and a layered composite plate with one material for each ply.
+//! The parts of a paper as tri-dexel models: honeycomb core, square tube, round tube, a complex part, the
+//! difference of two spheres, and a layered composite plate with one material for each ply.
 //!
-//! After Gao, Zhang and Hou (2007). Each part is made by set operations of tri-dexel models, meshed by dual contouring,
-//! and compared with its volume by formula. Run it with
+//! After Gao, Zhang and Hou (2007). Each part is made by set operations of tri-dexel models, meshed by dual
+//! contouring, and compared with its volume by formula. Run it with
 //! `cargo run --release --example dexel_parts [folder]`; with a folder it writes the meshes there, as PLY.
 
 use leafless::dexel::{DexelFormat, DexelNormals};

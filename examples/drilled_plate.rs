@@ -1,4 +1,5 @@
-//! A plate and twenty bores, one by one and at once: octrees that keep their surfaces, saved, mapped and measured.
+//! A plate and twenty bores, one by one and at once: octrees that keep their surfaces, saved, mapped and
+//! measured.
 //!
 //! Run it with `cargo run --release --example drilled_plate`.
 
@@ -30,7 +31,8 @@ pub fn true_volume() -> f64 {
 /// Drills the plate.
 pub fn drill() -> Result<Drilled, Box<dyn std::error::Error>> {
     let control = Control::default();
-    // Exact surfaces need no finest cell: the frame has the greatest depth, and cells end where three surfaces are left.
+    // Exact surfaces need no finest cell: the frame has the greatest depth, and cells end where three
+    // surfaces are left.
     let frame = Frame::around(LOW, HIGH, 20)?;
     let extended = |solid: &Csg| build_extended(solid, &frame, &SurfaceOptions::default(), &control);
 

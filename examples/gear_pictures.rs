@@ -1,7 +1,9 @@
-//! Pictures of the inside: the gear and the cover of `gear_records`, as voxels of one size and as voxels that follow the colour.
+//! Pictures of the inside: the gear and the cover of `gear_records`, as voxels of one size and as voxels that
+//! follow the colour.
 //!
-//! After Zhu, Tang and Dong (2002), figure 6: of one size, coarse (a poor picture); adaptive (a good one); of one size, fine.
-//! `cargo run --release --features png --example gear_pictures -- FOLDER` writes the pictures to a folder.
+//! After Zhu, Tang and Dong (2002), figure 6: of one size, coarse (a poor picture); adaptive (a good one); of
+//! one size, fine. `cargo run --release --features png --example gear_pictures -- FOLDER` writes the pictures
+//! to a folder.
 
 #[path = "gear_records.rs"]
 #[allow(dead_code)]
@@ -12,7 +14,8 @@ use leafless::render::{Camera, ColourMap, Picture, Shot, Transfer, VolumeLayer, 
 use leafless::voxel::VoxelRecords;
 use leafless::{Control, Error};
 
-/// Pictures of the coarse, the adaptive and the fine records: one camera, one transfer function, one depth of the boundary.
+/// Pictures of the coarse, the adaptive and the fine records: one camera, one transfer function, one depth of
+/// the boundary.
 pub fn pictures(
     part: &Part,
     lists: &Lists,
@@ -32,7 +35,8 @@ pub fn pictures(
     Ok([picture(&lists.coarse)?, picture(&lists.adaptive)?, picture(&lists.fine)?])
 }
 
-/// The root mean square of the differences of two pictures on white, 0 to 255, over the pixels where either shows something.
+/// The root mean square of the differences of two pictures on white, 0 to 255, over the pixels where either
+/// shows something.
 pub fn difference(a: &Picture, b: &Picture) -> f64 {
     let on_white = |[r, g, b, a]: [u8; 4]| {
         let a = f64::from(a) / 255.0;

@@ -1,8 +1,8 @@
-//! Inside voxels that follow a colour: a gear with a hub, a web and a rim of different colours, and a cover of a
-//! gearbox that is warm around its bearing.
+//! Inside voxels that follow a colour: a gear with a hub, a web and a rim of different colours, and a cover
+//! of a gearbox that is warm around its bearing.
 //!
-//! After Zhu, Tang and Dong (2002), whose gear took 7 571 voxels of one size for a poor picture, 32 059 for a good
-//! one, and 13 752 of the size that the colour asks for. Run it with
+//! After Zhu, Tang and Dong (2002), whose gear took 7 571 voxels of one size for a poor picture, 32 059 for a
+//! good one, and 13 752 of the size that the colour asks for. Run it with
 //! `cargo run --release --example gear_records`.
 
 use leafless::attribute::{Attribute, Criterion, Detail, FunctionAttribute, ValueRange};
@@ -25,7 +25,8 @@ pub struct Part {
     pub levels: [u8; 3],
 }
 
-/// The records of a part's voxels: no longer than the coarse limit, adaptive, and no longer than the fine one.
+/// The records of a part's voxels: no longer than the coarse limit, adaptive, and no longer than the fine
+/// one.
 pub struct Lists {
     /// Voxels of the coarse limit.
     pub coarse: VoxelRecords,

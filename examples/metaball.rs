@@ -1,7 +1,7 @@
 //! A solid of one's own, made outside of the library: a metaball, the points p with Σ rᵢ² / |p − cᵢ|² ≥ 1.
 //!
-//! The solid climbs the ladder in the documentation of `leafless::solid` one step at a time, and the example prints what
-//! each step gains. Run it with `cargo run --release --example metaball`.
+//! The solid climbs the ladder in the documentation of `leafless::solid` one step at a time, and the example
+//! prints what each step gains. Run it with `cargo run --release --example metaball`.
 
 use leafless::lattice::Cube;
 use leafless::solid::{
@@ -201,8 +201,9 @@ impl OnFrame {
         }
     }
 
-    /// Whether the centre lies in the solid. What is within rounding of the boundary is decided as if it lay on
-    /// it: by the first axis along which the sum changes. (Which side it is really on, doubles cannot tell.)
+    /// Whether the centre lies in the solid. What is within rounding of the boundary is decided as if it lay
+    /// on it: by the first axis along which the sum changes. (Which side it is really on, doubles cannot
+    /// tell.)
     fn is_inside(&self, cell: Cell) -> bool {
         let mut sum = Interval::exactly(0.0);
         let mut outward = [Interval::exactly(0.0); 3];
@@ -220,7 +221,8 @@ impl OnFrame {
 
     /// A slab around the boundary, by the sum and its gradient at the cell's centre.
     ///
-    /// Let v be the way from a ball's centre to the cell's, and u that from there to any point of the cell. Then
+    /// Let v be the way from a ball's centre to the cell's, and u that from there to any point of the cell.
+    /// Then
     /// |v + u|² = v² + t with t = 2 v·u + u², and by 1 / (1 + s) = 1 − s + s² / (1 + s)
     ///
     /// 1 / |v + u|² = 1 / v² − 2 v·u / v⁴ − u² / v⁴ + t² / (v⁴ |v + u|²),
@@ -249,7 +251,8 @@ impl OnFrame {
             });
             value = value.plus(term).plus(Interval::new(-fall.upper, rise[0].max(rise[1]))?);
         }
-        // The slab has one direction. What that leaves of the normal's range goes into the offsets: no |xⱼ| exceeds 1.
+        // The slab has one direction. What that leaves of the normal's range goes into the offsets: no |xⱼ|
+        // exceeds 1.
         let direction = normal.map(|along| 0.5 * along.lower + 0.5 * along.upper);
         let blur = (0..3).fold(Interval::exactly(0.0), |sum, axis| {
             let rest = normal[axis].minus(Interval::exactly(direction[axis]));

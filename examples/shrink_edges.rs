@@ -18,7 +18,8 @@ const VIEW: [[f64; 3]; 2] = [[-0.6, 0.8, 0.0], [-0.32, -0.24, 0.9165]];
 
 fn main() -> Result<(), Error> {
     let control = Control::default();
-    // A block with a corner and an edge cut off. It is convex, so that no triangle hides another one that faces the eye.
+    // A block with a corner and an edge cut off. It is convex, so that no triangle hides another one that
+    // faces the eye.
     let frame = Frame::new([0.0; 3], 32.0, 5)?;
     let block = Csg::cuboid([3.0, 3.0, 3.0], [21.0, 19.0, 17.0])?;
     let cut = Csg::half_space([-1.0; 3], 49.0)?;

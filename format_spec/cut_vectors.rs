@@ -1,5 +1,5 @@
-//! Test vectors with cuts. The sections are put together here, number by number, and points are judged by exact
-//! arithmetic: neither comes from the library.
+//! Test vectors with cuts. The sections are put together here, number by number, and points are judged by
+//! exact arithmetic: neither comes from the library.
 
 use super::{
     APPLICATION, CERTIFIED, F32, F64, Field, List, Model, NEWER, Parts, RECORD, ScalarType, Section, U8, U16,
@@ -186,7 +186,8 @@ impl Surface {
         self
     }
 
-    /// Whether the function is positive at a point; `Err` if it is not known, or the point lies on the surface.
+    /// Whether the function is positive at a point; `Err` if it is not known, or the point lies on the
+    /// surface.
     fn side(&self, point: &[Q; 3]) -> Result<bool, ()> {
         let mut p = point.clone();
         for map in &self.maps {
@@ -451,7 +452,8 @@ impl Model {
     fn stored(&self, cuts: &Cuts) -> Stored {
         let (cells, first) = self.partial_cells();
         let mut all = Stored { first, ..Stored::default() };
-        // The surfaces of all tables in the order of their first use; then those of records first, and then group by group.
+        // The surfaces of all tables in the order of their first use; then those of records first, and then
+        // group by group.
         let mut met: Vec<usize> = vec![];
         let mut walk = VecDeque::from(cells.clone());
         while let Some(cell) = walk.pop_front() {
@@ -800,7 +802,8 @@ fn whole(depth: u8, cuts: Cuts) -> Model {
     Model::plain(depth, |_| Tag::Partial).exterior(Tag::Partial).cuts(cuts)
 }
 
-/// Two planes and a ball in a tree of depth 4: tables of one to three surfaces, splits, cells of which nothing is known.
+/// Two planes and a ball in a tree of depth 4: tables of one to three surfaces, splits, cells of which
+/// nothing is known.
 fn tables() -> Model {
     let shape = |cell: Cell| match cell.level {
         0 => Tag::Branch,
@@ -846,7 +849,8 @@ fn placed() -> Model {
     Model { frame: Frame::new([-4.0, -4.0, -1.0], 8.0, 5).expect("a frame"), ..whole(5, cuts) }
 }
 
-/// Slabs of two origins, and slabs without. The number of one is its place, and that of another no double at all.
+/// Slabs of two origins, and slabs without. The number of one is its place, and that of another no double at
+/// all.
 fn slabs() -> Model {
     let slab = Surface::slab;
     let surfaces = vec![
@@ -1457,7 +1461,8 @@ fn slabs_of_cells(list: &mut List) {
     let mut add = |rule, of: &str, about, error: String, model: &Model, change: &dyn Fn(&mut Parts)| {
         list.add(rule, of, about, error, changed(model, change));
     };
-    // The origins of the slabs are 1 1 3 3 3 0 0 5. Their cuts follow the one of the universe, which is split.
+    // The origins of the slabs are 1 1 3 3 3 0 0 5. Their cuts follow the one of the universe, which is
+    // split.
     assert!(stored.groups.iter().map(|&(_, end)| end).eq([2, 5, 7, 8]) && stored.heads.len() == 9);
     let word = |parts: &mut Parts, kind: u64, at: usize, value: u64| {
         put(&mut parts.section(kind).bytes, 8 * at, value, 8)

@@ -1,4 +1,5 @@
-//! Test vectors with tri-dexel models. The files are put together here, number by number, and not by the library.
+//! Test vectors with tri-dexel models. The files are put together here, number by number, and not by the
+//! library.
 
 use super::{
     APPLICATION, COUNT, F32, F64, HEADER, Invalid, KIND, LEVELS, List, METADATA, NEWER, NO_PARENT, OBJECTS,
@@ -72,7 +73,8 @@ pub struct Dexels {
     pub materials: bool,
     /// What else the file says.
     pub metadata: Metadata,
-    /// Of each direction the rays that are not empty, by their indices on the other two axes, the higher axis first.
+    /// Of each direction the rays that are not empty, by their indices on the other two axes, the higher axis
+    /// first.
     pub rays: [Option<BTreeMap<[u32; 2], Vec<Interval>>>; 3],
 }
 

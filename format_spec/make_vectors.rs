@@ -866,7 +866,8 @@ impl Valid {
     }
 }
 
-/// Elements and bricks, from the level table: the nodes of every second level, the finest of which are bricks.
+/// Elements and bricks, from the level table: the nodes of every second level, the finest of which are
+/// bricks.
 fn entries_of(depth: u8, levels: &[[u64; 3]]) -> (u64, u64) {
     let own = |level: usize| level == 0 || (level + depth as usize).is_multiple_of(2);
     let last = (depth as usize).saturating_sub(2);

@@ -1,12 +1,12 @@
-//! Installs the C interface: both headers, both libraries, the licences (those of the crates in the libraries, too), and files
-//! for CMake and pkg-config.
+//! Installs the C interface: both headers, both libraries, the licences (those of the crates in the
+//! libraries, too), and files for CMake and pkg-config.
 //!
 //! ```text
 //! cargo run --release -p leafless-capi -- --prefix /usr/local
 //! ```
 //!
-//! It is a program in Rust because whoever builds Leafless has Rust, on every platform. What it installs finds the
-//! prefix from its own place, so that the prefix can be moved.
+//! It is a program in Rust because whoever builds Leafless has Rust, on every platform. What it installs
+//! finds the prefix from its own place, so that the prefix can be moved.
 
 mod notices;
 
@@ -148,7 +148,8 @@ struct Target {
 }
 
 impl Target {
-    /// Makes a file at a place in the prefix. An older one is removed, not overwritten: programs may be using it.
+    /// Makes a file at a place in the prefix. An older one is removed, not overwritten: programs may be using
+    /// it.
     fn put(&self, place: &Path, make: impl FnOnce(&Path) -> std::io::Result<()>) -> Result<(), String> {
         let path = self.root.join(place);
         let folder = path.parent().expect("a file in the prefix");
@@ -194,8 +195,8 @@ fn build() -> Result<PathBuf, String> {
     status.success().then(|| folder.to_owned()).ok_or(format!("the libraries could not be built: {status}"))
 }
 
-/// The system's libraries that a program with the static library needs. They are those of Rust's standard library, because
-/// Leafless itself is linked to nothing else; so an empty library tells them at once.
+/// The system's libraries that a program with the static library needs. They are those of Rust's standard
+/// library, because Leafless itself is linked to nothing else; so an empty library tells them at once.
 fn native_libraries() -> Result<String, String> {
     let folder = env::temp_dir().join(format!("leafless-install-{}", std::process::id()));
     let told =

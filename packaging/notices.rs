@@ -1,5 +1,5 @@
-//! The licences of what the libraries are made of: every crate that is linked into them, as cargo tells it where they are
-//! built. Nothing is downloaded.
+//! The licences of what the libraries are made of: every crate that is linked into them, as cargo tells it
+//! where they are built. Nothing is downloaded.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -17,7 +17,8 @@ const STANDARD: &str = "share/doc/rust/COPYRIGHT-library.html";
 pub struct Notices {
     /// A list of all crates, and the texts of their licences.
     pub crates: String,
-    /// The notices of Rust's standard library; none if the toolchain came without them, which `crates` then says.
+    /// The notices of Rust's standard library; none if the toolchain came without them, which `crates` then
+    /// says.
     pub standard_library: Option<String>,
 }
 
@@ -98,7 +99,8 @@ fn folders() -> Result<BTreeMap<(String, String), PathBuf>, String> {
         ],
     )?;
     let mut folders = BTreeMap::new();
-    // One field is all that is needed of the JSON. In its strings a backslash stands before quotes and backslashes.
+    // One field is all that is needed of the JSON. In its strings a backslash stands before quotes and
+    // backslashes.
     for rest in metadata.split("\"manifest_path\":\"").skip(1) {
         let path = PathBuf::from(rest.split('"').next().unwrap_or_default().replace("\\\\", "\\"));
         let manifest = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;

@@ -19,14 +19,16 @@ pub struct Control<'a> {
     /// Refuse results of more than this many octree nodes with [`Error::Limit`]. (What is refined on demand
     /// stops there.)
     pub max_nodes: Option<u64>,
-    /// Refuse results whose working form is larger than this many bytes. Where the size is known beforehand, the refusal
-    /// is [`Error::TooLarge`] and nothing is done; where it is found out on the way, it is [`Error::Limit`]. (What is
-    /// refined on demand stops there.) When a result is put together, it takes as much again for a moment. Interference,
-    /// clearance, deviations, bounding boxes and areas of sections end with what they know, as with `max_splits` spent, before what they
-    /// remember of a solid's parts takes so much.
+    /// Refuse results whose working form is larger than this many bytes. Where the size is known beforehand,
+    /// the refusal is [`Error::TooLarge`] and nothing is done; where it is found out on the way, it is
+    /// [`Error::Limit`]. (What is refined on demand stops there.) When a result is put together, it takes as
+    /// much again for a moment. Interference, clearance, deviations, bounding boxes and areas of sections end
+    /// with what they know, as with `max_splits` spent, before what they remember of a solid's parts takes so
+    /// much.
     ///
-    /// A small solid may have a large result: a file of some hundred bytes holds a cell of depth 20, whose surface has
-    /// 2^43 triangles at the finest level. Set a limit where a solid or its depth is not your own choice.
+    /// A small solid may have a large result: a file of some hundred bytes holds a cell of depth 20, whose
+    /// surface has 2^43 triangles at the finest level. Set a limit where a solid or its depth is not your own
+    /// choice.
     pub max_bytes: Option<u64>,
     /// Split at most this many cells; `None` means no limit, or the one that the operation names. Only
     /// operations that split on demand heed it, and say so: with it spent they stop, and keep or return what
@@ -85,8 +87,8 @@ impl Control<'_> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
     }
 
-    /// Runs `work` where the functions of [`parallel`] use the threads that were asked for, if the work is `worth`
-    /// starting them; `work` is told whether there is more than one.
+    /// Runs `work` where the functions of [`parallel`] use the threads that were asked for, if the work is
+    /// `worth` starting them; `work` is told whether there is more than one.
     pub(crate) fn run<R: Send>(&self, worth: bool, work: impl FnOnce(bool) -> R + Send) -> R {
         if worth { parallel::run(self.threads, work) } else { work(false) }
     }

@@ -32,7 +32,8 @@ pub fn with_popcount<H: Hot>(hot: H) -> H::Output {
     hot.run()
 }
 
-/// As [`with_popcount`], with AVX2 besides where the processor has it: for loops over the coordinates of a point.
+/// As [`with_popcount`], with AVX2 besides where the processor has it: for loops over the coordinates of a
+/// point.
 #[inline(always)]
 pub fn with_vectors<H: Hot>(hot: H) -> H::Output {
     #[cfg(all(target_arch = "x86_64", feature = "std", not(target_feature = "avx2")))]

@@ -21,8 +21,8 @@ pub enum Error {
         /// What is wrong with it.
         problem: &'static str,
     },
-    /// Two operands do not lie on one lattice. A stored octree is known on the frame that it was made on and on
-    /// that frame with another depth.
+    /// Two operands do not lie on one lattice. A stored octree is known on the frame that it was made on and
+    /// on that frame with another depth.
     #[error(
         "different frames: origin {:?}, edge {}, depth {} and origin {:?}, edge {}, depth {}; give both the same \
          bounds and depth", origins[0], edges[0], depths[0], origins[1], edges[1], depths[1]
@@ -91,7 +91,8 @@ pub enum Error {
     TooLarge {
         /// What would take the memory, such as `"the triangles of the surface"`.
         what: &'static str,
-        /// The bytes that the result takes at least, with what is needed to make it; `u64::MAX` if it is more than that.
+        /// The bytes that the result takes at least, with what is needed to make it; `u64::MAX` if it is more
+        /// than that.
         needed: u64,
         /// The limit that the caller set, in bytes.
         limit: u64,
@@ -101,11 +102,10 @@ pub enum Error {
     /// Every allocation whose size depends on an input or a result is asked for in a way that can be refused,
     /// and this is the refusal. What remains is small, at most 2 KiB a piece: counted references, the numbers
     /// per level behind statistics, exact signs, what the standard library and `tempfile` need to handle a
-    /// path; what threads cost; polygons that are no fans, which another crate triangulates: about 320
-    /// bytes a corner are asked for, and given back, before it begins; and compressing, for which it is half a
-    /// megabyte. If even that cannot be had, the
-    /// process ends, as Rust programs do. (So it does where an allocator refuses to make a piece of memory
-    /// smaller, which none is known to.)
+    /// path; what threads cost; polygons that are no fans, which another crate triangulates: about 320 bytes
+    /// a corner are asked for, and given back, before it begins; and compressing, for which it is half a
+    /// megabyte. If even that cannot be had, the process ends, as Rust programs do. (So it does where an
+    /// allocator refuses to make a piece of memory smaller, which none is known to.)
     #[error("out of memory")]
     OutOfMemory,
     /// The caller asked to stop.
@@ -542,9 +542,9 @@ pub enum VolumeFileError {
         /// What should have stood there.
         expected: &'static str,
     },
-    /// The spacing, the origin or the directions of the samples are not such as a solid can have: a spacing of zero,
-    /// directions that lie in one plane up to 2^-40, or a magnitude that is not between 2^-256 and 2^256 (2^64 if the axes
-    /// are turned).
+    /// The spacing, the origin or the directions of the samples are not such as a solid can have: a spacing
+    /// of zero, directions that lie in one plane up to 2^-40, or a magnitude that is not between 2^-256 and
+    /// 2^256 (2^64 if the axes are turned).
     #[error(
         "the spacing, the origin or the directions of the samples are zero, out of range, or lie in one plane"
     )]
@@ -552,8 +552,8 @@ pub enum VolumeFileError {
     /// There are more or fewer bytes of samples than the header, or the caller, asks for.
     #[error("{expected} bytes of samples are expected, and there are {found}")]
     Length {
-        /// Bytes that are asked for, with those that are to be skipped. Of a text the fewest; of compressed samples what
-        /// they should become.
+        /// Bytes that are asked for, with those that are to be skipped. Of a text the fewest; of compressed
+        /// samples what they should become.
         expected: u64,
         /// Bytes that there are, as they are stored.
         found: u64,
@@ -768,7 +768,8 @@ pub enum Damage {
         /// Index of the block.
         block: u64,
     },
-    /// A cut is not legal: its table, its surfaces, or a split into cells that are too small. Or there are too few or too many.
+    /// A cut is not legal: its table, its surfaces, or a split into cells that are too small. Or there are
+    /// too few or too many.
     #[error("cut {record} is not legal")]
     CutRecord {
         /// Number of the cut, the number of all cuts if it is missing.

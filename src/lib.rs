@@ -31,8 +31,8 @@
 //!
 //! What the cells of an octree prove travels with it ([`Proof`]), through every operation and in its file.
 //!
-//! What everyone uses stands at the root; everything else is in the module of its topic. A name that ends with `_of` is
-//! about any number of operands.
+//! What everyone uses stands at the root; everything else is in the module of its topic. A name that ends
+//! with `_of` is about any number of operands.
 //!
 //! The modules from the bottom up; none uses one above it:
 //!
@@ -56,9 +56,9 @@
 //! | `exchange` | the files of other programs |
 //! | `scene` | the language of OpenSCAD's CSG dumps |
 //!
-//! Below them all lie `error`, `memory` (allocations that may be refused), `parallel` (work that threads share), `control`
-//! (limits, cancelling) and `dispatch` (run-time choice of instructions). The C interface and the program are packages of
-//! their own, `capi` and `cli`.
+//! Below them all lie `error`, `memory` (allocations that may be refused), `parallel` (work that threads
+//! share), `control` (limits, cancelling) and `dispatch` (run-time choice of instructions). The C interface
+//! and the program are packages of their own, `capi` and `cli`.
 //!
 //! Where is …
 //!

@@ -1,18 +1,19 @@
-//! Work that several threads share. Whatever takes more than one thread comes here, and nowhere else is it asked
-//! whether there may be more than one.
+//! Work that several threads share. Whatever takes more than one thread comes here, and nowhere else is it
+//! asked whether there may be more than one.
 //!
-//! The threads are those of a pool that stands as long as [`run`] takes. Tasks go to them through one function that
-//! knows nothing of what they are, so that the machinery which shares them out is compiled once and not for every kind
-//! of task. A task costs two locks that nobody else holds, some 50 ns: it should be worth ten times that.
+//! The threads are those of a pool that stands as long as [`run`] takes. Tasks go to them through one
+//! function that knows nothing of what they are, so that the machinery which shares them out is compiled once
+//! and not for every kind of task. A task costs two locks that nobody else holds, some 50 ns: it should be
+//! worth ten times that.
 
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Does `work` where the functions below use `threads` threads (0: as many as the machine has processors), and tells
-/// it whether there is more than one. Without the feature `parallel`, and where the system refuses to start threads,
-/// there is one.
+/// Does `work` where the functions below use `threads` threads (0: as many as the machine has processors),
+/// and tells it whether there is more than one. Without the feature `parallel`, and where the system refuses
+/// to start threads, there is one.
 pub(crate) fn run<R: Send>(threads: usize, work: impl FnOnce(bool) -> R + Send) -> R {
     #[cfg(not(feature = "parallel"))]
     let _ = threads;
@@ -86,8 +87,8 @@ pub(crate) fn both<A: Send, B: Send>(
     (one(), other())
 }
 
-/// Appends what `make` makes of each number. For items of a few instructions; `list` has room for them. `own` is made
-/// for every share of neighbours.
+/// Appends what `make` makes of each number. For items of a few instructions; `list` has room for them. `own`
+/// is made for every share of neighbours.
 pub(crate) fn extend<S, T: Send>(
     parallel: bool,
     list: &mut Vec<T>,
@@ -138,8 +139,8 @@ mod pool {
         if threads < 2 {
             return;
         }
-        // All are joined, and not only done with their work, as a scope alone sees to: no thread outlives the call,
-        // not even by what it tidies up at its end.
+        // All are joined, and not only done with their work, as a scope alone sees to: no thread outlives the
+        // call, not even by what it tidies up at its end.
         thread::scope(|scope| {
             let mut joinable = Vec::new();
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).spawn_handler(|thread| {

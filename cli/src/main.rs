@@ -1,12 +1,13 @@
 //! `leafless`: solids from mesh files to queries, on the command line.
 //!
-//! A subcommand (`commands`) holds its arguments, and says what it wants. A file of any kind becomes a solid on a frame in
-//! `source`; what is made of it is made in `making`; `report` knows what is told of it, and `sink` takes it to a file or to
-//! standard output. `show` puts pictures on the terminal. A folder uses only those below it: from the bottom up these are
-//! `source`, `report` and `sink`, `show` and `making`, and `commands`; no subcommand uses another.
+//! A subcommand (`commands`) holds its arguments, and says what it wants. A file of any kind becomes a solid
+//! on a frame in `source`; what is made of it is made in `making`; `report` knows what is told of it, and
+//! `sink` takes it to a file or to standard output. `show` puts pictures on the terminal. A folder uses only
+//! those below it: from the bottom up these are `source`, `report` and `sink`, `show` and `making`, and
+//! `commands`; no subcommand uses another.
 //!
-//! Every failure is one line on standard error that names the file; the exit code is 0 for success, 1 for failure, 2 for
-//! wrong usage. A signal ends the program at once (see `signals`).
+//! Every failure is one line on standard error that names the file; the exit code is 0 for success, 1 for
+//! failure, 2 for wrong usage. A signal ends the program at once (see `signals`).
 
 #![deny(unsafe_code)]
 
@@ -42,8 +43,8 @@ Try `leafless demo` first. A file named `-` is standard input or standard output
 Files are mapped, not loaded: let no other program rewrite one in place while it is read here. Long work \
 shows a bar at a terminal; elsewhere a line on standard error tells every five seconds, later every thirty, how far it is.")]
 struct Arguments {
-    /// Most memory to take, as 512M or 2G; what would take more is refused. Without it: what the machine has to spare,
-    /// and 16G at most
+    /// Most memory to take, as 512M or 2G; what would take more is refused. Without it: what the machine has
+    /// to spare, and 16G at most
     #[arg(long, global = true, value_name = "SIZE", value_parser = memory::size)]
     max_memory: Option<u64>,
     #[command(subcommand)]

@@ -37,8 +37,8 @@ pub fn allow(bytes: u64) {
     let _ = ALLOWED.set(bytes);
 }
 
-/// The bytes that the next result may take: half of what is allowed and not taken yet. A result exists twice for a moment,
-/// when it is put together, or written.
+/// The bytes that the next result may take: half of what is allowed and not taken yet. A result exists twice
+/// for a moment, when it is put together, or written.
 pub fn affordable() -> u64 {
     let left = match ALLOWED.get() {
         Some(allowed) => allowed.saturating_sub(taken()),

@@ -1,4 +1,5 @@
-//! Long work: a bar for whoever waits at a terminal, lines for a log, an end before memory runs out or when time is up.
+//! Long work: a bar for whoever waits at a terminal, lines for a log, an end before memory runs out or when
+//! time is up.
 
 use crate::failure::complain;
 use crate::memory;
@@ -21,8 +22,8 @@ const SLOW_PACE: Duration = Duration::from_secs(30);
 const STEPS: u64 = 1000;
 
 /// Runs `work` on so many threads (0: one a processor), with a progress bar called `label` once it has taken
-/// more than a second, if standard error is a terminal, and else with a line every few seconds. Work that would take more memory than is allowed ends with a
-/// sentence that says so.
+/// more than a second, if standard error is a terminal, and else with a line every few seconds. Work that
+/// would take more memory than is allowed ends with a sentence that says so.
 pub fn watched<R>(
     label: &'static str,
     threads: usize,
@@ -137,8 +138,8 @@ impl Drop for Told {
 /// Splits of the first attempt within a time.
 const FIRST_SPLITS: u64 = 1 << 10;
 
-/// Does work with four times as many splits each time, until it `is_done` or the time is over, and returns what the last attempt
-/// that came to its end found. Without a time it is done once.
+/// Does work with four times as many splits each time, until it `is_done` or the time is over, and returns
+/// what the last attempt that came to its end found. Without a time it is done once.
 pub fn within_time<R>(
     seconds: Option<f64>,
     control: &Control<'_>,

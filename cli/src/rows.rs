@@ -17,8 +17,9 @@ const CHUNK: usize = 1 << 18;
 /// No line with a few numbers is longer.
 const LONGEST_LINE: usize = 1 << 16;
 
-/// Reads questions from standard input to its end: numbers separated by blanks, tabs or commas. Empty lines and
-/// lines that begin with # are skipped. Whole lines are answered as soon as they are there, in bounded memory.
+/// Reads questions from standard input to its end: numbers separated by blanks, tabs or commas. Empty lines
+/// and lines that begin with # are skipped. Whole lines are answered as soon as they are there, in bounded
+/// memory.
 pub fn serve<const N: usize>(questions: &mut impl Questions<N>) -> Result<(), Failure> {
     let mut stdin = std::io::stdin().lock();
     let mut buffer = vec![0; CHUNK];

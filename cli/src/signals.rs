@@ -1,9 +1,9 @@
-//! Signals that end the program: it ends at once, wherever it waits, and leaves no temporary file and no terminal in another
-//! mode behind.
+//! Signals that end the program: it ends at once, wherever it waits, and leaves no temporary file and no
+//! terminal in another mode behind.
 //!
-//! A thread of its own waits for the signals, and no other thread ever receives one: no system call is interrupted, and
-//! none needs to be. What the signal must undo is undone by that thread. Then the process dies of the signal, as it would
-//! have without all this, so that a shell knows why it ended.
+//! A thread of its own waits for the signals, and no other thread ever receives one: no system call is
+//! interrupted, and none needs to be. What the signal must undo is undone by that thread. Then the process
+//! dies of the signal, as it would have without all this, so that a shell knows why it ended.
 
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
@@ -53,8 +53,8 @@ impl Drop for Change {
     }
 }
 
-/// Calls `write` with each piece of a text, and with `end` after the piece in which a signal comes. The program then ends.
-/// It does so without `end` if a piece takes longer than half a second.
+/// Calls `write` with each piece of a text, and with `end` after the piece in which a signal comes. The
+/// program then ends. It does so without `end` if a piece takes longer than half a second.
 pub fn write_whole<E>(text: &[u8], end: &[u8], write: impl Fn(&[u8]) -> Result<(), E>) -> Result<(), E> {
     /// Bytes of a piece: a slow line takes them in no time.
     const PIECE: usize = 1024;
@@ -73,7 +73,8 @@ pub fn write_whole<E>(text: &[u8], end: &[u8], write: impl Fn(&[u8]) -> Result<(
     Ok(())
 }
 
-/// Does what must be done before the program ends. After that no other thread can save a file or change a terminal.
+/// Does what must be done before the program ends. After that no other thread can save a file or change a
+/// terminal.
 #[cfg(any(unix, windows))]
 fn clean_up() {
     IS_ENDING.store(true, SeqCst);
@@ -98,7 +99,8 @@ pub fn watch() {
     set(SIGXFSZ, SigHandler::SigIgn);
     let mut ending = SigSet::empty();
     for signal in [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU] {
-        // A signal that is ignored stays so, as SIGHUP under `nohup`. (There is no way to ask without setting.)
+        // A signal that is ignored stays so, as SIGHUP under `nohup`. (There is no way to ask without
+        // setting.)
         if matches!(set(signal, SigHandler::SigDfl), Some(SigHandler::SigIgn)) {
             set(signal, SigHandler::SigIgn);
         } else {

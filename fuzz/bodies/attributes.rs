@@ -1,6 +1,6 @@
-//! Any bytes as an attribute, honest or not, in any place, and what is made of it: channels, summaries, regions, edits,
-//! what set operations carry along, voxel records. An honest attribute is known in unit cells, so that a dense array
-//! decides; one that lies about its ranges may hide details, and nothing else.
+//! Any bytes as an attribute, honest or not, in any place, and what is made of it: channels, summaries,
+//! regions, edits, what set operations carry along, voxel records. An honest attribute is known in unit
+//! cells, so that a dense array decides; one that lies about its ranges may hide details, and nothing else.
 
 use leafless::attribute::{
     Attribute, CarryRule, Channel, ChannelOperand, ChannelRef, Criterion, Detail, FillOptions,

@@ -7,8 +7,8 @@ use leafless::{Bounds, Control, Membership, Octree};
 /// Cells that are looked at in each channel.
 const CELLS: usize = 24;
 
-/// Asks all channels of `tree`. Whatever their bytes: answers are given within bounds and agree, and work on a
-/// whole channel ends or names damage. Of what is `verified` every result is well-formed and right.
+/// Asks all channels of `tree`. Whatever their bytes: answers are given within bounds and agree, and work on
+/// a whole channel ends or names damage. Of what is `verified` every result is well-formed and right.
 pub fn channels(tree: &Octree, verified: bool) {
     let names: Vec<&str> = tree.channels().iter().map(|channel| channel.name()).collect();
     assert!(names.len() <= 256 && names.is_sorted_by(|a, b| a < b), "{names:?}");

@@ -1,5 +1,6 @@
-//! Any bytes as two solids on small whole numbers that touch, or nearly do, and as what is asked about them: no answer contradicts
-//! another one, points that surely lie in both, or a distance that is known in whole numbers.
+//! Any bytes as two solids on small whole numbers that touch, or nearly do, and as what is asked about them:
+//! no answer contradicts another one, points that surely lie in both, or a distance that is known in whole
+//! numbers.
 
 use leafless::query::{GapVerdict, Overlap, gap_at_least};
 use leafless::{
@@ -115,7 +116,8 @@ impl Figure {
         }
     }
 
-    /// Whether the interiors have no point in common, if whole numbers tell, and how far balls are apart. The second is moved along x.
+    /// Whether the interiors have no point in common, if whole numbers tell, and how far balls are apart. The
+    /// second is moved along x.
     fn apart(&self, other: &Figure, shift: f64) -> Option<(bool, Option<f64>)> {
         match (*self, *other) {
             (Figure::Ball(a, r), Figure::Ball(b, s)) => {
@@ -176,7 +178,8 @@ impl Solid {
         !near && !self.figure.holds(at) && self.is_clear(at)
     }
 
-    /// Whether a point is surely outside of the figure, which is convex: some of its points are far from it on the other side.
+    /// Whether a point is surely outside of the figure, which is convex: some of its points are far from it
+    /// on the other side.
     fn is_clear(&self, at: [f64; 3]) -> bool {
         match self.figure {
             Figure::Ball(centre, radius) => {

@@ -29,7 +29,8 @@ fn share(c: i32, low: f64, high: f64) -> f64 {
     ((start + 1.0).min(high) - start.max(low)).max(0.0)
 }
 
-/// The cells whose interiors meet an interval along an axis; cells beyond the world stand for the space around it.
+/// The cells whose interiors meet an interval along an axis; cells beyond the world stand for the space
+/// around it.
 fn met(low: f64, high: f64) -> std::ops::Range<i32> {
     let first = (low.clamp(-100.0, 100.0).floor() as i32 - LOW).max(-1);
     let end = (high.clamp(-100.0, 100.0).ceil() as i32 - LOW).min(N + 1);
@@ -75,7 +76,8 @@ impl Dense {
         self.joined(self, |a, _| !a)
     }
 
-    /// The image under `x ↦ from[axis] of x, mirrored, then moved`. `None` if something would leave the world.
+    /// The image under `x ↦ from[axis] of x, mirrored, then moved`. `None` if something would leave the
+    /// world.
     pub fn moved(&self, axes: [usize; 3], mirrored: [bool; 3], by: [i32; 3]) -> Option<Dense> {
         let mut moved = Dense { outside: self.outside, bits: vec![self.outside; self.bits.len()] };
         for at in cells().filter(|&at| self.has(at) != self.outside) {
@@ -107,7 +109,8 @@ impl Dense {
         self.parts(min, max).map(|(volume, _)| volume).sum()
     }
 
-    /// Whether the interiors of the solid and of a box have points in common, and whether the box lies in the solid.
+    /// Whether the interiors of the solid and of a box have points in common, and whether the box lies in the
+    /// solid.
     pub fn in_box(&self, min: [f64; 3], max: [f64; 3]) -> (bool, bool) {
         let mut found = (false, true);
         for at in cells_in(min, max) {
@@ -168,7 +171,8 @@ impl Dense {
 
     /// The square of the least distance between two solids; infinite if one is empty.
     pub fn distance_to(&self, other: &Dense) -> f64 {
-        // Of each cell, axis by axis: the squared distance from the other solid. A gap is one less than the steps.
+        // Of each cell, axis by axis: the squared distance from the other solid. A gap is one less than the
+        // steps.
         let mut squares: Vec<i32> = other.bits.iter().map(|&bit| if bit { 0 } else { FAR }).collect();
         for axis in 0..3 {
             let stride = N.pow(axis as u32) as usize;
@@ -194,8 +198,8 @@ impl Dense {
         }
     }
 
-    /// The square of a point's distance from the solid; infinite if that is empty. The space around the world is as its
-    /// outermost cells are.
+    /// The square of a point's distance from the solid; infinite if that is empty. The space around the world
+    /// is as its outermost cells are.
     pub fn distance_from(&self, point: [f64; 3]) -> f64 {
         let away = |at: [i32; 3]| -> f64 {
             let gap = |axis: usize| {
@@ -225,7 +229,8 @@ impl Dense {
         found
     }
 
-    /// The faces of the boundary, as triangles seen counter-clockwise from outside. Only of a solid that ends.
+    /// The faces of the boundary, as triangles seen counter-clockwise from outside. Only of a solid that
+    /// ends.
     pub fn triangles(&self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         for at in cells().filter(|&at| self.has(at)) {

@@ -1,5 +1,5 @@
-//! Any bytes as tri-dexel models, and as triangles: the laws of sets, changes in place, closed surfaces, and the same samples
-//! along all three axes.
+//! Any bytes as tri-dexel models, and as triangles: the laws of sets, changes in place, closed surfaces, and
+//! the same samples along all three axes.
 
 use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals};
 use leafless::op::{DexelOptions, octree_from_dexels};

@@ -13,8 +13,8 @@ fn outcome<T>(result: &Result<T, Error>) -> Result<(), String> {
     result.as_ref().map(|_| ()).map_err(|error| error.cause().to_string())
 }
 
-/// Reads `data` in every way, also by those that need a file if `as_a_file`; whether it is verified as a good tri-dexel
-/// model.
+/// Reads `data` in every way, also by those that need a file if `as_a_file`; whether it is verified as a good
+/// tri-dexel model.
 pub fn dexels_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     let aligned = Aligned::new(data);
     // SAFETY: the model and all that is read from it are gone before the bytes are.
@@ -24,7 +24,8 @@ pub fn dexels_in_all_ways(data: &[u8], as_a_file: bool) -> bool {
     let copied = dexels::from_bytes(bytes);
     let still = dexels::from_static(bytes);
     let verified = outcome(&copied);
-    // Each way in demands what the one before it does, and then more. (What is no text is found behind checksums, too.)
+    // Each way in demands what the one before it does, and then more. (What is no text is found behind
+    // checksums, too.)
     assert!(
         viewed.is_ok()
             || still.is_err() && outcome(&still) == outcome(&viewed) && verified == outcome(&viewed)

@@ -1,6 +1,6 @@
-//! Any bytes as a small mesh, closed or with holes, moved or not, and as rays and points: what is answered without cells must be true by
-//! winding numbers that a look at each triangle tells, in whole numbers or (with holes) by solid angles, and by distances from each
-//! triangle in doubles.
+//! Any bytes as a small mesh, closed or with holes, moved or not, and as rays and points: what is answered
+//! without cells must be true by winding numbers that a look at each triangle tells, in whole numbers or
+//! (with holes) by solid angles, and by distances from each triangle in doubles.
 
 use leafless::query::{DistanceTo, Obstacle, distances, line_of_sight, ray_spans};
 use leafless::query::{RaySpans, Sight};
@@ -237,8 +237,8 @@ impl Scene {
         Some(winding)
     }
 
-    /// Whether the solid holds a point; nothing on the surface of the mesh, or with holes near to it, or to where the winding number
-    /// is one half.
+    /// Whether the solid holds a point; nothing on the surface of the mesh, or with holes near to it, or to
+    /// where the winding number is one half.
     fn holds(&self, place: &Place) -> Option<bool> {
         if self.is_open {
             let excess = self.excess(place.near);
@@ -248,7 +248,8 @@ impl Scene {
         self.winding(place).map(|winding| encloses(self.fill, winding))
     }
 
-    /// By how much the sum of solid angles (van Oosterom and Strackee 1983) exceeds what the fill rule asks for.
+    /// By how much the sum of solid angles (van Oosterom and Strackee 1983) exceeds what the fill rule asks
+    /// for.
     fn excess(&self, p: Point) -> f64 {
         let angle = |facet: &Facet| {
             let [a, b, c] = facet.map(|corner| minus(corner, p));
@@ -269,7 +270,8 @@ impl Scene {
         self.moved.iter().any(|facet| from_triangle(*facet, p) <= distance)
     }
 
-    /// Whether a point lies near to the plane of a facet: at a small angle times are known less well than places.
+    /// Whether a point lies near to the plane of a facet: at a small angle times are known less well than
+    /// places.
     fn is_near_to_a_plane(&self, p: Point, distance: f64) -> bool {
         self.moved.iter().any(|facet| {
             let [a, b, c, p] = [facet[0], facet[1], facet[2], p].map(|p| p.map(|c| c / self.size));
@@ -278,7 +280,8 @@ impl Scene {
         })
     }
 
-    /// Whether a facet is so narrow that doubles do not tell its plane: any plane through its longest edge may stand for it.
+    /// Whether a facet is so narrow that doubles do not tell its plane: any plane through its longest edge
+    /// may stand for it.
     fn has_a_needle(&self) -> bool {
         self.moved.iter().any(|facet| {
             let [a, b, c] = facet.map(|p| p.map(|c| c / self.size));
@@ -560,8 +563,9 @@ pub fn direct(data: &[u8]) {
 
 // ---- stored --------------------------------------------------------------------------------------------------
 
-/// What another fuzz target does: the same meshes, stored with the planes of their facets, alone and less a block. No point is told
-/// wrong, and none is left undecided far from the surface, unless its cell was given up.
+/// What another fuzz target does: the same meshes, stored with the planes of their facets, alone and less a
+/// block. No point is told wrong, and none is left undecided far from the surface, unless its cell was given
+/// up.
 pub fn layers(data: &[u8]) {
     let mut bytes = Bytes(data);
     let bytes = &mut bytes;
@@ -612,7 +616,8 @@ pub fn layers(data: &[u8]) {
                 let all =
                     scene.moved.iter().map(|facet| from_triangle(*facet, p)).fold(f64::INFINITY, f64::min);
                 let is_far = all > 2.0 * tolerance + 1e-9 * (scene.size + place.size);
-                // (A facet without thickness, whose plane goes on beyond it, may be taken for a body. Planes are up to 2^-22 wide.)
+                // (A facet without thickness, whose plane goes on beyond it, may be taken for a body. Planes
+                // are up to 2^-22 wide.)
                 let is_beside =
                     || scene.is_near_to_a_plane(p, 1e-6 * (scene.size + place.size)) || scene.has_a_needle();
                 assert!(!is_known || !is_far || is_beside(), "undecided {all} from the surface: {}", told());
@@ -717,7 +722,8 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
     }
     match (upper, outer.first()) {
         (Some(hit), Some(span)) => assert!(span.lower <= hit.t.upper, "{told}"),
-        // (Of a ray along a facet one may prove that it meets nothing, and the other not. Nothing is missed, see above.)
+        // (Of a ray along a facet one may prove that it meets nothing, and the other not. Nothing is missed,
+        // see above.)
         (None, _) => {}
         (Some(_), None) => panic!("{told}"),
     }
@@ -756,8 +762,8 @@ fn ask_ray(bytes: &mut Bytes<'_>, scene: &Scene, corners: &Corners) {
             let is_clear = !scene.is_near(near, 1e-9 * (scene.size + length(from) + length(end)));
             if is_clear && scene.is_in_universe(&place) == Some(true) && scene.holds(&place) == Some(true) {
                 assert_ne!(sight, Sight::Clear, "{near:?} {told}");
-                // (Of a moved mesh nothing is known of a ray that comes near to an edge, and of one with holes nothing of a ray that comes
-                // near to its rim; then the cells are asked.)
+                // (Of a moved mesh nothing is known of a ray that comes near to an edge, and of one with
+                // holes nothing of a ray that comes near to its rim; then the cells are asked.)
                 let is_told = scene.motion.is_none() && !scene.is_open;
                 assert!(sight == Sight::Blocked || !is_told, "{near:?} {told}");
             }

@@ -189,7 +189,8 @@ pub struct Repairs {
     pub dictionary: bool,
     /// The level table.
     pub levels: bool,
-    /// Cuts: as many as there are PARTIAL cells and splits, what is counted before them, and which surfaces they have.
+    /// Cuts: as many as there are PARTIAL cells and splits, what is counted before them, and which surfaces
+    /// they have.
     pub cuts: bool,
     /// The order of the table, and elements and counts, in the entries and in the header.
     pub counts: bool,
@@ -321,7 +322,8 @@ impl Kept {
         id
     }
 
-    /// What surfaces are called when those are gone that are not used; the slabs of cells, mended, and their groups.
+    /// What surfaces are called when those are gone that are not used; the slabs of cells, mended, and their
+    /// groups.
     fn finish(&self, depth: usize) -> (Vec<usize>, Vec<u8>, Vec<u8>) {
         let (mut names, mut slabs, mut groups) = (vec![0; self.all()], vec![], vec![]);
         let records = self.groups[0].end;
@@ -623,7 +625,8 @@ impl File {
         number(&self.header, 10, 2) >= 4 && self.bytes(CUT_HEADS) != [0u8; 0]
     }
 
-    /// The PARTIAL cells' levels in the order of their cuts, and how many there are before each element and brick.
+    /// The PARTIAL cells' levels in the order of their cuts, and how many there are before each element and
+    /// brick.
     fn partial_cells(&self, depth: usize) -> (Vec<usize>, Vec<u32>) {
         let (mut cells, mut first) = (vec![], vec![]);
         match self.header[65] {

@@ -1,5 +1,6 @@
-//! Any bytes as a container, obstacles and items, some of which stand somewhere: no verdict of a check contradicts points of the solids,
-//! what a search places is proven once more, and the number of threads changes nothing.
+//! Any bytes as a container, obstacles and items, some of which stand somewhere: no verdict of a check
+//! contradicts points of the solids, what a search places is proven once more, and the number of threads
+//! changes nothing.
 
 use leafless::layout::{Bay, Direction, Item, Layout, Objective, Orientations, Placed, SearchOptions};
 use leafless::query::GapVerdict;

@@ -1,5 +1,5 @@
-//! Measures of trees, whatever their bytes: no panic, bounded work, intervals that are some. In a sound tree they hold
-//! what a count of its cells says.
+//! Measures of trees, whatever their bytes: no panic, bounded work, intervals that are some. In a sound tree
+//! they hold what a count of its cells says.
 
 use super::CONTROL;
 use leafless::octree::CellFilter;

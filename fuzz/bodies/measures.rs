@@ -1,5 +1,6 @@
-//! Any bytes as solids of unit cells, made in all the ways in which solids are made, and as questions about them under
-//! changing budgets: whatever is answered must be true of the cells, counted in whole numbers (`dense.rs`).
+//! Any bytes as solids of unit cells, made in all the ways in which solids are made, and as questions about
+//! them under changing budgets: whatever is answered must be true of the cells, counted in whole numbers
+//! (`dense.rs`).
 
 mod dense;
 mod measures_ask;
@@ -77,8 +78,8 @@ pub fn measures(data: &[u8]) {
     }
 }
 
-/// A universe: in whole, half and quarter coordinates, with cells that are coarser, finer and as large as the unit
-/// cells; some cut the world off.
+/// A universe: in whole, half and quarter coordinates, with cells that are coarser, finer and as large as the
+/// unit cells; some cut the world off.
 fn frame(code: usize) -> Frame {
     let (origin, edge, depth) = match code % 12 {
         0 | 1 => ([0.0; 3], 16.0, 4),
@@ -354,7 +355,8 @@ fn as_records(frame: &Frame, scene: &Scene) -> Option<AnySolid> {
     Some(AnySolid::new(octree))
 }
 
-/// The boundary as a mesh, with as many triangles as there are halves of faces; its edges may be of four of them.
+/// The boundary as a mesh, with as many triangles as there are halves of faces; its edges may be of four of
+/// them.
 fn as_a_mesh(truth: &Dense) -> Option<AnySolid> {
     if truth.outside {
         return None;

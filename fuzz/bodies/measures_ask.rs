@@ -1,4 +1,5 @@
-//! The questions of the target `measures`. Each is asked under some budget; the answer must hold for the unit cells.
+//! The questions of the target `measures`. Each is asked under some budget; the answer must hold for the unit
+//! cells.
 
 use super::dense::Dense;
 use super::{Bytes, Scene, control, corners, doubles, universe};
@@ -47,7 +48,8 @@ struct Asked<'a> {
     threads: bool,
 }
 
-/// A ray, and its pieces between places where it changes cells: from, to, and whether the piece is in the solid.
+/// A ray, and its pieces between places where it changes cells: from, to, and whether the piece is in the
+/// solid.
 struct Known {
     from: [f64; 3],
     direction: [f64; 3],
@@ -307,8 +309,8 @@ impl Asked<'_> {
         assert!(found.upper_least <= within, "{found:?}, {within}");
     }
 
-    /// Rays whose direction is of small whole numbers, from points that are on no edge; the places where they change
-    /// cells, and whether they are in the solid between these.
+    /// Rays whose direction is of small whole numbers, from points that are on no edge; the places where they
+    /// change cells, and whether they are in the solid between these.
     fn some_ray(&self, bytes: &mut Bytes<'_>) -> Option<Known> {
         let from = [0.125, 0.375, 0.6875].map(|part| bytes.below(20) as f64 - 2.0 + part);
         let direction = [0; 3].map(|_: i32| bytes.below(5) as f64 - 2.0);

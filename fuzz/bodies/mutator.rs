@@ -308,7 +308,8 @@ fn change_double(file: &mut File, kind: u32, random: &mut Random) {
 /// Changes something about cuts; adds some where there are none, or takes them away.
 fn change_cuts(file: &mut File, random: &mut Random) {
     if file.section(CUT_HEADS).is_none() {
-        // A plane, a quadric and a slab, and slabs of cells of two origins. How many cuts there must be is repaired.
+        // A plane, a quadric and a slab, and slabs of cells of two origins. How many cuts there must be is
+        // repaired.
         put(&mut file.header, 10, 4, 2);
         file.header[67] = if random.one_in(8) { file.header[67] } else { 2 };
         let surfaces = [[0, 0o1111, 0, 0], [1, 0o1_001_000_111, 4, 0], [4, 0o11111, 9, 0]];

@@ -88,8 +88,9 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
     let mut exact = vec![Membership::Inside; points.len()];
     contains(&solid, &frame, points, &mut exact, &CONTROL).expect("it is a solid");
-    // Slabs of a solid are wider by what is rounded on its universe, which may be far larger than they are. Of a tree that is not
-    // verified, such as one whose octants should be one PARTIAL universe, the solid may know less.
+    // Slabs of a solid are wider by what is rounded on its universe, which may be far larger than they are.
+    // Of a tree that is not verified, such as one whose octants should be one PARTIAL universe, the solid may
+    // know less.
     let surfaces = tree.cuts().map_or(0, |cuts| cuts.surfaces as u32);
     let has_slabs =
         (0..surfaces).any(|id| tree.surface(id).is_none_or(|surface| surface.kind() == SurfaceKind::Slab));
@@ -171,8 +172,8 @@ fn ask_cuts(tree: &OctreeRef<'_>, points: &[[f64; 3]], verified: bool) {
     }
 }
 
-/// Rays in a tree with cuts end. In one that is known to be a solid, the cells and surfaces that are asked in place
-/// never contradict the solid.
+/// Rays in a tree with cuts end. In one that is known to be a solid, the cells and surfaces that are asked in
+/// place never contradict the solid.
 fn ask_cut_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]], is_solid: bool) {
     let rays: Vec<Ray> =
         points.windows(2).take(12).filter_map(|pair| Ray::between(pair[0], pair[1]).ok()).collect();
@@ -213,7 +214,8 @@ fn ask_cut_rays(tree: &OctreeRef<'_>, points: &[[f64; 3]], is_solid: bool) {
     }
 }
 
-/// Small pictures of the surface, of a slice and of the voxels, from anywhere. Where a surface is seen, a ray meets it.
+/// Small pictures of the surface, of a slice and of the voxels, from anywhere. Where a surface is seen, a ray
+/// meets it.
 fn ask_pictures(tree: &OctreeRef<'_>, points: &[[f64; 3]]) {
     let [Some(eye), Some(at)] = [points.first(), points.get(1)] else { return };
     let edge = tree.frame().edge();

@@ -1,5 +1,5 @@
-//! Any bytes as the arrays of voxel records: what is refused is wrong, and of what is taken every answer is that of a
-//! search through all records.
+//! Any bytes as the arrays of voxel records: what is refused is wrong, and of what is taken every answer is
+//! that of a search through all records.
 
 use leafless::lattice::MAX_DEPTH;
 use leafless::voxel::{

@@ -61,7 +61,8 @@ fn in_shards(a: &OctreeRef<'_>, sure: bool) {
     if sure && a.cuts().is_none() {
         assert!(join(&[*a], &BUDGET).is_ok_and(|same| same == joined));
     } else if sure && let Some((.., again)) = cut_and_joined(joined.view(), sure) {
-        // (A file may hold functions that say more than they need to. Of what was joined once nothing changes.)
+        // (A file may hold functions that say more than they need to. Of what was joined once nothing
+        // changes.)
         assert!(again == joined);
     }
     let is_split =
@@ -108,7 +109,8 @@ fn with_surfaces(a: &OctreeRef<'_>, b: &OctreeRef<'_>, sure: bool) {
     let inverse = sharp(complement(a, &BUDGET), sure);
     let same = sharp(union(a, a, &BUDGET), sure);
     if let (true, Some(inverse), Some(same)) = (sure, inverse, same) {
-        // (A file may hold functions that say more than they need to, in more cells than they need. Of results nothing does.)
+        // (A file may hold functions that say more than they need to, in more cells than they need. Of
+        // results nothing does.)
         let back = not(&inverse);
         let twice = back.as_ref().and_then(|back| not(&not(back)?));
         assert!(twice.is_none() || twice == back);

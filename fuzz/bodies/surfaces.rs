@@ -1,5 +1,5 @@
-//! Any bytes as a solid, and as what its surface is asked for: meshes are closed and manifold, and what is proven of their distance from
-//! the solid contradicts neither points of the mesh nor rays.
+//! Any bytes as a solid, and as what its surface is asked for: meshes are closed and manifold, and what is
+//! proven of their distance from the solid contradicts neither points of the mesh nor rays.
 
 use leafless::exchange::{MeshOptions, read_mesh};
 use leafless::query::{DistanceTo, Obstacle, distances};
@@ -83,7 +83,8 @@ fn expression(bytes: &mut Bytes<'_>) -> Csg {
     solid.placed(&Affine::new(rows).expect("a good map")).expect("it can be moved")
 }
 
-/// Each edge has two triangles in opposite directions, and the triangles around each vertex are one fan, if that is asked for.
+/// Each edge has two triangles in opposite directions, and the triangles around each vertex are one fan, if
+/// that is asked for.
 fn check_closed(mesh: &TriangleMesh, has_fans: bool) {
     let mut next: HashMap<(u32, u32), u32> = HashMap::new();
     let mut fans: HashMap<u32, (u32, u32)> = HashMap::new();
@@ -114,7 +115,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// How far a point is from a triangle, by the regions of its corners and sides (Ericson, *Real-time collision detection*, 2005, 5.1.5).
+/// How far a point is from a triangle, by the regions of its corners and sides (Ericson, *Real-time collision
+/// detection*, 2005, 5.1.5).
 fn away(point: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
     let toward = |from: [f64; 3], to: [f64; 3]| {
         let side = minus(to, from);

@@ -1,4 +1,5 @@
-//! Any bytes as a container and items: what is placed is proven, and no verdict contradicts points of the solids.
+//! Any bytes as a container and items: what is placed is proven, and no verdict contradicts points of the
+//! solids.
 #![no_main]
 
 #[path = "../bodies/layouts.rs"]

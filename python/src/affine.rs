@@ -8,10 +8,12 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyTuple};
 
-/// A map of space that moves, turns or stretches: a `matrix` of 3×4 or 4×4 numbers, which are taken as they are.
+/// A map of space that moves, turns or stretches: a `matrix` of 3×4 or 4×4 numbers, which are taken as they
+/// are.
 ///
-/// `map @ solid` is the solid moved by it, and `first @ second` the map that does what `second` does, and then `first`. Where a
-/// placement is asked for, any matrix of NumPy will do. `numpy.asarray` makes the 4×4 matrix of a map.
+/// `map @ solid` is the solid moved by it, and `first @ second` the map that does what `second` does, and
+/// then `first`. Where a placement is asked for, any matrix of NumPy will do. `numpy.asarray` makes the 4×4
+/// matrix of a map.
 ///
 /// >>> turned = Affine.translation([10, 0, 0]) @ Affine.rotation([0, 0, 1], 90)
 /// >>> turned([1, 0, 0])
@@ -51,8 +53,8 @@ impl Affine {
         found.or_raise(offset.py()).map(Affine)
     }
 
-    /// Turns by an angle, `degrees`, around an `axis` through the origin, or through the point `about`: counter-clockwise as seen
-    /// from where the axis points to. The axis may have any length but 0.
+    /// Turns by an angle, `degrees`, around an `axis` through the origin, or through the point `about`:
+    /// counter-clockwise as seen from where the axis points to. The axis may have any length but 0.
     #[staticmethod]
     #[pyo3(signature = (axis, degrees, about=None))]
     fn rotation(

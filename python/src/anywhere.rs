@@ -3,8 +3,8 @@
 use leafless::solid::{AnyClassifier, Fingerprint, Motion, Transform};
 use leafless::{Affine, AnySolid, Bounds, Control, Error, Frame, Solid, TriangleMesh};
 
-/// A solid that has a frame of its own. On another universe its cells are looked up: by whole cells where that is the own one
-/// doubled, else they blur by about one.
+/// A solid that has a frame of its own. On another universe its cells are looked up: by whole cells where
+/// that is the own one doubled, else they blur by about one.
 #[derive(Clone)]
 pub struct Anywhere(AnySolid);
 

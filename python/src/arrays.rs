@@ -18,8 +18,8 @@ pub struct Rows<'py> {
 }
 
 impl<'py> Rows<'py> {
-    /// Takes rows of shape (n, 3), or one of shape (3,). An array of doubles that lies in memory row after row is not copied,
-    /// and must not be changed by another thread as long as the call takes.
+    /// Takes rows of shape (n, 3), or one of shape (3,). An array of doubles that lies in memory row after
+    /// row is not copied, and must not be changed by another thread as long as the call takes.
     pub fn of(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Rows<'py>> {
         if given.get_type().is(&from_package!(given.py(), "numpy", "ndarray")?)
             && let Ok(array) = given.cast::<PyArray2<f64>>()
@@ -59,7 +59,8 @@ pub fn doubles<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py
     required(given, "float64", name)
 }
 
-/// An array of one type that lies in memory row after row, copied if need be; refused if it holds other things than such numbers.
+/// An array of one type that lies in memory row after row, copied if need be; refused if it holds other
+/// things than such numbers.
 pub fn required<'py, T: Element>(
     given: &Bound<'py, PyAny>,
     kind: &str,
@@ -126,7 +127,8 @@ pub fn rows<'py, T: Element, const N: usize>(
     array(py, list.into_flattened(), &[count, N])
 }
 
-/// An array that can be read and not written, of memory that an object of Python keeps alive and never changes.
+/// An array that can be read and not written, of memory that an object of Python keeps alive and never
+/// changes.
 pub fn shown<'py, T: Element, D: Dimension>(
     owner: &Bound<'py, PyAny>,
     memory: &[T],
@@ -136,7 +138,8 @@ pub fn shown<'py, T: Element, D: Dimension>(
     let Ok(view) = ArrayView::from_shape(shape, memory) else {
         return Err(refused(py, "shape", "does not fit the memory"));
     };
-    // SAFETY: the array holds a reference to the owner, which keeps the memory where it is for as long as it lives.
+    // SAFETY: the array holds a reference to the owner, which keeps the memory where it is for as long as it
+    // lives.
     let array = unsafe { PyArray::borrow_from_array(&view, owner.clone()) };
     let readonly = PyDict::new(py);
     readonly.set_item("write", false)?;

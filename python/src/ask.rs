@@ -49,8 +49,8 @@ impl Wish {
         self.given(py)?.ok_or_else(|| refused(py, "frame", "must be given without a solid"))
     }
 
-    /// The frame to ask a solid on: the wished one, that of an octree or of a volume's voxels, or one around the solid, which is
-    /// `deepest` deep where nothing limits the depth.
+    /// The frame to ask a solid on: the wished one, that of an octree or of a volume's voxels, or one around
+    /// the solid, which is `deepest` deep where nothing limits the depth.
     pub fn of(&self, py: Python<'_>, solid: &Given, deepest: u8) -> PyResult<Inner> {
         if let Some(frame) = self.given(py)? {
             return Ok(frame);
@@ -68,8 +68,8 @@ impl Wish {
         }
     }
 
-    /// The frame to ask two solids on, the second under placements: of one of them its own, as often doubled as it takes, or one
-    /// around both.
+    /// The frame to ask two solids on, the second under placements: of one of them its own, as often doubled
+    /// as it takes, or one around both.
     pub fn of_both(
         &self,
         py: Python<'_>,

@@ -20,7 +20,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Values inside of a solid (a temperature, a colour, a material), in a tree of its own, where equal neighbours share one value.
+/// Values inside of a solid (a temperature, a colour, a material), in a tree of its own, where equal
+/// neighbours share one value.
 ///
 /// >>> part = build(Csg.cuboid([0, 0, 0], [8, 8, 8]), Frame([0, 0, 0], 8, 3))
 /// >>> heat = Channel.fill(lambda points: 20 + 3 * points[:, 2], part)
@@ -83,16 +84,20 @@ fn read(found: &Bound<'_, PyAny>, count: usize) -> PyResult<(Vec<f64>, usize)> {
 
 #[pymethods]
 impl Channel {
-    /// A channel of `values`: those of a function, those of a `Volume`, or one value everywhere (1 to 4 numbers).
+    /// A channel of `values`: those of a function, those of a `Volume`, or one value everywhere (1 to 4
+    /// numbers).
     ///
-    /// A function gets points (shape (n, 3)) and returns values of shape (n,) or (n, components), NaN where there is none. It is
-    /// asked at the lower corner of the frame, for the number of components, and at the centres of cells that belong to the solid.
+    /// A function gets points (shape (n, 3)) and returns values of shape (n,) or (n, components), NaN where
+    /// there is none. It is asked at the lower corner of the frame, for the number of components, and at the
+    /// centres of cells that belong to the solid.
     ///
-    /// A `Volume` has values between its samples. With `nearest=True` they are the nearest samples themselves, as labels must be.
+    /// A `Volume` has values between its samples. With `nearest=True` they are the nearest samples
+    /// themselves, as labels must be.
     ///
-    /// `solid` is the octree inside of which there are values. `frame` is a `Frame`, or an octree that has it; by default it is the solid's,
-    /// and without a solid it must be given. `depth` replaces its depth. `cell` (model units) ends cells at that edge, whatever the values.
-    /// `dtype` is what numbers are stored as: "uint8", "uint16", "uint32" or "float32".
+    /// `solid` is the octree inside of which there are values. `frame` is a `Frame`, or an octree that has
+    /// it; by default it is the solid's, and without a solid it must be given. `depth` replaces its depth.
+    /// `cell` (model units) ends cells at that edge, whatever the values. `dtype` is what numbers are stored
+    /// as: "uint8", "uint16", "uint32" or "float32".
     #[staticmethod]
     #[pyo3(signature = (values, solid=None, *, frame=None, depth=None, cell=None, dtype="float32", nearest=false, **limits))]
     #[allow(clippy::too_many_arguments)]
@@ -183,7 +188,8 @@ impl Channel {
         self.0.bytes()
     }
 
-    /// The values at `points` (shape (n, 3)): shape (n,), or (n, components) for several; NaN where there is none.
+    /// The values at `points` (shape (n, 3)): shape (n,), or (n, components) for several; NaN where there is
+    /// none.
     fn values_at<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = points.py();
         let rows = arrays::Rows::of(points, "points")?;
@@ -202,8 +208,9 @@ impl Channel {
         arrays::one_or_all(arrays::array(py, numbers, &shape)?.into_any(), rows.is_one)
     }
 
-    /// Least, greatest, mean and integral of the values inside of `solid` (an octree), or inside of `bounds` (a lower and an upper corner), or of
-    /// all: a dictionary of arrays and intervals; `None` where nothing has a value.
+    /// Least, greatest, mean and integral of the values inside of `solid` (an octree), or inside of `bounds`
+    /// (a lower and an upper corner), or of all: a dictionary of arrays and intervals; `None` where nothing
+    /// has a value.
     #[pyo3(signature = (solid=None, *, bounds=None, **limits))]
     fn summary<'py>(
         &self,

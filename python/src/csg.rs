@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 
 /// An expression: half-spaces, primitives, and set operations of these and of any other solids.
 ///
-/// Nothing is computed before something is asked, and then only where it matters. Numbers are taken as they are: a ball is a ball,
-/// not a polyhedron.
+/// Nothing is computed before something is asked, and then only where it matters. Numbers are taken as they
+/// are: a ball is a ball, not a polyhedron.
 ///
 /// >>> plate = Csg.cuboid([0, 0, 0], [80, 60, 10]) - Csg.cylinder_between([20, 30, -1], [20, 30, 11], 8)
 /// >>> measure(plate, tolerance=1e-6).volume
@@ -27,7 +27,8 @@ use std::path::{Path, PathBuf};
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct Csg {
     pub expression: Expression,
-    /// The function of this class and its arguments that made it. A shape of Python in the expression lives as long as these do.
+    /// The function of this class and its arguments that made it. A shape of Python in the expression lives
+    /// as long as these do.
     recipe: (&'static str, Py<PyTuple>),
 }
 
@@ -73,7 +74,8 @@ impl Csg {
         made!(py, Expression::half_space(n, offset), "half_space", n, offset)
     }
 
-    /// The points where a polynomial of degree two is not negative: ten `coefficients`, of xx, yy, zz, xy, yz, zx, x, y, z and 1.
+    /// The points where a polynomial of degree two is not negative: ten `coefficients`, of xx, yy, zz, xy,
+    /// yz, zx, x, y, z and 1.
     #[staticmethod]
     fn quadric<'py>(
         py: Python<'py>,
@@ -141,8 +143,8 @@ impl Csg {
         )
     }
 
-    /// The frustum of a cone around the z axis, between the heights `low` and `high`, with the radius `bottom` at the lower and `top` at the upper
-    /// one. One of the radii may be 0.
+    /// The frustum of a cone around the z axis, between the heights `low` and `high`, with the radius
+    /// `bottom` at the lower and `top` at the upper one. One of the radii may be 0.
     #[staticmethod]
     fn frustum(
         py: Python<'_>,
@@ -157,7 +159,8 @@ impl Csg {
         made!(py, found, "frustum", bottom, top, low, high)
     }
 
-    /// The frustum of a cone between two points on its axis, `start` and `end`, with the two `radii` there. One of them may be 0.
+    /// The frustum of a cone between two points on its axis, `start` and `end`, with the two `radii` there.
+    /// One of them may be 0.
     #[staticmethod]
     fn frustum_between<'py>(
         start: &Bound<'py, PyAny>,
@@ -175,7 +178,8 @@ impl Csg {
         )
     }
 
-    /// The torus around the z axis: all points at most `minor` from the circle of the radius `major` in the plane z = 0.
+    /// The torus around the z axis: all points at most `minor` from the circle of the radius `major` in the
+    /// plane z = 0.
     #[staticmethod]
     fn torus(
         py: Python<'_>,
@@ -185,7 +189,8 @@ impl Csg {
         made!(py, Expression::torus(major, minor), "torus", major, minor)
     }
 
-    /// The block of a `size` along x, y and z with a corner at the origin, whose top face is `top` long along x: a wedge for 0.
+    /// The block of a `size` along x, y and z with a corner at the origin, whose top face is `top` long along
+    /// x: a wedge for 0.
     #[staticmethod]
     fn wedge<'py>(
         size: &Bound<'py, PyAny>,
@@ -195,7 +200,8 @@ impl Csg {
         made!(py, Expression::wedge(s, top), "wedge", s, top)
     }
 
-    /// The prism over a simple `polygon` in the plane of x and y (points of shape (n, 2)), between the heights `low` and `high`.
+    /// The prism over a simple `polygon` in the plane of x and y (points of shape (n, 2)), between the
+    /// heights `low` and `high`.
     #[staticmethod]
     fn prism<'py>(
         polygon: &Bound<'py, PyAny>,
@@ -208,7 +214,8 @@ impl Csg {
         made!(py, found, "prism", corners, low, high)
     }
 
-    /// What lies in all half-spaces normal · p + offset ≥ 0, given as `planes`: rows of four numbers, those of the normal first.
+    /// What lies in all half-spaces normal · p + offset ≥ 0, given as `planes`: rows of four numbers, those
+    /// of the normal first.
     #[staticmethod]
     fn convex<'py>(planes: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Csg>> {
         let py = planes.py();
@@ -230,7 +237,8 @@ impl Csg {
         made!(py, Ok(Expression::everything()), "everything",)
     }
 
-    /// What at least one of any number of `solids` contains: for many at once faster than `|` one after another.
+    /// What at least one of any number of `solids` contains: for many at once faster than `|` one after
+    /// another.
     #[staticmethod]
     #[pyo3(signature = (*solids))]
     fn union_of<'py>(solids: &Bound<'py, PyTuple>) -> PyResult<Bound<'py, Csg>> {
@@ -291,8 +299,8 @@ impl Csg {
         made!(solid.py(), moved, "placed_of", solid, crate::affine::Affine(map))
     }
 
-    /// The solid of a scene, a `text` in the language that OpenSCAD writes as `.csg`; files that it names lie in `folder`, and `max_bytes` refuses
-    /// longer ones.
+    /// The solid of a scene, a `text` in the language that OpenSCAD writes as `.csg`; files that it names lie
+    /// in `folder`, and `max_bytes` refuses longer ones.
     ///
     /// >>> Csg.from_scene("difference() { cube([4, 4, 4]); cylinder(h = 9, r = 1); }").bounds[1]
     /// array([4., 4., 4.])
@@ -327,14 +335,16 @@ impl Csg {
         Ok((again, (steps(slf)?,).into_bound_py_any(slf.py())?))
     }
 
-    // Like a tuple, an expression never changes, so that each cycle through it has an object that the collector can clear.
+    // Like a tuple, an expression never changes, so that each cycle through it has an object that the
+    // collector can clear.
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
         visit.call(&self.recipe.1)
     }
 }
 
-/// The recipe of an expression as a list of steps, each a name and arguments, that needs no recursion. An expression among the
-/// arguments is the number of the step that made it, and has one step however often it occurs.
+/// The recipe of an expression as a list of steps, each a name and arguments, that needs no recursion. An
+/// expression among the arguments is the number of the step that made it, and has one step however often it
+/// occurs.
 fn steps<'py>(whole: &Bound<'py, Csg>) -> PyResult<Bound<'py, PyList>> {
     let py = whole.py();
     let steps = PyList::empty(py);

@@ -25,8 +25,8 @@ const DEPTH: u8 = 8;
 
 /// A solid as intervals along the rays of a lattice, whose ends are far finer than cells.
 ///
-/// `|`, `&`, `-`, `^` and `~` merge the intervals of models on one frame. Rays see nothing of what lies between them, so that a model
-/// proves nothing: `solid()` is the surface that marching cubes makes of it.
+/// `|`, `&`, `-`, `^` and `~` merge the intervals of models on one frame. Rays see nothing of what lies
+/// between them, so that a model proves nothing: `solid()` is the surface that marching cubes makes of it.
 ///
 /// >>> model = dexelize(Csg.ball([0, 0, 0], 1), depth=6)
 /// >>> round(model.volume(), 3)
@@ -157,7 +157,8 @@ impl TriDexel {
         self.model.view().bytes()
     }
 
-    /// The volume by the rays along an `axis`, 0, 1 or 2 for x, y and z (cubic model units): no bound, but the sum of intervals.
+    /// The volume by the rays along an `axis`, 0, 1 or 2 for x, y and z (cubic model units): no bound, but
+    /// the sum of intervals.
     #[pyo3(signature = (axis=2))]
     fn volume(&self, py: Python<'_>, #[pyo3(from_py_with = named::axis)] axis: usize) -> PyResult<f64> {
         match py.detach(|| self.model.view().statistics(axis)) {
@@ -166,8 +167,9 @@ impl TriDexel {
         }
     }
 
-    /// The intervals along an `axis` (0, 1 or 2 for x, y and z) as arrays: `ray` (indices of the ray on the other two axes, the lower first) of shape (n, 2),
-    /// `start` and `end` (coordinates) of shape (n,), and `material` of shape (n,).
+    /// The intervals along an `axis` (0, 1 or 2 for x, y and z) as arrays: `ray` (indices of the ray on the
+    /// other two axes, the lower first) of shape (n, 2), `start` and `end` (coordinates) of shape (n,), and
+    /// `material` of shape (n,).
     fn rays<'py>(
         &self,
         py: Python<'py>,
@@ -217,7 +219,8 @@ impl TriDexel {
         Mesh::bound(py, mesh, FillRule::NonZero, None, None)
     }
 
-    /// The solid inside of the surface that marching cubes finds, which is taken for the truth: a `DexelSolid`.
+    /// The solid inside of the surface that marching cubes finds, which is taken for the truth: a
+    /// `DexelSolid`.
     #[pyo3(signature = (**limits))]
     fn solid<'py>(
         slf: &Bound<'py, Self>,
@@ -231,7 +234,8 @@ impl TriDexel {
         Bound::new(py, PyClassInitializer::from(Solid::new(given)).add_subclass(solid))
     }
 
-    /// The octree of the samples that rays decide; with `by_ends=True` cells in which rays begin or end stay undecided.
+    /// The octree of the samples that rays decide; with `by_ends=True` cells in which rays begin or end stay
+    /// undecided.
     #[pyo3(signature = (*, by_ends=false, **limits))]
     fn to_octree<'py>(
         &self,
@@ -306,7 +310,8 @@ impl TriDexel {
     }
 }
 
-/// The solid inside of the surface that marching cubes finds in a tri-dexel model, which is taken for the truth: `model.solid()`.
+/// The solid inside of the surface that marching cubes finds in a tri-dexel model, which is taken for the
+/// truth: `model.solid()`.
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct DexelSolid {
     model: Py<TriDexel>,
@@ -332,16 +337,17 @@ impl DexelSolid {
 
 /// A tri-dexel model of a `solid`: where the rays through the centres of cells run inside.
 ///
-/// `frame` is a `Frame`, or an octree that has it: its cube and its cells are those of the lattice. Without it, the frame is a cube around the
-/// solid. `depth` replaces the frame's depth; a cube around the solid has the depth 8 by default, which means 256 × 256 rays along an axis.
+/// `frame` is a `Frame`, or an octree that has it: its cube and its cells are those of the lattice. Without
+/// it, the frame is a cube around the solid. `depth` replaces the frame's depth; a cube around the solid has
+/// the depth 8 by default, which means 256 × 256 rays along an axis.
 ///
-/// `directions` are the axes along which rays run: some of the letters "xyz". With the `rule` "sampled", the default, intervals are those of the
-/// solid on each ray; with "inner" those of its FULL cells, and with "outer" those of all cells that are not EMPTY. ("certified" is refused:
-/// an interval cannot be undecided.)
+/// `directions` are the axes along which rays run: some of the letters "xyz". With the `rule` "sampled", the
+/// default, intervals are those of the solid on each ray; with "inner" those of its FULL cells, and with
+/// "outer" those of all cells that are not EMPTY. ("certified" is refused: an interval cannot be undecided.)
 ///
-/// `normals` keeps the surface's normals at the ends, in 16 or 32 bits, so that surfaces have sharp edges; 0, the default, keeps none.
-/// `surfaces=True` keeps the numbers of the source's surfaces. `doubles=True` stores ends as doubles, in twice the memory; else they are off by
-/// up to 2^-31 of the frame's edge.
+/// `normals` keeps the surface's normals at the ends, in 16 or 32 bits, so that surfaces have sharp edges; 0,
+/// the default, keeps none. `surfaces=True` keeps the numbers of the source's surfaces. `doubles=True` stores
+/// ends as doubles, in twice the memory; else they are off by up to 2^-31 of the frame's edge.
 #[pyfunction]
 #[pyo3(signature = (
     solid, frame=None, *, depth=None, directions="xyz", rule="sampled", normals=0, surfaces=false, doubles=false, **limits

@@ -56,7 +56,8 @@ fn content(bytes: &[u8], name: &Path) -> Option<Content> {
     }
 }
 
-/// How meshes and volumes in files are taken: `fill`, `unit`, `to_unit`, `scale`, `sew`, `threshold`; and limits.
+/// How meshes and volumes in files are taken: `fill`, `unit`, `to_unit`, `scale`, `sew`, `threshold`; and
+/// limits.
 struct Taking<'py> {
     fill: leafless::FillRule,
     options: MeshOptions,
@@ -98,8 +99,8 @@ impl<'py> Taking<'py> {
     }
 }
 
-/// The object in the bytes of a file. `name` tells the format where the content does not, and is what errors name; other files
-/// that it names lie in `folder`.
+/// The object in the bytes of a file. `name` tells the format where the content does not, and is what errors
+/// name; other files that it names lie in `folder`.
 #[pyfunction]
 #[pyo3(signature = (data, name, folder=None, **taking))]
 pub fn open_bytes<'py>(
@@ -200,9 +201,10 @@ fn stored(bytes: &[u8]) -> Result<Stored, Error> {
     either(|| file::from_bytes(bytes), || dexels::from_bytes(bytes))
 }
 
-/// The solid in a Leafless file, mapped: nothing is copied, and only what is asked for is ever read. The file may be replaced, but
-/// must not be shortened or written to as long as the object is there. `verify=True` looks for damage first, which reads all of it; `checksum`
-/// refuses the file if it is another than the one with this checksum.
+/// The solid in a Leafless file, mapped: nothing is copied, and only what is asked for is ever read. The file
+/// may be replaced, but must not be shortened or written to as long as the object is there. `verify=True`
+/// looks for damage first, which reads all of it; `checksum` refuses the file if it is another than the one
+/// with this checksum.
 #[pyfunction]
 #[pyo3(name = "map_path", signature = (path, *, verify=false, checksum=None))]
 pub fn map_path<'py>(
@@ -215,7 +217,8 @@ pub fn map_path<'py>(
     let (own, found) = py.detach(|| {
         let before = header_checksum(&path);
         let found = either(
-            // SAFETY: that the file is not shortened or written to is what `leafless.map` asks of its callers.
+            // SAFETY: that the file is not shortened or written to is what `leafless.map` asks of its
+            // callers.
             #[allow(unsafe_code)]
             || unsafe { if verify { file::map_verified(&path) } else { file::map(&path) } },
             // SAFETY: as above.
@@ -233,7 +236,8 @@ pub fn map_path<'py>(
     found.into_object(py, own.map(|own| (path, own)))
 }
 
-/// The checksum in the header of a file, which covers those of all sections; nothing of a file that has no header.
+/// The checksum in the header of a file, which covers those of all sections; nothing of a file that has no
+/// header.
 fn header_checksum(path: &Path) -> Option<u64> {
     // Opening a pipe would wait for whoever writes to it.
     std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
@@ -301,7 +305,8 @@ pub fn scene<'py>(
     Ok(Csg::made(py, whole, "from_scene", recipe)?.into_any())
 }
 
-/// Writes an object to the file at a path, whose name tells the format: at any moment there is the old file or the new one.
+/// Writes an object to the file at a path, whose name tells the format: at any moment there is the old file
+/// or the new one.
 #[pyfunction]
 pub fn save_path(object: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {
     let py = object.py();

@@ -9,8 +9,9 @@ use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-/// A cube in model space, the *universe*, and how often it may be halved: the lattice of an octree. Its lower corner is `origin` and its length
-/// `edge` (model units); it has 2^`depth` cells along each axis, `depth` from 1 to 20.
+/// A cube in model space, the *universe*, and how often it may be halved: the lattice of an octree. Its lower
+/// corner is `origin` and its length `edge` (model units); it has 2^`depth` cells along each axis, `depth`
+/// from 1 to 20.
 ///
 /// >>> frame = Frame([0, 0, 0], 128.0, depth=10)
 /// >>> frame.cells, frame.cell_size
@@ -23,8 +24,8 @@ pub struct Frame(pub Inner);
 
 #[pymethods]
 impl Frame {
-    /// The cube with the lower corner `origin` and the length `edge` (model units), in 2^`depth` cells along each axis, `depth`
-    /// from 1 to 20.
+    /// The cube with the lower corner `origin` and the length `edge` (model units), in 2^`depth` cells along
+    /// each axis, `depth` from 1 to 20.
     #[new]
     #[pyo3(signature = (origin, edge, depth))]
     fn new(
@@ -47,8 +48,8 @@ impl Frame {
         Inner::around(min, max, depth.0).map_err(called(CORNERS)).or_raise(bounds.py()).map(Frame)
     }
 
-    /// A cube around `bounds` whose planes are round numbers, as near as the bounds allow, of a `depth`: for parts with round dimensions,
-    /// whose plane faces then lie in planes of the lattice.
+    /// A cube around `bounds` whose planes are round numbers, as near as the bounds allow, of a `depth`: for
+    /// parts with round dimensions, whose plane faces then lie in planes of the lattice.
     #[staticmethod]
     #[pyo3(signature = (bounds, depth=Deep(MAX_DEPTH)), text_signature = "(bounds, depth=20)")]
     fn fitted(
@@ -108,8 +109,9 @@ impl Frame {
         self.0.cell_size()
     }
 
-    /// The cells of a `level` in which `points` (shape (n, 3)) lie, by their codes (places in Morton order): an array of type uint64, with
-    /// 2^64 - 1 for a point outside of the cube. A point on a wall lies in the cell behind it.
+    /// The cells of a `level` in which `points` (shape (n, 3)) lie, by their codes (places in Morton order):
+    /// an array of type uint64, with 2^64 - 1 for a point outside of the cube. A point on a wall lies in the
+    /// cell behind it.
     fn codes<'py>(
         &self,
         points: &Bound<'py, PyAny>,

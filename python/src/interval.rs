@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 
 /// Two numbers, `lower` and `upper`, between which the truth lies: proven.
 ///
-/// It prints the digits that mean something, and `in` asks whether a number is possible. A format of numbers is one of both ends, which are
-/// rounded outward, so that what is printed contains the truth.
+/// It prints the digits that mean something, and `in` asks whether a number is possible. A format of numbers
+/// is one of both ends, which are rounded outward, so that what is printed contains the truth.
 ///
 /// >>> volume = Interval(171000.0, 172000.0)
 /// >>> volume
@@ -22,8 +22,9 @@ use pyo3::prelude::*;
 /// >>> 171234.5 in volume, volume.lower, volume.upper
 /// (True, 171000.0, 172000.0)
 ///
-/// `<`, `<=`, `>` and `>=` are true only if they hold for all that the interval contains. So `volume < 2e5` is a proof, and both
-/// `volume < 171500` and `volume > 171500` are false. `==` compares the ends of two intervals; an interval equals no number.
+/// `<`, `<=`, `>` and `>=` are true only if they hold for all that the interval contains. So `volume < 2e5`
+/// is a proof, and both `volume < 171500` and `volume > 171500` are false. `==` compares the ends of two
+/// intervals; an interval equals no number.
 ///
 /// >>> volume < 2e5, volume < 171500, volume > 171500
 /// (True, False, False)
@@ -120,7 +121,8 @@ impl Interval {
         self.0.to_string()
     }
 
-    /// Both ends by a format of numbers, as in `f"{volume:.3f}"`, the lower one rounded down and the upper one rounded up.
+    /// Both ends by a format of numbers, as in `f"{volume:.3f}"`, the lower one rounded down and the upper
+    /// one rounded up.
     fn __format__<'py>(&self, py: Python<'py>, spec: &str) -> PyResult<Bound<'py, PyAny>> {
         if spec.is_empty() {
             return self.0.to_string().into_bound_py_any(py);

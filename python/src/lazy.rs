@@ -22,8 +22,8 @@ use std::sync::{Mutex, MutexGuard, TryLockError};
 
 /// An octree that splits the cells of a `solid` that you ask about, and remembers them.
 ///
-/// `frame` is the cube where it lies: a `Frame`, or an octree that has it. Without it, it is a cube around the solid. With `resume`, it begins
-/// with what an octree knows that `freeze` made of the same solid.
+/// `frame` is the cube where it lies: a `Frame`, or an octree that has it. Without it, it is a cube around
+/// the solid. With `resume`, it begins with what an octree knows that `freeze` made of the same solid.
 ///
 /// >>> lazy = LazyOctree(Csg.ball([0, 0, 0], 1))
 /// >>> lazy.refine(level=4)
@@ -40,7 +40,8 @@ pub struct LazyOctree {
 }
 
 impl LazyOctree {
-    /// The octree, unless another call is at work on it: a shape's own method must not wait for the call that called it.
+    /// The octree, unless another call is at work on it: a shape's own method must not wait for the call that
+    /// called it.
     fn lock(&self) -> PyResult<MutexGuard<'_, Inner<Prepared>>> {
         match self.lazy.try_lock() {
             Ok(lazy) => Ok(lazy),
@@ -58,7 +59,8 @@ const ZONE: [(&str, &str); 5] =
 
 #[pymethods]
 impl LazyOctree {
-    /// An octree that knows its universe only. With `resume`, it begins with what a frozen octree of the same solid knows.
+    /// An octree that knows its universe only. With `resume`, it begins with what a frozen octree of the same
+    /// solid knows.
     #[new]
     #[pyo3(signature = (solid, frame=None, *, resume=None, **limits))]
     fn new(
@@ -85,9 +87,9 @@ impl LazyOctree {
         Ok(LazyOctree { lazy: Mutex::new(lazy), solid: solid.clone().unbind() })
     }
 
-    /// Splits undecided cells down to a `level`: all of them, or those in a box (`bounds`), around a `point`, or along a `ray` (origin and
-    /// direction). True if all is done; false if a limit came first (`max_splits`, `max_nodes`, `max_bytes`), and then what was
-    /// found is kept.
+    /// Splits undecided cells down to a `level`: all of them, or those in a box (`bounds`), around a `point`,
+    /// or along a `ray` (origin and direction). True if all is done; false if a limit came first
+    /// (`max_splits`, `max_nodes`, `max_bytes`), and then what was found is kept.
     #[pyo3(signature = (level, *, bounds=None, point=None, ray=None, **limits))]
     fn refine(
         &self,

@@ -1,9 +1,11 @@
-//! The Python interface of Leafless. A class or a function of Python is some lines here: it takes Python's values, asks the
-//! library with the interpreter released, and hands back what was found. What is easier said in Python is in `package/leafless`.
+//! The Python interface of Leafless. A class or a function of Python is some lines here: it takes Python's
+//! values, asks the library with the interpreter released, and hands back what was found. What is easier said
+//! in Python is in `package/leafless`.
 //!
-//! From the bottom up: `error`, `work` (long work that can be watched and interrupted), `words` (what enumerations are called),
-//! `arguments` (what functions take), `arrays`, `interval`, `frame` and `affine` are what values are taken from; `solid` is the class of all that has a shape, and
-//! `ask` what is asked of it on which frame; `csg`, `mesh`, `octree` and the others are its kinds; `measures`, `pairs`, `surface`
+//! From the bottom up: `error`, `work` (long work that can be watched and interrupted), `words` (what
+//! enumerations are called), `arguments` (what functions take), `arrays`, `interval`, `frame` and `affine`
+//! are what values are taken from; `solid` is the class of all that has a shape, and `ask` what is asked of
+//! it on which frame; `csg`, `mesh`, `octree` and the others are its kinds; `measures`, `pairs`, `surface`
 //! and `picture` are questions; `files` reads and writes, and `note` is what a volume adds to its file.
 
 mod affine;

@@ -27,11 +27,11 @@ pub fn wanted(py: Python<'_>, relative: f64, absolute: f64) -> PyResult<Toleranc
     Ok(Tolerance { relative, absolute })
 }
 
-/// Measures a `solid`: volume, centroid and inertia, until the width of the volume's interval is `tolerance` of it, or at most
-/// `absolute` (cubic model units). Closed meshes are known to rounding at once.
+/// Measures a `solid`: volume, centroid and inertia, until the width of the volume's interval is `tolerance`
+/// of it, or at most `absolute` (cubic model units). Closed meshes are known to rounding at once.
 ///
-/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
-/// `depth` replaces its depth.
+/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it
+/// is a cube around the solid. `depth` replaces its depth.
 ///
 /// >>> found = measure(Csg.ball([0, 0, 0], 1), tolerance=1e-6)
 /// >>> 4.18879020478639 in found.volume, 0.0 in found.centroid[2]
@@ -68,10 +68,11 @@ pub fn told<'py>(py: Python<'py>, found: &query::MassProperties) -> PyResult<Bou
     ))
 }
 
-/// The area of the boundary of a `solid`, until the width of its interval is `tolerance` of it, or at most `absolute` (square model units).
+/// The area of the boundary of a `solid`, until the width of its interval is `tolerance` of it, or at most
+/// `absolute` (square model units).
 ///
-/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
-/// `depth` replaces its depth.
+/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it
+/// is a cube around the solid. `depth` replaces its depth.
 ///
 /// >>> 12.566370614359172 in surface_area(Csg.ball([0, 0, 0], 1), tolerance=0.01).area
 /// True
@@ -94,10 +95,11 @@ pub fn surface_area<'py>(
     answer.call1((Interval(found.area), found.clipped, words::word(found.stop_reason), found.splits))
 }
 
-/// The bounding box of a `solid`, each side known to `tolerance` (model units; by default a millionth of the frame).
+/// The bounding box of a `solid`, each side known to `tolerance` (model units; by default a millionth of the
+/// frame).
 ///
-/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
-/// `depth` replaces its depth.
+/// `frame` is the cube in which the solid is looked at: a `Frame`, or an octree that has it. Without it, it
+/// is a cube around the solid. `depth` replaces its depth.
 ///
 /// >>> box = bounding_box(Csg.ball([0, 0, 0], 1))
 /// >>> 1.0 in box.corners[1, 0]

@@ -18,8 +18,9 @@ use std::sync::Arc;
 
 /// A triangle mesh, and the solid that it encloses.
 ///
-/// Any mesh is a solid. For a closed mesh, the inside is exact. For a mesh with holes, fins or turned facets, the winding number
-/// decides by the rule `fill`: "nonzero" (at least ½ in magnitude), "positive" or "evenodd".
+/// Any mesh is a solid. For a closed mesh, the inside is exact. For a mesh with holes, fins or turned facets,
+/// the winding number decides by the rule `fill`: "nonzero" (at least ½ in magnitude), "positive" or
+/// "evenodd".
 ///
 /// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 /// >>> mesh = Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -86,8 +87,8 @@ impl Mesh {
 
 #[pymethods]
 impl Mesh {
-    /// A mesh from vertices (shape (n, 3)) and triangles (indices of shape (m, 3), counter-clockwise as seen from outside). Equal
-    /// vertices become one, and triangles without area are dropped.
+    /// A mesh from vertices (shape (n, 3)) and triangles (indices of shape (m, 3), counter-clockwise as seen
+    /// from outside). Equal vertices become one, and triangles without area are dropped.
     #[new]
     #[pyo3(signature = (vertices, faces, *, fill="nonzero"))]
     fn new(
@@ -209,14 +210,15 @@ impl Mesh {
         self.surface
     }
 
-    /// The mesh with hair cracks closed: vertices next to open edges that differ by rounding only become one. `report` counts them
-    /// (`sewn`). What is proven of the mesh accounts for how far they moved.
+    /// The mesh with hair cracks closed: vertices next to open edges that differ by rounding only become one.
+    /// `report` counts them (`sewn`). What is proven of the mesh accounts for how far they moved.
     fn sewn<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Mesh>> {
         let mesh = Limits::default().run(py, |_| self.mesh.try_clone()?.sewn())?;
         Mesh::bound(py, mesh, self.fill, self.unit.clone(), self.surface)
     }
 
-    /// What is wrong with the mesh, if anything is: counts of bodies, open edges, turned facets and the like, as a dictionary.
+    /// What is wrong with the mesh, if anything is: counts of bodies, open edges, turned facets and the like,
+    /// as a dictionary.
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let report = self.inspected(py)?;
         let told = PyDict::new(py);
@@ -252,7 +254,8 @@ impl Mesh {
         self.mesh.attributes().iter().map(|attribute| attribute.name().to_owned()).collect()
     }
 
-    /// The values of the attribute called `name` at the corners of triangles: shape (m, 3, components), NaN where there is none.
+    /// The values of the attribute called `name` at the corners of triangles: shape (m, 3, components), NaN
+    /// where there is none.
     fn attribute<'py>(
         &self,
         py: Python<'py>,
@@ -280,7 +283,8 @@ impl Mesh {
             let corners = if attribute.domain() == AttributeDomain::Corner { 3 } else { 1 };
             Ok((attribute.name(), attribute.names(), values(slf.py(), attribute, corners)?))
         });
-        // What is proven of a mesh accounts for how far its vertices were moved, and so must what is proven of the copy.
+        // What is proven of a mesh accounts for how far its vertices were moved, and so must what is proven
+        // of the copy.
         let past = own.mesh.history();
         let history: History = (
             [past.welded, past.degenerate, past.sewn, past.polygons, past.bent_polygons],
@@ -302,7 +306,8 @@ impl Mesh {
 /// A mesh's history as it is pickled: its counts, and its lengths.
 type History = ([u64; 5], [f64; 3]);
 
-/// The values of an attribute, shape (m, corners, components), at the first corner of each triangle or at all three.
+/// The values of an attribute, shape (m, corners, components), at the first corner of each triangle or at all
+/// three.
 fn values<'py>(py: Python<'py>, attribute: &MeshAttribute, corners: usize) -> PyResult<Bound<'py, PyAny>> {
     let (count, components) = (attribute.len(), attribute.components());
     let values = py.detach(|| {
@@ -313,7 +318,8 @@ fn values<'py>(py: Python<'py>, attribute: &MeshAttribute, corners: usize) -> Py
     Ok(arrays::array(py, values, &[count, corners, components])?.into_any())
 }
 
-/// The attribute with these values, shape (m, 1, components) for triangles or (m, 3, components) for their corners.
+/// The attribute with these values, shape (m, 1, components) for triangles or (m, 3, components) for their
+/// corners.
 fn read(name: &str, values: &Bound<'_, PyAny>) -> PyResult<MeshAttribute> {
     let py = values.py();
     let array = arrays::doubles(values, name)?;

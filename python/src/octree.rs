@@ -35,8 +35,8 @@ const CELL: u64 = 1 + 1 + 3 * 4;
 /// Bytes of an open cell, as the library lists it and as a code.
 const OPEN_CELL: u64 = (size_of::<leafless::Cell>() + size_of::<u64>()) as u64;
 
-/// What cells prove: whether FULL cells are proven to lie inside (`full`), and EMPTY cells outside (`empty`), of a solid whose surfaces were
-/// moved before by at most `displacement` (model units).
+/// What cells prove: whether FULL cells are proven to lie inside (`full`), and EMPTY cells outside (`empty`),
+/// of a solid whose surfaces were moved before by at most `displacement` (model units).
 #[pyclass(frozen, eq, get_all, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct Proof {
@@ -91,8 +91,8 @@ impl Proof {
     }
 }
 
-/// A stored solid. Each cell of a cube is EMPTY (outside), FULL (inside) or PARTIAL (not decided). Only cells that are cut take
-/// memory.
+/// A stored solid. Each cell of a cube is EMPTY (outside), FULL (inside) or PARTIAL (not decided). Only cells
+/// that are cut take memory.
 ///
 /// >>> octree = build(Csg.ball([0, 0, 0], 1), depth=6)
 /// >>> octree.contains([[0, 0, 0], [2, 0, 0]])
@@ -100,11 +100,12 @@ impl Proof {
 /// >>> 4.18879 in octree.volume
 /// True
 ///
-/// The methods `contains`, `distances` and `rays` ask the cells, whatever these prove. Functions (`measure`, `interference` and the others) ask
-/// what is proven of the solid that the octree was made of, which is little if it was built by another rule than "certified"; `as_truth`
-/// takes the cells for the truth.
+/// The methods `contains`, `distances` and `rays` ask the cells, whatever these prove. Functions (`measure`,
+/// `interference` and the others) ask what is proven of the solid that the octree was made of, which is
+/// little if it was built by another rule than "certified"; `as_truth` takes the cells for the truth.
 ///
-/// On one frame, `|`, `&`, `-`, `^` and `~` are exact set algebra of cells: `a - b == a & ~b` holds bit by bit.
+/// On one frame, `|`, `&`, `-`, `^` and `~` are exact set algebra of cells: `a - b == a & ~b` holds bit by
+/// bit.
 #[pyclass(extends = Solid, frozen, module = "leafless")]
 pub struct Octree {
     pub octree: Inner,
@@ -163,8 +164,8 @@ impl Octree {
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// The union of any number of octrees on one frame, as `|` makes it of two. An octree that keeps its surfaces costs one walk for all of
-    /// the `octrees`, where `|` costs one for each.
+    /// The union of any number of octrees on one frame, as `|` makes it of two. An octree that keeps its
+    /// surfaces costs one walk for all of the `octrees`, where `|` costs one for each.
     #[staticmethod]
     #[pyo3(signature = (*octrees, **limits))]
     fn union_of<'py>(
@@ -228,8 +229,8 @@ impl Octree {
         self.octree.proof().into()
     }
 
-    /// Between which numbers the volume of the cells lies (cubic model units). `measure` knows more of an octree that keeps its
-    /// surfaces.
+    /// Between which numbers the volume of the cells lies (cubic model units). `measure` knows more of an
+    /// octree that keeps its surfaces.
     #[getter]
     fn volume(&self, py: Python<'_>) -> Interval {
         Interval(self.statistics_of_cells(py).volume())
@@ -253,20 +254,20 @@ impl Octree {
         self.octree.view().cuts().is_some()
     }
 
-    /// The same octree, whose cells are taken for the truth: what is called proven of it is so of the cells, and of the solid that they
-    /// were made of only as far as these are right.
+    /// The same octree, whose cells are taken for the truth: what is called proven of it is so of the cells,
+    /// and of the solid that they were made of only as far as these are right.
     fn as_truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, Octree>> {
         Octree::bound(py, self.octree.with_proof(leafless::Proof::CERTIFIED))
     }
 
-    /// Level by level, a list of dictionaries: `level`, `nodes`, `empty`, `full`, `partial` (cells that end there), and `volume`, an
-    /// interval of what the cells down to that level tell.
+    /// Level by level, a list of dictionaries: `level`, `nodes`, `empty`, `full`, `partial` (cells that end
+    /// there), and `volume`, an interval of what the cells down to that level tell.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         told(py, &self.statistics_of_cells(py))
     }
 
-    /// The part of the octree that a `shard` (a `leafless.shards.Shard`) knows: an octree that has the cells of the shard. All other cells are
-    /// PARTIAL.
+    /// The part of the octree that a `shard` (a `leafless.shards.Shard`) knows: an octree that has the cells
+    /// of the shard. All other cells are PARTIAL.
     #[pyo3(signature = (shard, **limits))]
     fn shard<'py>(
         &self,
@@ -279,8 +280,9 @@ impl Octree {
         Octree::bound(py, found)
     }
 
-    /// The cells of a `level` of which nothing is known, by their codes (places in Morton order): an array of type uint64. In the top of that
-    /// level, these are the cells that need a shard. `max_bytes` is a limit of the array, with what is needed to make it.
+    /// The cells of a `level` of which nothing is known, by their codes (places in Morton order): an array of
+    /// type uint64. In the top of that level, these are the cells that need a shard. `max_bytes` is a limit
+    /// of the array, with what is needed to make it.
     #[pyo3(signature = (level, **limits))]
     fn open_cells<'py>(
         &self,
@@ -325,9 +327,10 @@ impl Octree {
         Octree::bound(py, self.octree.with_metadata(told))
     }
 
-    /// Cells as arrays: `level` of shape (n,), `at` (indices along x, y and z in cells of that level) of shape (n, 3), and `tag` (`Tag`) of
-    /// shape (n,). `tags` chooses among "empty", "partial", "full" and "branch" (cells that are cut), or the constants EMPTY, PARTIAL and
-    /// FULL. Without it, all cells that are not cut are listed. `max_bytes` is a limit of the arrays.
+    /// Cells as arrays: `level` of shape (n,), `at` (indices along x, y and z in cells of that level) of
+    /// shape (n, 3), and `tag` (`Tag`) of shape (n,). `tags` chooses among "empty", "partial", "full" and
+    /// "branch" (cells that are cut), or the constants EMPTY, PARTIAL and FULL. Without it, all cells that
+    /// are not cut are listed. `max_bytes` is a limit of the arrays.
     ///
     /// >>> cells = build(Csg.cuboid([0, 0, 0], [1, 1, 1]), Frame([0, 0, 0], 2, 1)).cells("full")
     /// >>> cells.level, cells.at
@@ -387,9 +390,10 @@ impl Octree {
         from_package!(py, "leafless._answers", "Tag")?.call1((self.octree.view().tag_at(at) as u8,))
     }
 
-    /// The cells of a `level` as a volume, indexed [x, y, z]: an array of booleans, true where cells are FULL, or with `outer=True`
-    /// where they are not EMPTY. The finest level is the default. `first` and `end` cut out a box: its first cell, and the first one beyond it, as
-    /// indices along x, y and z. `max_bytes` is a limit of the array, with what is needed to make it.
+    /// The cells of a `level` as a volume, indexed [x, y, z]: an array of booleans, true where cells are
+    /// FULL, or with `outer=True` where they are not EMPTY. The finest level is the default. `first` and
+    /// `end` cut out a box: its first cell, and the first one beyond it, as indices along x, y and z.
+    /// `max_bytes` is a limit of the array, with what is needed to make it.
     #[pyo3(signature = (level=None, *, first=None, end=None, outer=false, **limits))]
     fn bitmap<'py>(
         &self,
@@ -441,7 +445,8 @@ impl Octree {
         flat.call_method("reshape", (size.to_vec(),), Some(&order))
     }
 
-    /// How a box, whose `bounds` are its lower and its upper corner, lies to the solid: "inside", "outside", "crossing" or "undecided".
+    /// How a box, whose `bounds` are its lower and its upper corner, lies to the solid: "inside", "outside",
+    /// "crossing" or "undecided".
     fn classify_box<'py>(&self, bounds: &Bound<'py, PyAny>) -> PyResult<&'static str> {
         use leafless::query::Region;
         let py = bounds.py();
@@ -479,7 +484,8 @@ impl Octree {
         Octree::bound(py, self.octree.with_channel(channel.get().0.with_name(name)).or_raise(py)?)
     }
 
-    /// The octree of cells alone, to a `depth`: surfaces that it keeps decide them, and `rule` what is undecided there, as in `build`.
+    /// The octree of cells alone, to a `depth`: surfaces that it keeps decide them, and `rule` what is
+    /// undecided there, as in `build`.
     #[pyo3(signature = (depth=None, *, rule="certified", **limits))]
     fn plain<'py>(
         &self,
@@ -495,8 +501,9 @@ impl Octree {
         Octree::bound(py, found)
     }
 
-    /// Its voxels as records, sorted by code; with the values of a `channel` at their centres. Boundary voxels end at `boundary_depth`, the frame's
-    /// depth by default. `outside=True` lists the voxels outside, too.
+    /// Its voxels as records, sorted by code; with the values of a `channel` at their centres. Boundary
+    /// voxels end at `boundary_depth`, the frame's depth by default. `outside=True` lists the voxels outside,
+    /// too.
     #[pyo3(signature = (channel=None, *, boundary_depth=None, outside=false, **limits))]
     fn voxels(
         &self,
@@ -621,16 +628,19 @@ pub fn frame_of(
 
 /// An octree of a `solid`: cells are split until they are decided, or the frame's depth is reached.
 ///
-/// `rule` says what becomes of cells that are undecided at the finest level. "certified" keeps the doubt, so every answer is
-/// proven. "sampled" asks at the centres of cells. "inner" calls undecided cells EMPTY, "outer" calls them FULL.
+/// `rule` says what becomes of cells that are undecided at the finest level. "certified" keeps the doubt, so
+/// every answer is proven. "sampled" asks at the centres of cells. "inner" calls undecided cells EMPTY,
+/// "outer" calls them FULL.
 ///
-/// `surfaces=True` keeps the surfaces that cross undecided cells. For an expression these are exact: the octree is small, and as exact as
-/// the solid. A number keeps layers around a mesh's surface instead, at most that thick (model units).
+/// `surfaces=True` keeps the surfaces that cross undecided cells. For an expression these are exact: the
+/// octree is small, and as exact as the solid. A number keeps layers around a mesh's surface instead, at most
+/// that thick (model units).
 ///
-/// `frame` is a `Frame`, or an octree whose frame is used. Without it, the frame is a cube around the solid. `depth` replaces the frame's
-/// depth; a cube around the solid has the depth 9 by default.
+/// `frame` is a `Frame`, or an octree whose frame is used. Without it, the frame is a cube around the solid.
+/// `depth` replaces the frame's depth; a cube around the solid has the depth 9 by default.
 ///
-/// With a `shard` (a `leafless.shards.Shard`), only the cells of the shard are made. All other cells are PARTIAL.
+/// With a `shard` (a `leafless.shards.Shard`), only the cells of the shard are made. All other cells are
+/// PARTIAL.
 ///
 /// >>> block = build(Csg.cuboid([0, 0, 0], [3, 2, 1]), depth=5)
 /// >>> block.volume, bool(block.proof)

@@ -94,7 +94,8 @@ impl Pair {
         let placements = placements.map(|given| affines(given, "placements")).transpose()?;
         let places = placements.as_deref().unwrap_or(&[Affine::IDENTITY]);
         let frame = wish.of_both(py, [&a, &b], places, DEPTH)?;
-        // An octree is known on its own frame, all else on one around it, or around whatever comes to lie in the frame.
+        // An octree is known on its own frame, all else on one around it, or around whatever comes to lie in
+        // the frame.
         let own = match (placements.is_some(), b.own) {
             (true, Some(own)) => own,
             (true, None) => {
@@ -147,20 +148,18 @@ impl Pair {
     }
 }
 
-/// Whether two solids overlap, `a` where it is and `b` under a placement, or under each of many: then the answer is a list. `placements` is an
-/// `Affine` or a matrix, or a sequence of them.
+/// Whether two solids overlap, `a` where it is and `b` under a placement, or under each of many: then the
+/// answer is a list. `placements` is an `Affine` or a matrix, or a sequence of them.
 ///
-/// `frame` is the cube in which both are looked at: a `Frame`, or an octree that has it. Without it, it is a cube around both, under all
-/// placements. `depth` replaces its depth; 16 by default, or that of an octree.
+/// `frame` is the cube in which both are looked at: a `Frame`, or an octree that has it. Without it, it is a
+/// cube around both, under all placements. `depth` replaces its depth; 16 by default, or that of an octree.
 ///
-/// With a `tolerance` (cubic model units) the common volume is measured until its interval is no wider. Each placement may split
-/// `max_splits` cells, 100,000 by default.
+/// With a `tolerance` (cubic model units) the common volume is measured until its interval is no wider. Each
+/// placement may split `max_splits` cells, 100,000 by default.
 ///
-/// >>> pin, plate = Csg.cylinder(2, -5, 5), Csg.cuboid([-9, -9, 0], [9, 9, 1]) - Csg.cylinder(2, -1, 2)
-/// >>> interference(pin, plate).verdict
-/// 'disjoint'
-/// >>> [found.verdict for found in interference(plate, pin, [Affine.translation([x, 0, 0]) for x in (0, 0.1)])]
-/// ['disjoint', 'overlapping']
+/// >>> pin, plate = Csg.cylinder(2, -5, 5), Csg.cuboid([-9, -9, 0], [9, 9, 1]) - Csg.cylinder(2, -1, 2) >>>
+/// interference(pin, plate).verdict 'disjoint' >>> [found.verdict for found in interference(plate, pin,
+/// [Affine.translation([x, 0, 0]) for x in (0, 0.1)])] ['disjoint', 'overlapping']
 #[pyfunction]
 #[pyo3(signature = (a, b, placements=None, *, tolerance=f64::INFINITY, frame=None, depth=None, **limits))]
 pub fn interference<'py>(
@@ -182,8 +181,9 @@ pub fn interference<'py>(
     )
 }
 
-/// How far two solids are apart, to a `tolerance` (model units; by default a millionth of the frame): `a` where it is, and `b` under a placement,
-/// or under each of many. `placements`, `frame` and `depth` are those of `interference`.
+/// How far two solids are apart, to a `tolerance` (model units; by default a millionth of the frame): `a`
+/// where it is, and `b` under a placement, or under each of many. `placements`, `frame` and `depth` are those
+/// of `interference`.
 ///
 /// >>> found = clearance(Csg.ball([0, 0, 0], 1), Csg.ball([5, 0, 0], 2))
 /// >>> 2.0 in found.distance, found.points.round(3).tolist()
@@ -210,8 +210,8 @@ pub fn clearance<'py>(
     )
 }
 
-/// Whether no point of `a` is nearer than `least` (model units) to one of `b`: cheaper than the distance. `placements`, `frame` and `depth` are
-/// those of `interference`.
+/// Whether no point of `a` is nearer than `least` (model units) to one of `b`: cheaper than the distance.
+/// `placements`, `frame` and `depth` are those of `interference`.
 ///
 /// >>> gap_at_least(Csg.ball([0, 0, 0], 1), Csg.ball([5, 0, 0], 2), 1.9).verdict
 /// 'yes'
@@ -236,9 +236,10 @@ pub fn gap_at_least<'py>(
     )
 }
 
-/// The frame on which `interference`, `clearance` and `gap_at_least` look at two solids, `a` and `b`, under these `placements`, with the same
-/// `frame` and `depth`. Whoever asks about the placements in several calls gives the frame to each of them, and gets the answers of one
-/// call; but a `b` without known bounds is prepared for the placements of each call.
+/// The frame on which `interference`, `clearance` and `gap_at_least` look at two solids, `a` and `b`, under
+/// these `placements`, with the same `frame` and `depth`. Whoever asks about the placements in several calls
+/// gives the frame to each of them, and gets the answers of one call; but a `b` without known bounds is
+/// prepared for the placements of each call.
 ///
 /// >>> from leafless._leafless import frame_of_pair
 /// >>> a, b = Csg.ball([0, 0, 0], 1), Csg.ball([0, 0, 0], 2)
@@ -259,8 +260,8 @@ pub fn frame_of_pair(
     Pair::of(a, b, placements, Wish { frame, depth }, Limits::default()).map(|pair| Frame(pair.frame))
 }
 
-/// How far the boundaries of two solids, `a` and `b`, are from each other, to a `tolerance` (model units; by default a ten-thousandth of the
-/// frame). `frame` and `depth` are those of `interference`.
+/// How far the boundaries of two solids, `a` and `b`, are from each other, to a `tolerance` (model units; by
+/// default a ten-thousandth of the frame). `frame` and `depth` are those of `interference`.
 ///
 /// >>> found = deviation(Csg.ball([0, 0, 0], 1), Csg.ball([0.1, 0, 0], 1), tolerance=0.01)
 /// >>> 0.1 in found.distance, found.within(0.2)

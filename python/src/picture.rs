@@ -32,7 +32,8 @@ const COLOURS: [[u8; 3]; 6] =
 /// The depth of a solid's cells in a section.
 const CELLS: u8 = 7;
 
-/// A picture: an array `rgba` of shape (height, width, 4), and `depth` of shape (height, width), infinite where nothing is seen.
+/// A picture: an array `rgba` of shape (height, width, 4), and `depth` of shape (height, width), infinite
+/// where nothing is seen.
 ///
 /// Notebooks show it. `leafless.save(picture, "part.png")` writes a PNG.
 #[pyclass(frozen, weakref, module = "leafless")]
@@ -100,16 +101,19 @@ struct Shown {
     colour: [u8; 4],
 }
 
-/// Takes a picture of `solids`, of a `size` in pixels (width, height). A mesh with holes is shown by its triangles.
+/// Takes a picture of `solids`, of a `size` in pixels (width, height). A mesh with holes is shown by its
+/// triangles.
 ///
-/// One looks from an azimuth and an elevation in degrees, `view`; `colours` are triples or quadruples of 0 to 255, one for each solid;
-/// `clip` keeps what lies within planes a x + b y + c z + d ≥ 0, rows of four numbers; `slice` is one such plane a x + b y + c z + d = 0,
-/// and shows the cells of the first solid in it: EMPTY light blue, FULL blue, PARTIAL orange. `cells=True` shows octrees by their cells.
-/// `edges=False` leaves out the lines along sharp edges. `background` is a colour with its opacity, four numbers of 0 to 255. `samples` are
-/// those of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64.
+/// One looks from an azimuth and an elevation in degrees, `view`; `colours` are triples or quadruples of 0 to
+/// 255, one for each solid; `clip` keeps what lies within planes a x + b y + c z + d ≥ 0, rows of four
+/// numbers; `slice` is one such plane a x + b y + c z + d = 0, and shows the cells of the first solid in it:
+/// EMPTY light blue, FULL blue, PARTIAL orange. `cells=True` shows octrees by their cells. `edges=False`
+/// leaves out the lines along sharp edges. `background` is a colour with its opacity, four numbers of 0 to 255.
+/// `samples` are those of a pixel: 1, 4, 9, 16, 25, 36, 49 or 64.
 ///
-/// `frame` is a `Frame`, or an octree that has it: the cube that the picture takes in, and in which solids are looked for. Without it, the
-/// picture takes in the solids as a whole. Octrees, and meshes with holes, are drawn as they are.
+/// `frame` is a `Frame`, or an octree that has it: the cube that the picture takes in, and in which solids
+/// are looked for. Without it, the picture takes in the solids as a whole. Octrees, and meshes with holes,
+/// are drawn as they are.
 ///
 /// >>> render(Csg.ball([0, 0, 0], 1), size=(320, 240))
 /// <Picture: 320 × 240 pixels>

@@ -11,24 +11,27 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType, PyWeakrefMethods, PyWeakrefReference};
 use std::sync::Arc;
 
-/// A solid of your own: a subclass with one of these methods or both, which get arrays of many cells or points at once.
+/// A solid of your own: a subclass with one of these methods or both, which get arrays of many cells or
+/// points at once.
 ///
-/// - `classify(boxes)` gets boxes of shape (n, 2, 3), lower and upper corners, and returns n tags: EMPTY or FULL where that is proven for
-///   all of a box, else PARTIAL.
-/// - `distance(points)` gets points of shape (n, 3), and returns n numbers whose magnitude is at most the distance from the
-///   surface, negative inside; 0 says nothing.
+/// - `classify(boxes)` gets boxes of shape (n, 2, 3), lower and upper corners, and returns n tags: EMPTY or
+///   FULL where that is proven for all of a box, else PARTIAL.
+/// - `distance(points)` gets points of shape (n, 3), and returns n numbers whose magnitude is at most the
+///   distance from the surface, negative inside; 0 says nothing.
 ///
 /// And, if you like:
 ///
 /// - `inside(points)` returns n booleans: the sampled rule needs it.
-/// - `gradient(boxes)` bounds a function f over the boxes, where the solid is f ≤ 0: a pair of arrays of shape (n, 2), which hold the
-///   value in the middle of each box, and (n, 3, 2), the derivatives in all of it. Measures need far fewer cells with it. NaN says
-///   nothing.
-/// - `bounds`, an attribute of the class or of the object, or a property: a lower and an upper corner between which all of the shape lies.
+/// - `gradient(boxes)` bounds a function f over the boxes, where the solid is f ≤ 0: a pair of arrays of
+///   shape (n, 2), which hold the value in the middle of each box, and (n, 3, 2), the derivatives in all of
+///   it. Measures need far fewer cells with it. NaN says nothing.
+/// - `bounds`, an attribute of the class or of the object, or a property: a lower and an upper corner between
+///   which all of the shape lies.
 ///
 /// `arguments` and `named` ones are those of your `__init__`.
 ///
-/// The methods are called from several threads, one at a time. Exceptions in them end the work, and come out of it.
+/// The methods are called from several threads, one at a time. Exceptions in them end the work, and come out
+/// of it.
 ///
 /// >>> import numpy as np
 /// >>> class Ball(Shape):
@@ -42,7 +45,8 @@ pub struct Shape;
 
 #[pymethods]
 impl Shape {
-    /// Nothing is known. A plain attribute, unlike that of other solids, so that a subclass or an object may have its own.
+    /// Nothing is known. A plain attribute, unlike that of other solids, so that a subclass or an object may
+    /// have its own.
     #[classattr]
     #[allow(non_upper_case_globals)]
     const bounds: Option<u8> = None;
@@ -81,8 +85,8 @@ impl Shape {
     }
 }
 
-/// The methods of a shape, called from wherever the library is. The reference is weak, because the collector does not see what the
-/// library holds: whoever keeps a solid beyond a call keeps the object, too.
+/// The methods of a shape, called from wherever the library is. The reference is weak, because the collector
+/// does not see what the library holds: whoever keeps a solid beyond a call keeps the object, too.
 struct Methods(Py<PyWeakrefReference>);
 
 /// Numbers of an array of one size.

@@ -20,15 +20,16 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-/// The cells that a shard knows: those down to a level, or those below one cell of a level. A cell is named by its `level` and its `code`, the
-/// place in Morton order among the 8^level cells of the level.
+/// The cells that a shard knows: those down to a level, or those below one cell of a level. A cell is named
+/// by its `level` and its `code`, the place in Morton order among the 8^level cells of the level.
 #[pyclass(frozen, eq, hash, from_py_object, module = "leafless.shards")]
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Shard(pub Inner);
 
 #[pymethods]
 impl Shard {
-    /// The cells down to a `level`, from 0 to the depth of the frame. A cell that would be split there stays PARTIAL.
+    /// The cells down to a `level`, from 0 to the depth of the frame. A cell that would be split there stays
+    /// PARTIAL.
     #[staticmethod]
     fn top(#[pyo3(from_py_with = named::level)] level: Level) -> Shard {
         Shard(Inner::Top { level: level.0 })
@@ -120,15 +121,16 @@ fn sequence<'py>(
     })
 }
 
-/// What is known of the volume and the moments of a solid in some cells of its frame. Sums are exact, so that their order does not
-/// matter: `a + b - b == a`.
+/// What is known of the volume and the moments of a solid in some cells of its frame. Sums are exact, so that
+/// their order does not matter: `a + b - b == a`.
 #[pyclass(frozen, eq, module = "leafless.shards")]
 #[derive(PartialEq)]
 pub struct MassSum(query::MassSum);
 
 #[pymethods]
 impl MassSum {
-    /// The sum of the cell with this `code` on a `level`, of which nothing is known. `frame` is a `Frame`, or an octree that has it.
+    /// The sum of the cell with this `code` on a `level`, of which nothing is known. `frame` is a `Frame`, or
+    /// an octree that has it.
     #[staticmethod]
     fn unknown(
         py: Python<'_>,
@@ -180,11 +182,12 @@ impl MassSum {
     }
 }
 
-/// Measures the part of a `solid` in one cell of a `frame` (a `Frame`, or an octree that has it): volume, centroid and inertia, until the width of
-/// the interval of the volume in the cell is `tolerance` of it, or at most `absolute` (cubic model units).
+/// Measures the part of a `solid` in one cell of a `frame` (a `Frame`, or an octree that has it): volume,
+/// centroid and inertia, until the width of the interval of the volume in the cell is `tolerance` of it, or
+/// at most `absolute` (cubic model units).
 ///
-/// The cell is the one with this `code` (place in Morton order) on a `level`. Without them, it is the whole frame. `max_splits` is how many
-/// times cells may be split.
+/// The cell is the one with this `code` (place in Morton order) on a `level`. Without them, it is the whole
+/// frame. `max_splits` is how many times cells may be split.
 ///
 /// >>> from leafless.shards import measure_cell
 /// >>> ball, frame = Csg.ball([0, 0, 0], 1), Frame([-1, -1, -1], 2, 20)
@@ -211,8 +214,9 @@ pub fn measure_cell(
     limits.run(py, ask).map(MassSum)
 }
 
-/// Puts together what several `octrees` on one frame know of one solid: a cell is FULL or EMPTY if one of them says so, and PARTIAL where
-/// all leave it open. Surfaces that one of them keeps are kept. This is the reverse of cutting an octree into shards, byte for byte.
+/// Puts together what several `octrees` on one frame know of one solid: a cell is FULL or EMPTY if one of
+/// them says so, and PARTIAL where all leave it open. Surfaces that one of them keeps are kept. This is the
+/// reverse of cutting an octree into shards, byte for byte.
 ///
 /// >>> from leafless.shards import Shard, join
 /// >>> whole = build(Csg.ball([0, 0, 0], 1), depth=6)
@@ -237,8 +241,9 @@ pub fn join<'py>(
     Octree::bound(py, found)
 }
 
-/// A solid of shards that are not joined: a `top`, and `shards` of cells of one `level` that the top leaves open, as pairs of the cell's code and
-/// the octree. A shard is looked at when one of its cells is asked for. A cell without a shard is PARTIAL.
+/// A solid of shards that are not joined: a `top`, and `shards` of cells of one `level` that the top leaves
+/// open, as pairs of the cell's code and the octree. A shard is looked at when one of its cells is asked for.
+/// A cell without a shard is PARTIAL.
 #[pyclass(extends = Solid, frozen, module = "leafless.shards")]
 pub struct ShardedSolid(ShardedOctree);
 
@@ -284,8 +289,9 @@ impl ShardedSolid {
     }
 }
 
-/// The statistics of a `top` and of `shards` of cells of a `level`, level by level as `Octree.statistics` tells them. A shard is a pair of the
-/// cell's code and of counts: of each level of the frame, the nodes, the FULL and the PARTIAL cells.
+/// The statistics of a `top` and of `shards` of cells of a `level`, level by level as `Octree.statistics`
+/// tells them. A shard is a pair of the cell's code and of counts: of each level of the frame, the nodes, the
+/// FULL and the PARTIAL cells.
 #[pyfunction]
 pub fn joined_statistics<'py>(
     py: Python<'py>,
@@ -308,9 +314,9 @@ pub fn joined_statistics<'py>(
     crate::octree::told(py, &found.or_raise(py)?)
 }
 
-/// The triangles of marching cubes in the cell with this `code` on a `level`, as vertices and faces. `octree` is the one of the cell's shard, joined
-/// with those of the neighbours behind it. `resolve` says whether undecided cells belong to the solid: "outer" (they do) or "inner" (they do
-/// not).
+/// The triangles of marching cubes in the cell with this `code` on a `level`, as vertices and faces. `octree`
+/// is the one of the cell's shard, joined with those of the neighbours behind it. `resolve` says whether
+/// undecided cells belong to the solid: "outer" (they do) or "inner" (they do not).
 #[pyfunction]
 #[pyo3(signature = (octree, level, code, resolve, **limits))]
 pub fn surface_in<'py>(

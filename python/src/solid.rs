@@ -1,4 +1,5 @@
-//! What has a shape: the class of all solids, and the questions that arrays of points and rays put to any of them.
+//! What has a shape: the class of all solids, and the questions that arrays of points and rays put to any of
+//! them.
 
 use crate::arguments::named;
 use crate::arrays::{self, Rows};
@@ -22,7 +23,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, OnceLock};
 
-/// Questions that are answered on the calling thread: more of them may take longer than anybody wants to wait for Ctrl-C.
+/// Questions that are answered on the calling thread: more of them may take longer than anybody wants to wait
+/// for Ctrl-C.
 const FEW_POINTS: usize = 4096;
 const FEW_RAYS: usize = 256;
 const FEW_DISTANCES: usize = 16;
@@ -72,11 +74,13 @@ impl Given {
     }
 }
 
-/// Anything that has a shape. `Csg`, `Mesh`, `Octree` and `Volume` are solids, and so is a subclass of `Shape` of your own.
+/// Anything that has a shape. `Csg`, `Mesh`, `Octree` and `Volume` are solids, and so is a subclass of
+/// `Shape` of your own.
 ///
-/// Operators combine any two solids: `a | b` (union), `a & b` (intersection), `a - b` (difference), `a ^ b` (symmetric
-/// difference) and `~a` (complement). Two octrees make an octree, at once and exactly; any others an expression (`Csg`), which
-/// splits nothing before it is asked. `map @ a` is `a` moved by an `Affine` or a matrix.
+/// Operators combine any two solids: `a | b` (union), `a & b` (intersection), `a - b` (difference), `a ^ b`
+/// (symmetric difference) and `~a` (complement). Two octrees make an octree, at once and exactly; any others
+/// an expression (`Csg`), which splits nothing before it is asked. `map @ a` is `a` moved by an `Affine` or a
+/// matrix.
 #[pyclass(subclass, frozen, weakref, module = "leafless")]
 pub struct Solid {
     /// Nothing for shapes of Python, which come with the object itself.
@@ -130,8 +134,8 @@ impl Solid {
     #[allow(non_upper_case_globals)]
     const __array_ufunc__: Option<u8> = None;
 
-    /// A box that holds the solid, as an array of its lower and its upper corner; `None` if none is known. It may be larger than
-    /// the solid; `bounding_box` proves how large that is.
+    /// A box that holds the solid, as an array of its lower and its upper corner; `None` if none is known. It
+    /// may be larger than the solid; `bounding_box` proves how large that is.
     #[getter]
     fn bounds<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let bounds = given(slf, "self")?.bounds(slf.py());
@@ -139,20 +143,21 @@ impl Solid {
         Ok(array.transpose()?.map(Bound::into_any))
     }
 
-    /// A text that tells the solid from others: solids with the same fingerprint give the same answers. `None` if a part of the solid has none, as
-    /// shapes written in Python.
+    /// A text that tells the solid from others: solids with the same fingerprint give the same answers.
+    /// `None` if a part of the solid has none, as shapes written in Python.
     #[getter]
     fn fingerprint(slf: &Bound<'_, Self>) -> PyResult<Option<String>> {
         let (py, solid) = (slf.py(), given(slf, "self")?);
         Ok(py.detach(|| solid.shape.fingerprint()).map(|fingerprint| fingerprint.to_string()))
     }
 
-    /// Whether points lie inside. `points` has the shape (n, 3), in model units. The answer is an array of the codes of `Membership`, of type
-    /// uint8; compare it, as in `points[part.contains(points) == INSIDE]`. A single point has a single answer. A point in an undecided cell of an octree is UNDECIDED, and so is a point outside of the frame about which
-    /// nothing is known. On the boundary both answers are right.
+    /// Whether points lie inside. `points` has the shape (n, 3), in model units. The answer is an array of
+    /// the codes of `Membership`, of type uint8; compare it, as in `points[part.contains(points) == INSIDE]`.
+    /// A single point has a single answer. A point in an undecided cell of an octree is UNDECIDED, and so is
+    /// a point outside of the frame about which nothing is known. On the boundary both answers are right.
     ///
-    /// `frame` is the cube whose cells are asked: a `Frame`, or an octree that has it. Without it, an octree is asked on its own frame, and any
-    /// other solid on a cube around it.
+    /// `frame` is the cube whose cells are asked: a `Frame`, or an octree that has it. Without it, an octree
+    /// is asked on its own frame, and any other solid on a cube around it.
     ///
     /// >>> ball = Csg.ball([0, 0, 0], 1)
     /// >>> ball.contains([[0, 0, 0.999], [0, 0, 1.001]])
@@ -204,15 +209,17 @@ impl Solid {
         memberships(py, &answers, points.is_one)
     }
 
-    /// Signed distances of points from the boundary, negative inside, as intervals that contain the truth. `points` has the shape (n, 3),
-    /// in model units. An interval is no wider than `tolerance` where that is possible; the default is a millionth of the frame.
-    /// `to="solid"` measures to the solid (0 inside), `to="complement"` to what is not solid (0 outside).
+    /// Signed distances of points from the boundary, negative inside, as intervals that contain the truth.
+    /// `points` has the shape (n, 3), in model units. An interval is no wider than `tolerance` where that is
+    /// possible; the default is a millionth of the frame. `to="solid"` measures to the solid (0 inside),
+    /// `to="complement"` to what is not solid (0 outside).
     ///
-    /// The answer is a `Distances`: `distance` (`Intervals`), `nearest` (points of the boundary), `surface` (numbers of triangles or surfaces
-    /// there) and `undecided` (where the interval is wider than the tolerance). A single point has a `Distance`, whose `distance` is an
-    /// `Interval`.
+    /// The answer is a `Distances`: `distance` (`Intervals`), `nearest` (points of the boundary), `surface`
+    /// (numbers of triangles or surfaces there) and `undecided` (where the interval is wider than the
+    /// tolerance). A single point has a `Distance`, whose `distance` is an `Interval`.
     ///
-    /// `frame` is the cube that is searched: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
+    /// `frame` is the cube that is searched: a `Frame`, or an octree that has it. Without it, it is a cube
+    /// around the solid.
     ///
     /// >>> found = Csg.ball([0, 0, 0], 1).distances([[3, 0, 4], [0, 0.5, 0]], tolerance=1e-9)
     /// >>> found.distance.middle.round(6)
@@ -241,14 +248,17 @@ impl Solid {
         distances_found(py, &found, tolerance, points.is_one)
     }
 
-    /// Where rays first meet the solid. `origins` and `directions` have the shape (n, 3); a single origin or direction is used for all rays.
-    /// Distances count multiples of a direction's length. `on="inner"` stops a ray where the solid is proven to be, `on="outer"` where
-    /// the solid may be. `last` ends all rays at that distance.
+    /// Where rays first meet the solid. `origins` and `directions` have the shape (n, 3); a single origin or
+    /// direction is used for all rays. Distances count multiples of a direction's length. `on="inner"` stops
+    /// a ray where the solid is proven to be, `on="outer"` where the solid may be. `last` ends all rays at
+    /// that distance.
     ///
-    /// The answer is a `RayHits`: `hit`, `distance` (`Intervals`), `normal` and `surface`. Before the lower end of a distance the ray is
-    /// proven outside, at the upper end inside. A single origin with a single direction has a `RayHit`, whose `distance` is an `Interval`.
+    /// The answer is a `RayHits`: `hit`, `distance` (`Intervals`), `normal` and `surface`. Before the lower
+    /// end of a distance the ray is proven outside, at the upper end inside. A single origin with a single
+    /// direction has a `RayHit`, whose `distance` is an `Interval`.
     ///
-    /// `frame` is the cube that is searched: a `Frame`, or an octree that has it. Without it, it is a cube around the solid.
+    /// `frame` is the cube that is searched: a `Frame`, or an octree that has it. Without it, it is a cube
+    /// around the solid.
     ///
     /// >>> hits = Csg.ball([0, 0, 0], 1).rays([[-2, 0.6, 0], [-2, 2, 0]], [1, 0, 0])
     /// >>> hits.hit, 1.2 in hits.distance[0]
@@ -296,8 +306,9 @@ impl Solid {
         rays_found(py, &found, origins.is_one && directions.is_one)
     }
 
-    /// The solid moved by a `placement`, an `Affine` or a matrix. A mesh stays a mesh; any other solid becomes an expression. Meshes and expressions are
-    /// moved exactly. The cells of an octree blur by about one cell, unless the map moves by whole cells or quarter turns.
+    /// The solid moved by a `placement`, an `Affine` or a matrix. A mesh stays a mesh; any other solid
+    /// becomes an expression. Meshes and expressions are moved exactly. The cells of an octree blur by about
+    /// one cell, unless the map moves by whole cells or quarter turns.
     fn placed<'py>(slf: &Bound<'py, Self>, placement: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         operators::placed(slf, placement)
     }

@@ -15,7 +15,8 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Default depths: for cells that end by themselves, for cells that hold one vertex each, and for cells of one size.
+/// Default depths: for cells that end by themselves, for cells that hold one vertex each, and for cells of
+/// one size.
 const DEEP: u8 = 14;
 const FINE: u8 = 12;
 const EQUAL: u8 = 8;
@@ -29,17 +30,19 @@ const SNAP: Snap = Snap::Fat;
 /// What `method` of a report may be.
 const METHODS: [&str; 6] = ["faces", "adaptive", "cubes", "nets", "shrink", "simplify"];
 
-/// How a mesh was made of a solid: by a `method`, with what is proven of the `deviation` of the mesh from the solid's boundary (`from_mesh` says
-/// whether it is only that from another mesh), and the number of `intersecting_pairs` of triangles.
+/// How a mesh was made of a solid: by a `method`, with what is proven of the `deviation` of the mesh from the
+/// solid's boundary (`from_mesh` says whether it is only that from another mesh), and the number of
+/// `intersecting_pairs` of triangles.
 #[pyclass(frozen, eq, get_all, weakref, from_py_object, module = "leafless")]
 #[derive(Clone, Copy, PartialEq)]
 pub struct SurfaceReport {
     /// "faces", "adaptive", "cubes", "nets", "shrink" or "simplify".
     method: &'static str,
-    /// No point of the mesh is further from the solid's boundary than that, and no point of the boundary is further from the mesh
-    /// (model units): proven. Infinite if nothing is known.
+    /// No point of the mesh is further from the solid's boundary than that, and no point of the boundary is
+    /// further from the mesh (model units): proven. Infinite if nothing is known.
     pub deviation: f64,
-    /// Whether the deviation is that from another mesh, of which no deviation is known: `simplify` of a mesh from a file.
+    /// Whether the deviation is that from another mesh, of which no deviation is known: `simplify` of a mesh
+    /// from a file.
     pub from_mesh: bool,
     /// Pairs of triangles that intersect each other, where the method counts them.
     intersecting_pairs: u64,
@@ -101,22 +104,24 @@ impl Word for Method {
 ///
 /// `method` is one of these. Without it, the first method that suits the solid is taken.
 ///
-/// - "faces": plane faces as they are, sharp edges, few triangles. For solids that know their surfaces (expressions, octrees that keep them)
-///   and for meshes.
+/// - "faces": plane faces as they are, sharp edges, few triangles. For solids that know their surfaces
+///   (expressions, octrees that keep them) and for meshes.
 /// - "adaptive": few triangles where the surface is flat. For any solid.
-/// - "cubes": marching cubes in 2^`depth` cells along an axis. For octrees it uses their cells, for volumes their voxels.
+/// - "cubes": marching cubes in 2^`depth` cells along an axis. For octrees it uses their cells, for volumes
+///   their voxels.
 /// - "nets": surface nets, smoother, in the same cells.
 /// - "shrink": coplanar shrink, with few triangles where the cells make a plane.
 ///
-/// `tolerance` (model units) is how far "faces" and "adaptive" may be from the solid; the default is a thousandth of the longest side.
-/// `mesh.surface_report.deviation` is what is proven of that distance.
+/// `tolerance` (model units) is how far "faces" and "adaptive" may be from the solid; the default is a
+/// thousandth of the longest side. `mesh.surface_report.deviation` is what is proven of that distance.
 ///
-/// `frame` is the cube in which the surface is looked for: a `Frame`, or an octree that has it. `depth` replaces its depth. Neither they nor
-/// `tolerance` have a meaning for the cells of an octree or the voxels of a volume, and are refused there. A volume with a `frame` or a `depth`
-/// is asked there as any other solid is.
+/// `frame` is the cube in which the surface is looked for: a `Frame`, or an octree that has it. `depth`
+/// replaces its depth. Neither they nor `tolerance` have a meaning for the cells of an octree or the voxels
+/// of a volume, and are refused there. A volume with a `frame` or a `depth` is asked there as any other solid
+/// is.
 ///
-/// `resolve` says whether undecided cells of an octree belong to the solid: "outer" (they do, the default) or "inner" (they do not). It is
-/// refused where no cells of an octree make the mesh.
+/// `resolve` says whether undecided cells of an octree belong to the solid: "outer" (they do, the default) or
+/// "inner" (they do not). It is refused where no cells of an octree make the mesh.
 ///
 /// >>> mesh = surface(Csg.cuboid([0, 0, 0], [3, 2, 1]))
 /// >>> len(mesh.faces), mesh.surface_report.method
@@ -230,7 +235,8 @@ pub fn surface<'py>(
     made(py, mesh, report)
 }
 
-/// The same `mesh` with fewer triangles. Both meshes are within `tolerance` (model units) of each other: proven, for open meshes too.
+/// The same `mesh` with fewer triangles. Both meshes are within `tolerance` (model units) of each other:
+/// proven, for open meshes too.
 #[pyfunction]
 #[pyo3(signature = (mesh, tolerance, **limits))]
 pub fn simplify<'py>(

@@ -18,15 +18,15 @@ use std::sync::Arc;
 
 /// A 3-D `array` of samples as a solid: its voxels with values in a band.
 ///
-/// The array is indexed [x, y, z]. With `order="zyx"` it is indexed [z, y, x], as in SimpleITK and tifffile. It may hold booleans, uint8,
-/// uint16, int16 or float32.
+/// The array is indexed [x, y, z]. With `order="zyx"` it is indexed [z, y, x], as in SimpleITK and tifffile.
+/// It may hold booleans, uint8, uint16, int16 or float32.
 ///
-/// An array in which x varies fastest is not copied: "zyx" in NumPy's default order, "xyz" in Fortran's. Do not change such an array as
-/// long as the volume lives.
+/// An array in which x varies fastest is not copied: "zyx" in NumPy's default order, "xyz" in Fortran's. Do
+/// not change such an array as long as the volume lives.
 ///
-/// A voxel is inside if its sample is at least `threshold`. Two thresholds are a least and a greatest sample. The default is 0.5 for
-/// booleans and float32, 127.5 for uint8, 32767.5 for uint16 and 0 for int16. `origin` is the lower corner of the first voxel, `spacing`
-/// the edge of a voxel, or the edges along x, y and z.
+/// A voxel is inside if its sample is at least `threshold`. Two thresholds are a least and a greatest sample.
+/// The default is 0.5 for booleans and float32, 127.5 for uint8, 32767.5 for uint16 and 0 for int16. `origin`
+/// is the lower corner of the first voxel, `spacing` the edge of a voxel, or the edges along x, y and z.
 ///
 /// >>> import numpy as np
 /// >>> x, y, z = np.mgrid[-10:11, -10:11, -10:11]
@@ -59,7 +59,8 @@ unsafe impl<T: Sync> Sync for Held<T> {}
 
 impl<T> AsRef<[T]> for Held<T> {
     fn as_ref(&self) -> &[T] {
-        // SAFETY: the memory is that of the array, which is kept alive, lies there as one piece, and is not changed: the class says so.
+        // SAFETY: the memory is that of the array, which is kept alive, lies there as one piece, and is not
+        // changed: the class says so.
         #[allow(unsafe_code)]
         unsafe {
             std::slice::from_raw_parts(self.start, self.length)

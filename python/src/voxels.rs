@@ -15,8 +15,9 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Voxels as records, sorted by code: arrays of `codes`, `levels`, `kinds` (`VoxelKind`: 0 outside, 1 inside, 2 boundary,
-/// 3 refined) and `values`, which are views of the library's own memory. `frame` is their lattice.
+/// Voxels as records, sorted by code: arrays of `codes`, `levels`, `kinds` (`VoxelKind`: 0 outside, 1 inside,
+/// 2 boundary, 3 refined) and `values`, which are views of the library's own memory. `frame` is their
+/// lattice.
 ///
 /// >>> records = build(Csg.cuboid([0, 0, 0], [3, 1, 1]), Frame([0, 0, 0], 4, 2)).voxels()
 /// >>> len(records), records.corners().tolist()
@@ -26,7 +27,8 @@ pub struct VoxelRecords(pub Inner);
 
 #[pymethods]
 impl VoxelRecords {
-    /// Records from arrays of your own, sorted by code, with values of shape (n,) or (n, components) if they have any.
+    /// Records from arrays of your own, sorted by code, with values of shape (n,) or (n, components) if they
+    /// have any.
     #[new]
     #[pyo3(signature = (frame, codes, levels, kinds, values=None))]
     fn new(
@@ -160,8 +162,8 @@ impl VoxelRecords {
         Ok(arrays::array(py, order, &[count])?.into_any())
     }
 
-    /// The octree of the voxels. `boundary` says what boundary voxels become: "partial" (the default), "full" or "empty", or one of the constants
-    /// PARTIAL, FULL and EMPTY.
+    /// The octree of the voxels. `boundary` says what boundary voxels become: "partial" (the default), "full"
+    /// or "empty", or one of the constants PARTIAL, FULL and EMPTY.
     #[pyo3(signature = (boundary=None, **limits), text_signature = "($self, boundary='partial', **limits)")]
     fn to_octree<'py>(
         &self,

@@ -39,7 +39,8 @@ pub fn advance(control: &Control<'_>, done: usize, all: usize) -> Result<(), Err
     Ok(())
 }
 
-/// The keyword arguments that all long work takes: `threads`, `max_nodes`, `max_bytes`, `max_splits`, `progress`.
+/// The keyword arguments that all long work takes: `threads`, `max_nodes`, `max_bytes`, `max_splits`,
+/// `progress`.
 #[derive(Default)]
 pub struct Limits {
     threads: usize,
@@ -82,8 +83,8 @@ impl Limits {
         Control { threads, max_nodes, max_bytes, max_splits, cancel, progress }
     }
 
-    /// Does work that may take long, in a thread of its own. This thread waits for signals, which cancel the work, and
-    /// calls the function that progress is reported to.
+    /// Does work that may take long, in a thread of its own. This thread waits for signals, which cancel the
+    /// work, and calls the function that progress is reported to.
     pub fn run<R: Send>(
         &self,
         py: Python<'_>,

@@ -4,8 +4,8 @@
 //! LEAFLESS_PYTHON=/path/to/python cargo test --test python
 //! ```
 //!
-//! They need a Python with NumPy and pytest, and are skipped without it. What else is missing (trimesh, mypy, nbclient …) skips the tests
-//! that need it.
+//! They need a Python with NumPy and pytest, and are skipped without it. What else is missing (trimesh, mypy,
+//! nbclient …) skips the tests that need it.
 
 #![cfg(unix)]
 
@@ -16,8 +16,8 @@ fn package() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Builds the extension module, which nothing links, so that cargo does not build it for this program. The arguments are those of the
-/// tests in C, so that all that both need is compiled once.
+/// Builds the extension module, which nothing links, so that cargo does not build it for this program. The
+/// arguments are those of the tests in C, so that all that both need is compiled once.
 fn extension() -> PathBuf {
     let program = std::env::current_exe().expect("a program has a path");
     // …/debug/deps/python-…

@@ -41,9 +41,9 @@ pub struct ChannelOperand<'a> {
 /// each point the values of those operands count that are not EMPTY there, by `rule`. Where `result` is
 /// EMPTY, the channel says whatever takes the least memory.
 ///
-/// It is as deep as the deepest of the operands' solids and channels, where solids that keep surfaces do not count: of these the
-/// cells to that depth are meant ([`plain`](crate::op::plain)). The same bits for any number of threads. Visits the cells at
-/// which solids or channels change.
+/// It is as deep as the deepest of the operands' solids and channels, where solids that keep surfaces do not
+/// count: of these the cells to that depth are meant ([`plain`](crate::op::plain)). The same bits for any
+/// number of threads. Visits the cells at which solids or channels change.
 ///
 /// # Errors
 /// [`Error::Argument`] if there is no operand, or values are not of one type; [`Error::FrameMismatch`] unless

@@ -8,15 +8,16 @@ use crate::error::Error;
 use crate::lattice::{Bounds, axes};
 use crate::octree::{Channel, OctreeRef, ScalarType, ValueType};
 
-/// The channel `material` of an octree of a tri-dexel model: in each cell the number of the material at its centre, by the
-/// rays that decide about centres ([`TriDexelRef::contains_cell`]); 0 where nothing was said. Cells whose centre lies
-/// outside have no value, and where the octree is EMPTY the channel says whatever takes the least memory. `None` if the model stores no materials.
+/// The channel `material` of an octree of a tri-dexel model: in each cell the number of the material at its
+/// centre, by the rays that decide about centres ([`TriDexelRef::contains_cell`]); 0 where nothing was said.
+/// Cells whose centre lies outside have no value, and where the octree is EMPTY the channel says whatever
+/// takes the least memory. `None` if the model stores no materials.
 ///
 /// Cells are as large as rays of one material allow.
 ///
 /// # Errors
-/// [`Error::FrameMismatch`] if the octree lies in another cube than the model; [`Error::Damaged`] for damaged arrays or
-/// links; and what `control` asks for.
+/// [`Error::FrameMismatch`] if the octree lies in another cube than the model; [`Error::Damaged`] for damaged
+/// arrays or links; and what `control` asks for.
 ///
 /// ```
 /// use leafless::attribute::dexel_materials;

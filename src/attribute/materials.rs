@@ -23,9 +23,9 @@ pub struct MaterialProperties {
     pub properties: MassProperties,
 }
 
-/// Measures the parts of `solid` in which `channel` has one value, each as by [`measure`], with its tolerance:
-/// one for each value of the channel that the solid may have somewhere, in ascending order of the values. The
-/// channel is taken as it is; its cells decide what is which material.
+/// Measures the parts of `solid` in which `channel` has one value, each as by [`measure`], with its
+/// tolerance: one for each value of the channel that the solid may have somewhere, in ascending order of the
+/// values. The channel is taken as it is; its cells decide what is which material.
 ///
 /// # Errors
 /// [`Error::Limit`] if the channel has more than 4096 different values; [`Error::FrameMismatch`] unless

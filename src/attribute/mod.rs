@@ -84,8 +84,8 @@ pub trait Attribute: Sync {
     /// What the source of the values reports.
     fn values(&self, points: &[[f64; 3]], values: &mut [Option<[f64; 4]>]) -> Result<(), Error>;
 
-    /// What is known of the values in the interior of a box. The answer must be proven: a wrong range hides details
-    /// that nobody looks for any more. By default nothing is known.
+    /// What is known of the values in the interior of a box. The answer must be proven: a wrong range hides
+    /// details that nobody looks for any more. By default nothing is known.
     ///
     /// # Errors
     /// What the source of the values reports.
@@ -94,8 +94,8 @@ pub trait Attribute: Sync {
         Ok(ValueRange::Unknown)
     }
 
-    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of the meshes, channels
-    /// and samples that it shares with others. 0, the default, if nobody knows.
+    /// About how many bytes of memory (or of mapped files) the attribute keeps alive: its own, and those of
+    /// the meshes, channels and samples that it shares with others. 0, the default, if nobody knows.
     fn kept_bytes(&self) -> u64 {
         0
     }

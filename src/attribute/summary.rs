@@ -32,8 +32,8 @@ impl ChannelRef<'_> {
     /// (model units). Without a solid it is all of the box, without a box all of the cube. `None` if nothing
     /// of that may have a value.
     ///
-    /// FULL cells of the solid bound volume and integral on one side, FULL and PARTIAL cells on the other. The
-    /// faces of the box may lie anywhere. O(cells that the box meets), no allocation.
+    /// FULL cells of the solid bound volume and integral on one side, FULL and PARTIAL cells on the other.
+    /// The faces of the box may lie anywhere. O(cells that the box meets), no allocation.
     ///
     /// # Errors
     /// [`Error::Argument`] if a coordinate of the box is not a number, or min > max; [`Error::FrameMismatch`]

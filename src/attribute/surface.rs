@@ -12,16 +12,17 @@ use crate::mesh::{MeshAttribute, NearVisitor, NearestPoint, TriangleMesh};
 
 /// The attribute whose value at a point is that of a mesh at the point of its surface that is nearest.
 ///
-/// * With a value for each triangle, it is the value of the nearest triangle. If the triangles of a body share
-///   a value, that is the value of the nearest body.
-/// * With a value for each corner, it is interpolated linearly between the corners of the nearest triangle, at
-///   the nearest point.
+/// * With a value for each triangle, it is the value of the nearest triangle. If the triangles of a body
+///   share a value, that is the value of the nearest body.
+/// * With a value for each corner, it is interpolated linearly between the corners of the nearest triangle,
+///   at the nearest point.
 ///
-/// Of triangles that are equally near the first one counts; distances are computed in doubles, and for vertices
-/// and edges that triangles share they are equal. A point whose nearest triangle has no value has none, and
-/// neither has a point that is not finite. The mesh need not be closed.
+/// Of triangles that are equally near the first one counts; distances are computed in doubles, and for
+/// vertices and edges that triangles share they are equal. A point whose nearest triangle has no value has
+/// none, and neither has a point that is not finite. The mesh need not be closed.
 ///
-/// [`range`](Attribute::range) is proven: it looks at every triangle that can be nearest to a point of the box.
+/// [`range`](Attribute::range) is proven: it looks at every triangle that can be nearest to a point of the
+/// box.
 ///
 /// ```
 /// use leafless::{TriangleMesh, attribute::{Attribute, SurfaceAttribute}, mesh::MeshAttribute};
@@ -53,7 +54,8 @@ enum Source {
 impl SurfaceAttribute {
     /// What `attribute` says of the triangles of a mesh, which is shared (an `Arc`) or taken over.
     ///
-    /// O(t log t) unless the mesh has a tree of its triangles already; 36 bytes a triangle for that and up to 24 for ranges.
+    /// O(t log t) unless the mesh has a tree of its triangles already; 36 bytes a triangle for that and up to
+    /// 24 for ranges.
     ///
     /// # Errors
     /// [`Error::Argument`] unless the attribute has as many triangles as the mesh; [`Error::OutOfMemory`].

@@ -13,22 +13,24 @@ use hashbrown::HashMap;
 /// Triangles that are asked for together.
 const CHUNK: usize = 1024;
 
-/// Points of a triangle at which a value is looked for, in the order in which they count: that many depths behind its centroid.
+/// Points of a triangle at which a value is looked for, in the order in which they count: that many depths
+/// behind its centroid.
 const DEPTHS: [f64; 4] = [1.0, 0.25, 2.0, 0.0];
 
-/// The values of `attribute` on the triangles of a surface, under a name: that of a triangle is the value just inside of it, `depth`
-/// (model units) behind its centroid. If there is none, it is that at a quarter of the depth, at twice the depth, or at the centroid
-/// itself, and otherwise the triangle has no value. A triangle without area is asked at its centroid.
+/// The values of `attribute` on the triangles of a surface, under a name: that of a triangle is the value
+/// just inside of it, `depth` (model units) behind its centroid. If there is none, it is that at a quarter of
+/// the depth, at twice the depth, or at the centroid itself, and otherwise the triangle has no value. A
+/// triangle without area is asked at its centroid.
 ///
-/// So a surface that was made of a solid bears what the solid's channels say, such as its colours and materials: half the edge of
-/// the channel's cells is a good depth, for it leads from a vertex that lies somewhere in a cell to the solid behind it. Triangles
-/// with one value share a row of the table.
+/// So a surface that was made of a solid bears what the solid's channels say, such as its colours and
+/// materials: half the edge of the channel's cells is a good depth, for it leads from a vertex that lies
+/// somewhere in a cell to the solid behind it. Triangles with one value share a row of the table.
 ///
 /// O(t) questions. The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] unless the depth is finite and not negative, and the attribute has 1 to 4 components; what the attribute
-/// reports; [`Error::Cancelled`] or [`Error::OutOfMemory`].
+/// [`Error::Argument`] unless the depth is finite and not negative, and the attribute has 1 to 4 components;
+/// what the attribute reports; [`Error::Cancelled`] or [`Error::OutOfMemory`].
 ///
 /// ```
 /// use leafless::attribute::{ConstantAttribute, sample_triangles};

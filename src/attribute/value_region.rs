@@ -61,8 +61,8 @@ impl<'a, S: Solid> ValueRegion<'a, S> {
 
 impl ChannelRef<'_> {
     /// The cells whose values lie between `low` and `high`, number by number, both included, as a binary
-    /// octree of the channel's own frame. See [`ValueRegion`]. What the cells prove concerns the values in the
-    /// channel, and not what the channel was filled from.
+    /// octree of the channel's own frame. See [`ValueRegion`]. What the cells prove concerns the values in
+    /// the channel, and not what the channel was filled from.
     ///
     /// # Errors
     /// As [`ValueRegion::new`], and what `control` asks for.

@@ -19,8 +19,8 @@ pub enum Interpolation {
     Trilinear,
 }
 
-/// The samples of a [`Volume`] as an attribute of one number. There is no value outside of the grid, nor where
-/// a sample that counts is not a number. The volume's band does not matter.
+/// The samples of a [`Volume`] as an attribute of one number. There is no value outside of the grid, nor
+/// where a sample that counts is not a number. The volume's band does not matter.
 #[derive(Debug, Clone)]
 pub struct VolumeAttribute<'a> {
     volume: Volume<'a>,

@@ -4,8 +4,8 @@ use super::{Enclosure, Slab, SlabJoin, middle};
 use crate::lattice::Interval;
 use crate::lattice::axes;
 
-/// A point of the cube and a radius: all of the ball around it lies in the cube and, that is proven, in the solid. `None` if none is
-/// found. It is not the largest one.
+/// A point of the cube and a radius: all of the ball around it lies in the cube and, that is proven, in the
+/// solid. `None` if none is found. It is not the largest one.
 pub(crate) fn ball(enclosure: &Enclosure) -> Option<([f64; 3], f64)> {
     let known = enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
     match enclosure.join {
@@ -31,7 +31,8 @@ fn within(slabs: impl Iterator<Item = Slab> + Clone) -> Option<([f64; 3], f64)> 
     (radius > 0.0).then_some((at, radius))
 }
 
-/// No more than the distance from a point to the plane n · x = end, before which the point lies; less than 0 if that is not sure.
+/// No more than the distance from a point to the plane n · x = end, before which the point lies; less than 0
+/// if that is not sure.
 fn room(normal: [f64; 3], end: f64, at: [f64; 3]) -> f64 {
     // Lengths are of a normal that is neither huge nor tiny.
     let size = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));

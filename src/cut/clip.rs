@@ -1,10 +1,10 @@
 //! A cube clipped by up to three planes.
 //!
-//! Faces are closed polygons, and each edge of theirs belongs to another face the other way round. That is so however
-//! corners are rounded: both faces of an edge find the same point on it, and the edges that a plane leaves without a
-//! second face make up loops, which become faces. So the surface stays closed, its corners are off by roundings, and
-//! its moments too, even where planes are nearly parallel and rounding bends a face so that a line crosses its outline
-//! four times.
+//! Faces are closed polygons, and each edge of theirs belongs to another face the other way round. That is so
+//! however corners are rounded: both faces of an edge find the same point on it, and the edges that a plane
+//! leaves without a second face make up loops, which become faces. So the surface stays closed, its corners
+//! are off by roundings, and its moments too, even where planes are nearly parallel and rounding bends a face
+//! so that a line crosses its outline four times.
 
 use super::Half;
 use crate::lattice::axes;
@@ -70,8 +70,8 @@ impl Pieces {
     }
 }
 
-/// Moments of the points of [-1, 1]³ with n · x ≤ offset for all `halves`; `None` if rounding makes more faces than
-/// there is place for.
+/// Moments of the points of [-1, 1]³ with n · x ≤ offset for all `halves`; `None` if rounding makes more
+/// faces than there is place for.
 pub(super) fn moments(halves: &[Half]) -> Option<CubeMoments> {
     let Clipped { faces, count } = clipped(halves)?;
     let mut sum = CubeMoments::EMPTY;
@@ -128,8 +128,8 @@ fn clipped(halves: &[Half]) -> Option<Clipped> {
     Some(Clipped { faces, count })
 }
 
-/// The part of a polygon on the inner side of a plane. Where its outline goes along the plane, the same way back lacks
-/// a face.
+/// The part of a polygon on the inner side of a plane. Where its outline goes along the plane, the same way
+/// back lacks a face.
 fn clip(face: &Polygon, half: &Half, pieces: &mut Pieces) -> Option<Polygon> {
     let value = |p: [f64; 3]| {
         let [a, b, c] = half.normal;

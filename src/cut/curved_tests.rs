@@ -1,8 +1,8 @@
 //! Cubes that a curved surface cuts against integration along columns.
 //!
-//! The oracle goes along the axis of the greatest slope, where the surface is met once: a column's share is a difference
-//! of powers. Along the second axis the columns' ends are analytic between places that are roots of polynomials of
-//! degree two, and along the third halving finds what is not smooth.
+//! The oracle goes along the axis of the greatest slope, where the surface is met once: a column's share is a
+//! difference of powers. Along the second axis the columns' ends are analytic between places that are roots
+//! of polynomials of degree two, and along the third halving finds what is not smooth.
 
 extern crate std;
 
@@ -193,8 +193,8 @@ impl Columns {
         self.nodes[..].iter().fold([0.0; 10], step)
     }
 
-    /// Where along the first axis the slices may change: where three faces meet, or two and the surface, or where the
-    /// surface touches a face along the second axis.
+    /// Where along the first axis the slices may change: where three faces meet, or two and the surface, or
+    /// where the surface touches a face along the second axis.
     fn breaks(&self) -> Vec<f64> {
         let mut faces: Vec<([f64; 3], f64)> = self.planes.clone();
         for sign in [-1.0, 1.0] {
@@ -322,8 +322,8 @@ impl Random {
     }
 }
 
-/// The volume in doubt is less than that of the slab, and holds what the oracle finds; how often it is known, and the
-/// greatest difference as a share of the error.
+/// The volume in doubt is less than that of the slab, and holds what the oracle finds; how often it is known,
+/// and the greatest difference as a share of the error.
 fn moments_hold(seed: u64, count: u64) {
     let mut random = Random(seed);
     let (mut known, mut good, mut most, mut sum) = ([0u32; 3], 0, 0.0f64, 0.0);

@@ -66,8 +66,9 @@ impl Enclosure {
         (is_slab && is_known).then_some(Enclosure { slabs, join: SlabJoin::All, cone })
     }
 
-    /// What is known of an intersection by what is known of its operands. An operand of which nothing is known leaves the inner
-    /// side open; so do more slabs than three, of which those are kept that cut off most.
+    /// What is known of an intersection by what is known of its operands. An operand of which nothing is
+    /// known leaves the inner side open; so do more slabs than three, of which those are kept that cut off
+    /// most.
     pub(crate) fn of_intersection(operands: impl Iterator<Item = Option<Enclosure>>) -> Option<Enclosure> {
         let mut slabs = [Slab::NONE; 3];
         let (mut count, mut is_whole) = (0, true);
@@ -80,7 +81,8 @@ impl Enclosure {
             let mut own = known.slabs;
             is_whole &= own.iter().any(is_slab);
             if known.join == SlabJoin::Any && own.iter().filter(|slab| is_slab(slab)).count() > 1 {
-                // Each slab of a union tells of points that lie inside. That one counts which holds most of them.
+                // Each slab of a union tells of points that lie inside. That one counts which holds most of
+                // them.
                 let best = own
                     .into_iter()
                     .filter(is_slab)

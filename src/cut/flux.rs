@@ -1,10 +1,10 @@
 //! The area that one surface has in a cube.
 //!
-//! The flux of a constant field through the surface of a body is 0. So what flows through the boundary of a solid in a
-//! cell flows through the walls of the cell where the solid reaches them. Along the gradient at the centre, the flux is
-//! the area of the boundary, but for the cosine of the angle to its normals, which differs from 1 by the square of the
-//! angle. What a wall has of the solid is a figure in the plane, of which the outline is known to second order. So the
-//! area is known to third order.
+//! The flux of a constant field through the surface of a body is 0. So what flows through the boundary of a
+//! solid in a cell flows through the walls of the cell where the solid reaches them. Along the gradient at
+//! the centre, the flux is the area of the boundary, but for the cosine of the angle to its normals, which
+//! differs from 1 by the square of the angle. What a wall has of the solid is a figure in the plane, of which
+//! the outline is known to second order. So the area is known to third order.
 
 use super::quadratic::Quadratic;
 use super::taylor::Taylor;
@@ -14,8 +14,8 @@ use crate::lattice::{Interval, PLACES};
 /// More than what comes of rounding, lengths and areas being at most 24.
 pub(super) const ROUNDING: f64 = 1e-13;
 
-/// A surface has no more area than this in a cell, in squares of the half edge. Lines meet it no more often than its
-/// degree, and by Crofton's formula the area is at most half of that times the surface of the cell.
+/// A surface has no more area than this in a cell, in squares of the half edge. Lines meet it no more often
+/// than its degree, and by Crofton's formula the area is at most half of that times the surface of the cell.
 pub(crate) fn most_area(degree: u32) -> f64 {
     12.0 * degree as f64
 }
@@ -93,8 +93,8 @@ impl Figure {
         if !is_graph {
             return Interval::between(0.0, 4.0);
         }
-        // Each x has at most one y on the outline: about y0 = offset + slope · x, a straight line, by `moved` at the most.
-        // On the line itself f tells by how much, up to `share` of it.
+        // Each x has at most one y on the outline: about y0 = offset + slope · x, a straight line, by `moved`
+        // at the most. On the line itself f tells by how much, up to `share` of it.
         let (offset, slope) = (-self.value / self.of_y, -self.of_x / self.of_y);
         let steeper = 1.0 / (1.0 - share) * (1.0 + 8.0 * f64::EPSILON);
         let moved = (bends + self.error) / fall * steeper;

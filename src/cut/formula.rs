@@ -4,14 +4,15 @@ use super::Half;
 use crate::lattice::axes;
 use crate::lattice::{CubeMoments, PAIRS};
 
-/// Terms of the sum that are larger than this would cancel. (Moments are off by less than 2^-45 of the largest.)
+/// Terms of the sum that are larger than this would cancel. (Moments are off by less than 2^-45 of the
+/// largest.)
 const LARGEST_TERM: f64 = 24.0;
 
-/// Moments of { x in [-1, 1]³ : n · x ≤ offset }, the magnitudes of n adding up to 1; `None` if their error would be
-/// too great, as the plane is nearly but not quite parallel to an axis.
+/// Moments of { x in [-1, 1]³ : n · x ≤ offset }, the magnitudes of n adding up to 1; `None` if their error
+/// would be too great, as the plane is nearly but not quite parallel to an axis.
 ///
-/// In coordinates u in [0, 1]³ that grow along n the set is a simplex at the origin less those at the corners that
-/// it reaches beyond, and so on: by inclusion and exclusion a sum over corners.
+/// In coordinates u in [0, 1]³ that grow along n the set is a simplex at the origin less those at the corners
+/// that it reaches beyond, and so on: by inclusion and exclusion a sum over corners.
 #[inline]
 pub(super) fn below(half: &Half) -> Option<CubeMoments> {
     let m = half.normal.map(f64::abs);
@@ -47,8 +48,8 @@ pub(super) fn below(half: &Half) -> Option<CubeMoments> {
     Some(if upper { moments.complement() } else { moments })
 }
 
-/// Volume, first and second moments of { u in [0, 1]³ : m · u ≤ α }, where α ≤ ½ and the m of the axes in `USED` (a bit
-/// each) are positive, those of the others 0.
+/// Volume, first and second moments of { u in [0, 1]³ : m · u ≤ α }, where α ≤ ½ and the m of the axes in
+/// `USED` (a bit each) are positive, those of the others 0.
 #[inline(always)]
 fn sums<const USED: usize>(m: &[f64; 3], alpha: f64) -> Option<(f64, [f64; 3], [f64; 6])> {
     let is_used = |axis: usize| USED >> axis & 1 != 0;

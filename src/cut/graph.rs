@@ -5,8 +5,8 @@ use super::quadratic::Quadratic;
 use crate::lattice::{PAIRS, PLACES};
 use wide::f64x4;
 
-/// A function whose surface is a graph z*(x, y) over the square, divided by its slope along z: z − z₀ + R, where
-/// z₀ = −(a x + b y + c) is a plane. z is the axis of the greatest slope.
+/// A function whose surface is a graph z*(x, y) over the square, divided by its slope along z: z − z₀ + R,
+/// where z₀ = −(a x + b y + c) is a plane. z is the axis of the greatest slope.
 pub(super) struct Graph {
     /// The axes of the cube that are x, y and z.
     pub(super) axes: [usize; 3],
@@ -21,7 +21,8 @@ pub(super) struct Graph {
     pub(super) bend: f64,
     /// R's slope along z is at most this as far as an edge beyond the cube.
     pub(super) steepest: f64,
-    /// Where z₀ or z* is in the cube, they are at most this apart; and anywhere at most |v| / (1 − `steepest`).
+    /// Where z₀ or z* is in the cube, they are at most this apart; and anywhere at most |v| / (1 −
+    /// `steepest`).
     pub(super) most: f64,
     /// More than what values are off by.
     pub(super) rounding: f64,
@@ -34,8 +35,8 @@ pub(super) struct Values {
 }
 
 impl Graph {
-    /// The graph of f = 0, with a plane that is near it in the cube; `None` if f's gradient varies too much there.
-    /// `section` is what the plane with these axes has in common with the cube and the planes.
+    /// The graph of f = 0, with a plane that is near it in the cube; `None` if f's gradient varies too much
+    /// there. `section` is what the plane with these axes has in common with the cube and the planes.
     #[inline(always)]
     pub(super) fn new(
         f: &Quadratic,
@@ -93,7 +94,8 @@ impl Graph {
         if !(steepest <= 0.5 && most <= 1.0 && a.abs() <= 2.0 && b.abs() <= 2.0) {
             return None;
         }
-        // R at p + d is dᵀ q d − shift. On the plane d is (X, Y, e − a X − b Y), where X = x − p and Y = y − p.
+        // R at p + d is dᵀ q d − shift. On the plane d is (X, Y, e − a X − b Y), where X = x − p and Y = y −
+        // p.
         let [_, _, zz, _, xz, yz] = q;
         let e = -((c + p[2]) + (a * p[0] + b * p[1]));
         let (along_x, along_y) = (xz - a * zz, yz - b * zz);

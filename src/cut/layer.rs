@@ -20,18 +20,18 @@ pub(crate) fn corners(slab: &Slab) -> impl Iterator<Item = [f64; 3]> + Clone {
     of_cube.filter(move |p| (inner..=outer).contains(&dot(normal, *p))).chain(met)
 }
 
-/// If one side of a slab lies in a solid and the other does not, no point of the slab in the cube is further than that from the
-/// boundary, to rounding; infinite if the cube does not reach to both sides.
+/// If one side of a slab lies in a solid and the other does not, no point of the slab in the cube is further
+/// than that from the boundary, to rounding; infinite if the cube does not reach to both sides.
 ///
-/// The straight way from a point to the nearest point of one side, or to that of the other, meets the boundary. The distance from a side
-/// is a convex function, so that it is greatest in a corner.
+/// The straight way from a point to the nearest point of one side, or to that of the other, meets the
+/// boundary. The distance from a side is a convex function, so that it is greatest in a corner.
 pub(crate) fn stray(slab: &Slab) -> f64 {
     let [behind, before] = sides(slab);
     behind.max(before)
 }
 
-/// How far the points of the slab in the cube are from the cube's points behind it at the most, and from those in front of it, to
-/// rounding; infinite if there are none.
+/// How far the points of the slab in the cube are from the cube's points behind it at the most, and from
+/// those in front of it, to rounding; infinite if there are none.
 pub(crate) fn sides(slab: &Slab) -> [f64; 2] {
     let behind = |p| distance(p, slab.normal, slab.inner);
     let before = |p| distance(p, slab.normal.map(|c| -c), -slab.outer);
@@ -43,7 +43,8 @@ fn distance(p: [f64; 3], normal: [f64; 3], offset: f64) -> f64 {
     if dot(normal, p) <= offset {
         return 0.0;
     }
-    // The nearest point is p − λ n, moved into the cube: axes along which it would leave are fixed, one after the other.
+    // The nearest point is p − λ n, moved into the cube: axes along which it would leave are fixed, one after
+    // the other.
     let mut nearest = p;
     let mut is_free = normal.map(|c| c != 0.0);
     loop {
@@ -116,7 +117,8 @@ mod tests {
                     most = most.max(lattice().filter(beyond).map(off).fold(f64::INFINITY, f64::min));
                 }
             }
-            // (Points of the lattice are 0.1 apart, so that its nearest one is up to a diagonal of that too far.)
+            // (Points of the lattice are 0.1 apart, so that its nearest one is up to a diagonal of that too
+            // far.)
             assert!((own - 0.2..own + 0.18).contains(&most), "{slab:?} {own} {most}");
             assert!(own >= (outer - inner) / length(normal) - 1e-12);
         }

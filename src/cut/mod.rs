@@ -2,14 +2,14 @@
 //!
 //! The cube is [-1, 1]³: a cell, measured from its centre in half edges.
 //!
-//! - For one plane, closed forms give the moments (for the volume: Scardovelli and Zaleski, J. Comput. Phys. 164 (2000)
-//!   228–237; the others follow in the same way). Where these would cancel, and for two or three planes, the cube is
-//!   clipped and integrated over its faces. Moments are off by less than [`ERROR`].
-//! - For one curved surface and up to two planes, a plane near the surface stands for it, and what lies between both is
-//!   integrated. Moments are known to third order, with a bound of their error.
+//! - For one plane, closed forms give the moments (for the volume: Scardovelli and Zaleski, J. Comput. Phys.
+//!   164 (2000) 228–237; the others follow in the same way). Where these would cancel, and for two or three
+//!   planes, the cube is clipped and integrated over its faces. Moments are off by less than [`ERROR`].
+//! - For one curved surface and up to two planes, a plane near the surface stands for it, and what lies
+//!   between both is integrated. Moments are known to third order, with a bound of their error.
 //! - A plane and the cube have a polygon in common; slabs bound how much of it belongs to a solid.
-//! - The area of one surface is the flux through the walls of the cube, to third order. Where surfaces meet, each is
-//!   projected to a wall.
+//! - The area of one surface is the flux through the walls of the cube, to third order. Where surfaces meet,
+//!   each is projected to a wall.
 
 mod ball;
 mod clip;
@@ -42,8 +42,8 @@ pub(crate) use quadratic::Quadratic;
 pub(crate) use section::{SETTLED, Section};
 pub(crate) use taylor::Taylor;
 
-/// More than the error of any moment. (Twice what comes of the largest term that the formula admits; clipping is off
-/// by a tenth of that.)
+/// More than the error of any moment. (Twice what comes of the largest term that the formula admits; clipping
+/// is off by a tenth of that.)
 pub(crate) const ERROR: f64 = 1.0 / (1u64 << 39) as f64;
 
 /// The points of the cube with n · x ≤ offset.
@@ -53,8 +53,8 @@ struct Half {
     offset: f64,
 }
 
-/// Sets that lie in a solid, and that contain it, in a cell of which the enclosure is known: their moments in the
-/// coordinates of the cell.
+/// Sets that lie in a solid, and that contain it, in a cell of which the enclosure is known: their moments in
+/// the coordinates of the cell.
 pub(crate) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
     let of = |outer: bool| match enclosure.join {
         SlabJoin::All => intersection(&enclosure.slabs, outer).unwrap_or(if outer {
@@ -72,13 +72,14 @@ pub(crate) fn bounds(enclosure: &Enclosure) -> (CubeMoments, CubeMoments) {
 /// The moments of a solid in a cell of which the enclosure is known.
 pub(crate) fn between(enclosure: &Enclosure) -> CellMoments {
     let (inner, outer) = bounds(enclosure);
-    // No moment of what lies between both sets, or of a part of that, is greater than the volume between them.
+    // No moment of what lies between both sets, or of a part of that, is greater than the volume between
+    // them.
     let error = 0.5 * (outer.volume - inner.volume).max(0.0) + 2.0 * ERROR;
     CellMoments { moments: inner.mean(&outer), error }
 }
 
-/// A point inside of the points of the cell with n · x ≤ offset for up to three `halves`, where that is more than rounding makes;
-/// nothing if there are none. `None` if rounding hinders.
+/// A point inside of the points of the cell with n · x ≤ offset for up to three `halves`, where that is more
+/// than rounding makes; nothing if there are none. `None` if rounding hinders.
 pub(crate) fn middle(halves: &[([f64; 3], f64)]) -> Option<Option<[f64; 3]>> {
     let mut own = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
     for (own, &(normal, offset)) in own.iter_mut().zip(halves) {
@@ -87,8 +88,8 @@ pub(crate) fn middle(halves: &[([f64; 3], f64)]) -> Option<Option<[f64; 3]>> {
     clip::middle(&own[..halves.len().min(3)])
 }
 
-/// Moments of { x in the cell : f(x) ≥ 0 } on the inner sides of up to two planes, of which slabs tell all but what
-/// rounding leaves open; `None` if they are not known to third order.
+/// Moments of { x in the cell : f(x) ≥ 0 } on the inner sides of up to two planes, of which slabs tell all
+/// but what rounding leaves open; `None` if they are not known to third order.
 pub(crate) fn curved(f: &Quadratic, planes: &[Slab]) -> Option<CellMoments> {
     let mut halves = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
     let (mut count, mut error) = (0, 0.0);
@@ -125,8 +126,8 @@ pub(crate) fn doubt(enclosure: &Enclosure) -> f64 {
         let (high, rest) = (a.max(b), a.min(b));
         let (most, middle, least) = (high.max(c), high.min(c).max(rest), rest.min(c));
         if most > 0.0 {
-            // Seen along the axis to which the normal is nearest, a section is at most a face; near an edge or a
-            // corner of the cube it is smaller.
+            // Seen along the axis to which the normal is nearest, a section is at most a face; near an edge
+            // or a corner of the cube it is smaller.
             let range = (a + b) + c;
             if !range.is_finite() {
                 return 8.0;
@@ -146,8 +147,8 @@ pub(crate) fn doubt(enclosure: &Enclosure) -> f64 {
     if is_known { 8.0f64.min(doubt) } else { 8.0 }
 }
 
-/// Moments of the cube's points that lie on the inner side of all planes, of the outer ends of the slabs or of
-/// the inner ends; `None` if they are not had.
+/// Moments of the cube's points that lie on the inner side of all planes, of the outer ends of the slabs or
+/// of the inner ends; `None` if they are not had.
 fn intersection(slabs: &[Slab; 3], outer: bool) -> Option<CubeMoments> {
     let mut halves = [Half { normal: [0.0; 3], offset: 0.0 }; 3];
     let (mut count, mut is_known) = (0, false);

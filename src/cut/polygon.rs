@@ -8,13 +8,14 @@ const CORNERS: usize = 8;
 pub(super) struct Line {
     pub(super) slope: [f64; 2],
     pub(super) constant: f64,
-    /// The line is where a plane meets a face, and the function what the face allows: so much is taken of it along z.
+    /// The line is where a plane meets a face, and the function what the face allows: so much is taken of it
+    /// along z.
     pub(super) rise: f64,
 }
 
 impl Line {
-    /// The points of the plane z = −(a x + b y + c) on the inner side of n · x ≤ offset, `axes` of the cube being x, y
-    /// and z.
+    /// The points of the plane z = −(a x + b y + c) on the inner side of n · x ≤ offset, `axes` of the cube
+    /// being x, y and z.
     pub(super) fn new(axes: &[usize; 3], [a, b, c]: &[f64; 3], normal: &[f64; 3], offset: f64) -> Line {
         let n = axes.map(|axis| normal[axis]);
         Line { slope: [n[2] * a - n[0], n[2] * b - n[1]], constant: offset + n[2] * c, rise: n[2] }
@@ -41,8 +42,8 @@ impl Polygon {
         Polygon { corners, count: 4 }
     };
 
-    /// The part of the square where no line is negative; `None` if rounding makes more corners than there is place
-    /// for.
+    /// The part of the square where no line is negative; `None` if rounding makes more corners than there is
+    /// place for.
     pub(super) fn new(lines: impl Iterator<Item = Line>) -> Option<Polygon> {
         let mut polygon = Polygon::SQUARE;
         for line in lines {
@@ -56,7 +57,8 @@ impl Polygon {
         &self.corners[..self.count]
     }
 
-    /// Keeps the part where the line is not negative; `None` if rounding makes more corners than there is place for.
+    /// Keeps the part where the line is not negative; `None` if rounding makes more corners than there is
+    /// place for.
     pub(super) fn clip(&mut self, line: &Line) -> Option<()> {
         let mut values = [0.0; CORNERS];
         let mut outside = 0;

@@ -10,8 +10,8 @@ pub(crate) struct Quadratic {
     pub(crate) gradient: [f64; 3],
     /// Half the second derivatives: xx, yy, zz, xy, xz, yz.
     pub(crate) squares: [f64; 6],
-    /// The function differs by at most this from value + gradient · x + xᵀ squares x. Infinite, or no number: nothing is
-    /// known.
+    /// The function differs by at most this from value + gradient · x + xᵀ squares x. Infinite, or no number:
+    /// nothing is known.
     pub(crate) error: f64,
 }
 

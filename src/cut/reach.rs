@@ -1,8 +1,8 @@
 //! How far a solid reaches in a cell of which the enclosure is known.
 //!
-//! Both answers are linear programs over the cube [-1, 1]³ and one to three half-spaces. Plain doubles choose a
-//! solution among all bases, and intervals prove it: any multipliers that are not negative bound the program from
-//! above (weak duality), and any point that satisfies the constraints bounds it from below.
+//! Both answers are linear programs over the cube [-1, 1]³ and one to three half-spaces. Plain doubles choose
+//! a solution among all bases, and intervals prove it: any multipliers that are not negative bound the
+//! program from above (weak duality), and any point that satisfies the constraints bounds it from below.
 
 use super::{Enclosure, SlabJoin};
 use crate::lattice::Interval;
@@ -78,8 +78,8 @@ impl Halves {
 }
 
 /// An upper bound of `direction` · x over the points of the solid in a cell, x being measured from the cell's
-/// centre in half edges. It is at most the sum of the direction's magnitudes, and −∞ if the cell has no point of
-/// the solid.
+/// centre in half edges. It is at most the sum of the direction's magnitudes, and −∞ if the cell has no point
+/// of the solid.
 pub(crate) fn upper(enclosure: &Enclosure, direction: [f64; 3]) -> f64 {
     let known = slabs(enclosure, true);
     match enclosure.join {
@@ -99,8 +99,8 @@ pub(crate) fn upper(enclosure: &Enclosure, direction: [f64; 3]) -> f64 {
     }
 }
 
-/// A point of the closed cell, as far along `direction` as a search by doubles finds one, that is a limit of points
-/// of the solid in the open cell.
+/// A point of the closed cell, as far along `direction` as a search by doubles finds one, that is a limit of
+/// points of the solid in the open cell.
 pub(crate) fn witness(enclosure: &Enclosure, direction: [f64; 3]) -> Option<[f64; 3]> {
     let mut known = slabs(enclosure, false).peekable();
     known.peek()?;
@@ -179,8 +179,9 @@ fn is_empty(halves: &Halves, rows: &[[f64; 3]]) -> bool {
     false
 }
 
-/// Proven: an upper bound of `direction` · x over the cube's points in all half-spaces, as these multipliers have
-/// it, that go with normals of the range 1. It is below 0 for the direction 0 only if there are no such points.
+/// Proven: an upper bound of `direction` · x over the cube's points in all half-spaces, as these multipliers
+/// have it, that go with normals of the range 1. It is below 0 for the direction 0 only if there are no such
+/// points.
 fn dual(halves: &Halves, multipliers: [f64; 3], direction: [f64; 3]) -> f64 {
     let (mut bound, mut rest) = (Interval::exactly(0.0), direction.map(Interval::exactly));
     for (half, multiplier) in halves.as_slice().iter().zip(multipliers) {
@@ -200,9 +201,11 @@ fn dual(halves: &Halves, multipliers: [f64; 3], direction: [f64; 3]) -> f64 {
     bound.upper
 }
 
-/// A point of the cube that is a limit of points inside of all half-spaces, as far along `direction` as one is found.
+/// A point of the cube that is a limit of points inside of all half-spaces, as far along `direction` as one
+/// is found.
 fn farthest(halves: &Halves, direction: [f64; 3]) -> Option<[f64; 3]> {
-    // Offsets are moved inward by more than what a solution is off by: where planes are nearly parallel, by more.
+    // Offsets are moved inward by more than what a solution is off by: where planes are nearly parallel, by
+    // more.
     let inside = MARGINS
         .into_iter()
         .find_map(|margin| vertex(halves, direction, margin).filter(|p| halves.hold(*p, true)))?;
@@ -211,8 +214,8 @@ fn farthest(halves: &Halves, direction: [f64; 3]) -> Option<[f64; 3]> {
     Some(on.unwrap_or(inside))
 }
 
-/// The vertex that is farthest along `direction`, to rounding, of the cube's part in all half-spaces with their
-/// offsets moved inward.
+/// The vertex that is farthest along `direction`, to rounding, of the cube's part in all half-spaces with
+/// their offsets moved inward.
 fn vertex(halves: &Halves, direction: [f64; 3], margin: f64) -> Option<[f64; 3]> {
     let (rows, count) = halves.rows();
     let offsets = halves.all.map(|half| half.offset / half.range - margin);

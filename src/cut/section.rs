@@ -1,14 +1,16 @@
 //! What a plane has in common with a cube, and how much of that belongs to a solid whose slabs are known.
 //!
-//! The figure is seen along the axis to which the plane's normal is nearest: a polygon in the square [-1, 1]². Each of its
-//! sides is known up to a margin. A figure that is clipped a margin further in is contained in the true one, and one that is
-//! clipped a margin further out contains it; that holds however nearly parallel sides are.
+//! The figure is seen along the axis to which the plane's normal is nearest: a polygon in the square [-1,
+//! 1]². Each of its sides is known up to a margin. A figure that is clipped a margin further in is contained
+//! in the true one, and one that is clipped a margin further out contains it; that holds however nearly
+//! parallel sides are.
 
 use super::enclosure::{Enclosure, Slab, SlabJoin};
 use super::polygon::{Line, Polygon};
 use crate::lattice::{Interval, axes};
 
-/// More than what a side's linear function is off by, at any point of the square: some dozen roundings of numbers below 8.
+/// More than what a side's linear function is off by, at any point of the square: some dozen roundings of
+/// numbers below 8.
 const MARGIN: f64 = 1.0 / (1u64 << 45) as f64;
 
 /// More than what an area is off by, and the rounding of corners makes of it.
@@ -30,8 +32,9 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    /// The plane with these axes and a, b and c. The slopes a and b are at most 1 in magnitude, and they are rounded once; c
-    /// may be off by 2^-50. With slopes of zero the plane is parallel to a face, and it meets the closed cube.
+    /// The plane with these axes and a, b and c. The slopes a and b are at most 1 in magnitude, and they are
+    /// rounded once; c may be off by 2^-50. With slopes of zero the plane is parallel to a face, and it meets
+    /// the closed cube.
     pub(crate) fn new(order: [usize; 3], [a, b]: [f64; 2], c: f64) -> Section {
         let c = if [a, b] == [0.0; 2] { c.clamp(-1.0, 1.0) } else { c };
         Section { order, plane: [a, b, c] }
@@ -42,8 +45,8 @@ impl Section {
         self.plane[..2] == [0.0; 2]
     }
 
-    /// Bounds of the area of what plane and cube have in common, in squares of the half edge, as it is seen. If the plane is
-    /// parallel to a face, they are exact.
+    /// Bounds of the area of what plane and cube have in common, in squares of the half edge, as it is seen.
+    /// If the plane is parallel to a face, they are exact.
     pub(crate) fn whole(&self) -> Interval {
         self.clipped(&[])
     }
@@ -75,8 +78,8 @@ impl Section {
         Interval::between(inner.min(outer), outer)
     }
 
-    /// The area of a figure as the next function has it, if plane and slabs are parallel to faces of the cube: a rectangle,
-    /// of which nothing is rounded that is a double.
+    /// The area of a figure as the next function has it, if plane and slabs are parallel to faces of the
+    /// cube: a rectangle, of which nothing is rounded that is a double.
     fn rectangle(&self, slabs: &[Slab], outer: bool) -> Option<f64> {
         if !self.is_parallel() {
             return None;
@@ -133,7 +136,8 @@ impl Section {
     }
 }
 
-/// The slab with a normal of which the magnitudes have the sum 1. If its numbers tell nothing, it leaves all open.
+/// The slab with a normal of which the magnitudes have the sum 1. If its numbers tell nothing, it leaves all
+/// open.
 fn normalised(slab: &Slab) -> Slab {
     let range: f64 = slab.normal.iter().map(|c| c.abs()).sum();
     let is_usable = (SHORTEST..=f64::MAX).contains(&range) && !slab.inner.is_nan() && !slab.outer.is_nan();
@@ -160,8 +164,8 @@ fn area(figure: &Polygon, error: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A plane z = a x + b y and a slab without thickness that crosses it along y = end at a slope of 2^-k: the true area is
-    /// told by two roundings, and lies between the bounds.
+    /// A plane z = a x + b y and a slab without thickness that crosses it along y = end at a slope of 2^-k:
+    /// the true area is told by two roundings, and lies between the bounds.
     #[test]
     fn bounds_hold_however_nearly_parallel_a_slab_is() {
         let mut state = 1u64;

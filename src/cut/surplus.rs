@@ -4,8 +4,8 @@ use super::graph::Graph;
 use super::polygon::Polygon;
 use wide::f64x4;
 
-/// Nodes of a quadrature over a triangle and their weights, exact for polynomials of degree five (Radon, 1948): the
-/// centroid, and points on the medians, of which the share of two corners is given.
+/// Nodes of a quadrature over a triangle and their weights, exact for polynomials of degree five (Radon,
+/// 1948): the centroid, and points on the medians, of which the share of two corners is given.
 const CENTROID: f64 = 0.225;
 const MEDIANS: [(f64, f64); 2] = [
     (0.101_286_507_323_456_34, 0.125_939_180_544_827_16),
@@ -23,8 +23,8 @@ pub(super) struct Surplus {
 impl Surplus {
     /// What lies in columns that meet the plane in the cube, if they did not end there.
     ///
-    /// The surface is at z₀ + τ, where τ = −v to first order, −v (1 − slope) to second. The integral of a weight w from
-    /// z₀ to there is w τ + w' τ²/2 + w'' τ³/6.
+    /// The surface is at z₀ + τ, where τ = −v to first order, −v (1 − slope) to second. The integral of a
+    /// weight w from z₀ to there is w τ + w' τ²/2 + w'' τ³/6.
     #[inline(always)]
     pub(super) fn over(polygon: &Polygon, graph: &Graph) -> Surplus {
         let corners = polygon.corners();
@@ -87,8 +87,8 @@ impl Surplus {
     }
 
     /// With D the greatest distance, d the local one and r a bound of R's slope along z, τ is off by at most
-    /// r² d + (1 + r) bend d²; and with weights of at most 1, whose derivatives are at most 2, the integral by
-    /// 2 r d² + d³/3 beside.
+    /// r² d + (1 + r) bend d²; and with weights of at most 1, whose derivatives are at most 2, the integral
+    /// by 2 r d² + d³/3 beside.
     fn error(polygon: &Polygon, graph: &Graph, square: f64, area: f64) -> f64 {
         let (mut v, mut slope) = (0.0f64, 0.0f64);
         for &[x, y] in polygon.corners() {

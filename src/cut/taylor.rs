@@ -26,8 +26,8 @@ impl Taylor {
         sqrt((x * x + y * y) + z * z)
     }
 
-    /// More than the sine of the angle between the gradient at the centre and any other; 1 and more, or no number, if
-    /// nothing is known.
+    /// More than the sine of the angle between the gradient at the centre and any other; 1 and more, or no
+    /// number, if nothing is known.
     pub(super) fn sine(&self) -> f64 {
         self.bend / self.steepness() * (1.0 + 16.0 * f64::EPSILON)
     }

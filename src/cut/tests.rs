@@ -1,7 +1,8 @@
 //! Cut cubes against exact arithmetic.
 //!
-//! The oracle cuts the cube into tetrahedra and these by one plane after the other. Corners are integers over a common
-//! denominator, so that nothing is rounded before the last sums, which have 200 bits behind the point.
+//! The oracle cuts the cube into tetrahedra and these by one plane after the other. Corners are integers over
+//! a common denominator, so that nothing is rounded before the last sums, which have 200 bits behind the
+//! point.
 
 extern crate std;
 

@@ -25,11 +25,12 @@ struct Edge<'a> {
 }
 
 impl Surplus {
-    /// Counts what columns have less, or more, as they end at the face of line `own`: columns where the face lies
-    /// between the plane and the surface. `None` if the plane is nearly parallel to a face next to it.
+    /// Counts what columns have less, or more, as they end at the face of line `own`: columns where the face
+    /// lies between the plane and the surface. `None` if the plane is nearly parallel to a face next to it.
     ///
-    /// Where t is the distance from the plane up to the face, and τ that to the surface, these are the columns with t
-    /// between 0 and τ, and they have ∫ |τ − t| dt = τ²/2 too much or too little, if τ does not depend on t.
+    /// Where t is the distance from the plane up to the face, and τ that to the surface, these are the
+    /// columns with t between 0 and τ, and they have ∫ |τ − t| dt = τ²/2 too much or too little, if τ does
+    /// not depend on t.
     #[inline(always)]
     pub(super) fn add_wedge(&mut self, graph: &Graph, lines: &[Line], own: usize) -> Option<()> {
         let Line { slope: [sx, sy], constant, rise } = lines[own];
@@ -114,8 +115,8 @@ impl Surplus {
         let (x, y, weight) = nodes(inner);
         let v = graph.at(x, y).v;
         let ends = (all - sum(weight * v * v)).max(0.0);
-        // Else τ changes with t, it differs from −v by the slope, and weights change by at most twice the distances,
-        // of which the mean is a third (and along another plane more).
+        // Else τ changes with t, it differs from −v by the slope, and weights change by at most twice the
+        // distances, of which the mean is a third (and along another plane more).
         let reach = if own < 2 { steep.max(1.0) } else { 3.0 + 3.0 * steep };
         let weights = 2.0 / 3.0 * most * reach * (spread * spread);
         self.error += full * (spread * ends + (change * spread + 2.0 * slope + weights) * all);
@@ -124,8 +125,8 @@ impl Surplus {
 }
 
 impl Edge<'_> {
-    /// Ranges of y on the line: where the wedge surely is in its whole width, where the line bounds the section, and
-    /// where there may be some of the wedge, which extends by `dx` and `dz` at most.
+    /// Ranges of y on the line: where the wedge surely is in its whole width, where the line bounds the
+    /// section, and where there may be some of the wedge, which extends by `dx` and `dz` at most.
     fn chords(&self, dx: f64, dz: f64) -> [(f64, f64); 3] {
         let mut ends = [(-1.0f64, 1.0f64); 3];
         let own = &self.lines[self.own];

@@ -1,5 +1,5 @@
-//! Models from rows of rays, in one canonical form: the window of each direction is the least that holds the rays that
-//! are not empty.
+//! Models from rows of rays, in one canonical form: the window of each direction is the least that holds the
+//! rays that are not empty.
 
 use super::arrays::RowArrays;
 use super::columns::Columns;
@@ -58,8 +58,8 @@ impl<S: Span> Piece<S> {
         self.columns.copy(&from.columns, first as usize..end as usize)
     }
 
-    /// Appends an interval of the present ray: nothing if it is empty; one that touches the interval before is joined to
-    /// that, unless both have materials that differ.
+    /// Appends an interval of the present ray: nothing if it is empty; one that touches the interval before
+    /// is joined to that, unless both have materials that differ.
     #[inline]
     pub fn add(&mut self, item: &Item<S::Place>) -> Result<(), Error> {
         if item.ends[0] >= item.ends[1] {

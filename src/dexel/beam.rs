@@ -19,8 +19,9 @@ pub struct BeamEnd {
 }
 
 impl BeamEnd {
-    /// An end about `at` cells from the universe's lower face, of which is known that cell `above` is the first whose
-    /// centre does not lie below it (0 to the cells of an axis). It is moved into the gap that this says it lies in.
+    /// An end about `at` cells from the universe's lower face, of which is known that cell `above` is the
+    /// first whose centre does not lie below it (0 to the cells of an axis). It is moved into the gap that
+    /// this says it lies in.
     pub fn new(at: f64, above: u32, cells: u32) -> BeamEnd {
         let at = within(at, above.min(cells) as i32, f64::from(cells));
         BeamEnd { at: if at.is_nan() { 0.0 } else { at }, mark: Mark::NONE }
@@ -36,7 +37,8 @@ impl BeamEnd {
         BeamEnd { mark: self.mark.flipped(), ..self }
     }
 
-    /// The same on a surface of the solid with this outward normal (of any length; without direction for none).
+    /// The same on a surface of the solid with this outward normal (of any length; without direction for
+    /// none).
     #[must_use]
     pub fn on(self, surface: u32, normal: [f64; 3]) -> BeamEnd {
         BeamEnd { mark: Mark { surface, normal: encoded(normal) }, ..self }
@@ -52,8 +54,8 @@ pub(crate) struct Chord {
     pub ends: [f64; 2],
 }
 
-/// Parallel rays through the centres of finest cells, inside of one cell: what a [`Worker`](crate::Worker) fills that knows
-/// where they enter and leave.
+/// Parallel rays through the centres of finest cells, inside of one cell: what a [`Worker`](crate::Worker)
+/// fills that knows where they enter and leave.
 pub struct Beam {
     axis: usize,
     depth: u8,
@@ -69,7 +71,8 @@ pub struct Beam {
 }
 
 impl Beam {
-    /// Rays of a universe of 2^depth cells along an axis; nothing is known yet. `marked`: surfaces and normals are wanted.
+    /// Rays of a universe of 2^depth cells along an axis; nothing is known yet. `marked`: surfaces and
+    /// normals are wanted.
     pub(crate) fn new(axis: usize, depth: u8, window: Window, marked: bool) -> Beam {
         Beam {
             axis,
@@ -120,8 +123,8 @@ impl Beam {
         self.marked
     }
 
-    /// Adds an interval. Those of a ray must come in ascending order. An interval reaches no farther than the span; one that
-    /// goes on beyond it ends there, [between](BeamEnd::between) cells.
+    /// Adds an interval. Those of a ray must come in ascending order. An interval reaches no farther than the
+    /// span; one that goes on beyond it ends there, [between](BeamEnd::between) cells.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -149,8 +152,8 @@ impl Beam {
         BeamEnd { at: self.chords[i].ends[side], mark }
     }
 
-    /// Puts in the place of the intervals from the one numbered `first` on, which are those of the present rays in the present
-    /// cell, what they leave of it.
+    /// Puts in the place of the intervals from the one numbered `first` on, which are those of the present
+    /// rays in the present cell, what they leave of it.
     pub(crate) fn complement(&mut self, first: usize) -> Result<(), Error> {
         let count = self.chords.len() - first;
         let mut own = memory::with_capacity(count)?;

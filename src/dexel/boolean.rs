@@ -1,8 +1,8 @@
 //! The set algebra of models on one lattice.
 //!
-//! Half-open intervals on a ray are closed under the set operations, so that all laws of sets hold exactly, as for point
-//! sets. What intervals carry follows: an end keeps its surface and normal, turned about where a subtraction shows its
-//! other side; where both operands hold a place, the first one's material counts.
+//! Half-open intervals on a ray are closed under the set operations, so that all laws of sets hold exactly,
+//! as for point sets. What intervals carry follows: an end keeps its surface and normal, turned about where a
+//! subtraction shows its other side; where both operands hold a place, the first one's material counts.
 
 use super::arrays::{Form, ModelArrays, OwnedRows};
 use super::assemble::{Piece, assembled};
@@ -26,11 +26,12 @@ impl TriDexelRef<'_> {
     /// What lies in this model or in `other`. O(rays + intervals). The same for any number of threads.
     ///
     /// # Errors
-    /// [`Error::FrameMismatch`] if the models lie on different lattices; [`Error::Argument`] if they have different
-    /// directions; [`Error::Limit`] for 2^32 intervals in one direction, and for 2^32 rays between the outermost ones of the
-    /// result, as where two models lie far apart at a depth of 16 or more; [`Error::TooLarge`] where these rays alone take more
-    /// than `control.max_bytes`; [`Error::DamagedRays`] if a model is one of a file that nobody has verified, and is damaged;
-    /// [`Error::OutOfMemory`]; [`Error::Cancelled`].
+    /// [`Error::FrameMismatch`] if the models lie on different lattices; [`Error::Argument`] if they have
+    /// different directions; [`Error::Limit`] for 2^32 intervals in one direction, and for 2^32 rays between
+    /// the outermost ones of the result, as where two models lie far apart at a depth of 16 or more;
+    /// [`Error::TooLarge`] where these rays alone take more than `control.max_bytes`; [`Error::DamagedRays`]
+    /// if a model is one of a file that nobody has verified, and is damaged; [`Error::OutOfMemory`];
+    /// [`Error::Cancelled`].
     pub fn union(&self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<TriDexel, Error> {
         combined(SetOp::Union, self, other, control)
     }
@@ -125,8 +126,8 @@ impl TriDexelRef<'_> {
 }
 
 impl TriDexel {
-    /// What lies in any of the models; nothing of no model is an error, as its lattice is not known. Where several hold a
-    /// place, the first one's material counts. O(rays + intervals · log models).
+    /// What lies in any of the models; nothing of no model is an error, as its lattice is not known. Where
+    /// several hold a place, the first one's material counts. O(rays + intervals · log models).
     ///
     /// # Errors
     /// [`Error::Argument`] for no model, else as [`TriDexelRef::union`].

@@ -37,8 +37,8 @@ impl Passage {
 }
 
 impl TriDexelRef<'_> {
-    /// What the rays along an axis say of the cells in these ranges; `None` without rays. An end in a face of the box is not in
-    /// it. O(rays in the box · log intervals of a ray), less where the first rays differ.
+    /// What the rays along an axis say of the cells in these ranges; `None` without rays. An end in a face of
+    /// the box is not in it. O(rays in the box · log intervals of a ray), less where the first rays differ.
     pub(crate) fn passage(&self, axis: usize, cells: &[Range<u32>; 3]) -> Option<Passage> {
         let rows = self.rays.get(axis)?.as_ref()?;
         let ([u, v], depth) = (OTHERS[axis], self.frame.depth());
@@ -70,17 +70,17 @@ impl TriDexelRef<'_> {
         found
     }
 
-    /// Whether the centre of a finest cell lies inside. Where the directions differ, as those of arrays from elsewhere
-    /// may, the highest axis that has rays decides. A cell outside of the universe does not lie inside. O(log intervals
-    /// of a ray).
+    /// Whether the centre of a finest cell lies inside. Where the directions differ, as those of arrays from
+    /// elsewhere may, the highest axis that has rays decides. A cell outside of the universe does not lie
+    /// inside. O(log intervals of a ray).
     pub fn contains_cell(&self, cell: [u32; 3]) -> bool {
         let Some((axis, rows)) = self.deciding() else { return false };
         let [u, v] = OTHERS[axis];
         with_rows!(rows, rows => find(rows, [cell[u], cell[v]], cell[axis], self.frame.depth())).is_some()
     }
 
-    /// What a finest cell is made of, by the rays that decide whether its centre lies inside; 0 if that lies outside, or
-    /// nothing was said.
+    /// What a finest cell is made of, by the rays that decide whether its centre lies inside; 0 if that lies
+    /// outside, or nothing was said.
     pub(crate) fn material_of_cell(&self, cell: [u32; 3]) -> u32 {
         let Some((axis, rows)) = self.deciding() else { return 0 };
         let [u, v] = OTHERS[axis];
@@ -90,8 +90,9 @@ impl TriDexelRef<'_> {
         })
     }
 
-    /// How many intervals in all directions hold no centre of a cell, those that touch counted as one: what is thinner than
-    /// the lattice there is in no octree and in no surface of the model. O(rays of the windows + intervals).
+    /// How many intervals in all directions hold no centre of a cell, those that touch counted as one: what
+    /// is thinner than the lattice there is in no octree and in no surface of the model. O(rays of the
+    /// windows + intervals).
     pub fn without_centres(&self) -> u64 {
         let depth = self.frame.depth();
         self.rays.iter().flatten().map(|rows| with_rows!(rows, rows => without_centres(rows, depth))).sum()
@@ -102,9 +103,10 @@ impl TriDexelRef<'_> {
         (0..3).rev().find_map(|axis| Some((axis, self.rays[axis].as_ref()?)))
     }
 
-    /// Which of 64³ centres from cell `first` on lie inside, as bit columns along an axis: bit k of `words[p + 64 q]`
-    /// is cell k along `along`, cell p along the lower and cell q along the higher one of the other two axes. The
-    /// answer is whether any centre may lie inside; if not, the words are left as they are.
+    /// Which of 64³ centres from cell `first` on lie inside, as bit columns along an axis: bit k of
+    /// `words[p + 64 q]` is cell k along `along`, cell p along the lower and cell q along the higher one of
+    /// the other two axes. The answer is whether any centre may lie inside; if not, the words are left as
+    /// they are.
     pub(crate) fn fill_centres(&self, first: [u32; 3], along: usize, words: &mut [u64; 4096]) -> bool {
         let Some((axis, rows)) = self.deciding() else { return false };
         with_rows!(rows, rows => fill(rows, axis, first, along, self.frame.depth(), words))

@@ -10,14 +10,14 @@ use crate::lattice::Frame;
 pub struct DexelChange {
     /// Rays of all directions whose intervals begin or end elsewhere than before.
     pub rays: u64,
-    /// For each axis the volume that the rays along it lost (cubic model units): the sum of the lengths, each times the area
-    /// of a cell's face. So it is an estimate, not a bound, and differs from axis to axis by what rays beside each other do
-    /// not see. 0 for an axis without rays.
+    /// For each axis the volume that the rays along it lost (cubic model units): the sum of the lengths, each
+    /// times the area of a cell's face. So it is an estimate, not a bound, and differs from axis to axis by
+    /// what rays beside each other do not see. 0 for an axis without rays.
     pub removed: [f64; 3],
     /// The volume that the rays along each axis gained.
     pub added: [f64; 3],
-    /// The box of finest cells that the changed parts of rays run through: its first cell, and the first one beyond it on each
-    /// axis. `None` if no ray changed.
+    /// The box of finest cells that the changed parts of rays run through: its first cell, and the first one
+    /// beyond it on each axis. `None` if no ray changed.
     pub cells: Option<[[u32; 3]; 2]>,
 }
 

@@ -5,8 +5,8 @@ use super::view::{RowsRef, TriDexelRef, carries, with_rows};
 use crate::error::Error;
 
 impl TriDexelRef<'_> {
-    /// Refuses arrays that nobody has checked yet, and that are damaged. Every operation that meets all rays asks for this
-    /// first: merges rely on ascending ends, and on rays that have no interval in common.
+    /// Refuses arrays that nobody has checked yet, and that are damaged. Every operation that meets all rays
+    /// asks for this first: merges rely on ascending ends, and on rays that have no interval in common.
     ///
     /// # Errors
     /// [`Error::DamagedRays`].
@@ -14,9 +14,9 @@ impl TriDexelRef<'_> {
         if self.checked { Ok(()) } else { self.check() }
     }
 
-    /// Checks all that the arrays must say: rays in order, intervals that are not empty, disjoint, inside of the universe, and
-    /// that touch only where their materials differ; normals that are codes; windows that are not larger than needed. Whether
-    /// the directions agree is not checked. O(n).
+    /// Checks all that the arrays must say: rays in order, intervals that are not empty, disjoint, inside of
+    /// the universe, and that touch only where their materials differ; normals that are codes; windows that
+    /// are not larger than needed. Whether the directions agree is not checked. O(n).
     ///
     /// # Errors
     /// [`Error::DamagedRays`].

@@ -1,7 +1,8 @@
 //! Changes in place: rows with slack.
 //!
-//! Every ray has a slot in one array of intervals, as large as it once needed. A ray that outgrows its slot moves to the end,
-//! and the array is packed when most of it is no longer used. So a cut costs what it touches.
+//! Every ray has a slot in one array of intervals, as large as it once needed. A ray that outgrows its slot
+//! moves to the end, and the array is packed when most of it is no longer used. So a cut costs what it
+//! touches.
 
 use super::arrays::{Form, ModelArrays, OwnedRows};
 use super::assemble::{Piece, assembled};
@@ -20,7 +21,8 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// A tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch: for machining.
+/// A tri-dexel model that is changed in place, in time proportional to what the second operand's rays touch:
+/// for machining.
 ///
 /// It takes 12 bytes for each ray of the lattice beside the intervals.
 ///
@@ -78,7 +80,8 @@ impl DexelEditor {
     /// A copy that can be changed. O(rays + intervals).
     ///
     /// # Errors
-    /// [`Error::Limit`] for 2^32 rays in one direction (a depth of 16), [`Error::OutOfMemory`], [`Error::DamagedRays`].
+    /// [`Error::Limit`] for 2^32 rays in one direction (a depth of 16), [`Error::OutOfMemory`],
+    /// [`Error::DamagedRays`].
     pub fn new(model: &TriDexelRef<'_>) -> Result<DexelEditor, Error> {
         model.sound()?;
         let rays = match model.kind() {
@@ -93,7 +96,8 @@ impl DexelEditor {
         &self.frame
     }
 
-    /// What of each interval is stored: that of the model which was copied. What more an operand has is left out.
+    /// What of each interval is stored: that of the model which was copied. What more an operand has is left
+    /// out.
     pub fn format(&self) -> DexelFormat {
         self.format
     }
@@ -109,8 +113,9 @@ impl DexelEditor {
     /// Adds what lies in `other`. O(rays of its window + intervals there).
     ///
     /// # Errors
-    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are changed and others not: the
-    /// same operation can be done again, or the editor dropped. (After [`xor`](Self::xor) it can only be dropped.)
+    /// As [`TriDexelRef::union`]. After [`Error::OutOfMemory`] and [`Error::Cancelled`] some rays are changed
+    /// and others not: the same operation can be done again, or the editor dropped. (After [`xor`](Self::xor)
+    /// it can only be dropped.)
     pub fn unite(&mut self, other: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelChange, Error> {
         self.apply(SetOp::Union, other, control)
     }
@@ -418,8 +423,8 @@ impl<S: Span> Slots<S> {
     }
 }
 
-/// Takes one interval away from those in a slot, and says what that did; `None`, and nothing done, if there is no room for
-/// what is left.
+/// Takes one interval away from those in a slot, and says what that did; `None`, and nothing done, if there
+/// is no room for what is left.
 #[inline]
 fn cut<S: Span>(
     spans: &mut [S],

@@ -3,7 +3,8 @@
 /// How the ends of intervals are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum DexelEnds {
-    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at most one unit.
+    /// Start and length in units of 2^-31 edges of the universe, 8 bytes an interval. An end is off by at
+    /// most one unit.
     #[default]
     Fixed,
     /// Start and end as doubles, 16 bytes an interval.

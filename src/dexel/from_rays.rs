@@ -16,31 +16,34 @@ use crate::memory;
 use alloc::vec::Vec;
 
 impl TriDexel {
-    /// A model of intervals that are handed in, ray by ray: those of another program, of a machine, of a test.
+    /// A model of intervals that are handed in, ray by ray: those of another program, of a machine, of a
+    /// test.
     ///
-    /// For each axis of `directions` and each ray, `dexels` is called with the axis, with the ray's indices of cells on
-    /// the other two axes (the lower axis first, which runs faster), and with an empty list. It appends the ray's
-    /// intervals in model units: in ascending order, disjoint. What reaches beyond the universe is cut off. What
-    /// `format` does not store is left out.
+    /// For each axis of `directions` and each ray, `dexels` is called with the axis, with the ray's indices
+    /// of cells on the other two axes (the lower axis first, which runs faster), and with an empty list. It
+    /// appends the ray's intervals in model units: in ascending order, disjoint. What reaches beyond the
+    /// universe is cut off. What `format` does not store is left out.
     ///
-    /// Ends are rounded as the format says, and keep their side of every centre of a cell. That is the real number
-    /// origin + (k + ½) · edge / 2^depth, and the side is decided exactly. An end on a centre is on this centre:
-    /// intervals are half-open, and a start there holds the centre, while an end does not. Intervals that are empty after
-    /// rounding are left out; those that touch are joined, unless both have materials and these differ.
+    /// Ends are rounded as the format says, and keep their side of every centre of a cell. That is the real
+    /// number origin + (k + ½) · edge / 2^depth, and the side is decided exactly. An end on a centre is on
+    /// this centre: intervals are half-open, and a start there holds the centre, while an end does not.
+    /// Intervals that are empty after rounding are left out; those that touch are joined, unless both have
+    /// materials and these differ.
     ///
-    /// An end that [`DexelRays::dexels`](crate::dexel::DexelRays::dexels) handed out goes back to the place where it was, since
-    /// it [tells this place](DexelEnd::cells): a model of all intervals of another one, on the same frame and in the same
-    /// format, is equal to that one. [`DexelEnd::in_cells`] makes such ends.
+    /// An end that [`DexelRays::dexels`](crate::dexel::DexelRays::dexels) handed out goes back to the place
+    /// where it was, since it [tells this place](DexelEnd::cells): a model of all intervals of another one,
+    /// on the same frame and in the same format, is equal to that one. [`DexelEnd::in_cells`] makes such
+    /// ends.
     ///
-    /// The directions are not compared with each other. Where they disagree about a centre, the highest axis decides
-    /// ([`TriDexelRef::contains_cell`](crate::dexel::TriDexelRef::contains_cell)).
+    /// The directions are not compared with each other. Where they disagree about a centre, the highest axis
+    /// decides ([`TriDexelRef::contains_cell`](crate::dexel::TriDexelRef::contains_cell)).
     ///
     /// O(rays + intervals), by the calling thread.
     ///
     /// # Errors
-    /// [`Error::Argument`] if an interval's end is not a number or not behind its start, or if an interval begins before
-    /// the one before it ends; [`Error::Limit`] for 2^32 rays (a depth of 16) or intervals in one direction;
-    /// [`Error::OutOfMemory`]; [`Error::Cancelled`]; and those of `dexels`.
+    /// [`Error::Argument`] if an interval's end is not a number or not behind its start, or if an interval
+    /// begins before the one before it ends; [`Error::Limit`] for 2^32 rays (a depth of 16) or intervals in
+    /// one direction; [`Error::OutOfMemory`]; [`Error::Cancelled`]; and those of `dexels`.
     ///
     /// ```
     /// use leafless::{Control, Frame, TriDexel, dexel::{Dexel, DexelEnd, DexelFormat}};

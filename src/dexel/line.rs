@@ -1,7 +1,7 @@
 //! Between places on a ray and coordinates in model space.
 //!
-//! The centre of cell k lies at the real number origin + (k + ½) · edge / 2^depth, whether or not a double is there. Both
-//! ways keep the gap of a place: which centres lie below it is decided exactly.
+//! The centre of cell k lies at the real number origin + (k + ½) · edge / 2^depth, whether or not a double is
+//! there. Both ways keep the gap of a place: which centres lie below it is decided exactly.
 
 use super::place::{Place, gap};
 use crate::lattice::Frame;
@@ -15,8 +15,9 @@ pub(crate) struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// The coordinate of a place so many cells behind the universe's lower face: of the doubles that lie in the place's gap
-    /// the nearest, up to an ulp. If no double lies in the gap, as may be far from the origin, it is the nearest of all.
+    /// The coordinate of a place so many cells behind the universe's lower face: of the doubles that lie in
+    /// the place's gap the nearest, up to an ulp. If no double lies in the gap, as may be far from the
+    /// origin, it is the nearest of all.
     pub fn coordinate(&self, cells: f64) -> f64 {
         let (origin, size) = (self.frame.origin()[self.axis], self.frame.cell_size());
         let count = self.frame.cells();
@@ -43,8 +44,8 @@ impl Line<'_> {
         if self.gap(moved) == gap { moved } else { x }
     }
 
-    /// The first cell whose centre does not lie below a coordinate, which is a number; exact. Behind the last centre it is
-    /// the number of cells.
+    /// The first cell whose centre does not lie below a coordinate, which is a number; exact. Behind the last
+    /// centre it is the number of cells.
     pub fn gap(&self, x: f64) -> u32 {
         let (x, count) = (clamped(x), self.frame.cells());
         let cells = self.frame.scaled(self.axis, x);
@@ -67,8 +68,8 @@ impl Line<'_> {
         found.clamp(0, i64::from(count)) as u32
     }
 
-    /// The place nearest to a coordinate, which is a number, that lies in its gap; at a face of the universe if the
-    /// coordinate lies beyond.
+    /// The place nearest to a coordinate, which is a number, that lies in its gap; at a face of the universe
+    /// if the coordinate lies beyond.
     pub fn place<P: Place>(&self, x: f64) -> P {
         let size = DoubleDouble::from(self.frame.cell_size());
         let cells = self.frame.near_offset(self.axis, clamped(x), 0).quotient(size);

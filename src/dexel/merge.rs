@@ -107,8 +107,8 @@ pub(crate) fn merge_plain<S: Span>(op: SetOp, a: &[S], b: &[S], out: &mut Vec<S>
 /// What a ray is made of at a place.
 type Matter = Option<u32>;
 
-/// Appends the result on one ray. Where both operands hold a place, the first one says of what it is made, and which end
-/// lies there.
+/// Appends the result on one ray. Where both operands hold a place, the first one says of what it is made,
+/// and which end lies there.
 pub(crate) fn merge<S: Span>(
     op: SetOp,
     (a, range_a): (&ColumnsRef<'_, S>, Range<usize>),
@@ -201,8 +201,8 @@ impl<'c, 'a, S: Span> Way<'c, 'a, S> {
     }
 }
 
-/// Appends the complement of one ray of a universe: what lies between its lower and its upper face outside of the
-/// intervals. Its material is 0.
+/// Appends the complement of one ray of a universe: what lies between its lower and its upper face outside of
+/// the intervals. Its material is 0.
 pub(crate) fn complement<S: Span>(
     columns: &ColumnsRef<'_, S>,
     range: Range<usize>,

@@ -10,13 +10,14 @@ use yoke::erased::ErasedArcCart;
 
 /// A solid as intervals along the rays of a lattice, in one to three directions.
 ///
-/// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in which it runs
-/// inside of the solid; an interval holds its start, not its end. All directions agree about the centres of cells.
+/// Rays run through the centres of the finest cells of a frame. Each has the sorted, disjoint intervals in
+/// which it runs inside of the solid; an interval holds its start, not its end. All directions agree about
+/// the centres of cells.
 ///
-/// **Directions.** Rays along one axis see nothing of what lies beside the outermost of them. Of a sphere in its bounding box
-/// four caps are lost to rays along y, two to rays along x and y, and none to rays along all three axes but for what lies
-/// behind the rays nearest to the poles. (Figure 2 of Gao, Zhang and Hou 2007. Parts of the volume that are lost; a test makes
-/// this table.)
+/// **Directions.** Rays along one axis see nothing of what lies beside the outermost of them. Of a sphere in
+/// its bounding box four caps are lost to rays along y, two to rays along x and y, and none to rays along all
+/// three axes but for what lies behind the rays nearest to the poles. (Figure 2 of Gao, Zhang and Hou 2007.
+/// Parts of the volume that are lost; a test makes this table.)
 ///
 /// | rays to an axis | y | x, y | x, y, z |
 /// |---|---|---|---|
@@ -28,8 +29,9 @@ use yoke::erased::ErasedArcCart;
 /// | 256 | 0.004572 % | 0.002286 % | 0.000000 % |
 /// | 512 | 0.001144 % | 0.000572 % | 0.000000 % |
 ///
-/// It is immutable, a clone costs two reference counts, and any number of threads may read it at once. All reading is done
-/// through its [`view`](TriDexel::view); [`DexelEditor`](crate::dexel::DexelEditor) changes a copy in place.
+/// It is immutable, a clone costs two reference counts, and any number of threads may read it at once. All
+/// reading is done through its [`view`](TriDexel::view); [`DexelEditor`](crate::dexel::DexelEditor) changes a
+/// copy in place.
 #[derive(Clone)]
 pub struct TriDexel {
     arrays: Yoke<TriDexelRef<'static>, ErasedArcCart>,

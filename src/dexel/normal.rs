@@ -1,7 +1,8 @@
 //! Unit vectors as two small integers: the octahedral code (Meyer et al. 2010, Cigolle et al. 2014).
 //!
-//! A vector is scaled so that the sum of its coordinates' magnitudes is M; two coordinates are stored, and where the
-//! third is negative they are folded outward. The least number of a component, −M − 1, is left for "no normal".
+//! A vector is scaled so that the sum of its coordinates' magnitudes is M; two coordinates are stored, and
+//! where the third is negative they are folded outward. The least number of a component, −M − 1, is left for
+//! "no normal".
 
 /// Components of 16 bits: a code takes 32.
 pub(crate) const FINE: i32 = 0x7FFF;
@@ -80,7 +81,8 @@ pub(crate) fn decoded(code: u32) -> Option<[f64; 3]> {
     }
     let [x, y, z] = point(unpacked(code), FINE).map(f64::from);
     let length = crate::lattice::exact::sqrt(x * x + y * y + z * z);
-    // (A code from a file may be none of ours; the point then lies off the octahedron, but not at its centre.)
+    // (A code from a file may be none of ours; the point then lies off the octahedron, but not at its
+    // centre.)
     (length > 0.0).then(|| [x / length, y / length, z / length])
 }
 

@@ -1,4 +1,5 @@
-//! Which blocks of cells hold centres that lie inside: what whoever asks for all centres looks at, and nothing else.
+//! Which blocks of cells hold centres that lie inside: what whoever asks for all centres looks at, and
+//! nothing else.
 
 use super::centres::BLOCK;
 use super::place::{Place, Span};

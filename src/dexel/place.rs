@@ -1,7 +1,8 @@
 //! Positions along a ray.
 //!
-//! A position lies in a *gap*: gap g reaches from the centre of cell g − 1, which it does not hold, to that of cell g,
-//! which it holds. A position and its gap together say which centres lie below it; rounding keeps the gap.
+//! A position lies in a *gap*: gap g reaches from the centre of cell g − 1, which it does not hold, to that
+//! of cell g, which it holds. A position and its gap together say which centres lie below it; rounding keeps
+//! the gap.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -18,8 +19,8 @@ pub(crate) trait Place:
     /// The upper face of a universe of 2^depth cells.
     fn high(depth: u8) -> Self;
 
-    /// The place nearest to `x` cells from the lower face (0 to those of an axis) that lies in a gap, which is that of `x`
-    /// or, as far as `x` was rounded, one beside it.
+    /// The place nearest to `x` cells from the lower face (0 to those of an axis) that lies in a gap, which
+    /// is that of `x` or, as far as `x` was rounded, one beside it.
     fn rounded_in(x: f64, gap: u32, depth: u8) -> Self;
 
     /// The place nearest to `x` cells from the lower face that lies in the same gap.
@@ -44,7 +45,8 @@ pub(crate) fn gap(x: f64) -> i64 {
     -crate::lattice::exact::floor(0.5 - x)
 }
 
-/// The position nearest to `x` cells that lies in a gap of a universe of so many cells, and not outside of it.
+/// The position nearest to `x` cells that lies in a gap of a universe of so many cells, and not outside of
+/// it.
 #[inline(always)]
 pub(crate) fn within(x: f64, gap: i32, cells: f64) -> f64 {
     let centre = f64::from(gap) + 0.5;

@@ -13,11 +13,11 @@ pub struct DexelStatistics {
     pub intervals: u64,
     /// Bytes of the arrays.
     pub bytes: u64,
-    /// The sum of the lengths of all intervals, each times the area of a cell's face: an estimate of the volume (cubic model
-    /// units), not a bound.
+    /// The sum of the lengths of all intervals, each times the area of a cell's face: an estimate of the
+    /// volume (cubic model units), not a bound.
     pub volume: f64,
-    /// The least and the greatest coordinate on each axis of what the rays cross (model units); the first is greater than
-    /// the second if they cross nothing.
+    /// The least and the greatest coordinate on each axis of what the rays cross (model units); the first is
+    /// greater than the second if they cross nothing.
     pub extent: [[f64; 2]; 3],
 }
 

@@ -144,19 +144,19 @@ pub(crate) use with_rows;
 pub struct DexelEnd {
     /// The coordinate along the ray, in model units.
     ///
-    /// An end that is handed out lies on the side of every centre of a cell that is stored: of the doubles on this side it is
-    /// the nearest, up to an ulp. Far from the origin there may be no double between two centres; then it is the nearest
-    /// double of all, and only `cells` tells the side.
+    /// An end that is handed out lies on the side of every centre of a cell that is stored: of the doubles on
+    /// this side it is the nearest, up to an ulp. Far from the origin there may be no double between two
+    /// centres; then it is the nearest double of all, and only `cells` tells the side.
     pub at: f64,
-    /// The same place in finest cells from the universe's lower face, exactly as it is stored: 0 to 2^depth. The centre of cell
-    /// k lies at k + ½.
+    /// The same place in finest cells from the universe's lower face, exactly as it is stored: 0 to 2^depth.
+    /// The centre of cell k lies at k + ½.
     ///
-    /// An end that is handed out has it always. Of an end that is handed in, `cells` counts if `at` is the coordinate that
-    /// would be handed out for it on that frame; else, and if it is `None`, `at` counts alone. So an end whose `at` is changed
-    /// lies where that says.
+    /// An end that is handed out has it always. Of an end that is handed in, `cells` counts if `at` is the
+    /// coordinate that would be handed out for it on that frame; else, and if it is `None`, `at` counts
+    /// alone. So an end whose `at` is changed lies where that says.
     pub cells: Option<f64>,
-    /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space of an expression. `None` if it is not
-    /// known.
+    /// On which of the source's surfaces it lies: a triangle of a mesh, a half-space of an expression. `None`
+    /// if it is not known.
     pub surface: Option<u32>,
     /// The outward unit normal there, if it is known.
     pub normal: Option<[f64; 3]>,
@@ -168,9 +168,9 @@ impl DexelEnd {
         DexelEnd { at, cells: None, surface: None, normal: None }
     }
 
-    /// An end so many finest cells behind the universe's lower face (0 to 2^depth), along an axis, of which no surface and no
-    /// normal is known. The centre of cell k lies at k + ½. `None` for an axis greater than 2 and for a place outside of the
-    /// universe.
+    /// An end so many finest cells behind the universe's lower face (0 to 2^depth), along an axis, of which
+    /// no surface and no normal is known. The centre of cell k lies at k + ½. `None` for an axis greater than
+    /// 2 and for a place outside of the universe.
     ///
     /// ```
     /// use leafless::{Frame, dexel::DexelEnd};
@@ -224,8 +224,8 @@ impl<'a> DexelRays<'a> {
         with_rows!(&self.rows, rows => rows.columns.spans.len()) as u64
     }
 
-    /// The intervals of the ray through the centres of cells with these indices on the other two axes, the lower axis
-    /// first; in ascending order, disjoint. A ray outside of the universe has none.
+    /// The intervals of the ray through the centres of cells with these indices on the other two axes, the
+    /// lower axis first; in ascending order, disjoint. A ray outside of the universe has none.
     pub fn dexels(&self, ray: [u32; 2]) -> impl ExactSizeIterator<Item = Dexel> + 'a {
         let &DexelRays { frame, axis, rows } = self;
         let range = with_rows!(&rows, rows => rows.ray(ray));

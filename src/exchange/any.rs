@@ -46,8 +46,9 @@ pub struct MeshFile {
     /// Instances of objects that the file does not mean to be solid, such as supports, and that the mesh
     /// therefore does not contain. 0 for all formats but 3MF.
     pub skipped: u64,
-    /// How far, as a PLY, OBJ, OFF or 3MF that was written with [`WriteOptions::deviation`](super::WriteOptions::deviation) says,
-    /// the true boundary may lie from the mesh: converted and scaled as its coordinates are. The file is not believed:
+    /// How far, as a PLY, OBJ, OFF or 3MF that was written with
+    /// [`WriteOptions::deviation`](super::WriteOptions::deviation) says, the true boundary may lie from the
+    /// mesh: converted and scaled as its coordinates are. The file is not believed:
     /// [`TriangleMesh::with_deviation`] states it, for who does.
     pub deviation: Option<f64>,
     /// Where the file departs from its format, though it could be read.
@@ -72,7 +73,8 @@ pub struct MeshFile {
 /// [`Error::Argument`] for a scale that is not allowed, [`MeshFileError::UnknownFormat`],
 /// [`MeshFileError::UnknownUnit`] if a conversion is asked for and nobody says from which unit,
 /// [`MeshFileError::Unsupported`] for text in UTF-16 and for a format that was left out of this build,
-/// [`MeshError::TooLarge`](crate::error::MeshError::TooLarge) if scaling exceeds ±2^256, and the reader's errors.
+/// [`MeshError::TooLarge`](crate::error::MeshError::TooLarge) if scaling exceeds ±2^256, and the reader's
+/// errors.
 pub fn read_mesh(bytes: &[u8], options: &MeshOptions) -> Result<MeshFile, Error> {
     read(bytes, None, options)
 }

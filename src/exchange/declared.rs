@@ -1,8 +1,8 @@
 //! Attributes in a PLY: comments in its header say which properties of faces they are.
 //!
-//! `comment leafless attribute N NAME` announces an attribute of N numbers. Its property is NAME, or NAME_0, NAME_1 … if there are
-//! several. Of the type `uint` it is a label, of which the greatest is none. `comment leafless name NAME TEXT` adds the name of
-//! the next label.
+//! `comment leafless attribute N NAME` announces an attribute of N numbers. Its property is NAME, or NAME_0,
+//! NAME_1 … if there are several. Of the type `uint` it is a label, of which the greatest is none.
+//! `comment leafless name NAME TEXT` adds the name of the next label.
 
 use crate::error::Error;
 use crate::exchange::colours::fill;

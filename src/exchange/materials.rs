@@ -26,8 +26,8 @@ impl Default for Materials<'_> {
 }
 
 impl<'a> Materials<'a> {
-    /// Chooses the material of the next faces by what follows the keyword on its line: none if there is no name. A comment
-    /// begins with a blank and `#`.
+    /// Chooses the material of the next faces by what follows the keyword on its line: none if there is no
+    /// name. A comment begins with a blank and `#`.
     pub fn choose(&mut self, rest: &'a [u8]) -> Result<(), Error> {
         let line = rest.split(|&byte| is_line_end(byte)).next().unwrap_or(&[]);
         let comment = line.windows(2).position(|pair| is_space(pair[0]) && pair[1] == b'#');

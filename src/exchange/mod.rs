@@ -12,24 +12,26 @@
 //! | 3MF | (feature `threemf`) the core specification, its draft 0.93 and parts of the production extension: units, components, the build's transforms, base materials, colour groups |
 //!
 //! **Deviation.** A mesh may be known to lie within a distance of the true boundary only
-//! ([`TriangleMesh::with_deviation`]). [`WriteOptions::deviation`] writes that distance into a file, and [`MeshFile::deviation`]
-//! tells what a file says. Nobody is believed: the mesh that is read has no deviation before it is stated.
+//! ([`TriangleMesh::with_deviation`]). [`WriteOptions::deviation`] writes that distance into a file, and
+//! [`MeshFile::deviation`] tells what a file says. Nobody is believed: the mesh that is read has no deviation
+//! before it is stated.
 //!
-//! **Colours and materials** are [attributes](TriangleMesh::attributes) of the mesh. `colour` has four numbers from
-//! 0 to 255: red, green and blue, in sRGB as a rule, and alpha, which is 255 where the file has none. In a PLY
-//! vertices have colours, and the corners of triangles take them over; if faces have colours besides, these are
-//! `face_colour`. In a 3MF corners or triangles have colours: those of a colour group, or how a base material is
-//! displayed. `material` is the number of a triangle's base material, with the materials' names, and `object` that
-//! of the object of a 3MF, if several are built, in the order in which they are first placed, with the objects'
-//! names. In an OBJ `material` is what `usemtl` names, numbered as the names come. A PLY that this library wrote has any other
-//! attributes. A file without such things gives a mesh without attributes.
+//! **Colours and materials** are [attributes](TriangleMesh::attributes) of the mesh. `colour` has four
+//! numbers from 0 to 255: red, green and blue, in sRGB as a rule, and alpha, which is 255 where the file has
+//! none. In a PLY vertices have colours, and the corners of triangles take them over; if faces have colours
+//! besides, these are `face_colour`. In a 3MF corners or triangles have colours: those of a colour group, or
+//! how a base material is displayed. `material` is the number of a triangle's base material, with the
+//! materials' names, and `object` that of the object of a 3MF, if several are built, in the order in which
+//! they are first placed, with the objects' names. In an OBJ `material` is what `usemtl` names, numbered as
+//! the names come. A PLY that this library wrote has any other attributes. A file without such things gives a
+//! mesh without attributes.
 //!
 //! Some files depart from their format in a way that leaves no doubt about the mesh. They are read, and
 //! [`MeshFile::warnings`] tells of it.
 //!
-//! [`write_mesh`] writes a file of any of them, `write_polygons` an OBJ or OFF of polygons, and `write_placed_meshes` (feature
-//! `threemf`) a 3MF of several objects, each in any number of places. STL rounds coordinates to 32 bits: [`written_form`] tells the mesh that is
-//! read back, and what is lost.
+//! [`write_mesh`] writes a file of any of them, `write_polygons` an OBJ or OFF of polygons, and
+//! `write_placed_meshes` (feature `threemf`) a 3MF of several objects, each in any number of places. STL
+//! rounds coordinates to 32 bits: [`written_form`] tells the mesh that is read back, and what is lost.
 //!
 //! An error says in which line, or at which byte or element, and for a 3MF in which part. Bytes may be
 //! anything: no reader panics, and memory is linear in the length of the file, with two exceptions of 3MF:
@@ -39,8 +41,8 @@
 //! and counted. A model that requires an extension other than production, materials and triangle sets is
 //! refused, as are encryption and document type declarations.
 //!
-//! With the feature `volumes`, [`open_volume`] reads volumes, as NRRD and MetaImage, [`read_raw_volume`] arrays without a
-//! header, and [`write_nrrd`] writes them.
+//! With the feature `volumes`, [`open_volume`] reads volumes, as NRRD and MetaImage, [`read_raw_volume`]
+//! arrays without a header, and [`write_nrrd`] writes them.
 //!
 //! Formats of polygons are read only with the feature `std`, which cutting polygons into triangles needs.
 

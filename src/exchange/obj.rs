@@ -12,11 +12,11 @@
 //! skipped, and whether there are such is not checked. Vertices are counted from 1; -1 is the last one before
 //! the face. A face may come before its vertices. `fo`, which old files have, means the same.
 //!
-//! **`usemtl`** names the material of the faces behind it: the rest of its line, up to a blank and `#`. Without a name they have none.
-//! Files of materials (`mtllib`) are not read.
+//! **`usemtl`** names the material of the faces behind it: the rest of its line, up to a blank and `#`.
+//! Without a name they have none. Files of materials (`mtllib`) are not read.
 //!
-//! **Skipped** are all other statements: textures, normals, points, lines, groups, names, curves, and keywords that nobody
-//! knows. All groups and objects become one mesh.
+//! **Skipped** are all other statements: textures, normals, points, lines, groups, names, curves, and
+//! keywords that nobody knows. All groups and objects become one mesh.
 //!
 //! **Refused**, since what is missing would be missed, are surfaces that are no polygons (`surf`, `bsp`,
 //! `bzp`) and parts that stand in another file (`call`). So is a file with neither `v` nor `f`.
@@ -36,8 +36,8 @@ use crate::mesh::TriangleMesh;
 /// Triangles keep the order of the faces. A face of more than three corners is cut into triangles that do not
 /// leave it; only where that cannot be, because its edges cross or it has no area, into the fan around its
 /// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
-/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty. Where `usemtl` names materials, they
-/// are the attribute `material`.
+/// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty. Where `usemtl`
+/// names materials, they are the attribute `material`.
 ///
 /// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file.
 ///

@@ -39,8 +39,8 @@ use crate::mesh::TriangleMesh;
 /// first corner. Equal vertices are welded, and triangles that two equal vertices make degenerate are dropped
 /// and counted, as in [`TriangleMesh::new`]. The mesh need not be closed, and may be empty.
 ///
-/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file, whatever
-/// its header claims.
+/// O(n), or O(n log n) for faces that are not convex. Memory is at most 128 times the length of the file,
+/// whatever its header claims.
 ///
 /// # Errors
 /// [`MeshFileError::Empty`], [`MeshFileError::Unsupported`] (UTF-16), [`MeshFileError::Syntax`] and
@@ -266,8 +266,8 @@ const COLOUR: &str = "the end of the line, or at most four numbers of a colour";
 
 // ---- binary ---------------------------------------------------------------------------------------------
 
-/// Whether the counts in the header can only be those of a file in little-endian order, which OFF has not: the
-/// file is too short for what they are otherwise.
+/// Whether the counts in the header can only be those of a file in little-endian order, which OFF has not:
+/// the file is too short for what they are otherwise.
 fn is_little_endian(layout: &Layout, data: &[u8]) -> bool {
     let counts = data.get(4 * layout.dimension as usize..).unwrap_or(&[]);
     let number = |k: usize, order: fn([u8; 4]) -> i32| {

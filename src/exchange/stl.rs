@@ -42,8 +42,9 @@ const FACET: usize = 50;
 /// O(n). Memory is allocated for facets that are there, not for facets that a header claims.
 ///
 /// # Errors
-/// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`], [`MeshFileError::Syntax`],
-/// [`MeshFileError::Unsupported`] (UTF-16), [`MeshError::TooLarge`](crate::error::MeshError::TooLarge),
+/// [`MeshFileError::Empty`], [`MeshFileError::Length`], [`MeshFileError::NotFinite`],
+/// [`MeshFileError::Syntax`], [`MeshFileError::Unsupported`] (UTF-16),
+/// [`MeshError::TooLarge`](crate::error::MeshError::TooLarge),
 /// [`MeshError::TooMany`](crate::error::MeshError::TooMany) or [`Error::OutOfMemory`].
 pub fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, Error> {
     if bytes.is_empty() {

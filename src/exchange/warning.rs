@@ -16,7 +16,8 @@ pub enum MeshWarning {
         /// How many lines there are.
         lines: u64,
     },
-    /// The header of a PLY has lines without a keyword before its first element. They were taken for comments.
+    /// The header of a PLY has lines without a keyword before its first element. They were taken for
+    /// comments.
     HeaderLine {
         /// The first such line, counted from 1.
         line: u64,

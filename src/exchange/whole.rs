@@ -6,13 +6,15 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Most bytes of what is no regular file: a pipe or a device does not say how long it is, and may have no end.
+/// Most bytes of what is no regular file: a pipe or a device does not say how long it is, and may have no
+/// end.
 const STREAM: u64 = 1 << 30;
 
 /// The bytes of a file.
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::OutOfMemory`]; [`Error::Limit`] for what is no regular file and goes on after 1 GiB.
+/// [`Error::Io`], [`Error::OutOfMemory`]; [`Error::Limit`] for what is no regular file and goes on after 1
+/// GiB.
 pub fn read_whole(path: &Path) -> Result<Vec<u8>, Error> {
     let file = File::open(path)?;
     let metadata = file.metadata()?;

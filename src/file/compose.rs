@@ -23,8 +23,9 @@ pub(super) type Deliver<'d> = &'d mut dyn FnMut(u64, WriteFile<'_>) -> Result<()
 /// A section that is to be written: its owner, the kind and the elements.
 pub(super) type Section<'a> = (u32, Kind, Elements<'a>);
 
-/// Lays out a file and tells `deliver` its length and how to write it. The first section, that of the records, is added
-/// to `sections`, which lie in the order of owners and kinds; those without elements are left out.
+/// Lays out a file and tells `deliver` its length and how to write it. The first section, that of the
+/// records, is added to `sections`, which lie in the order of owners and kinds; those without elements are
+/// left out.
 pub(super) fn compose(
     mut header: Header,
     objects: &[Object],

@@ -12,8 +12,8 @@ use crate::octree::word::Planes;
 pub(super) const SECTION_REQUIRED: u32 = 1;
 
 /// The sections that this library knows. The numbers are part of the format. 16 to 31 are for values (17 is
-/// reserved for those of PARTIAL cells by rank), but for 20 to 25, 48 to 55 are reserved for versions, 56 to 63 for the archive;
-/// from 2^31 on they belong to applications.
+/// reserved for those of PARTIAL cells by rank), but for 20 to 25, 48 to 55 are reserved for versions, 56 to
+/// 63 for the archive; from 2^31 on they belong to applications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub(super) enum Kind {
@@ -227,7 +227,8 @@ impl Kind {
         Kind::Moments,
     ];
 
-    /// The kind with this number, if the sections of such objects may be of it in a file of this minor version.
+    /// The kind with this number, if the sections of such objects may be of it in a file of this minor
+    /// version.
     pub(super) fn of(number: u32, object: &Object, minor: u16) -> Option<Kind> {
         let owned = |&kind: &Kind| match kind {
             Kind::Metadata => true,

@@ -15,8 +15,8 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Checks header, section table, bounds and the records of objects. O(sections + objects); `bytes` are the whole
-    /// file, of any alignment, with a `wanted` solid.
+    /// Checks header, section table, bounds and the records of objects. O(sections + objects); `bytes` are
+    /// the whole file, of any alignment, with a `wanted` solid.
     pub fn read(bytes: &[u8], wanted: Model) -> Result<Layout, Error> {
         let head = Head::read(bytes)?;
         head.demand_model(wanted)?;
@@ -34,7 +34,8 @@ impl Layout {
         Metadata::from_bytes(self.sections.bytes(bytes, Kind::Metadata)?)
     }
 
-    /// Checks everything but the solid itself: checksums, padding, metadata. The bytes are still in the file's order.
+    /// Checks everything but the solid itself: checksums, padding, metadata. The bytes are still in the
+    /// file's order.
     pub fn verify(&self, bytes: &[u8]) -> Result<Metadata, Error> {
         let main = Object::main(&self.head.header);
         let mut end = self.head.table_range().end as u64;

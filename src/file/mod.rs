@@ -1,7 +1,8 @@
-//! The file format: the arrays of an octree or a tri-dexel model as they lie in memory, mapped and queried in place.
+//! The file format: the arrays of an octree or a tri-dexel model as they lie in memory, mapped and queried in
+//! place.
 //!
-//! The functions of this module are for octrees; those in [`dexels`] have the same names and are for tri-dexel models.
-//! [`probe`], [`verify`] and [`verify_path`] know both.
+//! The functions of this module are for octrees; those in [`dexels`] have the same names and are for
+//! tri-dexel models. [`probe`], [`verify`] and [`verify_path`] know both.
 //!
 //! # Ways in
 //!
@@ -33,24 +34,24 @@
 //!
 //! Whatever the bytes, none of this panics, reads beyond them, or goes on for ever:
 //!
-//! * [`open`], [`from_bytes`], [`map_verified`], [`verify`] and [`verify_path`] accept nothing but a well-formed tree and
-//!   well-formed channels with right checksums; everything that follows is then what it would be of a tree
-//!   that was just built. They need O(n) time, and memory for at most six times the length of the file (once
-//!   for the copy; the rest only for files that are all metadata, or all records of small channels). `open`
-//!   asks for no more than the length that a regular file has; of a pipe or device it takes memory as the
-//!   bytes arrive. The sections of channels may share their bytes, and every channel is checked by itself: n
-//!   is the sum of the lengths of all sections, at most 257 times the length of the file.
+//! * [`open`], [`from_bytes`], [`map_verified`], [`verify`] and [`verify_path`] accept nothing but a
+//!   well-formed tree and well-formed channels with right checksums; everything that follows is then what it
+//!   would be of a tree that was just built. They need O(n) time, and memory for at most six times the length
+//!   of the file (once for the copy; the rest only for files that are all metadata, or all records of small
+//!   channels). `open` asks for no more than the length that a regular file has; of a pipe or device it takes
+//!   memory as the bytes arrive. The sections of channels may share their bytes, and every channel is checked
+//!   by itself: n is the sum of the lengths of all sections, at most 257 times the length of the file.
 //! * [`probe`] needs O(sections), at most 4096 of them, and twice the section table's memory. [`view`]
 //!   allocates nothing; [`map`] and [`from_static`] only for the metadata, six times their length, which is
 //!   at most 1 MiB for the solid and 64 KiB for each of at most 256 channels, and two kilobytes a channel.
 //! * After [`view`] or [`map`] nothing has looked at the tree itself. Point queries read at most ten elements
-//!   and allocate nothing. A box query, a walk with a [`Cursor`](crate::octree::Cursor) and a Boolean meet every
-//!   element at most once; a tree is built from a stored one only once all of its links are checked. What is
-//!   damaged reads as PARTIAL or makes an operation return [`Error::Damaged`](crate::Error::Damaged). The
-//!   result of a Boolean never has more elements than its operands together, and the work takes at most 32
-//!   times their memory (their bricks may be 16-bit indices) and 128 KiB a thread. Statistics are the level
-//!   table's word. The links of a channel are checked when it is first [viewed](crate::attribute::Channel::view); its
-//!   values are then read as they stand, within bounds.
+//!   and allocate nothing. A box query, a walk with a [`Cursor`](crate::octree::Cursor) and a Boolean meet
+//!   every element at most once; a tree is built from a stored one only once all of its links are checked.
+//!   What is damaged reads as PARTIAL or makes an operation return [`Error::Damaged`](crate::Error::Damaged).
+//!   The result of a Boolean never has more elements than its operands together, and the work takes at most
+//!   32 times their memory (their bricks may be 16-bit indices) and 128 KiB a thread. Statistics are the
+//!   level table's word. The links of a channel are checked when it is first
+//!   [viewed](crate::attribute::Channel::view); its values are then read as they stand, within bounds.
 //! * Answers about damaged bytes are only this: safe. A changed tag with a right checksum is another tree,
 //!   and checksums are no signatures: who may have made a file must be known by other means.
 //!
@@ -60,9 +61,10 @@
 //! # The format
 //!
 //! Version 0.4. **Later versions of major version 0 only add to it**: a file of version 0.1 stays readable,
-//! and a reader of version 0.1 reads any later file that holds an octree. Version 0.2 added channels,
-//! version 0.3 tri-dexel models, which older readers refuse, version 0.4 cuts, without which older readers read the tree. A file has
-//! the oldest version that knows all of its objects and sections, so an octree without channels and cuts is in a file of version 0.1.
+//! and a reader of version 0.1 reads any later file that holds an octree. Version 0.2 added channels, version
+//! 0.3 tri-dexel models, which older readers refuse, version 0.4 cuts, without which older readers read the
+//! tree. A file has the oldest version that knows all of its objects and sections, so an octree without
+//! channels and cuts is in a file of version 0.1.
 //!
 //! A file is a header of 128 bytes, a table of sections, and the sections: the arrays of an
 //! [`OctreeRef`](crate::OctreeRef), each on a multiple of 64 bytes, all numbers little-endian. Header, table
@@ -101,12 +103,12 @@
 //! | 36, 41, 46 | surfaces along x, y, z | two u32 | intervals |
 //! | 37, 42, 47 | materials along x, y, z | u32 | intervals |
 //!
-//! Each section belongs to an object, its owner. Object 0 is the solid: an octree with sections of the kinds 1 to 10, or a
-//! tri-dexel model with the kinds 1, 2 and 32 to 47. Objects of type 2 are the channels of an octree, at
-//! most 256, each with a tree of its own in sections of the kinds 3 to 10, metadata of at most 2^16 bytes, and
-//! the kinds 16 to 19; see [`ChannelRef`](crate::attribute::ChannelRef). Other objects and other kinds are for later
-//! versions, and kinds from 2^31 on for applications: a reader skips what it does not know, unless it is
-//! required.
+//! Each section belongs to an object, its owner. Object 0 is the solid: an octree with sections of the kinds
+//! 1 to 10, or a tri-dexel model with the kinds 1, 2 and 32 to 47. Objects of type 2 are the channels of an
+//! octree, at most 256, each with a tree of its own in sections of the kinds 3 to 10, metadata of at most
+//! 2^16 bytes, and the kinds 16 to 19; see [`ChannelRef`](crate::attribute::ChannelRef). Other objects and
+//! other kinds are for later versions, and kinds from 2^31 on for applications: a reader skips what it does
+//! not know, unless it is required.
 //!
 //! The specification is `format_spec/specification.md` in the source of this crate: every field, every check
 //! and its reason. Beside it lie test vectors, the reasons for the design, and the list of what readers

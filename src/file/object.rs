@@ -103,8 +103,8 @@ impl Object {
         }
     }
 
-    /// How many intervals a tri-dexel model has along x, y and z. They stand where an octree's record has the numbers
-    /// of elements, bricks and dictionary entries.
+    /// How many intervals a tri-dexel model has along x, y and z. They stand where an octree's record has the
+    /// numbers of elements, bricks and dictionary entries.
     pub(super) fn intervals(&self) -> [u64; 3] {
         [self.elements, self.bricks, self.dictionary_entries]
     }

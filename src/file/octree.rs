@@ -142,14 +142,15 @@ pub fn write_to(octree: &Octree, out: impl Write) -> Result<(), Error> {
 /// * What is not a regular file, such as a pipe or a terminal, is written to directly, and so is an open file
 ///   of the process that is named like `/dev/stdout`: the bytes go to its end.
 ///
-/// On Linux the temporary file has no name until it is complete, so that nothing is left of it when the process is
-/// killed, where the file system has such files (NFS does not). On other systems a file `.leafless-….tmp` may stay
-/// behind. A program that ends when a signal arrives calls [`abandon_saves`](super::abandon_saves) before.
+/// On Linux the temporary file has no name until it is complete, so that nothing is left of it when the
+/// process is killed, where the file system has such files (NFS does not). On other systems a file
+/// `.leafless-….tmp` may stay behind. A program that ends when a signal arrives calls
+/// [`abandon_saves`](super::abandon_saves) before.
 ///
-/// By default the signal SIGXFSZ kills a process that exceeds its limit on the size of files (`ulimit -f`), and SIGPIPE
-/// one that writes to a pipe without readers. A process that ignores the two signals gets errors in their place. (Rust
-/// programs ignore SIGPIPE from the start.) Opening a pipe waits until somebody reads it, also if signal handlers run
-/// meanwhile.
+/// By default the signal SIGXFSZ kills a process that exceeds its limit on the size of files (`ulimit -f`),
+/// and SIGPIPE one that writes to a pipe without readers. A process that ignores the two signals gets errors
+/// in their place. (Rust programs ignore SIGPIPE from the start.) Opening a pipe waits until somebody reads
+/// it, also if signal handlers run meanwhile.
 ///
 /// # Errors
 /// As [`to_bytes`], and [`Error::File`] with the path and the cause [`Error::Io`]. The old file is then as it
@@ -176,8 +177,8 @@ pub fn view(bytes: &[u8]) -> Result<OctreeRef<'_>, Error> {
     read::view::<Octree>(bytes)
 }
 
-/// The tree in `bytes`, a whole file, copied and [verified](super::verify). The bytes may have any alignment, and
-/// the machine any byte order.
+/// The tree in `bytes`, a whole file, copied and [verified](super::verify). The bytes may have any alignment,
+/// and the machine any byte order.
 ///
 /// # Errors
 /// As [`verify`](super::verify).
@@ -194,8 +195,8 @@ pub fn from_static(bytes: &'static [u8]) -> Result<Octree, Error> {
     read::from_static(bytes)
 }
 
-/// The tree in the file at `path`, read into memory and [verified](super::verify). Later changes of the file do not
-/// matter. A pipe or device may be read too.
+/// The tree in the file at `path`, read into memory and [verified](super::verify). Later changes of the file
+/// do not matter. A pipe or device may be read too.
 ///
 /// # Errors
 /// [`Error::File`] with the path and one of these causes: as [`verify`](super::verify), and [`Error::Io`].
@@ -217,8 +218,8 @@ pub fn open(path: impl AsRef<Path>) -> Result<Octree, Error> {
 ///
 /// # Errors
 /// [`Error::File`] with the path and one of these causes: [`Error::Io`];
-/// [`FormatError::NotRegular`](crate::error::FormatError::NotRegular) if there is no regular file at `path`; else as
-/// [`view`](super::view), and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
+/// [`FormatError::NotRegular`](crate::error::FormatError::NotRegular) if there is no regular file at `path`;
+/// else as [`view`](super::view), and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
 ///
 /// # Safety
 /// While the mapping lives,

@@ -31,7 +31,8 @@ pub struct Probe {
     pub frame: Frame,
     /// The tag of the whole universe; BRANCH if it is cut. EMPTY for a tri-dexel model.
     pub root: Tag,
-    /// What is known of the space outside of the universe: EMPTY, FULL or PARTIAL. EMPTY for a tri-dexel model.
+    /// What is known of the space outside of the universe: EMPTY, FULL or PARTIAL. EMPTY for a tri-dexel
+    /// model.
     pub exterior: Tag,
     /// What the cells prove of the solid that the tree was made from. A tri-dexel model proves nothing.
     pub proof: Proof,
@@ -57,8 +58,8 @@ pub struct DexelProbe {
     pub format: DexelFormat,
     /// Which directions have rays: x, y, z.
     pub directions: [bool; 3],
-    /// Rays in the window of each direction, empty ones among them. (That the windows are as large is checked when
-    /// the model is read.)
+    /// Rays in the window of each direction, empty ones among them. (That the windows are as large is checked
+    /// when the model is read.)
     pub rays: [u64; 3],
     /// Intervals of each direction.
     pub intervals: [u64; 3],

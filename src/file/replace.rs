@@ -13,11 +13,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::{Builder, NamedTempFile};
 
-/// Replaces the file at `path` by what `write` writes, as [`save`](super::save) does for octrees: for files of other
-/// kinds, with the same promises.
+/// Replaces the file at `path` by what `write` writes, as [`save`](super::save) does for octrees: for files
+/// of other kinds, with the same promises.
 ///
-/// The function `write` gets a file to write to from its beginning, or from the end of what was in it if `path` is no
-/// regular file. The old file stays as it was until `write` has returned without an error.
+/// The function `write` gets a file to write to from its beginning, or from the end of what was in it if
+/// `path` is no regular file. The old file stays as it was until `write` has returned without an error.
 ///
 /// ```
 /// # let folder = tempfile::tempdir().unwrap();
@@ -29,9 +29,9 @@ use tempfile::{Builder, NamedTempFile};
 /// ```
 ///
 /// # Errors
-/// Whatever `write` returns, and [`Error::File`] with the path and the cause [`Error::Io`]. The old file is then as it
-/// was, and no temporary file is left; only if the very last step fails, synchronising the directory, the new file is
-/// already in place.
+/// Whatever `write` returns, and [`Error::File`] with the path and the cause [`Error::Io`]. The old file is
+/// then as it was, and no temporary file is left; only if the very last step fails, synchronising the
+/// directory, the new file is already in place.
 pub fn replace(
     path: impl AsRef<Path>,
     write: impl FnOnce(&mut File) -> Result<(), Error>,
@@ -44,15 +44,17 @@ pub fn replace(
     })
 }
 
-/// Removes the temporary files of all saves that are under way in this process. To be called right before the process
-/// ends: **from then on, every save in this process blocks for ever** where it would create, rename or remove a
-/// temporary file.
+/// Removes the temporary files of all saves that are under way in this process. To be called right before the
+/// process ends: **from then on, every save in this process blocks for ever** where it would create, rename
+/// or remove a temporary file.
 ///
-/// This is for programs that end when a signal arrives. Such a program waits for the signal in a thread of its own and
-/// calls this function there: it takes a lock, which a signal handler must not. The old files stay as they are.
+/// This is for programs that end when a signal arrives. Such a program waits for the signal in a thread of
+/// its own and calls this function there: it takes a lock, which a signal handler must not. The old files
+/// stay as they are.
 ///
-/// A save on Linux has no temporary file with a name for most of the time, so that nothing is left behind by a process
-/// that just ends. Other systems, and file systems without unnamed files such as NFS, need this function.
+/// A save on Linux has no temporary file with a name for most of the time, so that nothing is left behind by
+/// a process that just ends. Other systems, and file systems without unnamed files such as NFS, need this
+/// function.
 pub fn abandon_saves() {
     let names = names();
     remove_all(&names);
@@ -115,8 +117,8 @@ enum Temporary {
 }
 
 impl Temporary {
-    /// One in a directory, without a name if the file system can do that. If the file `is_new` and replaces none, it
-    /// gets the permissions that the process gives to new files.
+    /// One in a directory, without a name if the file system can do that. If the file `is_new` and replaces
+    /// none, it gets the permissions that the process gives to new files.
     fn new(directory: &Path, is_new: bool) -> io::Result<Temporary> {
         #[cfg(target_os = "linux")]
         {
@@ -124,7 +126,8 @@ impl Temporary {
             let flags = OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC;
             // The umask is taken off by the system.
             let mode = Mode::from_raw_mode(if is_new { 0o666 } else { 0o600 });
-            // If this fails for another reason than that the file system cannot do it, so does the other way, and tells.
+            // If this fails for another reason than that the file system cannot do it, so does the other way,
+            // and tells.
             if let Ok(file) = open(directory, flags, mode) {
                 return Ok(Temporary::Unnamed(file.into()));
             }
@@ -240,8 +243,8 @@ impl Drop for Listed {
     }
 }
 
-/// An error of `tempfile` without the temporary file's name, which means nothing to whoever saves. The system's
-/// number is kept in its text only.
+/// An error of `tempfile` without the temporary file's name, which means nothing to whoever saves. The
+/// system's number is kept in its text only.
 fn without_name(error: io::Error) -> io::Error {
     let text = error.to_string();
     let number = text.split_once("(os error ").and_then(|(_, rest)| rest.split_once(')'));

@@ -10,8 +10,8 @@ use alloc::vec::Vec;
 
 /// A solid whose arrays are the sections of a file.
 ///
-/// The trait is what solids differ in. All that they have in common is written once, for any of them: the ways in are
-/// in `read.rs`, the ways out in `write.rs`.
+/// The trait is what solids differ in. All that they have in common is written once, for any of them: the
+/// ways in are in `read.rs`, the ways out in `write.rs`.
 pub(super) trait Stored: Sized {
     /// What a header says of files with such solids.
     const MODEL: Model;
@@ -28,8 +28,8 @@ pub(super) trait Stored: Sized {
     /// What a file has in the place of arrays that lie in memory otherwise.
     type Prepared;
 
-    /// Reads the shape, and checks all of it that views rely on. `bytes` are in the file's order and may have any
-    /// alignment.
+    /// Reads the shape, and checks all of it that views rely on. `bytes` are in the file's order and may have
+    /// any alignment.
     fn shape(layout: &Layout, bytes: &[u8]) -> Result<Self::Shape, Error>;
 
     /// The solid in `bytes`, whose numbers have this machine's order.
@@ -65,8 +65,8 @@ pub(super) trait Stored: Sized {
     /// Prepares writing.
     fn prepare(&self) -> Result<Self::Prepared, Error>;
 
-    /// Appends the sections of the arrays, in ascending order; returns the header, in which only lengths and checksums are
-    /// missing.
+    /// Appends the sections of the arrays, in ascending order; returns the header, in which only lengths and
+    /// checksums are missing.
     fn append_sections<'a>(&'a self, prepared: &'a Self::Prepared, sections: &mut Vec<Section<'a>>)
     -> Header;
 }

@@ -120,8 +120,8 @@ pub(super) struct Coding {
     pub entries: u64,
 }
 
-/// Appends the sections of a tree; returns how its bricks are coded. Where a file codes the bricks otherwise than the
-/// tree does, they are given `encoded`.
+/// Appends the sections of a tree; returns how its bricks are coded. Where a file codes the bricks otherwise
+/// than the tree does, they are given `encoded`.
 pub(super) fn append<'a>(
     owner: u32,
     tree: &OctreeRef<'a>,

@@ -194,18 +194,18 @@ where
 
 /// The file of `model`, in memory.
 ///
-/// The bytes depend on the model and its metadata alone: equal models with equal metadata give equal bytes. The model is
-/// [checked](TriDexelRef::check) first, so that every file that is written can be read. O(n).
+/// The bytes depend on the model and its metadata alone: equal models with equal metadata give equal bytes.
+/// The model is [checked](TriDexelRef::check) first, so that every file that is written can be read. O(n).
 ///
 /// # Errors
-/// [`Error::DamagedRays`] if the model is a mapped one that nobody has verified, and is damaged; [`Error::Argument`] if the
-/// metadata take more than 1 MiB; [`Error::OutOfMemory`].
+/// [`Error::DamagedRays`] if the model is a mapped one that nobody has verified, and is damaged;
+/// [`Error::Argument`] if the metadata take more than 1 MiB; [`Error::OutOfMemory`].
 pub fn to_bytes(model: &TriDexel) -> Result<Vec<u8>, Error> {
     write::to_bytes(model)
 }
 
-/// Writes the file of `model` to `out`, the same bytes as [`to_bytes`], in a few large pieces: no buffer is needed around
-/// `out`, and the file is never in memory as a whole. `out` is flushed at the end.
+/// Writes the file of `model` to `out`, the same bytes as [`to_bytes`], in a few large pieces: no buffer is
+/// needed around `out`, and the file is never in memory as a whole. `out` is flushed at the end.
 ///
 /// # Errors
 /// As [`to_bytes`], before anything is written; [`Error::Io`] as `out` returns it.
@@ -214,13 +214,13 @@ pub fn write_to(model: &TriDexel, out: impl Write) -> Result<(), Error> {
     write::write_to(model, out)
 }
 
-/// Saves `model` in the file at `path`: at any moment, also after a crash or a power failure, there is the old file or the
-/// new one, each complete. What [`file::save`](super::save) says of permissions, links, pipes and temporary files holds
-/// here, too.
+/// Saves `model` in the file at `path`: at any moment, also after a crash or a power failure, there is the
+/// old file or the new one, each complete. What [`file::save`](super::save) says of permissions, links, pipes
+/// and temporary files holds here, too.
 ///
 /// # Errors
-/// As [`to_bytes`], and [`Error::File`] with the path and the cause [`Error::Io`]. The old file is then as it was, unless it
-/// is the very last step that fails, synchronising the directory.
+/// As [`to_bytes`], and [`Error::File`] with the path and the cause [`Error::Io`]. The old file is then as it
+/// was, unless it is the very last step that fails, synchronising the directory.
 #[cfg(feature = "std")]
 pub fn save(model: &TriDexel, path: impl AsRef<Path>) -> Result<(), Error> {
     write::save(model, path.as_ref())
@@ -228,18 +228,20 @@ pub fn save(model: &TriDexel, path: impl AsRef<Path>) -> Result<(), Error> {
 
 /// The model in `bytes`, a whole file, read where it lies: no copy, no allocation.
 ///
-/// Header, section table, bounds and windows are checked, and nothing else: O(sections + objects). What holds of damaged
-/// intervals is said [above](super::dexels). The bytes must begin on an address that is a multiple of 8.
+/// Header, section table, bounds and windows are checked, and nothing else: O(sections + objects). What holds
+/// of damaged intervals is said [above](super::dexels). The bytes must begin on an address that is a multiple
+/// of 8.
 ///
 /// # Errors
-/// [`Error::Format`]; among them [`FormatError::OtherModel`](crate::error::FormatError::OtherModel) for the file of an octree,
-/// and [`FormatError::Endianness`](crate::error::FormatError::Endianness) on big-endian machines.
+/// [`Error::Format`]; among them [`FormatError::OtherModel`](crate::error::FormatError::OtherModel) for the
+/// file of an octree, and [`FormatError::Endianness`](crate::error::FormatError::Endianness) on big-endian
+/// machines.
 pub fn view(bytes: &[u8]) -> Result<TriDexelRef<'_>, Error> {
     read::view::<TriDexel>(bytes)
 }
 
-/// The model in `bytes`, a whole file, copied and [verified](super::verify). The bytes may have any alignment, and the
-/// machine any byte order.
+/// The model in `bytes`, a whole file, copied and [verified](super::verify). The bytes may have any
+/// alignment, and the machine any byte order.
 ///
 /// # Errors
 /// [`Error::Format`] or [`Error::DamagedRays`]; [`Error::OutOfMemory`].
@@ -247,8 +249,8 @@ pub fn from_bytes(bytes: &[u8]) -> Result<TriDexel, Error> {
     read::from_bytes(bytes)
 }
 
-/// The model in `bytes`, a whole file that lives as long as the program (one that was linked into it, say), read where it
-/// lies as by [`view`].
+/// The model in `bytes`, a whole file that lives as long as the program (one that was linked into it, say),
+/// read where it lies as by [`view`].
 ///
 /// # Errors
 /// As [`view`], and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
@@ -256,8 +258,8 @@ pub fn from_static(bytes: &'static [u8]) -> Result<TriDexel, Error> {
     read::from_static(bytes)
 }
 
-/// The model in the file at `path`, read into memory and [verified](super::verify). Later changes of the file do not
-/// matter. A pipe or device may be read too.
+/// The model in the file at `path`, read into memory and [verified](super::verify). Later changes of the file
+/// do not matter. A pipe or device may be read too.
 ///
 /// # Errors
 /// [`Error::File`] with the path and one of these causes: as [`from_bytes`], and [`Error::Io`].
@@ -266,14 +268,15 @@ pub fn open(path: impl AsRef<Path>) -> Result<TriDexel, Error> {
     read::open(path.as_ref())
 }
 
-/// The model in the file at `path`, mapped into memory: nothing is copied, and only what is asked for is ever read from
-/// disk. Header, section table, bounds, windows and metadata are checked, and nothing else: O(sections + objects), some
-/// microseconds for a file of any size. What holds of damaged intervals is said [above](super::dexels).
+/// The model in the file at `path`, mapped into memory: nothing is copied, and only what is asked for is ever
+/// read from disk. Header, section table, bounds, windows and metadata are checked, and nothing else:
+/// O(sections + objects), some microseconds for a file of any size. What holds of damaged intervals is said
+/// [above](super::dexels).
 ///
 /// # Errors
 /// [`Error::File`] with the path and one of these causes: [`Error::Io`];
-/// [`FormatError::NotRegular`](crate::error::FormatError::NotRegular) if there is no regular file at `path`; else as [`view`],
-/// and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
+/// [`FormatError::NotRegular`](crate::error::FormatError::NotRegular) if there is no regular file at `path`;
+/// else as [`view`], and [`FormatError::Metadata`](crate::error::FormatError::Metadata).
 ///
 /// # Safety
 /// As [`file::map`](super::map()): while the mapping lives, nobody may write to the file or make it shorter.
@@ -284,7 +287,8 @@ pub unsafe fn map(path: impl AsRef<Path>) -> Result<TriDexel, Error> {
     unsafe { read::map(path.as_ref(), false) }
 }
 
-/// As [`map`], but verifies all of the file first, in one scan: everything that [`verify`](super::verify) checks.
+/// As [`map`], but verifies all of the file first, in one scan: everything that [`verify`](super::verify)
+/// checks.
 ///
 /// # Errors
 /// As [`map`], and as [`verify`](super::verify).

@@ -26,7 +26,8 @@ macro_rules! wire_number {
 }
 wire_number!(u8, u16, u32, u64);
 
-/// Implements [`Wire`] for a struct, or also declares it, each field with its offset, which is part of the format.
+/// Implements [`Wire`] for a struct, or also declares it, each field with its offset, which is part of the
+/// format.
 macro_rules! wire_struct {
     ($name:ident { $($field:ident),* }) => {
         impl Wire for $name {

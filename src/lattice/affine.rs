@@ -68,15 +68,16 @@ impl Affine {
         product_up(stretch * (1.0 + 2.0 * f64::EPSILON), distance)
     }
 
-    /// A bound of the length of images of vectors that are no longer than `length`. Of turns, and of maps that stretch along axes,
-    /// it is hardly more than needed, and nowhere √3 times as much.
+    /// A bound of the length of images of vectors that are no longer than `length`. Of turns, and of maps
+    /// that stretch along axes, it is hardly more than needed, and nowhere √3 times as much.
     pub(crate) fn lengthened(&self, length: f64) -> f64 {
         let is_translation =
             (0..3).all(|i| (0..3).all(|j| self.rows[i][j] == if i == j { 1.0 } else { 0.0 }));
         if length == 0.0 || is_translation {
             return length;
         }
-        // The square of the norm is the greatest eigenvalue of MᵀM: no more than a sum of magnitudes in a row.
+        // The square of the norm is the greatest eigenvalue of MᵀM: no more than a sum of magnitudes in a
+        // row.
         let entry = |i: usize, j: usize| {
             let parts = self.rows.map(|row| row[i] * row[j]);
             let size = parts.iter().map(|part| part.abs()).sum::<f64>();
@@ -115,7 +116,8 @@ impl Affine {
         (cofactors, determinant.estimate())
     }
 
-    /// Whether the linear part has one entry a row, and that a power of two: then nothing of it or of its inverse is rounded.
+    /// Whether the linear part has one entry a row, and that a power of two: then nothing of it or of its
+    /// inverse is rounded.
     pub(crate) fn is_monomial(&self) -> bool {
         self.rows.iter().all(|[x, y, z, _]| {
             let mut entries = [x, y, z].into_iter().filter(|&&c| c != 0.0);
@@ -124,8 +126,8 @@ impl Affine {
         })
     }
 
-    /// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a minor
-    /// and the determinant, both of which come from exact sums.
+    /// The inverse of the linear part, each entry off by 5 · 2^-53 of itself at the most: quotients of a
+    /// minor and the determinant, both of which come from exact sums.
     pub(crate) fn inverse_linear(&self) -> [[f64; 3]; 3] {
         let (cofactors, determinant) = self.cofactors();
         axes(|i| axes(|j| cofactors[j][i].estimate() / determinant))

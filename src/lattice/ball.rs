@@ -4,8 +4,9 @@ use super::exact::sqrt;
 
 /// A real number that is at most `error` from `value`.
 ///
-/// An operation takes about as long as two of plain doubles (an [`Interval`](super::Interval) meets exact bounds, and takes ten
-/// times as long). Where a result leaves the range of doubles, the error is infinite or not a number, and the sign is not known.
+/// An operation takes about as long as two of plain doubles (an [`Interval`](super::Interval) meets exact
+/// bounds, and takes ten times as long). Where a result leaves the range of doubles, the error is infinite or
+/// not a number, and the sign is not known.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ball {
     pub value: f64,

@@ -35,14 +35,15 @@ impl Cell {
         Cell { level, at: self.at.map(|a| a >> (self.level - level)) }
     }
 
-    /// The place of the cell among those of its level in Morton order: the octants from the universe down, three bits each.
+    /// The place of the cell among those of its level in Morton order: the octants from the universe down,
+    /// three bits each.
     #[inline]
     pub fn morton(self) -> u64 {
         (1..=self.level).fold(0, |code, level| code << 3 | u64::from(self.ancestor(level).octant()))
     }
 
-    /// The cell of a level at a place in Morton order; `None` unless `code` < 8^level and the level is at most
-    /// [`MAX_DEPTH`](crate::lattice::MAX_DEPTH).
+    /// The cell of a level at a place in Morton order; `None` unless `code` < 8^level and the level is at
+    /// most [`MAX_DEPTH`](crate::lattice::MAX_DEPTH).
     pub fn from_morton(level: u8, code: u64) -> Option<Cell> {
         let is_there = level <= super::MAX_DEPTH && code >> (3 * level) == 0;
         is_there.then(|| (0..level).rev().fold(Cell::ROOT, |cell, k| cell.child((code >> (3 * k) & 7) as u8)))

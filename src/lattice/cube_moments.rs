@@ -1,6 +1,7 @@
 //! Moments of a set in a cell, in the cell's own coordinates.
 
-/// Volume, first and second moments of a set in the cube [-1, 1]³: a cell, measured from its centre in half edges.
+/// Volume, first and second moments of a set in the cube [-1, 1]³: a cell, measured from its centre in half
+/// edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CubeMoments {
     /// At most 8.

@@ -59,10 +59,10 @@ impl Frame {
         if frame.holds(min, max) { Ok(frame) } else { Err(UNRESOLVED) }
     }
 
-    /// The frame [`around`](Self::around) a shape whose finest cells are no longer than a tolerance: the greater of `absolute` (model
-    /// units) and `relative` times the longest extent. It has the least such depth. Where 20 levels do not suffice it has 20; so
-    /// it has for a tolerance of zero, which is right for [`build_extended`](crate::build_extended) of exact surfaces: their cells
-    /// end at any size.
+    /// The frame [`around`](Self::around) a shape whose finest cells are no longer than a tolerance: the
+    /// greater of `absolute` (model units) and `relative` times the longest extent. It has the least such
+    /// depth. Where 20 levels do not suffice it has 20; so it has for a tolerance of zero, which is right for
+    /// [`build_extended`](crate::build_extended) of exact surfaces: their cells end at any size.
     ///
     /// # Errors
     /// As [`around`](Self::around); [`Error::Argument`] if a tolerance is negative or no number.
@@ -87,9 +87,10 @@ impl Frame {
     /// A frame whose lattice planes are round numbers, around a shape with the bounds `min`, `max`: cells are
     /// powers of two, and the origin is a multiple of as great a power of two as possible. Faces at 25, 12.5
     /// or −0.75 then lie on lattice planes. Such a face needs no cells along it, and the certified volume is
-    /// exact there. A part of 100 × 60 × 30 with four bores and four rounded edges is an octree of 30 820 nodes at
-    /// depth 9, and its volume to 2 % takes 419 splits; with [`around`](Self::around) it is 208 377 nodes, and
-    /// 2 177 splits. (For solids without slabs, as octrees, the splits differ by a factor of a hundred.)
+    /// exact there. A part of 100 × 60 × 30 with four bores and four rounded edges is an octree of 30 820
+    /// nodes at depth 9, and its volume to 2 % takes 419 splits; with [`around`](Self::around) it is 208 377
+    /// nodes, and 2 177 splits. (For solids without slabs, as octrees, the splits differ by a factor of a
+    /// hundred.)
     ///
     /// The edge is the smallest power of two that holds the bounds, so it is up to twice their longest extent
     /// L, and cells are up to twice as long as those of [`around`](Self::around). On each axis a 128th of the
@@ -107,7 +108,8 @@ impl Frame {
     pub fn aligned(min: [f64; 3], max: [f64; 3], depth: u8) -> Result<Frame, Error> {
         let longest = longest_extent(min, max)?;
         let mut edge = power_of_two_from(longest);
-        // Bounds that are as long as the edge may have no origin on the lattice; those of twice the edge have.
+        // Bounds that are as long as the edge may have no origin on the lattice; those of twice the edge
+        // have.
         for _ in 0..2 {
             if let Some(origin) = aligned_origin(min, max, edge) {
                 let frame = Frame::new(origin, edge, depth)?;
@@ -122,9 +124,9 @@ impl Frame {
 
     /// A frame with cells of the edge length `cell` (model units, 2^-256 to 2^256) around a shape with the
     /// bounds `min`, `max`, its origin a multiple of `cell` times as great a power of two as possible. The
-    /// depth is the least that holds the bounds, so edge = cell · 2^depth. With `cell` = 0.25 the lattice planes
-    /// are the multiples of 0.25. (A double is a sum of powers of two: the planes of a `cell` of 0.1 are
-    /// multiples of the double next to 0.1, which are not the doubles next to 0.3 or 0.7.)
+    /// depth is the least that holds the bounds, so edge = cell · 2^depth. With `cell` = 0.25 the lattice
+    /// planes are the multiples of 0.25. (A double is a sum of powers of two: the planes of a `cell` of 0.1
+    /// are multiples of the double next to 0.1, which are not the doubles next to 0.3 or 0.7.)
     ///
     /// # Errors
     /// As [`around`](Self::around); [`Error::Argument`] if `cell` is out of range, or if more than 2^20 cells
@@ -150,9 +152,9 @@ impl Frame {
         Err(Error::Argument { name: "cell", problem: "so small that the bounds take more than 2^20 cells" })
     }
 
-    /// The frame that suits a shape with the bounds `min`, `max`, as the program `leafless` takes it where none
-    /// is given: [`aligned`](Self::aligned) if all bounds are multiples of 2^-12 of its edge, as those of parts
-    /// that people draw, else [`around`](Self::around). The same universe at every depth.
+    /// The frame that suits a shape with the bounds `min`, `max`, as the program `leafless` takes it where
+    /// none is given: [`aligned`](Self::aligned) if all bounds are multiples of 2^-12 of its edge, as those
+    /// of parts that people draw, else [`around`](Self::around). The same universe at every depth.
     ///
     /// # Errors
     /// As [`around`](Self::around).
@@ -245,7 +247,8 @@ impl Frame {
         sign_of_sum(&self.offset_terms(axis, x, k))
     }
 
-    /// The same number as [`offset`](Self::offset), rounded outward: next to nothing if `x` lies near the plane.
+    /// The same number as [`offset`](Self::offset), rounded outward: next to nothing if `x` lies near the
+    /// plane.
     pub(crate) fn rounded_offset(&self, axis: usize, x: f64, k: i64) -> Interval {
         let [a, b, c, d] = self.offset_terms(axis, x, k).map(Interval::exactly);
         c.plus(d).plus(a.plus(b))

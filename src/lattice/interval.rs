@@ -4,8 +4,9 @@ use super::exact::{sign_of_sum, sqrt, two_product, two_sum};
 
 /// A closed interval `[lower, upper]` of doubles that contains a real quantity.
 ///
-/// The bounds are read as fields, `interval.lower` and `interval.upper` ([`IntervalEnds`]), and cannot be changed.
-/// They are numbers or infinities, and `lower <= upper`: [`new`](Interval::new) refuses anything else.
+/// The bounds are read as fields, `interval.lower` and `interval.upper` ([`IntervalEnds`]), and cannot be
+/// changed. They are numbers or infinities, and `lower <= upper`: [`new`](Interval::new) refuses anything
+/// else.
 ///
 /// ```
 /// use leafless::Interval;
@@ -54,8 +55,8 @@ impl Interval {
         if lower <= upper { Some(Interval(IntervalEnds { lower, upper })) } else { None }
     }
 
-    /// The interval between bounds that are known to be in order. Bounds that somebody else hands over, or that
-    /// two sources of knowledge tell, may contradict each other: they go through [`new`](Interval::new).
+    /// The interval between bounds that are known to be in order. Bounds that somebody else hands over, or
+    /// that two sources of knowledge tell, may contradict each other: they go through [`new`](Interval::new).
     #[inline(always)]
     pub(crate) const fn between(lower: f64, upper: f64) -> Interval {
         debug_assert!(lower <= upper, "an interval's bounds are in order");
@@ -168,7 +169,8 @@ impl Interval {
         Interval::new(self.lower.max(other.lower), self.upper.min(other.upper))
     }
 
-    /// Of a number that is known not to be negative. (A negative upper bound contradicts that, and counts as 0.)
+    /// Of a number that is known not to be negative. (A negative upper bound contradicts that, and counts as
+    /// 0.)
     #[must_use]
     pub fn not_negative(self) -> Interval {
         Interval::between(self.lower.max(0.0), self.upper.max(0.0))

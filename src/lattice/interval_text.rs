@@ -11,8 +11,8 @@ const DOUBT_DIGITS: i32 = 1;
 /// Powers of ten that are written out; beyond them the power stands behind.
 const PLAIN_POWERS: core::ops::Range<i32> = -4..9;
 
-/// Prints the digits that mean something: `42345.1 ± 0.2`, or `3.9 to 12.1` where the interval is wide. Bounds are
-/// rounded outward: what is printed contains the interval.
+/// Prints the digits that mean something: `42345.1 ± 0.2`, or `3.9 to 12.1` where the interval is wide.
+/// Bounds are rounded outward: what is printed contains the interval.
 ///
 /// ```
 /// use leafless::Interval;
@@ -108,7 +108,8 @@ fn ten_to(power: i32) -> f64 {
     format!("1e{power}").parse().unwrap_or(f64::INFINITY)
 }
 
-/// The double next to a number that is rounded to so many digits behind the point; negative ones are before it.
+/// The double next to a number that is rounded to so many digits behind the point; negative ones are before
+/// it.
 fn round_to(x: f64, digits: i32) -> f64 {
     if digits >= 0 {
         format!("{x:.*}", digits as usize).parse().unwrap_or(x)

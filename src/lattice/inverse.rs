@@ -2,9 +2,9 @@
 
 use super::{Affine, Interval, axes};
 
-/// The inverse of an affine map, or of several after each other: y = L x + o, with intervals that contain the exact numbers. The
-/// intervals of a map that permutes and mirrors axes, stretches them by powers of two, and moves are single numbers, and so are
-/// those of several unless the sum of their offsets is rounded.
+/// The inverse of an affine map, or of several after each other: y = L x + o, with intervals that contain the
+/// exact numbers. The intervals of a map that permutes and mirrors axes, stretches them by powers of two, and
+/// moves are single numbers, and so are those of several unless the sum of their offsets is rounded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inverse {
     linear: [[Interval; 3]; 3],
@@ -14,7 +14,8 @@ pub(crate) struct Inverse {
 impl Inverse {
     /// Of one map.
     pub(crate) fn of(placement: &Affine) -> Inverse {
-        // Each entry of the inverse is off by 5 · 2^-53 of itself at the most, and of a monomial map it is exact.
+        // Each entry of the inverse is off by 5 · 2^-53 of itself at the most, and of a monomial map it is
+        // exact.
         let slack = if placement.is_monomial() { 0.0 } else { 4.0 * f64::EPSILON };
         let share = Interval::between(1.0 - slack, 1.0 + slack);
         let linear =

@@ -5,7 +5,8 @@ use core::array::from_fn as array;
 
 const ZERO: Interval = Interval::exactly(0.0);
 
-/// The volume of a set of points and its moments about one of them, in model units. The intervals contain the truth.
+/// The volume of a set of points and its moments about one of them, in model units. The intervals contain the
+/// truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeMoments {
     /// The point p that the moments are about: near the centroid, so that little cancels.
@@ -46,7 +47,8 @@ impl VolumeMoments {
                 self.second[k].minus(product.over(self.volume))
             }));
         }
-        // The set may be anything between nothing and what the second moments allow. M ≽ 0, so that Mij² ≤ Mii Mjj.
+        // The set may be anything between nothing and what the second moments allow. M ≽ 0, so that Mij² ≤
+        // Mii Mjj.
         tensor(array(|k| {
             let (i, j) = PAIRS[k];
             let [a, b] = [i, j].map(|axis| Interval::between(0.0, self.second[axis].upper.max(0.0)));

@@ -48,8 +48,8 @@ pub const SLAB: [[u64; 4]; 3] = {
     slabs
 };
 
-/// `SLABS[axis][first][last]`: the cells of a block whose coordinate along `axis` lies in `first..=last` (none if
-/// `first > last`).
+/// `SLABS[axis][first][last]`: the cells of a block whose coordinate along `axis` lies in `first..=last`
+/// (none if `first > last`).
 pub const SLABS: [[[u64; 4]; 4]; 3] = {
     let mut slabs = [[[0; 4]; 4]; 3];
     let mut axis = 0;
@@ -75,7 +75,8 @@ pub fn slabs(axis: usize, first: u32, last: u32) -> u64 {
     SLABS[axis][first as usize][last as usize]
 }
 
-/// The cells of a block one place further along `axis`, or one place before if not `up`, than those of `mask`.
+/// The cells of a block one place further along `axis`, or one place before if not `up`, than those of
+/// `mask`.
 #[inline(always)]
 pub const fn shifted(mask: u64, axis: usize, up: bool) -> u64 {
     let [first, second, third, last] = SLAB[axis];

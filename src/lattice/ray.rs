@@ -14,12 +14,12 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The half-line from `origin` (model units) along `direction`, which may have any length. t counts multiples of
-    /// `direction`, so t is a distance if `direction` has length 1.
+    /// The half-line from `origin` (model units) along `direction`, which may have any length. t counts
+    /// multiples of `direction`, so t is a distance if `direction` has length 1.
     ///
     /// # Errors
-    /// [`Error::Argument`] if `direction` is zero, or if a number is not zero and not of a magnitude between 2^-256
-    /// and 2^256.
+    /// [`Error::Argument`] if `direction` is zero, or if a number is not zero and not of a magnitude between
+    /// 2^-256 and 2^256.
     #[inline]
     pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Result<Ray, Error> {
         valid::numbers("origin", &origin)?;
@@ -27,12 +27,12 @@ impl Ray {
         Ray::along(origin, direction.map(|c| [c, 0.0]), f64::INFINITY)
     }
 
-    /// The segment between two points (model units); t runs from 0 at `from` to 1 at `to`. The direction is the
-    /// exact difference of the points.
+    /// The segment between two points (model units); t runs from 0 at `from` to 1 at `to`. The direction is
+    /// the exact difference of the points.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the points are equal, or if a coordinate is not zero and not of a magnitude between
-    /// 2^-256 and 2^256.
+    /// [`Error::Argument`] if the points are equal, or if a coordinate is not zero and not of a magnitude
+    /// between 2^-256 and 2^256.
     pub fn between(from: [f64; 3], to: [f64; 3]) -> Result<Ray, Error> {
         valid::numbers("from", &from)?;
         valid::numbers("to", &to)?;

@@ -5,9 +5,10 @@ use crate::error::Error;
 
 /// The cells that a *shard* of an octree knows. Of all others it knows nothing: they are PARTIAL.
 ///
-/// A tree is cut at a level into its top and into one shard for each cell of that level that the top leaves open
-/// ([`OctreeRef::open_cells`](crate::OctreeRef::open_cells)). Every shard is an octree on the frame of the whole, and true of the
-/// whole solid: it only knows less of it. [`join`](crate::op::join) puts shards together again.
+/// A tree is cut at a level into its top and into one shard for each cell of that level that the top leaves
+/// open ([`OctreeRef::open_cells`](crate::OctreeRef::open_cells)). Every shard is an octree on the frame of
+/// the whole, and true of the whole solid: it only knows less of it. [`join`](crate::op::join) puts shards
+/// together again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shard {
     /// The cells down to a level. What would be split there stays PARTIAL.

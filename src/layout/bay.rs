@@ -24,15 +24,15 @@ impl Bay {
     /// A bay without obstacles and items. Its clearances are 0.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the container does not tell [bounds](crate::solid::Solid::bounds), or these have no extent along an
-    /// axis.
+    /// [`Error::Argument`] if the container does not tell [bounds](crate::solid::Solid::bounds), or these
+    /// have no extent along an axis.
     pub fn new(container: AnySolid) -> Result<Bay, Error> {
         bounds_of(&container, "container")?;
         Ok(Bay { container, obstacles: Vec::new(), items: Vec::new(), clearance: 0.0, wall_clearance: 0.0 })
     }
 
-    /// Sets the least distance between two items or an item and an obstacle, and that between an item and what lies outside of the
-    /// container (model units, 0 to 2^64).
+    /// Sets the least distance between two items or an item and an obstacle, and that between an item and
+    /// what lies outside of the container (model units, 0 to 2^64).
     ///
     /// # Errors
     /// [`Error::Argument`] if a distance is not in this range.
@@ -48,8 +48,8 @@ impl Bay {
     /// Adds a solid that stands where it is, and tells its number. Obstacles are counted from 0.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the solid does not tell [bounds](crate::solid::Solid::bounds), or these have no extent along an axis;
-    /// [`Error::OutOfMemory`].
+    /// [`Error::Argument`] if the solid does not tell [bounds](crate::solid::Solid::bounds), or these have no
+    /// extent along an axis; [`Error::OutOfMemory`].
     pub fn add_obstacle(&mut self, solid: AnySolid) -> Result<usize, Error> {
         let bounds = bounds_of(&solid, "obstacle")?;
         memory::push(&mut self.obstacles, (solid, bounds))?;

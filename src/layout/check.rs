@@ -35,15 +35,16 @@ pub struct Neighbour {
 /// How something stands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standing {
-    /// `Yes`: it is proven to lie in the container, to overlap with nothing, and to be as far from everything as it should be. `No`: one
-    /// of these is proven to be wrong.
+    /// `Yes`: it is proven to lie in the container, to overlap with nothing, and to be as far from everything
+    /// as it should be. `No`: one of these is proven to be wrong.
     pub verdict: GapVerdict,
-    /// What is in the way, or may be: those of which `Yes` is not proven. These are the first 256 of them: the wall, obstacles, and
-    /// what is placed, each in the order of their numbers.
+    /// What is in the way, or may be: those of which `Yes` is not proven. These are the first 256 of them:
+    /// the wall, obstacles, and what is placed, each in the order of their numbers.
     pub conflicts: Vec<Neighbour>,
     /// How many there are of which `Yes` is not proven, all counted.
     pub conflict_count: usize,
-    /// What is next to it, but for the wall; nothing if there is nothing else. The gap holds the least of all distances.
+    /// What is next to it, but for the wall; nothing if there is nothing else. The gap holds the least of all
+    /// distances.
     pub nearest: Option<Neighbour>,
     /// Cells that were split.
     pub splits: u64,
@@ -56,14 +57,16 @@ const CONFLICTS: usize = 256;
 const NEAREST: f64 = 1e-6;
 
 impl Layout {
-    /// Says how something that is placed stands. Only what is near is looked at: what boxes tell apart costs nothing.
+    /// Says how something that is placed stands. Only what is near is looked at: what boxes tell apart costs
+    /// nothing.
     ///
-    /// A pair of closed meshes takes some ten microseconds. Others take splits, of which `control.max_splits` limits the number a pair (4 096
-    /// if there is none); if it is spent, the answer is `Undecided`. One thread.
+    /// A pair of closed meshes takes some ten microseconds. Others take splits, of which `control.max_splits`
+    /// limits the number a pair (4 096 if there is none); if it is spent, the answer is `Undecided`. One
+    /// thread.
     ///
     /// # Errors
-    /// [`Error::Argument`] if there is nothing of this number; what the solids refuse; [`Error::OutOfMemory`], and
-    /// [`Error::Cancelled`].
+    /// [`Error::Argument`] if there is nothing of this number; what the solids refuse;
+    /// [`Error::OutOfMemory`], and [`Error::Cancelled`].
     pub fn check(&self, number: usize, control: &Control<'_>) -> Result<Standing, Error> {
         let Some(own) = self.placed.get(number) else { return Err(NOT_PLACED) };
         let mut standing = self.stands(own.item, &own.placement, Some(number), control)?;

@@ -19,7 +19,8 @@ impl Item {
     /// One copy of a solid of density 1, which may be turned by the 24 turns that take axes to axes.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the solid does not tell [bounds](Solid::bounds), or these have no extent along an axis.
+    /// [`Error::Argument`] if the solid does not tell [bounds](Solid::bounds), or these have no extent along
+    /// an axis.
     pub fn new(solid: AnySolid) -> Result<Item, Error> {
         let bounds = bounds_of(&solid, "item")?;
         Ok(Item { solid, bounds, count: 1, orientations: Orientations::Turns, density: 1.0 })
@@ -34,8 +35,8 @@ impl Item {
     /// How it may be turned.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a map of a list is no turn: it mirrors, or stretches by more than 10^-9; or if there are no turns, or
-    /// more than [`Orientations::MOST`].
+    /// [`Error::Argument`] if a map of a list is no turn: it mirrors, or stretches by more than 10^-9; or if
+    /// there are no turns, or more than [`Orientations::MOST`].
     pub fn with_orientations(self, orientations: Orientations) -> Result<Item, Error> {
         let count = match &orientations {
             Orientations::AsGiven | Orientations::Turns => 1,

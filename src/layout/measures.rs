@@ -19,7 +19,8 @@ pub struct LayoutMeasures {
     pub volume: Interval,
     /// The part of the container's volume that this is.
     pub filled_part: Interval,
-    /// How far the highest point is above the lower end of the container's bounds, along z (model units); 0 if nothing is placed.
+    /// How far the highest point is above the lower end of the container's bounds, along z (model units); 0
+    /// if nothing is placed.
     pub height: Interval,
     /// The mass, by the densities of the items.
     pub mass: Interval,
@@ -42,8 +43,8 @@ struct Body {
 }
 
 impl Layout {
-    /// Measures each item and the container once, to a relative tolerance of their volumes, as [`measure`] does it, and
-    /// adds up what is placed. Overlaps, where there are any, count twice.
+    /// Measures each item and the container once, to a relative tolerance of their volumes, as [`measure`]
+    /// does it, and adds up what is placed. Overlaps, where there are any, count twice.
     ///
     /// # Errors
     /// As [`measure`].

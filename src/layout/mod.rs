@@ -1,8 +1,9 @@
 //! Placing solids in a container, with proof.
 //!
-//! A [`Layout`] holds a container, obstacles, items, and which of these stand where. [`Layout::check`] says of one that is placed
-//! whether it fits, and [`Layout::search`] places what is not placed yet. All that either claims is proven by the solids themselves:
-//! cells are split where it takes that, and nowhere else (Dai, Zha & Ni 1994).
+//! A [`Layout`] holds a container, obstacles, items, and which of these stand where. [`Layout::check`] says
+//! of one that is placed whether it fits, and [`Layout::search`] places what is not placed yet. All that
+//! either claims is proven by the solids themselves: cells are split where it takes that, and nowhere else
+//! (Dai, Zha & Ni 1994).
 //!
 //! | question | file |
 //! |---|---|
@@ -123,11 +124,12 @@ impl Layout {
         &self.placed
     }
 
-    /// Places a copy of an item, wherever that is, and tells its number. Nothing is checked. The counts of items are not looked at.
+    /// Places a copy of an item, wherever that is, and tells its number. Nothing is checked. The counts of
+    /// items are not looked at.
     ///
     /// # Errors
-    /// [`Error::Argument`] if there is no such item, or the placement mirrors, or stretches by more than 10^-9;
-    /// [`Error::OutOfMemory`].
+    /// [`Error::Argument`] if there is no such item, or the placement mirrors, or stretches by more than
+    /// 10^-9; [`Error::OutOfMemory`].
     pub fn place(&mut self, item: usize, placement: &Affine) -> Result<usize, Error> {
         if item >= self.items.len() {
             return Err(Error::Argument { name: "item", problem: "must be the number of one of the items" });

@@ -14,10 +14,11 @@ pub enum Orientations {
     AsGiven,
     /// The 24 turns that take axes to axes. They are exact.
     Turns,
-    /// As it is, and that many turns by chance, at least 1 and at most [`MOST`](Orientations::MOST), evenly spread over all turns; they
-    /// depend on the seed of the search.
+    /// As it is, and that many turns by chance, at least 1 and at most [`MOST`](Orientations::MOST), evenly
+    /// spread over all turns; they depend on the seed of the search.
     Free(u32),
-    /// Any of these. Only the linear part of a map counts, which must be a turn: see [`Item::with_orientations`](super::Item).
+    /// Any of these. Only the linear part of a map counts, which must be a turn: see
+    /// [`Item::with_orientations`](super::Item).
     List(Vec<Affine>),
 }
 

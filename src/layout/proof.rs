@@ -73,7 +73,8 @@ impl Piece {
         self.0.bounds()
     }
 
-    /// Whether another one, as this one sees it, is no nearer than `least`; with `least` = 0, whether the two do not overlap.
+    /// Whether another one, as this one sees it, is no nearer than `least`; with `least` = 0, whether the two
+    /// do not overlap.
     ///
     /// `places` are those of both in the model.
     pub(super) fn is_apart(
@@ -246,7 +247,8 @@ pub(super) fn diagonal(bounds: &Bounds) -> f64 {
     sqrt(sides.iter().map(|side| side * side).sum::<f64>()) * (1.0 + 1e-12)
 }
 
-/// A box that holds all that is no further than a margin from one, along each axis: rounded outward, and not where nothing is rounded.
+/// A box that holds all that is no further than a margin from one, along each axis: rounded outward, and not
+/// where nothing is rounded.
 pub(super) fn wider(bounds: &Bounds, margin: f64) -> Bounds {
     let rounded = |(sum, rest): (f64, f64), sense: f64| match rest * sense {
         off if off > 0.0 && sense > 0.0 => sum.next_up(),

@@ -5,7 +5,8 @@ use crate::error::Error;
 use crate::lattice::exact::sqrt;
 use crate::lattice::{Affine, Bounds, Composed, Interval};
 
-/// The place of a solid B in the coordinates of a placed solid A, rounded, with what rounding may do to distances.
+/// The place of a solid B in the coordinates of a placed solid A, rounded, with what rounding may do to
+/// distances.
 pub(super) struct Relative {
     pub(super) placement: Affine,
     /// No point of B is further from where it should be (model units).
@@ -38,7 +39,8 @@ impl Relative {
         Relative { placement: *b, off: 0.0, stretch: 0.0 }
     }
 
-    /// What the distance must be at least in the coordinates of A, so that it is `least` in those of the model; not 0.
+    /// What the distance must be at least in the coordinates of A, so that it is `least` in those of the
+    /// model; not 0.
     pub(super) fn needed(&self, least: f64) -> f64 {
         let needed = (least + self.off) / (1.0 - self.stretch);
         let needed = if self.off == 0.0 && self.stretch == 0.0 { needed } else { needed * (1.0 + 1e-12) };

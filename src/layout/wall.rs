@@ -9,8 +9,8 @@ use crate::mesh::{FillRule, MeshMoments, TriangleMesh};
 use crate::solid::{AnySolid, Csg, MeshSolid};
 use alloc::vec::Vec;
 
-/// A block without a container that lies within it. Where the container is a good mesh, the block is one, too, so that triangles tell how far
-/// other meshes are from it.
+/// A block without a container that lies within it. Where the container is a good mesh, the block is one,
+/// too, so that triangles tell how far other meshes are from it.
 pub(super) fn wall(container: &AnySolid, outer: &Bounds, control: &Control<'_>) -> Result<AnySolid, Error> {
     if let Some(mesh) = container.get::<MeshSolid>().map(|solid| solid.mesh())
         && is_good(mesh, control)?
@@ -28,8 +28,8 @@ pub(super) fn wall_of_box(bounds: &Bounds, outer: &Bounds) -> Result<AnySolid, E
     Ok(AnySolid::new(MeshSolid::new(mesh, FillRule::Positive)?))
 }
 
-/// Whether the winding number around each point is known to be what the solid says by any rule but the even one: no triangles intersect, and
-/// no body is inside out.
+/// Whether the winding number around each point is known to be what the solid says by any rule but the even
+/// one: no triangles intersect, and no body is inside out.
 fn is_good(mesh: &TriangleMesh, control: &Control<'_>) -> Result<bool, Error> {
     let own = Control { progress: None, ..*control };
     let is_known = matches!(mesh.moments(FillRule::NonZero, &own)?, MeshMoments::Known(_));

@@ -1,8 +1,9 @@
 //! How far two meshes are apart: a descent of both trees, the nearest boxes first.
 //!
-//! The second mesh may lie under an affine map. Neither its vertices nor its tree are made anew: a box becomes a box around its image
-//! when it is looked at, and so do triangles. All coordinates are those about the middle of the first mesh, scaled by a power of two so
-//! that none is greater than 1 in magnitude. Meshes that are far from the origin lose nothing by that.
+//! The second mesh may lie under an affine map. Neither its vertices nor its tree are made anew: a box
+//! becomes a box around its image when it is looked at, and so do triangles. All coordinates are those about
+//! the middle of the first mesh, scaled by a power of two so that none is greater than 1 in magnitude. Meshes
+//! that are far from the origin lose nothing by that.
 
 use super::discs::Discs;
 use super::intersections::{corners, meet};
@@ -212,7 +213,8 @@ impl Boxes {
         boxes
     }
 
-    /// The squares of the distances of box k from others, and of their middles. Those of turned boxes are known by the axes of both.
+    /// The squares of the distances of box k from others, and of their middles. Those of turned boxes are
+    /// known by the axes of both.
     #[inline(always)]
     fn squares(&self, k: usize, others: &Boxes, turned: Option<&Turned>) -> ([f64; WIDTH], [f64; WIDTH]) {
         let (mut squares, mut between) = ([0.0; WIDTH], [0.0; WIDTH]);
@@ -281,7 +283,8 @@ struct Pair {
     split: Split,
 }
 
-/// A triangle in common coordinates, and where it ends along the way between the nearest triangles: towards the other mesh.
+/// A triangle in common coordinates, and where it ends along the way between the nearest triangles: towards
+/// the other mesh.
 struct Loaded {
     triangle: u32,
     corners: [Point; 3],
@@ -297,7 +300,8 @@ fn larger(a: f64, b: f64) -> f64 {
 type Parts = (f64, f64, u8, u8);
 
 impl<'m> MeshPair<'m> {
-    /// The second mesh lies under `placement`. Vertices of both together may be `off` by so much (model units).
+    /// The second mesh lies under `placement`. Vertices of both together may be `off` by so much (model
+    /// units).
     pub(crate) fn new(
         own: Facets<'m>,
         other: Facets<'m>,
@@ -308,9 +312,11 @@ impl<'m> MeshPair<'m> {
         MeshPair { own, other, map, off }
     }
 
-    /// How far the meshes are apart, as far as is asked for. The bounds are those of the triangles as they are given, moved exactly.
+    /// How far the meshes are apart, as far as is asked for. The bounds are those of the triangles as they
+    /// are given, moved exactly.
     ///
-    /// About O(log n) for meshes that are near to each other in one place; O(n) if they run alongside each other.
+    /// About O(log n) for meshes that are near to each other in one place; O(n) if they run alongside each
+    /// other.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`].
@@ -371,7 +377,8 @@ struct Search<'s, 'm> {
     enough: Enough,
     open: Vec<Pair>,
     best: Option<([u32; 2], NearPair)>,
-    /// The way along which loaded triangles were measured, and that between the best ones: of length 1, or zero.
+    /// The way along which loaded triangles were measured, and that between the best ones: of length 1, or
+    /// zero.
     towards: Point,
     next_towards: Point,
     upper: f64,
@@ -507,7 +514,8 @@ impl<'m> Search<'_, 'm> {
         Ok(())
     }
 
-    /// Lowers the ends of a node's parts along a direction to those of their discs: in the units of the grid, and an offset.
+    /// Lowers the ends of a node's parts along a direction to those of their discs: in the units of the grid,
+    /// and an offset.
     #[inline(always)]
     fn sharpen(&self, side: usize, place: Place, ends: &mut [f64; WIDTH], (way, offset): (&Point, f64)) {
         let (facets, tree) = ([&self.pair.own, &self.pair.other][side], self.trees()[side]);
@@ -533,7 +541,8 @@ impl<'m> Search<'_, 'm> {
         }
     }
 
-    /// The triangles of two lowest nodes. `None` if all are too far apart along the way between the nearest ones so far.
+    /// The triangles of two lowest nodes. `None` if all are too far apart along the way between the nearest
+    /// ones so far.
     fn load(&mut self, own: Place, other: Place) -> Option<[[Option<Loaded>; WIDTH]; 2]> {
         let [of_own, of_other] = self.trees();
         let MeshPair { own: facets, other: counterparts, map, .. } = self.pair;

@@ -1,8 +1,9 @@
 //! Data on the triangles of a mesh: colours, materials, any numbers.
 //!
-//! An attribute is a table of values, and for each triangle, or for each of its corners, the number of a row of
-//! the table. So a value that many triangles share is stored once, a corner has a value of its own although its
-//! vertex was welded to others, and a triangle that is dropped takes its rows with it and changes nothing else.
+//! An attribute is a table of values, and for each triangle, or for each of its corners, the number of a row
+//! of the table. So a value that many triangles share is stored once, a corner has a value of its own
+//! although its vertex was welded to others, and a triangle that is dropped takes its rows with it and
+//! changes nothing else.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -80,8 +81,8 @@ impl MeshAttribute {
     /// In the place of a row's number: no value.
     pub const NO_ROW: u32 = u32::MAX;
 
-    /// A value of `components` numbers for each triangle: `values` has as many for the first triangle, then as
-    /// many for the second. A value with a number that is not finite counts as none.
+    /// A value of `components` numbers for each triangle: `values` has as many for the first triangle, then
+    /// as many for the second. A value with a number that is not finite counts as none.
     ///
     /// O(t). 8 bytes a number and 4 a triangle.
     ///
@@ -99,8 +100,8 @@ impl MeshAttribute {
     /// O(t). 8 bytes a number and 12 a triangle.
     ///
     /// # Errors
-    /// [`Error::Argument`] unless there are 1 to 4 components, and `values` is a multiple of three times that;
-    /// [`Error::OutOfMemory`].
+    /// [`Error::Argument`] unless there are 1 to 4 components, and `values` is a multiple of three times
+    /// that; [`Error::OutOfMemory`].
     pub fn per_corner(name: &str, components: usize, values: &[f64]) -> Result<Self, Error> {
         let corners = row_count(values, components)?;
         if corners % 3 != 0 {
@@ -144,8 +145,8 @@ impl MeshAttribute {
         Self::with(name, components, Table::Values(table), Rows::Corners(rows))
     }
 
-    /// For each triangle a number, which is its value: of a body, a face, a material. The greatest `u32` is no
-    /// value.
+    /// For each triangle a number, which is its value: of a body, a face, a material. The greatest `u32` is
+    /// no value.
     ///
     /// O(1). 4 bytes a triangle.
     ///

@@ -1,7 +1,8 @@
 //! The closed bodies of a mesh, each with its triangles, which can be searched by place.
 //!
-//! A body that is searched again and again has its triangles in the order of a space-filling curve, and boxes around
-//! runs of them. To find the triangles near a small box is then no pass through all of the body's triangles.
+//! A body that is searched again and again has its triangles in the order of a space-filling curve, and boxes
+//! around runs of them. To find the triangles near a small box is then no pass through all of the body's
+//! triangles.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -56,8 +57,8 @@ impl Body {
         Ok(bodies)
     }
 
-    /// The triangles whose boxes meet `around`, in any order, and the steps that the search took: at most as many as
-    /// there are triangles. `near` is memory that the result may lie in.
+    /// The triangles whose boxes meet `around`, in any order, and the steps that the search took: at most as
+    /// many as there are triangles. `near` is memory that the result may lie in.
     ///
     /// The first search goes through all triangles, the second one sorts them.
     pub(super) fn near<'a>(
@@ -83,8 +84,8 @@ impl Body {
         Ok((near, steps))
     }
 
-    /// Calls `visit` with every triangle whose box meets `around`, and with others. Returns the steps that it took: at
-    /// most as many as there are triangles.
+    /// Calls `visit` with every triangle whose box meets `around`, and with others. Returns the steps that it
+    /// took: at most as many as there are triangles.
     pub(super) fn visit(
         &self,
         around: &Bounds,
@@ -252,7 +253,8 @@ pub(super) fn partition<T>(items: &mut [T], test: impl Fn(&T) -> bool) -> usize 
 mod tests {
     use super::*;
 
-    /// Of triangles all over a box and of very different sizes, exactly those whose boxes meet another box are found.
+    /// Of triangles all over a box and of very different sizes, exactly those whose boxes meet another box
+    /// are found.
     #[test]
     fn searches_find_every_triangle() {
         let mut state = 1u64;

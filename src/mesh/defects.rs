@@ -55,8 +55,8 @@ impl TriangleMesh {
     /// Where the mesh is not as it should be: the `limit` worst places, in the order of [`DefectKind`], and
     /// those of one kind by descending [extent](MeshDefect::extent), then by descending count, then position.
     ///
-    /// O(t + v) time and 24 bytes per triangle and 8 per vertex of scratch memory; O(n log n) time and about 100
-    /// bytes for each of n edges and triangles that are part of a defect.
+    /// O(t + v) time and 24 bytes per triangle and 8 per vertex of scratch memory; O(n log n) time and about
+    /// 100 bytes for each of n edges and triangles that are part of a defect.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

@@ -1,7 +1,7 @@
 //! Thick discs around the triangles of the lowest nodes of a tree.
 //!
-//! A box around some triangles of a curved surface that lies askew is about as thick as it is wide. A disc that lies as the triangles do is
-//! much thinner, and tells a distance across the surface to second order.
+//! A box around some triangles of a curved surface that lies askew is about as thick as it is wide. A disc
+//! that lies as the triangles do is much thinner, and tells a distance across the surface to second order.
 
 use super::signs::Point;
 use super::tree::{Place, Tree};

@@ -31,7 +31,8 @@ impl Polyhedron {
     }
 
     /// The face, shell or solid that each triangle of the [mesh](Self::mesh) belongs to, numbered as in the
-    /// [arrays](crate::mesh::PolyhedronArrays) that the polyhedron was made of. Triangles are in the order of faces.
+    /// [arrays](crate::mesh::PolyhedronArrays) that the polyhedron was made of. Triangles are in the order of
+    /// faces.
     ///
     /// O(t).
     ///
@@ -49,8 +50,8 @@ impl Polyhedron {
     }
 
     /// Values of `components` numbers that faces, shells or solids bear, as an attribute of the
-    /// [mesh](Self::mesh): `values` has those of the first one, then of the second. A value with a number that
-    /// is not finite counts as none.
+    /// [mesh](Self::mesh): `values` has those of the first one, then of the second. A value with a number
+    /// that is not finite counts as none.
     ///
     /// O(t + n).
     ///

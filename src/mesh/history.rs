@@ -4,8 +4,8 @@ use super::triangle_mesh::{Faces, TriangleMesh};
 use crate::error::Error;
 use crate::lattice::LARGEST;
 
-/// What a [`TriangleMesh`] remembers of how it was made, which its vertices, triangles and attributes do not tell. Without it, a mesh that
-/// is stored and made again proves more than it did.
+/// What a [`TriangleMesh`] remembers of how it was made, which its vertices, triangles and attributes do not
+/// tell. Without it, a mesh that is stored and made again proves more than it did.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MeshHistory {
     /// Vertices that became one with an equal one.
@@ -14,7 +14,8 @@ pub struct MeshHistory {
     pub degenerate: u64,
     /// Vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
     pub sewn: u64,
-    /// How far along an axis vertices may be off, in model units: moved to close cracks, or rounded by a placement.
+    /// How far along an axis vertices may be off, in model units: moved to close cracks, or rounded by a
+    /// placement.
     pub displacement: f64,
     /// The [`deviation`](TriangleMesh::deviation) that was stated, in model units.
     pub deviation: f64,

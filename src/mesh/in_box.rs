@@ -1,7 +1,8 @@
 //! Which triangles may meet a box.
 //!
-//! A triangle misses a box if a plane separates them: across an axis, along the triangle, or along an edge of each (the theorem
-//! of the separating axis; for boxes Akenine-Möller 2001). Only a separation that rounding cannot feign counts.
+//! A triangle misses a box if a plane separates them: across an axis, along the triangle, or along an edge of
+//! each (the theorem of the separating axis; for boxes Akenine-Möller 2001). Only a separation that rounding
+//! cannot feign counts.
 
 use core::array::from_fn as array;
 
@@ -17,7 +18,8 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 const SINGLE: f64 = 1.0 / (1 << 22) as f64;
 
 impl TriangleTree<'_> {
-    /// Calls `visit` with every triangle that meets a closed box (model units), and perhaps with some that come very near.
+    /// Calls `visit` with every triangle that meets a closed box (model units), and perhaps with some that
+    /// come very near.
     pub(crate) fn in_box(&self, bounds: &Bounds, visit: &mut impl FnMut(u32)) {
         self.in_box_of(bounds, |_| true, visit);
     }

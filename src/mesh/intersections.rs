@@ -1,10 +1,10 @@
 //! Pairs of triangles that intersect.
 //!
-//! Two triangles of a surface may have a vertex or an edge in common. They *intersect* if they have any other point
-//! in common. All decisions are exact signs. Triangles without area are left out.
+//! Two triangles of a surface may have a vertex or an edge in common. They *intersect* if they have any other
+//! point in common. All decisions are exact signs. Triangles without area are left out.
 //!
-//! Neighbours in one plane, or nearly so, are told apart by a line or plane between them as a rule: exact signs would have to find
-//! out that they are zero.
+//! Neighbours in one plane, or nearly so, are told apart by a line or plane between them as a rule: exact
+//! signs would have to find out that they are zero.
 
 use super::self_pairs::self_pairs;
 use super::signs::{Point, cross_sign, sure_volume_sign, volume_sign};
@@ -22,8 +22,8 @@ use core::array::from_fn as array;
 pub struct IntersectingPair {
     /// Indices of the triangles, ascending.
     pub triangles: [u32; 2],
-    /// The least and the greatest coordinates of a box in which they meet, in model units: where the boxes around
-    /// the two overlap.
+    /// The least and the greatest coordinates of a box in which they meet, in model units: where the boxes
+    /// around the two overlap.
     pub bounds: ([f64; 3], [f64; 3]),
 }
 
@@ -39,12 +39,12 @@ pub struct IntersectingPairs {
 }
 
 impl TriangleMesh {
-    /// The pairs of triangles that have a point in common which is not on a common vertex or edge: they cross,
-    /// touch, or fold onto each other. Decided exactly. Triangles without area are left out.
+    /// The pairs of triangles that have a point in common which is not on a common vertex or edge: they
+    /// cross, touch, or fold onto each other. Decided exactly. Triangles without area are left out.
     ///
-    /// O(t log t) time for triangles that lie apart, also for slivers of which many have a vertex in common, and the mesh keeps a tree of 36
-    /// bytes a triangle. A search ends after
-    /// 2^26 steps and 512 a triangle; [`is_complete`](IntersectingPairs::is_complete) tells. It is deterministic.
+    /// O(t log t) time for triangles that lie apart, also for slivers of which many have a vertex in common,
+    /// and the mesh keeps a tree of 36 bytes a triangle. A search ends after 2^26 steps and 512 a triangle;
+    /// [`is_complete`](IntersectingPairs::is_complete) tells. It is deterministic.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`] or [`Error::Cancelled`].
@@ -135,9 +135,10 @@ fn intersect(mesh: &TriangleMesh, a: u32, b: u32) -> bool {
 /// What rounding may change in a sum of two or three products of differences, as a part of the magnitudes.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Whether two triangles surely have nothing in common but vertices, or an edge, of both: seen along an axis there is a line
-/// between them. It runs along an edge, and of the other triangle at most common vertices lie on it. Not told where rounding may
-/// decide it. (Most pairs never come here: what it needs is fetched again, so that they do not carry it along.)
+/// Whether two triangles surely have nothing in common but vertices, or an edge, of both: seen along an axis
+/// there is a line between them. It runs along an edge, and of the other triangle at most common vertices lie
+/// on it. Not told where rounding may decide it. (Most pairs never come here: what it needs is fetched again,
+/// so that they do not carry it along.)
 #[cold]
 #[inline(never)]
 fn is_line_between(mesh: &TriangleMesh, both: [u32; 2]) -> bool {
@@ -180,8 +181,8 @@ fn turn(s: &[f64; 2], t: &[f64; 2], x: &[f64; 2]) -> i32 {
     if value.abs() > ROUNDING * (left.abs() + right.abs()) { sign(value) } else { 0 }
 }
 
-/// Whether two cones at `v` surely have no direction in common: the plane across the way from the middle of one to that of the
-/// other lies between them. Not told where rounding may decide it.
+/// Whether two cones at `v` surely have no direction in common: the plane across the way from the middle of
+/// one to that of the other lies between them. Not told where rounding may decide it.
 #[cold]
 fn is_plane_between(v: &Point, a: [&Point; 2], b: [&Point; 2]) -> bool {
     let [a, b]: [[Point; 2]; 2] = [a, b].map(|ends| ends.map(|p| array(|axis| p[axis] - v[axis])));
@@ -194,8 +195,8 @@ fn is_plane_between(v: &Point, a: [&Point; 2], b: [&Point; 2]) -> bool {
     a.iter().all(|p| is_ahead(p, 1.0)) && b.iter().all(|p| is_ahead(p, -1.0))
 }
 
-/// Whether two triangles with a common edge meet beyond it. `lone` is the corner of the first that is not on the
-/// edge, `p` that of the second one.
+/// Whether two triangles with a common edge meet beyond it. `lone` is the corner of the first that is not on
+/// the edge, `p` that of the second one.
 fn fold(a: &[Point; 3], lone: usize, p: &Point, is_line_between: impl FnOnce() -> bool) -> bool {
     let [c, d, e] = array(|k| &a[(lone + k) % 3]);
     if sides([c, d, e], [p], is_line_between) != Some([0]) {
@@ -206,7 +207,8 @@ fn fold(a: &[Point; 3], lone: usize, p: &Point, is_line_between: impl FnOnce() -
     cross_sign([d, e], [d, c], axis) == cross_sign([d, e], [d, p], axis)
 }
 
-/// On which sides of the plane through three points others lie. Nothing where rounding may decide it, and the triangles `are_apart`.
+/// On which sides of the plane through three points others lie. Nothing where rounding may decide it, and the
+/// triangles `are_apart`.
 #[inline(always)]
 fn sides<const N: usize>(
     [a, b, c]: [&Point; 3],
@@ -225,10 +227,11 @@ pub(super) fn axis_of([a, b, c]: &[Point; 3]) -> usize {
     (0..2).find(|&axis| cross_sign([a, b], [a, c], axis) != 0).unwrap_or(2)
 }
 
-/// Whether two triangles with a common vertex, number `i` of the first and `k` of the second one, meet beyond it.
+/// Whether two triangles with a common vertex, number `i` of the first and `k` of the second one, meet beyond
+/// it.
 ///
-/// Each triangle begins, at the vertex, as a cone between two edges. They meet beyond the vertex if and only if the
-/// cones have a direction in common.
+/// Each triangle begins, at the vertex, as a cone between two edges. They meet beyond the vertex if and only
+/// if the cones have a direction in common.
 fn meet_beyond_vertex(
     a: &[Point; 3],
     i: usize,
@@ -270,7 +273,8 @@ fn cones_overlap(v: &Point, a: [&Point; 2], b: [&Point; 2], axis: usize) -> bool
     b.iter().any(|p| within(a, p)) || a.iter().any(|p| within(b, p))
 }
 
-/// Whether two triangles meet. `is_line_between` tells, where rounding may decide it, whether they are surely apart.
+/// Whether two triangles meet. `is_line_between` tells, where rounding may decide it, whether they are surely
+/// apart.
 pub(super) fn meet(a: &[Point; 3], b: &[Point; 3], is_line_between: impl FnOnce() -> bool) -> bool {
     let is_apart = |sides: [i32; 3]| sides[0] != 0 && sides == [sides[0]; 3];
     let Some(of_b) = sides(a.each_ref(), b.each_ref(), is_line_between) else { return false };
@@ -285,8 +289,8 @@ pub(super) fn meet(a: &[Point; 3], b: &[Point; 3], is_line_between: impl FnOnce(
     edge_meets(a, b, of_b) || edge_meets(b, a, of_a)
 }
 
-/// Whether an edge of the second triangle meets the first one. `sides` are those of the first one's plane on which
-/// the second one's corners lie.
+/// Whether an edge of the second triangle meets the first one. `sides` are those of the first one's plane on
+/// which the second one's corners lie.
 fn edge_meets(triangle: &[Point; 3], edges: &[Point; 3], sides: [i32; 3]) -> bool {
     let [a, b, c] = triangle;
     (0..3).any(|k| {
@@ -340,7 +344,8 @@ mod tests {
         found.pairs.iter().map(|pair| pair.triangles).collect()
     }
 
-    /// A disc of slivers around one vertex, the cone below it, both, or the side of a prism, turned so that no sliver lies along an axis.
+    /// A disc of slivers around one vertex, the cone below it, both, or the side of a prism, turned so that
+    /// no sliver lies along an axis.
     fn slivers(count: u32, kind: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
         let rim = |k: u32| 2 + k % count;
         let mut vertices = vec![[0.0, 0.0, 0.0], [0.0, 0.0, -1.0]];

@@ -1,7 +1,8 @@
-//! Triangles whose edges are collapsed and flipped: the surface stays what it is as a set of edges and triangles that hang together.
+//! Triangles whose edges are collapsed and flipped: the surface stays what it is as a set of edges and
+//! triangles that hang together.
 //!
-//! (Dey, Edelsbrunner, Guha and Nekhayev, *Topology preserving edge contraction*, 1999: the condition under which an edge of a surface may
-//! be collapsed.)
+//! (Dey, Edelsbrunner, Guha and Nekhayev, *Topology preserving edge contraction*, 1999: the condition under
+//! which an edge of a surface may be collapsed.)
 
 use crate::error::Error;
 use crate::memory;
@@ -77,8 +78,9 @@ impl Links {
         Ok(all)
     }
 
-    /// Puts a vertex where the other end of an edge is, with which the triangles on both sides of the edge vanish. Tells whether that was
-    /// done: not if edges would then have more than two triangles, or two triangles the same corners.
+    /// Puts a vertex where the other end of an edge is, with which the triangles on both sides of the edge
+    /// vanish. Tells whether that was done: not if edges would then have more than two triangles, or two
+    /// triangles the same corners.
     pub(super) fn collapse(&mut self, from: u32, to: u32) -> Result<bool, Error> {
         let Some(sides) = self.beside(from, to) else { return Ok(false) };
         let apexes = sides.map(|number| self.apex(number, from, to));
@@ -118,7 +120,8 @@ impl Links {
         (own == number).then(|| (other, self.apex(other, from, to)))
     }
 
-    /// Puts the other diagonal into the two triangles at a side. Tells whether that was done: not if it is an edge already.
+    /// Puts the other diagonal into the two triangles at a side. Tells whether that was done: not if it is an
+    /// edge already.
     pub(super) fn flip(&mut self, number: u32, side: usize) -> Result<bool, Error> {
         let Some((other, far)) = self.across(number, side) else { return Ok(false) };
         let triangle = self.triangles[number as usize];

@@ -1,22 +1,25 @@
 //! The moments of what a mesh encloses, by the divergence theorem.
 //!
-//! A point belongs to the solid if the winding number w there has a property that the fill rule says. Where no two
-//! triangles intersect, this property changes at a triangle in one way: from inside to outside, the other way round,
-//! or not at all (`sheets`). The integral of a polynomial over the solid is then the sum of the integrals over signed
-//! tetrahedra, each with a triangle as its base and a common tip, of those triangles at which it changes.
+//! A point belongs to the solid if the winding number w there has a property that the fill rule says. Where
+//! no two triangles intersect, this property changes at a triangle in one way: from inside to outside, the
+//! other way round, or not at all (`sheets`). The integral of a polynomial over the solid is then the sum of
+//! the integrals over signed tetrahedra, each with a triangle as its base and a common tip, of those
+//! triangles at which it changes.
 //!
-//! **Rounding.** A triangle is a corner, relative to the centre of the mesh, and two edges. All are scaled by a power of
-//! two, so that coordinates are at most 2 in magnitude and nothing overflows. A term is a polynomial of them. Beside its sum runs that of its
-//! *size*, the same polynomial of magnitudes. No more than 32 roundings lie one behind another in a term, so that
-//! it is off by 40 half units of its size at the most. The sums are kept in two doubles. Of parts with few and round
-//! dimensions nothing is rounded at all, which the sizes tell.
+//! **Rounding.** A triangle is a corner, relative to the centre of the mesh, and two edges. All are scaled by
+//! a power of two, so that coordinates are at most 2 in magnitude and nothing overflows. A term is a
+//! polynomial of them. Beside its sum runs that of its *size*, the same polynomial of magnitudes. No more
+//! than 32 roundings lie one behind another in a term, so that it is off by 40 half units of its size at the
+//! most. The sums are kept in two doubles. Of parts with few and round dimensions nothing is rounded at all,
+//! which the sizes tell.
 //!
-//! **Displacement.** The surface may have been moved by some distance r. The solid changes by no more than the volume
-//! within r of the surface, which is at most the sum over all triangles of 2 A r + π/2 P r² + 4/3 π r³, for an area A
-//! and a perimeter P (Steiner's formula). The volume grows by no more than what of it lies outside, and shrinks by no more than what
-//! lies inside. Each is at most the sum of A r + π/4 P r² + 4/3 π r³: a point whose nearest one lies within a triangle lies on one
-//! side of it; one whose nearest one lies on an edge lies in the half cylinders of all triangles there, of which there are two at
-//! least; and around a corner there are three at least.
+//! **Displacement.** The surface may have been moved by some distance r. The solid changes by no more than
+//! the volume within r of the surface, which is at most the sum over all triangles of 2 A r + π/2 P r² + 4/3
+//! π r³, for an area A and a perimeter P (Steiner's formula). The volume grows by no more than what of it
+//! lies outside, and shrinks by no more than what lies inside. Each is at most the sum of A r + π/4 P r² +
+//! 4/3 π r³: a point whose nearest one lies within a triangle lies on one side of it; one whose nearest one
+//! lies on an edge lies in the half cylinders of all triangles there, of which there are two at least; and
+//! around a corner there are three at least.
 
 use super::intersections::{corners, intersections};
 use super::sheets::{Sense, sheets};
@@ -41,21 +44,21 @@ pub enum MeshMoments {
     Open,
     /// Two triangles intersect, these for instance. [`TriangleMesh::intersecting_pairs`] tells how many do.
     Intersecting([u32; 2]),
-    /// Too many triangles lie close to each other to find out whether some intersect, or all triangles of a body are
-    /// slivers.
+    /// Too many triangles lie close to each other to find out whether some intersect, or all triangles of a
+    /// body are slivers.
     Undecided,
 }
 
 impl TriangleMesh {
-    /// The volume and the moments of what the mesh encloses by a fill rule, exact up to rounding: usually to 14
-    /// digits. They are known if the mesh is closed and no two triangles intersect. Nested bodies, cavities, and
-    /// bodies that are inside out count as the rule says.
+    /// The volume and the moments of what the mesh encloses by a fill rule, exact up to rounding: usually to
+    /// 14 digits. They are known if the mesh is closed and no two triangles intersect. Nested bodies,
+    /// cavities, and bodies that are inside out count as the rule says.
     ///
-    /// If vertices were moved, or a [`deviation`](Self::with_deviation) was stated, the intervals contain the moments of each
-    /// solid whose surface lies within that distance ([`displacement`](Self::displacement)).
+    /// If vertices were moved, or a [`deviation`](Self::with_deviation) was stated, the intervals contain the
+    /// moments of each solid whose surface lies within that distance ([`displacement`](Self::displacement)).
     ///
-    /// O(t log t) time for triangles that lie apart, and the mesh keeps a tree of 36 bytes a triangle. Work is limited as
-    /// in [`intersecting_pairs`](Self::intersecting_pairs).
+    /// O(t log t) time for triangles that lie apart, and the mesh keeps a tree of 36 bytes a triangle. Work
+    /// is limited as in [`intersecting_pairs`](Self::intersecting_pairs).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`] or [`Error::Cancelled`].
@@ -139,7 +142,8 @@ struct Tube {
 /// Volume, first and second moments.
 const COUNT: usize = 10;
 
-/// Sums of terms in the units of the grid: 6 times the volume, 24 times the first and 120 times the second moments.
+/// Sums of terms in the units of the grid: 6 times the volume, 24 times the first and 120 times the second
+/// moments.
 #[derive(Default)]
 struct Sums {
     /// The sums, and what was lost by rounding them.
@@ -163,7 +167,8 @@ impl Sums {
         self.terms += 1.0;
     }
 
-    /// `bits` are those of the coordinates behind the point, if they are exact. What lies in `tube` may belong to the solid or not.
+    /// `bits` are those of the coordinates behind the point, if they are exact. What lies in `tube` may
+    /// belong to the solid or not.
     fn finish(&self, grid: &Grid, bits: Option<i32>, tube: Tube) -> VolumeMoments {
         const HALF_UNIT: f64 = f64::EPSILON / 2.0;
         let unit = Interval::exactly(1.0 / grid.scale());
@@ -202,9 +207,9 @@ fn around_zero(radius: f64) -> Interval {
     Interval::between(-radius, radius)
 }
 
-/// 6 times the volume, 24 times the first and 120 times the second moments of the tetrahedron with the tip 0, in the
-/// order of [`VolumeMoments`]; or their sizes, if `minus` adds. The base has the corner `a` and from there the edges
-/// `u` and `v`, which are short: so the sizes are little more than the magnitudes.
+/// 6 times the volume, 24 times the first and 120 times the second moments of the tetrahedron with the tip 0,
+/// in the order of [`VolumeMoments`]; or their sizes, if `minus` adds. The base has the corner `a` and from
+/// there the edges `u` and `v`, which are short: so the sizes are little more than the magnitudes.
 #[inline(always)]
 fn moments_of([a, u, v]: &[Point; 3], minus: impl Fn(f64, f64) -> f64) -> [f64; COUNT] {
     let [b, c]: [Point; 2] = [u, v].map(|edge| array(|k| a[k] + edge[k]));

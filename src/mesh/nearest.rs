@@ -1,20 +1,21 @@
 //! The triangle that is nearest to a point, and the triangles that may be nearest to a point of a box.
 //!
 //! **The nearest triangle** is the one whose *computed* distance is least; of equal ones the first. The tree
-//! leaves out only triangles whose computed distance cannot be as small, so the answer is that of a look at all
-//! triangles. Distances to vertices and edges are computed from these alone, in the order of their numbers:
-//! triangles that share them, and triangles with the same corners, are at equal distances, bit by bit.
+//! leaves out only triangles whose computed distance cannot be as small, so the answer is that of a look at
+//! all triangles. Distances to vertices and edges are computed from these alone, in the order of their
+//! numbers: triangles that share them, and triangles with the same corners, are at equal distances, bit by
+//! bit.
 //!
-//! **What may be nearest in a box.** Let t be the triangle nearest to the box's centre. The distance to t is a
-//! convex function of position, so over the box it is greatest at a corner; say U there. No triangle that is
-//! further than U from the whole box is nearest to a point of the box. Computed distances differ from true
+//! **What may be nearest in a box.** Let t be the triangle nearest to the box's centre. The distance to t is
+//! a convex function of position, so over the box it is greatest at a corner; say U there. No triangle that
+//! is further than U from the whole box is nearest to a point of the box. Computed distances differ from true
 //! ones, and U is enlarged by bounds of that:
 //!
-//! * The computed distance is at least the true one less 8u (D + L), with u = 2^-53, D the distance to a corner
-//!   of the triangle and L its longest edge, because it is that to a computed point of the triangle.
+//! * The computed distance is at least the true one less 8u (D + L), with u = 2^-53, D the distance to a
+//!   corner of the triangle and L its longest edge, because it is that to a computed point of the triangle.
 //! * It is at most the true one plus 128u (D + L) L / h, with h the height on the longest edge: so far the
-//!   computed foot of the perpendicular may lie from the true one. For slivers, of which h is less than 2^-10 L,
-//!   the distances to the edges are looked at as well, which exceed the true one by at most h.
+//!   computed foot of the perpendicular may lie from the true one. For slivers, of which h is less than 2^-10
+//!   L, the distances to the edges are looked at as well, which exceed the true one by at most h.
 //!
 //! Lengths are in the scale of the tree's grid, in which the mesh has a half extent of 1/2 to 1.
 
@@ -63,8 +64,8 @@ pub(crate) struct NearestPoint {
 
 /// Whoever looks at the triangles that may be nearest.
 pub(crate) trait NearVisitor {
-    /// Whether the triangles of a node shall be visited one by one. If `all`, each of them may be nearest, or is
-    /// hardly further away.
+    /// Whether the triangles of a node shall be visited one by one. If `all`, each of them may be nearest, or
+    /// is hardly further away.
     fn enter(&mut self, node: usize, all: bool) -> bool;
 
     /// Whether a triangle shall be visited, if it may be nearest.
@@ -90,7 +91,8 @@ impl TriangleMesh {
 }
 
 impl TriangleTree<'_> {
-    /// For each node what is known of all its triangles: `none` of no triangle, `of` one, `join` of both parts.
+    /// For each node what is known of all its triangles: `none` of no triangle, `of` one, `join` of both
+    /// parts.
     pub(crate) fn summaries<T: Copy>(
         &self,
         none: T,
@@ -133,8 +135,9 @@ impl TriangleTree<'_> {
         self.search(point, hint, |_| true, false)
     }
 
-    /// The nearest point of triangles that are `wanted`, and certified bounds of its distance in model units. `None` as
-    /// [`nearest`](Self::nearest), of points further away than 2^99 times the mesh's extent, and if no triangle is wanted.
+    /// The nearest point of triangles that are `wanted`, and certified bounds of its distance in model units.
+    /// `None` as [`nearest`](Self::nearest), of points further away than 2^99 times the mesh's extent, and if
+    /// no triangle is wanted.
     pub(crate) fn nearest_of(
         &self,
         point: &Point,
@@ -211,7 +214,8 @@ impl TriangleTree<'_> {
             point,
             scaled,
             single: Single::new(&scaled),
-            // The mesh lies within 2 of the centre. (Sums of three ways are at most three times as long as the longest.)
+            // The mesh lies within 2 of the centre. (Sums of three ways are at most three times as long as
+            // the longest.)
             rounding: ROUNDING * 20.0 * (4.0 + dot(&scaled, &scaled)),
             wanted,
             is_certified,
@@ -306,7 +310,8 @@ struct Search<'a, W> {
     scaled: Point,
     /// The same, unless it is far away.
     single: Option<Single>,
-    /// More than rounding can change in a product of sums of ways to a triangle's corners, and in a square of a distance.
+    /// More than rounding can change in a product of sums of ways to a triangle's corners, and in a square of
+    /// a distance.
     rounding: f64,
     wanted: W,
     /// Whether bounds of true distances are asked for.
@@ -339,7 +344,8 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
                 let gap = gap.max(0.0);
                 sum + gap * gap
             });
-            // The point's own rounding is a part of the distance. (There is nothing in a box at an infinite distance.)
+            // The point's own rounding is a part of the distance. (There is nothing in a box at an infinite
+            // distance.)
             let square = square * (1.0 - 1.0 / (1 << 20) as f64);
             if square < f64::INFINITY { (square.min(LARGEST) as f32).next_down() } else { f32::INFINITY }
         })
@@ -410,7 +416,8 @@ impl<W: Fn(u32) -> bool> Search<'_, W> {
 /// The number of a node's last part.
 const LAST: u32 = WIDTH as u32 - 1;
 
-/// A part of a node with a bound that is not negative, as a number: first by the bound, rounded down, then by the part.
+/// A part of a node with a bound that is not negative, as a number: first by the bound, rounded down, then by
+/// the part.
 #[inline(always)]
 fn key(bound: f32, part: u32) -> u32 {
     bound.to_bits() & !LAST | part
@@ -432,8 +439,9 @@ fn descending(mut numbers: [u32; WIDTH]) -> [u32; WIDTH] {
     numbers
 }
 
-/// Whether a plane across the way to a triangle's centroid tells that its computed distance is greater than the
-/// root of `square`; `from` leads from the corners to the point. `rounding` is more than rounding changes in squares of lengths.
+/// Whether a plane across the way to a triangle's centroid tells that its computed distance is greater than
+/// the root of `square`; `from` leads from the corners to the point. `rounding` is more than rounding changes
+/// in squares of lengths.
 #[inline(always)]
 fn is_beyond(from: &[Point; 3], square: f64, rounding: f64) -> bool {
     let [a, b, c] = from;
@@ -501,8 +509,8 @@ impl Corners {
         ROUNDING * (distance + 3.0 * sqrt(self.base.square))
     }
 
-    /// The square of the distance of the point to which these ways lead from the corners, and the weights of the
-    /// triangle's corners in the nearest point.
+    /// The square of the distance of the point to which these ways lead from the corners, and the weights of
+    /// the triangle's corners in the nearest point.
     #[inline(always)]
     fn nearest_to(&self, from: &[Point; 3]) -> (f64, [f64; 3]) {
         let Corners { edges, area, .. } = *self;
@@ -646,8 +654,9 @@ impl Near<'_> {
         (sqrt(nearest) * (1.0 - 1e-6), sqrt(furthest) * (1.0 + 1e-6))
     }
 
-    /// Whether a triangle may be within reach: unless a plane between it and the box tells that it is not. Two
-    /// planes are tried, across the ways from the box's centre to the triangle's centroid and nearest point.
+    /// Whether a triangle may be within reach: unless a plane between it and the box tells that it is not.
+    /// Two planes are tried, across the ways from the box's centre to the triangle's centroid and nearest
+    /// point.
     fn may_reach(&self, triangle: u32) -> bool {
         let corners = Corners::of(self.mesh, triangle, self.tree.grid.scale());
         let from = corners.from(&self.centre);

@@ -8,9 +8,9 @@ use glam::DVec3;
 
 impl TriangleMesh {
     /// The unit normal at each vertex, outward where triangles turn counter-clockwise as seen from outside:
-    /// the mean of the normals of the triangles there, each weighted by its angle (Thürmer and Wüthrich 1998).
-    /// So it does not depend on how plane parts are cut into triangles. Where the mean is zero, as at a vertex
-    /// without triangles, so is the normal.
+    /// the mean of the normals of the triangles there, each weighted by its angle (Thürmer and Wüthrich
+    /// 1998). So it does not depend on how plane parts are cut into triangles. Where the mean is zero, as at
+    /// a vertex without triangles, so is the normal.
     ///
     /// O(t + v) time; 24 bytes a vertex.
     ///

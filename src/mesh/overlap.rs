@@ -6,11 +6,12 @@
 //! **Pairs.** Only bodies whose boxes meet are looked at. All decisions are exact signs. If an edge of one
 //! body goes through a triangle of the other, from one side to the other and between its edges, then the two
 //! cross. Otherwise the surfaces are apart or only touch. Touching is decided by moving one body by an
-//! infinitesimal distance, in one of eight general directions, in which no sign is zero: if the surfaces do not
-//! cross after one of these moves, then the winding number of each body around the other one is well defined,
-//! and tells whether it lies inside. (Volumes are continuous in the move.) What crosses after every move is not
-//! decided by this: a peg that fits its hole exactly, but also two blocks with sides in common planes. Points
-//! close to where they touch then prove that two overlap; without such points the pair stays undecided.
+//! infinitesimal distance, in one of eight general directions, in which no sign is zero: if the surfaces do
+//! not cross after one of these moves, then the winding number of each body around the other one is well
+//! defined, and tells whether it lies inside. (Volumes are continuous in the move.) What crosses after every
+//! move is not decided by this: a peg that fits its hole exactly, but also two blocks with sides in common
+//! planes. Points close to where they touch then prove that two overlap; without such points the pair stays
+//! undecided.
 //!
 //! **Nesting.** The winding numbers of all bodies around a body add up. It is nested with the same sense if
 //! the sum has the sign of its own volume: a cavity in a body is not, and a body in a cavity is not either.
@@ -31,10 +32,10 @@ use core::array::from_fn as array;
 /// Looks at the bodies whose `senses` are not zero: the signs of their volumes. They must be closed. If there
 /// are `walls` of two triangles that cancel each other, to go through one is no crossing.
 ///
-/// O(t + b log b) for t triangles and b bodies with few boxes that meet. A body whose box meets those of two other
-/// bodies is sorted, once, in O(t log t) for its t triangles. From then on, another body within its box costs only a
-/// search for the triangles near that body. Work is limited to 2^24 steps and 128 a triangle; pairs that are left then
-/// are undecided.
+/// O(t + b log b) for t triangles and b bodies with few boxes that meet. A body whose box meets those of two
+/// other bodies is sorted, once, in O(t log t) for its t triangles. From then on, another body within its box
+/// costs only a search for the triangles near that body. Work is limited to 2^24 steps and 128 a triangle;
+/// pairs that are left then are undecided.
 pub(super) fn overlaps(
     mesh: &TriangleMesh,
     of_triangles: &[u32],
@@ -216,8 +217,8 @@ impl Search<'_> {
         bounds
     }
 
-    /// Whether triangles of the two lists cross; `None` if there are no steps left. Notes where they touch. The
-    /// lists come back in another order.
+    /// Whether triangles of the two lists cross; `None` if there are no steps left. Notes where they touch.
+    /// The lists come back in another order.
     fn crossings(&mut self, a: &mut [u32], b: &mut [u32], touches: &mut Touches) -> Option<bool> {
         if !self.take(a.len() + b.len()) {
             return None;
@@ -299,9 +300,9 @@ impl Search<'_> {
         is_counted.then_some(winding)
     }
 
-    /// Whether points are found that prove an overlap: one around which both bodies wind in the same sense, and
-    /// all together more than once; or one in both bodies and one in each of them alone. Tried are points in
-    /// eight directions from where they touch.
+    /// Whether points are found that prove an overlap: one around which both bodies wind in the same sense,
+    /// and all together more than once; or one in both bodies and one in each of them alone. Tried are points
+    /// in eight directions from where they touch.
     fn overlap_near(&mut self, bodies: &[Body], pair: [usize; 2], touches: &Touches) -> bool {
         let shift = Shift::new(0);
         let mut parts = [false; 4];
@@ -389,8 +390,8 @@ fn pierces(p: &Point, q: &Point, [a, b, c]: &[Point; 3], shift: Option<Shift>) -
     if is_through || shift.is_some() { Some(is_through) } else { None }
 }
 
-/// What a triangle adds to the winding number around a moved point: 1 or -1 if it lies above, by the side from
-/// which it is seen.
+/// What a triangle adds to the winding number around a moved point: 1 or -1 if it lies above, by the side
+/// from which it is seen.
 fn above([a, b, c]: &[Point; 3], p: &Point, shift: Shift) -> i32 {
     for axis in 0..2 {
         let [x, y, z] = [a, b, c].map(|corner| corner[axis]);

@@ -1,10 +1,12 @@
 //! Triangles that intersect others, cut into pieces that do not.
 //!
-//! A piece whose inside no other triangle meets has one winding number right in front of it, and one more behind: it belongs to the
-//! boundary, or nothing of it does. Where triangles do meet, pieces are cut in four until they are small.
+//! A piece whose inside no other triangle meets has one winding number right in front of it, and one more
+//! behind: it belongs to the boundary, or nothing of it does. Where triangles do meet, pieces are cut in four
+//! until they are small.
 //!
-//! Corners of pieces are midpoints of midpoints, and lie beside their triangle by what rounding moves them. Whether a piece meets a
-//! triangle is therefore asked with a margin that is many times as wide; triangles that are too thin for that are not cut.
+//! Corners of pieces are midpoints of midpoints, and lie beside their triangle by what rounding moves them.
+//! Whether a piece meets a triangle is therefore asked with a margin that is many times as wide; triangles
+//! that are too thin for that are not cut.
 
 use super::intersections::corners;
 use super::sheets::in_front_at;
@@ -19,12 +21,13 @@ use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
 
-/// The distance within which nobody tells whether a piece meets a triangle, as a part of the largest coordinate. (Sums of three products
-/// are right to 2^-50 of that, and corners of pieces to 2^-46.)
+/// The distance within which nobody tells whether a piece meets a triangle, as a part of the largest
+/// coordinate. (Sums of three products are right to 2^-50 of that, and corners of pieces to 2^-46.)
 const MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Triangles are cut if twice their area is at least this part of the square of their longest side, and pieces whose longest side is at
-/// least that part of the largest coordinate: their inscribed circle has a radius of 2^-41 of the coordinate and more.
+/// Triangles are cut if twice their area is at least this part of the square of their longest side, and
+/// pieces whose longest side is at least that part of the largest coordinate: their inscribed circle has a
+/// radius of 2^-41 of the coordinate and more.
 const THIN: f64 = 1.0 / (1u64 << 17) as f64;
 const SHORT: f64 = 1.0 / (1u64 << 22) as f64;
 
@@ -49,11 +52,12 @@ struct Piece {
 }
 
 impl TriangleMesh {
-    /// What becomes of the triangles of a mesh, closed under `rule`, of which `sides` tells nothing. Pieces that meet other triangles
-    /// have sides no longer than `size` (model units). `None` if there would be too many, or triangles lie on each other, which would
-    /// meet everywhere.
+    /// What becomes of the triangles of a mesh, closed under `rule`, of which `sides` tells nothing. Pieces
+    /// that meet other triangles have sides no longer than `size` (model units). `None` if there would be too
+    /// many, or triangles lie on each other, which would meet everywhere.
     ///
-    /// O(l / size) for lines of intersection of the length l, each time as long as there are triangles that meet a piece.
+    /// O(l / size) for lines of intersection of the length l, each time as long as there are triangles that
+    /// meet a piece.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -141,8 +145,8 @@ fn shape([a, b, c]: &[Point; 3]) -> (f64, f64) {
     (sqrt(square), sqrt(dot(&normal, &normal)))
 }
 
-/// Whether two triangles are surely further from each other than `margin`, along a direction in which one of them ends. (That of the
-/// rounding of its coordinates is as good as any.)
+/// Whether two triangles are surely further from each other than `margin`, along a direction in which one of
+/// them ends. (That of the rounding of its coordinates is as good as any.)
 fn are_apart(a: &[Point; 3], b: &[Point; 3], margin: f64) -> bool {
     let is_between = |way: &Point| {
         let ends = |corners: &[Point; 3]| {

@@ -1,19 +1,23 @@
-//! Which triangles a half-line passes through, and where: exactly which, and where to the rounding of doubles.
+//! Which triangles a half-line passes through, and where: exactly which, and where to the rounding of
+//! doubles.
 //!
-//! The half-line is shifted by (ε, ε², ε³) in thought, ε → 0, or with other signs into another octant, so that it meets no edge
-//! of a triangle and begins on none. So the triangles that it passes through tell winding numbers along it, whatever it meets (simulation of
-//! simplicity: Edelsbrunner and Mücke 1990, with one perturbation for all points). A triangle that the half-line itself meets
-//! and the shifted one does not is *touched*.
+//! The half-line is shifted by (ε, ε², ε³) in thought, ε → 0, or with other signs into another octant, so
+//! that it meets no edge of a triangle and begins on none. So the triangles that it passes through tell
+//! winding numbers along it, whatever it meets (simulation of simplicity: Edelsbrunner and Mücke 1990, with
+//! one perturbation for all points). A triangle that the half-line itself meets and the shifted one does not
+//! is *touched*.
 //!
-//! With the line's direction d, and corners p, q as seen from its beginning, the line passes an edge on the side that the sign
-//! of d · (p × q) tells, and a triangle between edges whose signs agree. Doubles with a bound of their error decide nearly all
-//! of them, exact arithmetic on the original coordinates the rest. (The watertight test of Woop, Benthin and Wald 2013 takes
-//! the same signs of rounded coordinates.) Where the surface may lie beside the mesh, no arithmetic decides what is too near.
+//! With the line's direction d, and corners p, q as seen from its beginning, the line passes an edge on the
+//! side that the sign of d · (p × q) tells, and a triangle between edges whose signs agree. Doubles with a
+//! bound of their error decide nearly all of them, exact arithmetic on the original coordinates the rest.
+//! (The watertight test of Woop, Benthin and Wald 2013 takes the same signs of rounded coordinates.) Where
+//! the surface may lie beside the mesh, no arithmetic decides what is too near.
 //!
-//! **The search.** The tree's boxes are looked at in single precision. In the grid's coordinates the half-line is cut to what
-//! lies in the cube around the mesh, and begins there. Along each axis a point of it is then off by no more than `slack`: by
-//! rounding its beginning and its direction to 24 bits, the way being no longer than the cube is wide, and by what was rounded
-//! before, which a beginning far away makes larger. Boxes are taken that much larger, and by what the surface may lie beside the mesh.
+//! **The search.** The tree's boxes are looked at in single precision. In the grid's coordinates the
+//! half-line is cut to what lies in the cube around the mesh, and begins there. Along each axis a point of it
+//! is then off by no more than `slack`: by rounding its beginning and its direction to 24 bits, the way being
+//! no longer than the cube is wide, and by what was rounded before, which a beginning far away makes larger.
+//! Boxes are taken that much larger, and by what the surface may lie beside the mesh.
 
 use core::array::from_fn as array;
 
@@ -29,10 +33,12 @@ use crate::lattice::exact::{Expansion, two_product};
 use crate::lattice::{Interval, Ray};
 use crate::memory;
 
-/// What rounding may change in a sum of products of three factors, each rounded, as a part of the sum of their magnitudes.
+/// What rounding may change in a sum of products of three factors, each rounded, as a part of the sum of
+/// their magnitudes.
 const ROUNDING: f64 = 12.0 * f64::EPSILON;
 
-/// What a time may be off by, as a part of it, before exact arithmetic is asked: that of a line nearly in the plane of a triangle.
+/// What a time may be off by, as a part of it, before exact arithmetic is asked: that of a line nearly in the
+/// plane of a triangle.
 const FINE: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// How far beyond the mesh the half-line is looked at, in the scale of the grid.
@@ -49,7 +55,8 @@ const TIMES: f32 = 1.0 + 1.0 / (1 << 20) as f32;
 pub(crate) struct Hit {
     /// When: of a triangle in whose plane the line runs, during which time at the most.
     pub t: Interval,
-    /// What the winding number changes by along the shifted half-line: −1 if it leaves by the triangle, 0 if it only touches it.
+    /// What the winding number changes by along the shifted half-line: −1 if it leaves by the triangle, 0 if
+    /// it only touches it.
     pub step: i32,
     pub triangle: u32,
 }
@@ -80,15 +87,17 @@ impl Shift {
         Shift([-1, -1, 1]),
     ];
 
-    /// On which side of a plane it leads: the sign of its product with the plane's normal, of whose parts the signs are told.
+    /// On which side of a plane it leads: the sign of its product with the plane's normal, of whose parts the
+    /// signs are told.
     fn side(self, normal: impl Fn(usize) -> i32) -> i32 {
         (0..3).map(|axis| self.0[axis] * normal(axis)).find(|&sign| sign != 0).unwrap_or(0)
     }
 }
 
 impl TriangleTree<'_> {
-    /// The triangles that a ray, continued to infinity, meets, in no particular order. `false` if that is not sure, because the
-    /// surface may lie beside the mesh, and the ray comes near to an edge. O(log t) as a rule.
+    /// The triangles that a ray, continued to infinity, meets, in no particular order. `false` if that is not
+    /// sure, because the surface may lie beside the mesh, and the ray comes near to an edge. O(log t) as a
+    /// rule.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -168,7 +177,8 @@ impl TriangleTree<'_> {
         self.mesh.radius()
     }
 
-    /// The axis along which, up (1) or down (−1), a point leaves the box around the mesh soonest. `None` if it surely lies beyond.
+    /// The axis along which, up (1) or down (−1), a point leaves the box around the mesh soonest. `None` if
+    /// it surely lies beyond.
     pub(crate) fn way_out(&self, point: &Point) -> Option<(usize, f64)> {
         let around = self.tree.around()?;
         let at = self.tree.grid.scaled(point);
@@ -290,7 +300,8 @@ impl Cast {
         (units as f32).min(self.length)
     }
 
-    /// Calls `meet` with the triangles whose boxes are met, roughly nearest first, up to the time that it returns.
+    /// Calls `meet` with the triangles whose boxes are met, roughly nearest first, up to the time that it
+    /// returns.
     #[inline(always)]
     fn nearest_first(&self, mesh: &TriangleTree<'_>, meet: &mut impl FnMut(u32) -> f64) {
         let tree = mesh.tree;
@@ -481,7 +492,8 @@ impl<'m> Line<'m> {
         }
     }
 
-    /// Whether height and slope of a triangle were computed without rounding, because all numbers have few digits.
+    /// Whether height and slope of a triangle were computed without rounding, because all numbers have few
+    /// digits.
     #[inline(always)]
     fn is_short(&self, corners: &[Point; 3], height: f64, slope: f64) -> bool {
         // (As a rule one of two numbers tells that they have many.)
@@ -489,7 +501,8 @@ impl<'m> Line<'m> {
         if (height.to_bits() | slope.to_bits()) & DIGITS != 0 || slope == 0.0 {
             return false;
         }
-        // Differences have a bit more, products of three have the sum of their bits, and sums of six three more: 51.
+        // Differences have a bit more, products of three have the sum of their bits, and sums of six three
+        // more: 51.
         const BITS: i32 = 15;
         let along = self.direction.map(|[high, _]| high);
         let is_whole = self.direction.iter().all(|&[_, low]| low == 0.0);
@@ -565,8 +578,8 @@ impl<'m> Line<'m> {
         }
     }
 
-    /// Which part of a stay in a triangle's plane the line spends between its edges, at the most: seen along the axis along which
-    /// the triangle is largest.
+    /// Which part of a stay in a triangle's plane the line spends between its edges, at the most: seen along
+    /// the axis along which the triangle is largest.
     fn between_edges(&self, corners: &[Point; 3], mut stay: Interval) -> Option<Interval> {
         let exactly = Interval::exactly;
         let minus = |p: f64, q: f64| exactly(p).minus(exactly(q));

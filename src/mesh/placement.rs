@@ -8,9 +8,9 @@ use crate::lattice::{Affine, SMALLEST};
 
 impl TriangleMesh {
     /// The mesh under an affine map. Vertices are rounded to doubles, and by how much one may be off counts
-    /// as [`displacement`](Self::displacement): what is proven of the solid is proven of the exact image. A stated
-    /// [`deviation`](Self::deviation) grows as lengths do at the most. A reflection turns the triangles round as well, so that
-    /// outside stays outside. The report starts anew.
+    /// as [`displacement`](Self::displacement): what is proven of the solid is proven of the exact image. A
+    /// stated [`deviation`](Self::deviation) grows as lengths do at the most. A reflection turns the
+    /// triangles round as well, so that outside stays outside. The report starts anew.
     ///
     /// O(v + t). Fails as [`new`](Self::new) does.
     pub fn placed(&self, placement: &Affine) -> Result<TriangleMesh, Error> {

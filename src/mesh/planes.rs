@@ -1,7 +1,7 @@
 //! The planes in which the triangles of a mesh lie.
 //!
-//! A CAD program writes a plane face as many triangles, whose corners are rounded. Such triangles share a plane here, with as much
-//! width as the rounding takes.
+//! A CAD program writes a plane face as many triangles, whose corners are rounded. Such triangles share a
+//! plane here, with as much width as the rounding takes.
 
 use super::intersections::corners;
 use super::triangle_mesh::TriangleMesh;
@@ -32,8 +32,8 @@ impl FacetPlane {
         (a * x + b * y) + c * z
     }
 
-    /// Whether the triangles lie in a plane of points with one coordinate in common, exactly. Triangles that face either side share
-    /// such a plane, whose normal is that axis.
+    /// Whether the triangles lie in a plane of points with one coordinate in common, exactly. Triangles that
+    /// face either side share such a plane, whose normal is that axis.
     pub(crate) fn is_exact(&self) -> bool {
         self.low == self.high && self.normal.iter().filter(|c| **c == 0.0).count() == 2
     }
@@ -59,7 +59,8 @@ pub(crate) struct FacetPlanes {
     pub(crate) planes: Vec<FacetPlane>,
 }
 
-/// Of the greatest coordinate, how wide a plane may be: four times what single precision takes from positions.
+/// Of the greatest coordinate, how wide a plane may be: four times what single precision takes from
+/// positions.
 const WIDTH: f64 = 1.0 / (1u64 << 22) as f64;
 
 /// Planes with normals and offsets in one cell of this grid may be one.
@@ -79,8 +80,9 @@ impl FacetPlanes {
         self.of[triangle as usize]
     }
 
-    /// The planes, the largest triangles first: each grows over triangles that have an edge in common as long as it stays narrow,
-    /// and is then joined to one that it lies in. Without `may_be_exact` no plane is that of a coordinate.
+    /// The planes, the largest triangles first: each grows over triangles that have an edge in common as long
+    /// as it stays narrow, and is then joined to one that it lies in. Without `may_be_exact` no plane is that
+    /// of a coordinate.
     ///
     /// O(t log t).
     ///

@@ -180,9 +180,9 @@ fn normal(vertices: &[[f64; 3]], corners: &[u32]) -> Option<[f64; 3]> {
     sum.iter().all(|x| x.is_finite()).then_some(sum)
 }
 
-/// How far the corners of a face lie beside its plane: half the distance between the two planes parallel to the
-/// face that have its corners between them. And how far they reach from the first one along an axis. The first
-/// loop gives the normal. `None` for a face without area.
+/// How far the corners of a face lie beside its plane: half the distance between the two planes parallel to
+/// the face that have its corners between them. And how far they reach from the first one along an axis. The
+/// first loop gives the normal. `None` for a face without area.
 pub(crate) fn flatness(vertices: &[[f64; 3]], outer: &[u32], corners: &[u32]) -> Option<(f64, f64)> {
     let normal = normal(vertices, outer)?;
     // First to a size whose square does not overflow.

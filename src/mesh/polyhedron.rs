@@ -319,8 +319,8 @@ impl<'a> Parts<'a> {
         &self.corners[self.loops.range(loops.start).start..self.loops.range(loops.end - 1).end]
     }
 
-    /// Half the distance between the two planes parallel to a face that have its corners between them, and the
-    /// extent of the face.
+    /// Half the distance between the two planes parallel to a face that have its corners between them, and
+    /// the extent of the face.
     fn flatness(&self, face: usize, vertices: &[[f64; 3]]) -> Result<(f64, f64), PolyhedronError> {
         let corners = self.face(face);
         let flat = PolyhedronError::Flat { face: face as u64 };

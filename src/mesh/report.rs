@@ -59,13 +59,13 @@ pub struct MeshReport {
     pub inside_out_bodies: u64,
     /// Vertices that [`sewn`](TriangleMesh::sewn) moved onto another one.
     pub sewn: u64,
-    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in it:
-    /// [`TriangleMesh::displacement`] has both.)
+    /// The farthest that any of them was moved along an axis, in model units. (A stated deviation is not in
+    /// it: [`TriangleMesh::displacement`] has both.)
     pub displacement: f64,
-    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the other
-    /// with the same sense and no cavity between them. There the surface winds around points more than once,
-    /// and the sum of signed volumes, [`TriangleMesh::volume`], is not what a fill rule encloses. Without such
-    /// bodies, undecided ones, and bodies that are inside out or cross themselves, it is.
+    /// Closed bodies that are proven to overlap another one: their surfaces cross, or one lies within the
+    /// other with the same sense and no cavity between them. There the surface winds around points more than
+    /// once, and the sum of signed volumes, [`TriangleMesh::volume`], is not what a fill rule encloses.
+    /// Without such bodies, undecided ones, and bodies that are inside out or cross themselves, it is.
     pub overlapping_bodies: u64,
     /// Other closed bodies that may overlap another one: they touch in a way that is not decided, such as a
     /// peg that fits its hole exactly, or there was too much to look at.
@@ -74,8 +74,8 @@ pub struct MeshReport {
     /// a [`Polyhedron`](crate::mesh::Polyhedron). 0 for other meshes.
     pub polygons: u64,
     /// Those that are not flat: corners lie beside the face's plane, by more than 2^-40 of its extent. Such a
-    /// face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the mesh
-    /// is proven of that one.
+    /// face has no shape of its own. The mesh is one of its triangulations, and whatever is proven of the
+    /// mesh is proven of that one.
     pub bent_polygons: u64,
     /// Half the distance, in model units and up to rounding, between the two planes parallel to a face that
     /// have all its corners between them, for the face where it is greatest. Each triangulation of the face
@@ -84,8 +84,8 @@ pub struct MeshReport {
 }
 
 impl MeshReport {
-    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one direction as in
-    /// the other. (An empty mesh is.)
+    /// Whether the mesh is closed and consistently oriented: every edge is run along as often in one
+    /// direction as in the other. (An empty mesh is.)
     pub fn is_closed(&self) -> bool {
         self.boundary_edges == 0 && self.misoriented_edges == 0
     }
@@ -99,9 +99,9 @@ impl MeshReport {
 impl TriangleMesh {
     /// What was found when the mesh was made, and how its triangles hang together.
     ///
-    /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and with 28
-    /// bytes per triangle and 9 per vertex of scratch memory, and looks for bodies that overlap where their boxes
-    /// meet, with at most 2^24 steps and 128 a triangle; later calls are free.
+    /// The first call analyses the edges, in O(t + v) time, O(n log n) for the n edges of the boundary, and
+    /// with 28 bytes per triangle and 9 per vertex of scratch memory, and looks for bodies that overlap where
+    /// their boxes meet, with at most 2^24 steps and 128 a triangle; later calls are free.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -138,9 +138,9 @@ impl TriangleMesh {
     }
 
     /// The body that each triangle belongs to: a set of triangles that hang together over edges. Bodies are
-    /// numbered by their first triangles: the first triangle is one of body 0, the first one of another body is
-    /// one of body 1. There are [`MeshReport::bodies`] of them, and shells that touch only in single vertices,
-    /// or lie within each other, are different bodies.
+    /// numbered by their first triangles: the first triangle is one of body 0, the first one of another body
+    /// is one of body 1. There are [`MeshReport::bodies`] of them, and shells that touch only in single
+    /// vertices, or lie within each other, are different bodies.
     ///
     /// O(t + v), with 28 bytes per triangle and 9 per vertex of scratch memory.
     ///

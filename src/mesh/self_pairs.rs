@@ -1,11 +1,13 @@
 //! Pairs of triangles of one mesh whose boxes meet, without those that many triangles around one vertex make.
 //!
-//! Boxes around triangles that have a vertex in common all meet: of n slivers around one vertex, n² pairs. Two such triangles meet beyond
-//! the vertex if and only if they have a direction from there in common, as both are convex. So for a *busy* vertex, which many triangles
-//! have, the directions are compared: arcs on a sphere, along a tree of boxes of their own. Elsewhere these pairs are left out, whole
-//! nodes of them where all triangles have the vertex.
+//! Boxes around triangles that have a vertex in common all meet: of n slivers around one vertex, n² pairs.
+//! Two such triangles meet beyond the vertex if and only if they have a direction from there in common, as
+//! both are convex. So for a *busy* vertex, which many triangles have, the directions are compared: arcs on a
+//! sphere, along a tree of boxes of their own. Elsewhere these pairs are left out, whole nodes of them where
+//! all triangles have the vertex.
 //!
-//! Long slivers that lie askew have large boxes, too. After many steps each node gets a box that is turned as its triangles are.
+//! Long slivers that lie askew have large boxes, too. After many steps each node gets a box that is turned as
+//! its triangles are.
 
 use super::signs::Point;
 use super::tree::{Grid, Place, Search, Steps, Tree, WIDTH};
@@ -48,8 +50,8 @@ struct Pairs<'m> {
     before: u64,
 }
 
-/// Calls `visit` with each pair of triangles that may meet, once, until it returns `false`. Triangles that are `left_out` may be missing.
-/// What it does depends on the mesh alone.
+/// Calls `visit` with each pair of triangles that may meet, once, until it returns `false`. Triangles that
+/// are `left_out` may be missing. What it does depends on the mesh alone.
 pub(super) fn self_pairs(
     mesh: &TriangleMesh,
     left_out: &impl Fn(u32) -> bool,
@@ -209,7 +211,8 @@ impl Pairs<'_> {
         let mut others = corners.into_iter().filter(|&other| other != vertex);
         let mut next = || unit(&minus(&at(others.next()?), &from));
         let (Some(p), Some(q)) = (next(), next()) else { return [[-2.0; 3], [2.0; 3]] };
-        // An arc bulges by less than half of the square of its chord, beyond the chord's own box; and never beyond the sphere.
+        // An arc bulges by less than half of the square of its chord, beyond the chord's own box; and never
+        // beyond the sphere.
         let chord = minus(&p, &q);
         let bulge = 0.5 * dot(&chord, &chord) + MARGIN;
         [
@@ -306,7 +309,8 @@ impl Pairs<'_> {
         Ok(Search::Finished)
     }
 
-    /// Whether the turned boxes of two nodes tell that they are apart. Nothing is told as long as few steps were taken.
+    /// Whether the turned boxes of two nodes tell that they are apart. Nothing is told as long as few steps
+    /// were taken.
     fn are_apart(&mut self, a: Place, b: Place, steps: &Steps) -> Result<bool, Error> {
         let tree = self.tree;
         if self.turned.is_none() {
@@ -368,7 +372,8 @@ impl Turned {
 
     const NONE: Turned = Turned { middle: [0.0; 3], axes: [[0.0; 3]; 3], half: [0.0; 3] };
 
-    /// A box around some points: along the way between two that are far from each other, and across it towards the one that is farthest away.
+    /// A box around some points: along the way between two that are far from each other, and across it
+    /// towards the one that is farthest away.
     fn around(points: &[Point]) -> Turned {
         let farthest = |measure: &dyn Fn(&Point) -> f64| {
             points.iter().fold((-1.0, [0.0; 3]), |best: (f64, Point), p| {

@@ -8,8 +8,8 @@
 
 //!
 //! How far sewing may reach depends on the *piece* that a vertex belongs to: all triangles that hang together
-//! by common vertices. A crack comes of rounding, in single precision at worst, and a rounding is as large as the
-//! numbers that an exporter computes with, which are those of the part. The magnitude of the coordinates
+//! by common vertices. A crack comes of rounding, in single precision at worst, and a rounding is as large as
+//! the numbers that an exporter computes with, which are those of the part. The magnitude of the coordinates
 //! themselves would be too far a reach for a small part far from the origin, whose details doubles can hold;
 //! the edges at the vertex would be too short a one, because exporters make short edges in large parts; and
 //! the extent of all pieces together says nothing about one of them.
@@ -35,7 +35,8 @@ struct Grid {
 
 impl Grid {
     /// The box at some steps from that of a position. Dividing by the spacing is exact. Where it exceeds 2^53
-    /// steps are lost, and so are no neighbours: positions that differ are then further apart than the spacing.
+    /// steps are lost, and so are no neighbours: positions that differ are then further apart than the
+    /// spacing.
     fn place(&self, position: [f64; 3], step: [f64; 3]) -> [u64; 3] {
         // Zero has one sign.
         [0, 1, 2].map(|axis| (libm::floor(position[axis] / self.spacing) + step[axis] + 0.0).to_bits())

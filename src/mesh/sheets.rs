@@ -1,9 +1,10 @@
 //! Sheets of a closed surface, and on which side of each the solid lies.
 //!
-//! A *sheet* is a set of triangles that hang together over edges of just two triangles that face alike. Triangles that
-//! intersect others belong to none. So no other triangle meets such an edge, or the inside of a triangle of a sheet, and the winding number right in front of the triangles is
-//! the same for all of a sheet, and right behind them it is one more. It is found on a line through one of them:
-//! the triangles above the line's point, counted by the sides from which they are seen.
+//! A *sheet* is a set of triangles that hang together over edges of just two triangles that face alike.
+//! Triangles that intersect others belong to none. So no other triangle meets such an edge, or the inside of
+//! a triangle of a sheet, and the winding number right in front of the triangles is the same for all of a
+//! sheet, and right behind them it is one more. It is found on a line through one of them: the triangles
+//! above the line's point, counted by the sides from which they are seen.
 
 use super::intersections::{axis_of, corners};
 use super::signs::{Point, cross_sign};
@@ -34,8 +35,8 @@ pub(super) enum Sense {
     Unknown,
 }
 
-/// Finds the sheets of a mesh that is closed under `rule`; `tree` is that of its triangles. `meets` tells of each
-/// triangle whether it intersects others.
+/// Finds the sheets of a mesh that is closed under `rule`; `tree` is that of its triangles. `meets` tells of
+/// each triangle whether it intersects others.
 ///
 /// O(t), and O(log t) a sheet if few triangles lie above each other.
 pub(super) fn sheets(
@@ -84,16 +85,16 @@ fn size([a, b, c]: &[Point; 3]) -> f64 {
     })
 }
 
-/// The winding number right in front of a triangle; for [`FillRule::EvenOdd`] the parity of triangles between there
-/// and infinity, 0 or 1. `None` if the triangle is too small for a point inside.
+/// The winding number right in front of a triangle; for [`FillRule::EvenOdd`] the parity of triangles between
+/// there and infinity, 0 or 1. `None` if the triangle is too small for a point inside.
 fn in_front(mesh: &TriangleMesh, tree: &Tree, triangle: u32, rule: FillRule) -> Option<i32> {
     let [a, b, c] = corners(mesh, triangle);
     let p: Point = array(|k| a[k] + ((b[k] - a[k]) + (c[k] - a[k])) / 3.0);
     in_front_at(mesh, tree, triangle, &p, rule)
 }
 
-/// The same in front of the point of a triangle that lies above or below another point, along the axis along which the triangle is seen
-/// best. `None` if there is no such point within its edges.
+/// The same in front of the point of a triangle that lies above or below another point, along the axis along
+/// which the triangle is seen best. `None` if there is no such point within its edges.
 pub(super) fn in_front_at(
     mesh: &TriangleMesh,
     tree: &Tree,
@@ -137,7 +138,8 @@ pub(super) fn in_front_at(
 }
 
 /// Which way a triangle turns, seen from above along `axis`, if the line through `p` goes through it: 1 for
-/// counter-clockwise, −1, or 0 if the line misses it. The line is moved aside by (ε, ε²), so that it meets no edge.
+/// counter-clockwise, −1, or 0 if the line misses it. The line is moved aside by (ε, ε²), so that it meets no
+/// edge.
 fn turn([a, b, c]: &[Point; 3], p: &Point, axis: usize) -> i32 {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let side = |s: &Point, t: &Point| match cross_sign([s, t], [s, p], axis) {
@@ -151,8 +153,8 @@ fn turn([a, b, c]: &[Point; 3], p: &Point, axis: usize) -> i32 {
     if side(b, c) == turn && side(c, a) == turn { turn } else { 0 }
 }
 
-/// Whether the line through `p` along `axis` meets the plane of `upper` above that of `lower`. Both are seen along the
-/// axis with an area.
+/// Whether the line through `p` along `axis` meets the plane of `upper` above that of `lower`. Both are seen
+/// along the axis with an area.
 fn is_above(upper: &[Point; 3], lower: &[Point; 3], p: &Point, axis: usize) -> bool {
     let ends = |corners: &[Point; 3]| {
         let [x, y, z] = corners.map(|corner| corner[axis]);
@@ -162,7 +164,8 @@ fn is_above(upper: &[Point; 3], lower: &[Point; 3], p: &Point, axis: usize) -> b
     if low > to || high < from {
         return low > to;
     }
-    // The height of the plane through a with the normal n is n · (a − p) over n along the axis, if p has height 0.
+    // The height of the plane through a with the normal n is n · (a − p) over n along the axis, if p has
+    // height 0.
     let height = |[a, b, c]: &[Point; 3]| {
         let exact = |x: &Point| x.map(Dyadic::new);
         let (a, b, c, p) = (exact(a), exact(b), exact(c), exact(p));

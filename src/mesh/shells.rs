@@ -11,8 +11,8 @@ use crate::memory;
 /// How many vertices of a shell are tried to find one that does not lie on the surface.
 const SAMPLES: usize = 16;
 
-/// The numbers of those `shells` of which a vertex lies outside of the closed `surface`, ascending. Only one vertex of each is looked
-/// at, the first one that does not lie on the surface.
+/// The numbers of those `shells` of which a vertex lies outside of the closed `surface`, ascending. Only one
+/// vertex of each is looked at, the first one that does not lie on the surface.
 ///
 /// The winding numbers of all vertices looked at are counted at once: each triangle finds those beside it in
 /// a sorted list, so that many voids cost little more than one.

@@ -13,8 +13,8 @@ use alloc::vec::Vec;
 
 /// What is known of the two sides of triangles.
 pub(crate) struct Sides {
-    /// Of each triangle: 1 if the solid lies behind all of it and not in front, −1 if the other way round, 0 if on
-    /// both sides or on neither; [`Sides::UNKNOWN`] or [`Sides::FLAT`].
+    /// Of each triangle: 1 if the solid lies behind all of it and not in front, −1 if the other way round, 0
+    /// if on both sides or on neither; [`Sides::UNKNOWN`] or [`Sides::FLAT`].
     senses: Vec<i8>,
     /// The pairs of triangles that intersect, each in both orders, ascending.
     pairs: Vec<[u32; 2]>,
@@ -42,7 +42,8 @@ impl Sides {
         self.senses[triangle as usize] == Sides::FLAT
     }
 
-    /// Whether each triangle belongs to the boundary of the solid; an empty list if all do. `None` if that is not known of all.
+    /// Whether each triangle belongs to the boundary of the solid; an empty list if all do. `None` if that is
+    /// not known of all.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -59,11 +60,12 @@ impl Sides {
         Ok(Some(memory::collected(self.senses.iter().map(bounds))?))
     }
 
-    /// Which triangles of a closed mesh lie in the closed solid and may bound it, where all triangles with an area do lie in it.
-    /// `None` if that is not known.
+    /// Which triangles of a closed mesh lie in the closed solid and may bound it, where all triangles with an
+    /// area do lie in it. `None` if that is not known.
     ///
-    /// It holds for a rule by which a step of the winding number by one leads to the inside from one side at least, if no two triangles lie
-    /// on each other: then almost everywhere on a triangle the number changes by one. (On a fin of two triangles it does not change.)
+    /// It holds for a rule by which a step of the winding number by one leads to the inside from one side at
+    /// least, if no two triangles lie on each other: then almost everywhere on a triangle the number changes
+    /// by one. (On a fin of two triangles it does not change.)
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -129,7 +131,8 @@ impl Sides {
 }
 
 impl TriangleMesh {
-    /// The sides of all triangles. `None` if too many triangles lie close to each other to find all that intersect.
+    /// The sides of all triangles. `None` if too many triangles lie close to each other to find all that
+    /// intersect.
     ///
     /// O(t log t) for triangles that lie apart. Memory as [`moments`](Self::moments), and 1 byte a triangle.
     pub(crate) fn sides(&self, rule: FillRule, control: &Control<'_>) -> Result<Option<Sides>, Error> {
@@ -167,7 +170,8 @@ impl TriangleMesh {
         Ok(Some(Sides { senses, pairs }))
     }
 
-    /// The area of the triangles at which the solid ends. `None` if that is not known of all, or vertices were moved.
+    /// The area of the triangles at which the solid ends. `None` if that is not known of all, or vertices
+    /// were moved.
     pub(crate) fn boundary_area(&self, sides: &Sides) -> Option<Interval> {
         if self.displacement() > 0.0 || sides.senses.contains(&Sides::UNKNOWN) {
             return None;

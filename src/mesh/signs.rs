@@ -23,8 +23,8 @@ pub(super) fn sure_volume_sign(a: &Point, b: &Point, c: &Point, d: &Point) -> Op
         value += (left - right) * w[k];
         magnitude += (left.abs() + right.abs()) * w[k].abs();
     }
-    // At most ten roundings lie behind each product. (No product underflows: coordinates that are not zero, and differences of
-    // them, are at least 2^-308.)
+    // At most ten roundings lie behind each product. (No product underflows: coordinates that are not zero,
+    // and differences of them, are at least 2^-308.)
     (value.abs() > 16.0 * (f64::EPSILON / 2.0) * magnitude || magnitude == 0.0).then(|| sign(value))
 }
 
@@ -48,7 +48,8 @@ fn exact_volume_sign(a: &Point, points: [&Point; 3]) -> i32 {
     sum.sign()
 }
 
-/// Three vectors in whole multiples of one step: of at most 41 bits, so that their determinant has no more than 126.
+/// Three vectors in whole multiples of one step: of at most 41 bits, so that their determinant has no more
+/// than 126.
 fn in_whole_steps(vectors: &[Point; 3]) -> Option<[[i128; 3]; 3]> {
     const BITS: i32 = 41;
     let most = vectors.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));

@@ -1,8 +1,9 @@
 //! Meshes in single precision, as STL files have them: what rounding breaks is mended.
 //!
-//! Two kinds of steps take turns. Some leave the surface what it is as a set of points: an edge whose ends lie at one place is collapsed,
-//! and where a corner of a triangle without area lies on the opposite side, the triangle behind that side gets the corner. The others
-//! move vertices to places next to theirs, of which the best is taken.
+//! Two kinds of steps take turns. Some leave the surface what it is as a set of points: an edge whose ends
+//! lie at one place is collapsed, and where a corner of a triangle without area lies on the opposite side,
+//! the triangle behind that side gets the corner. The others move vertices to places next to theirs, of which
+//! the best is taken.
 
 use super::links::Links;
 use super::nearest::TriangleTree;
@@ -24,7 +25,8 @@ pub struct SinglePrecision {
     pub mesh: TriangleMesh,
     /// The farthest that rounding moves a vertex along an axis, in model units.
     pub rounding: f64,
-    /// No point of the given mesh is further from this one, and none of this one further from the given mesh, in model units: proven.
+    /// No point of the given mesh is further from this one, and none of this one further from the given mesh,
+    /// in model units: proven.
     pub deviation: f64,
     /// Triangles of which rounding made an edge or a point, and which are gone.
     pub collapsed: u64,
@@ -54,18 +56,20 @@ const CROWD: usize = 2048;
 const REACH: f64 = 8.0;
 
 impl TriangleMesh {
-    /// The mesh with coordinates that are 32-bit numbers, as an STL file has them, without triangles that rounding makes degenerate and
-    /// without pairs that it makes intersect, as far as that can be had.
+    /// The mesh with coordinates that are 32-bit numbers, as an STL file has them, without triangles that
+    /// rounding makes degenerate and without pairs that it makes intersect, as far as that can be had.
     ///
-    /// Vertices are rounded to nearest. Edges whose ends meet are collapsed, and triangles that become lines are joined to their neighbours, which
-    /// changes no point of the surface. What is degenerate or intersects after that is moved apart: vertices go to places next to
-    /// theirs, in a fixed order, if these are no further than `tolerance` (model units) from where they were given. A mesh of which
-    /// rounding breaks nothing is only rounded, and one whose coordinates are 32-bit numbers already is given back as it is; of that
-    /// nothing is counted.
-    /// What [`deviation`](Self::deviation) was stated grows by what is added.
+    /// Vertices are rounded to nearest. Edges whose ends meet are collapsed, and triangles that become lines
+    /// are joined to their neighbours, which changes no point of the surface. What is degenerate or
+    /// intersects after that is moved apart: vertices go to places next to theirs, in a fixed order, if these
+    /// are no further than `tolerance` (model units) from where they were given. A mesh of which rounding
+    /// breaks nothing is only rounded, and one whose coordinates are 32-bit numbers already is given back as
+    /// it is; of that nothing is counted. What [`deviation`](Self::deviation) was stated grows by what is
+    /// added.
     ///
-    /// The mesh stays closed and a manifold if it is so. Time is that of [`intersecting_pairs`](Self::intersecting_pairs), a few times; the
-    /// work on scans, which may have thousands of pairs, is bounded, and what is left is told.
+    /// The mesh stays closed and a manifold if it is so. Time is that of
+    /// [`intersecting_pairs`](Self::intersecting_pairs), a few times; the work on scans, which may have
+    /// thousands of pairs, is bounded, and what is left is told.
     ///
     /// ```
     /// use leafless::{Control, TriangleMesh};
@@ -81,8 +85,8 @@ impl TriangleMesh {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] beyond the range of 32-bit floating point numbers, or if `tolerance` is negative or not a number;
-    /// [`Error::OutOfMemory`] or [`Error::Cancelled`].
+    /// [`Error::Argument`] beyond the range of 32-bit floating point numbers, or if `tolerance` is negative
+    /// or not a number; [`Error::OutOfMemory`] or [`Error::Cancelled`].
     pub fn in_single_precision(
         &self,
         tolerance: f64,
@@ -285,8 +289,8 @@ impl<'m> Mender<'m> {
         Ok((mesh, numbers, welded))
     }
 
-    /// Moves vertices of triangles without area, of those that lie where others do, and of triangles that intersect. Tells whether some
-    /// were moved.
+    /// Moves vertices of triangles without area, of those that lie where others do, and of triangles that
+    /// intersect. Tells whether some were moved.
     fn part(
         &mut self,
         tree: &TriangleTree<'_>,
@@ -394,8 +398,8 @@ impl<'m> Mender<'m> {
         Ok(())
     }
 
-    /// How many triangles at a vertex have no area, how many other vertices of near triangles lie at its place, and how many pairs of
-    /// near triangles intersect.
+    /// How many triangles at a vertex have no area, how many other vertices of near triangles lie at its
+    /// place, and how many pairs of near triangles intersect.
     fn conflicts(&self, vertex: u32, near: &[u32], control: &Control<'_>) -> Result<u64, Error> {
         let own = self.links.around(vertex).iter().filter_map(|&number| self.links.triangle(number));
         let flat = own.filter(|triangle| self.is_flat(triangle)).count() as u64;

@@ -52,8 +52,8 @@ impl Topology {
 
     /// Analyses `triangles`, whose corners must be three different numbers below `vertices`.
     ///
-    /// O(t + v) time on ordinary meshes, O(t log t) when many edges share one vertex; 28 bytes per triangle and 9
-    /// bytes per vertex of scratch memory.
+    /// O(t + v) time on ordinary meshes, O(t log t) when many edges share one vertex; 28 bytes per triangle
+    /// and 9 bytes per vertex of scratch memory.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

@@ -1,11 +1,12 @@
-//! A tree of boxes around triangles: which ones a line may meet, which may be near a point, and which pairs of them may meet.
+//! A tree of boxes around triangles: which ones a line may meet, which may be near a point, and which pairs
+//! of them may meet.
 //!
-//! Each node has up to four parts, whose boxes lie coordinate by coordinate, so that a processor looks at four of them at once.
-//! All nodes but the last of a level are full, and lie in the order of their parents: a node is found by its level and its
-//! number, and nothing points to it.
+//! Each node has up to four parts, whose boxes lie coordinate by coordinate, so that a processor looks at
+//! four of them at once. All nodes but the last of a level are full, and lie in the order of their parents: a
+//! node is found by its level and its number, and nothing points to it.
 //!
-//! Corners are rounded to 24 bits about the centre of the mesh. Rounding keeps the order of numbers, so that boxes that meet
-//! still meet, and no pair is missed.
+//! Corners are rounded to 24 bits about the centre of the mesh. Rounding keeps the order of numbers, so that
+//! boxes that meet still meet, and no pair is missed.
 
 use super::signs::Point;
 use crate::control::Control;
@@ -170,8 +171,8 @@ impl Grid {
         f64::from_bits(((1023 - self.exponent) as u64) << 52)
     }
 
-    /// A point relative to the centre, scaled to [-1, 1]: each coordinate is off by a 2^-53 of itself and by a
-    /// 2^-1074.
+    /// A point relative to the centre, scaled to [-1, 1]: each coordinate is off by a 2^-53 of itself and by
+    /// a 2^-1074.
     #[inline(always)]
     pub(super) fn scaled(&self, p: &Point) -> Point {
         let scale = self.scale();
@@ -186,8 +187,8 @@ impl Grid {
         [self.scaled(a), edge(b), edge(c)]
     }
 
-    /// The bits behind the point that the scaled coordinates of all vertices have, if they are exact and not more
-    /// than 15.
+    /// The bits behind the point that the scaled coordinates of all vertices have, if they are exact and not
+    /// more than 15.
     pub(super) fn bits(&self, vertices: &[Point]) -> Option<i32> {
         const MOST: i32 = 15;
         let scale = self.scale();
@@ -253,8 +254,8 @@ pub(super) enum Search {
 }
 
 impl Tree {
-    /// The tree of a mesh, which depends on the mesh alone: by halves along the longest extent, down to four triangles.
-    /// O(t log t), on the threads of `control`; 28 bytes a triangle of scratch memory.
+    /// The tree of a mesh, which depends on the mesh alone: by halves along the longest extent, down to four
+    /// triangles. O(t log t), on the threads of `control`; 28 bytes a triangle of scratch memory.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.

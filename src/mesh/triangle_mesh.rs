@@ -70,8 +70,8 @@ impl FillRule {
         }
     }
 
-    /// Whether points are enclosed whose winding number lies between two numbers; nothing if it may be one that parts those that
-    /// are enclosed from those that are not.
+    /// Whether points are enclosed whose winding number lies between two numbers; nothing if it may be one
+    /// that parts those that are enclosed from those that are not.
     pub(crate) fn encloses_all(self, low: f64, high: f64) -> Option<bool> {
         let (one, other) = (self.excess(low), self.excess(high));
         // Around zero the ends are the farthest from it.
@@ -93,10 +93,10 @@ impl FillRule {
 /// corners turn counter-clockwise. Whether the mesh is closed is not implied:
 /// [`check_closed`](Self::check_closed) tells.
 ///
-/// A mesh takes 24 bytes per vertex and 12 bytes per triangle, and what its
-/// [attributes](Self::attributes) take, if it has any. What asks for single triangles (rays, points and distances of a
-/// [`MeshSolid`](crate::MeshSolid), intersections, [`SurfaceAttribute`](crate::attribute::SurfaceAttribute)) shares a tree of
-/// their boxes, which is made when it is first needed and takes 36 bytes a triangle.
+/// A mesh takes 24 bytes per vertex and 12 bytes per triangle, and what its [attributes](Self::attributes)
+/// take, if it has any. What asks for single triangles (rays, points and distances of a
+/// [`MeshSolid`](crate::MeshSolid), intersections, [`SurfaceAttribute`](crate::attribute::SurfaceAttribute))
+/// shares a tree of their boxes, which is made when it is first needed and takes 36 bytes a triangle.
 #[derive(Clone)]
 pub struct TriangleMesh {
     vertices: Vec<[f64; 3]>,
@@ -408,20 +408,23 @@ impl TriangleMesh {
         Ok(Self { displacement: self.displacement, deviation: self.deviation, ..moved })
     }
 
-    /// The same mesh, of which it is known only that the true boundary lies within `deviation` (model units) of it, as the
-    /// boundary of a part lies beside a tessellation with that deflection. It takes the place of a deviation that was stated before.
+    /// The same mesh, of which it is known only that the true boundary lies within `deviation` (model units)
+    /// of it, as the boundary of a part lies beside a tessellation with that deflection. It takes the place
+    /// of a deviation that was stated before.
     ///
-    /// **What it means.** The true solid is bounded by the mesh's surface, of which each point was moved by `deviation` at the most,
-    /// continuously, and no part of which was turned over: around a point the true boundary winds as often as the mesh does
-    /// around some point within `deviation` of it. A dent, a hole or a body that the mesh does not have at all is not covered,
-    /// however small it is.
+    /// **What it means.** The true solid is bounded by the mesh's surface, of which each point was moved by
+    /// `deviation` at the most, continuously, and no part of which was turned over: around a point the true
+    /// boundary winds as often as the mesh does around some point within `deviation` of it. A dent, a hole or
+    /// a body that the mesh does not have at all is not covered, however small it is.
     ///
-    /// **What follows.** Whatever is proven of a [`MeshSolid`](crate::MeshSolid) is proven of the true solid: cells near to the
-    /// triangles are undecided, intervals of volumes, moments, distances and clearances contain the truth, a ray is told in
-    /// which interval it meets the boundary, and nothing is told of a point that is too near. The area of the true boundary
-    /// is not known, since a boundary that waves has a larger one. The deviation is carried through placements, Booleans and
-    /// into octrees, whose [`Proof`](crate::Proof) tells the [`displacement`](Self::displacement). What is no proof, as a
-    /// sampled octree, a tri-dexel model, a picture, [`bounds`](Self::bounds) and [`volume`](Self::volume), is that of the mesh.
+    /// **What follows.** Whatever is proven of a [`MeshSolid`](crate::MeshSolid) is proven of the true solid:
+    /// cells near to the triangles are undecided, intervals of volumes, moments, distances and clearances
+    /// contain the truth, a ray is told in which interval it meets the boundary, and nothing is told of a
+    /// point that is too near. The area of the true boundary is not known, since a boundary that waves has a
+    /// larger one. The deviation is carried through placements, Booleans and into octrees, whose
+    /// [`Proof`](crate::Proof) tells the [`displacement`](Self::displacement). What is no proof, as a sampled
+    /// octree, a tri-dexel model, a picture, [`bounds`](Self::bounds) and [`volume`](Self::volume), is that
+    /// of the mesh.
     ///
     /// A solid of a mesh with a deviation needs a closed mesh: what an open one encloses is a convention.
     ///
@@ -446,14 +449,14 @@ impl TriangleMesh {
         Err(Error::Argument { name: "deviation", problem: "must be finite, not negative, and at most 2^256" })
     }
 
-    /// How far the true boundary may lie from the mesh: what [`with_deviation`](Self::with_deviation) stated, under what placed the
-    /// mesh since then. In model units.
+    /// How far the true boundary may lie from the mesh: what [`with_deviation`](Self::with_deviation) stated,
+    /// under what placed the mesh since then. In model units.
     pub fn deviation(&self) -> f64 {
         self.deviation
     }
 
-    /// How far along an axis the true boundary may lie from the mesh, in model units: what vertices were moved by to close
-    /// hair cracks, what a placement rounded, and the [`deviation`](Self::deviation).
+    /// How far along an axis the true boundary may lie from the mesh, in model units: what vertices were
+    /// moved by to close hair cracks, what a placement rounded, and the [`deviation`](Self::deviation).
     pub fn displacement(&self) -> f64 {
         if self.deviation == 0.0 {
             return self.displacement;
@@ -490,7 +493,8 @@ impl TriangleMesh {
         Self { faces, ..self }
     }
 
-    /// The same with vertices that may be off by so much along an axis, and a boundary that may lie so far from the surface.
+    /// The same with vertices that may be off by so much along an axis, and a boundary that may lie so far
+    /// from the surface.
     pub(super) fn displaced(self, displacement: f64, deviation: f64) -> Self {
         Self { displacement, deviation, ..self }
     }
@@ -507,8 +511,8 @@ impl TriangleMesh {
         Ok(Self { vertices, triangles, attributes, topology, details, tree, order, ..*self })
     }
 
-    /// The tree of the triangles: made when it is first asked for, and kept. The first call takes as [`Tree::new`], of a moved
-    /// copy of a mesh that has one as [`Tree::in_order`]; later calls are free.
+    /// The tree of the triangles: made when it is first asked for, and kept. The first call takes as
+    /// [`Tree::new`], of a moved copy of a mesh that has one as [`Tree::in_order`]; later calls are free.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.

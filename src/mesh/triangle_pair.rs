@@ -1,15 +1,16 @@
 //! How far two triangles are apart.
 //!
-//! The nearest points are found in plain doubles, and nothing is proven by that. Any two points of the triangles bound the distance from
-//! above. Any direction bounds it from below: by the gap between what the two triangles cover of it. The direction from one nearest point to
-//! the other gives the best such bound.
+//! The nearest points are found in plain doubles, and nothing is proven by that. Any two points of the
+//! triangles bound the distance from above. Any direction bounds it from below: by the gap between what the
+//! two triangles cover of it. The direction from one nearest point to the other gives the best such bound.
 //!
 //! Coordinates are at most 1 in magnitude, so that rounding has one bound for all: [`SLACK`].
 
 use super::signs::Point;
 use core::array::from_fn as array;
 
-/// More than what rounding changes in a distance that is computed here, where coordinates are off by 2^-50 each.
+/// More than what rounding changes in a distance that is computed here, where coordinates are off by 2^-50
+/// each.
 pub(super) const SLACK: f64 = 1.0 / (1_u64 << 46) as f64;
 
 /// Points of two triangles that are near to each other.
@@ -83,7 +84,8 @@ pub(super) fn nearest(a: &[Point; 3], b: &[Point; 3]) -> NearPair {
     best
 }
 
-/// Takes in the corners of the second triangle that lie above or below the inside of the first, and its edges that pass through that.
+/// Takes in the corners of the second triangle that lie above or below the inside of the first, and its edges
+/// that pass through that.
 #[inline(always)]
 fn above(a: &[Point; 3], b: &[Point; 3], edges: &[Point; 3], best: &mut NearPair, is_turned: bool) {
     let normal = cross(&edges[0], &edges[1]);
@@ -131,7 +133,8 @@ fn take(best: &mut NearPair, square: f64, [own, other]: [[f64; 3]; 2], way: Poin
     };
 }
 
-/// How far apart two triangles are at least along a direction, up to rounding: negative if they overlap there.
+/// How far apart two triangles are at least along a direction, up to rounding: negative if they overlap
+/// there.
 #[inline(always)]
 pub(super) fn gap_along(way: &Point, a: &[Point; 3], b: &[Point; 3]) -> f64 {
     let along = |p: &Point| dot(way, &minus(p, &a[0]));
@@ -161,7 +164,8 @@ pub(super) fn at_least(near: &NearPair, a: &[Point; 3], b: &[Point; 3]) -> f64 {
     least
 }
 
-/// Whether an edge of one triangle surely passes through the other one, however each corner is moved by up to `off`.
+/// Whether an edge of one triangle surely passes through the other one, however each corner is moved by up to
+/// `off`.
 pub(super) fn surely_cross(a: &[Point; 3], b: &[Point; 3], off: f64) -> bool {
     let side = |[a, b, c]: [&Point; 3], p: &Point| {
         let (u, v, w) = (minus(b, a), minus(c, a), minus(p, a));

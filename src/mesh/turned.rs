@@ -11,8 +11,8 @@ impl TriangleMesh {
     /// How many triangles face the other way than most of those that they hang together with, over edges that
     /// two triangles use.
     ///
-    /// A mesh that is inside out as a whole has none. On a one-sided surface, where no facet faces one way, the
-    /// count says no more than that there are some.
+    /// A mesh that is inside out as a whole has none. On a one-sided surface, where no facet faces one way,
+    /// the count says no more than that there are some.
     ///
     /// O(t + v), computed anew on each call.
     ///
@@ -37,8 +37,8 @@ impl TriangleMesh {
             Ok(())
         })?;
         let numbers = sets.numbers();
-        // Of each set how many triangles are in it as they are. The other triangles of a body are in the set of
-        // its opposites.
+        // Of each set how many triangles are in it as they are. The other triangles of a body are in the set
+        // of its opposites.
         let mut sizes: Vec<u64> =
             memory::filled(numbers.iter().max().map_or(0, |&last| last as usize + 1), 0)?;
         numbers.chunks_exact(2).for_each(|sides| sizes[sides[0] as usize] += 1);

@@ -18,8 +18,8 @@ impl TriangleMesh {
     /// O(t).
     ///
     /// # Errors
-    /// [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`] (both count the corners of all
-    /// facets through) or [`Error::OutOfMemory`].
+    /// [`MeshError::TooMany`], [`MeshError::NotFinite`], [`MeshError::TooLarge`] (both count the corners of
+    /// all facets through) or [`Error::OutOfMemory`].
     pub fn from_facets<I>(facets: I) -> Result<Self, Error>
     where
         I: IntoIterator<Item: Borrow<[[f64; 3]; 3]>>,

@@ -51,8 +51,9 @@ impl OctreeRef<'_> {
         Ok(())
     }
 
-    /// Checks the links as [`check_links`](Self::check_links) does, unless they are known to be sound. A solid is asked for one
-    /// point as often as for a million: then O(1) for trees that were made by this library in memory.
+    /// Checks the links as [`check_links`](Self::check_links) does, unless they are known to be sound. A
+    /// solid is asked for one point as often as for a million: then O(1) for trees that were made by this
+    /// library in memory.
     pub(crate) fn ensure_links(&self) -> Result<(), Damage> {
         if self.is_linked { Ok(()) } else { self.check_links() }
     }

@@ -12,7 +12,8 @@ use crate::lattice::{Cell, VolumeMoments};
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Where a PARTIAL cell below the universe lies among the planes: its element, the planes of that, and the number there.
+/// Where a PARTIAL cell below the universe lies among the planes: its element, the planes of that, and the
+/// number there.
 type PartialCell = (usize, Planes, u32);
 
 impl OctreeRef<'_> {
@@ -36,8 +37,8 @@ impl OctreeRef<'_> {
         })
     }
 
-    /// The volume and the moments of the solid that the cells bound, if that knew them when the tree was made: they are exact up to
-    /// rounding, and hold as far as the cells are proven.
+    /// The volume and the moments of the solid that the cells bound, if that knew them when the tree was
+    /// made: they are exact up to rounding, and hold as far as the cells are proven.
     pub fn moments(&self) -> Option<VolumeMoments> {
         self.cuts.as_ref()?.moments?.moments()
     }
@@ -48,14 +49,16 @@ impl OctreeRef<'_> {
         OctreeRef { cuts: None, ..*self }
     }
 
-    /// Checks the cuts as [`check_cuts`](Self::check_cuts) does, unless they are known to be sound: O(1) for trees that were made by
-    /// this library in memory. A part that several cells share would be visited as often as there are ways to it.
+    /// Checks the cuts as [`check_cuts`](Self::check_cuts) does, unless they are known to be sound: O(1) for
+    /// trees that were made by this library in memory. A part that several cells share would be visited as
+    /// often as there are ways to it.
     pub(crate) fn ensure_cuts(&self) -> Result<(), Error> {
         if self.is_linked { Ok(()) } else { self.check_cuts() }
     }
 
-    /// Checks everything that cuts promise: a record for each PARTIAL cell, groups for splits down to the finest cells at most, prefix
-    /// counts, tables whose surfaces are there and count, surfaces of which none is unused. O(n).
+    /// Checks everything that cuts promise: a record for each PARTIAL cell, groups for splits down to the
+    /// finest cells at most, prefix counts, tables whose surfaces are there and count, surfaces of which none
+    /// is unused. O(n).
     pub(crate) fn check_cuts(&self) -> Result<(), Error> {
         let Some(cuts) = &self.cuts else { return Ok(()) };
         let mut levels = self.levels_of_records(cuts)?;
@@ -106,8 +109,8 @@ impl OctreeRef<'_> {
         Ok(cuts.surfaces.check(self.frame.depth())?)
     }
 
-    /// The levels of the PARTIAL cells that the planes have, in the order of their records, whose counts are checked. (Memory for as
-    /// many levels as there are records.)
+    /// The levels of the PARTIAL cells that the planes have, in the order of their records, whose counts are
+    /// checked. (Memory for as many levels as there are records.)
     fn levels_of_records(&self, cuts: &CutsRef<'_>) -> Result<Vec<u8>, Error> {
         let mut levels = memory::with_capacity(cuts.heads.len())?;
         if self.root == Tag::Partial {
@@ -142,7 +145,8 @@ impl OctreeRef<'_> {
 
 /// Which surfaces have been met, where surfaces stand group by group in the order of their first use.
 struct Known {
-    /// For each group the numbers of its first surface, of the first that has not been met, and of the first that is not its own.
+    /// For each group the numbers of its first surface, of the first that has not been met, and of the first
+    /// that is not its own.
     groups: Vec<[u64; 3]>,
 }
 
@@ -160,7 +164,8 @@ impl Known {
         Ok(Known { groups })
     }
 
-    /// Whether a surface is one that was met before, or the first of its group that was not, of a group that may be begun.
+    /// Whether a surface is one that was met before, or the first of its group that was not, of a group that
+    /// may be begun.
     fn meet(&mut self, surfaces: &SurfacesRef<'_>, id: u32) -> bool {
         let group = surfaces.group(id as usize).map_or(0, |(group, _)| group + 1);
         // (Slabs of cells have a group after the first.)
@@ -185,8 +190,8 @@ impl<'a> OctreeRef<'a> {
         StoredSurface::new(self.cuts.as_ref()?.surfaces, id)
     }
 
-    /// The function that the solid is in a cell that lies in a PARTIAL one; `None` if nothing is known there, if different functions
-    /// hold in parts of the cell, or there is no such cell. O(depth).
+    /// The function that the solid is in a cell that lies in a PARTIAL one; `None` if nothing is known there,
+    /// if different functions hold in parts of the cell, or there is no such cell. O(depth).
     pub fn cell_function(&self, cell: Cell) -> Option<CellFunction> {
         let cuts = self.cuts.as_ref()?;
         let depth = self.frame().depth();
@@ -215,8 +220,8 @@ impl<'a> OctreeRef<'a> {
         Some((place.map_or(CutsRef::ROOT, |(index, planes, c)| cuts.record(index, planes, c)), level))
     }
 
-    /// The level of the PARTIAL cell of the planes in which a cell lies of which nothing is known; `None` if something is known of it, or
-    /// there is no such cell.
+    /// The level of the PARTIAL cell of the planes in which a cell lies of which nothing is known; `None` if
+    /// something is known of it, or there is no such cell.
     pub(super) fn open_above(&self, cell: Cell) -> Option<u8> {
         if cell.level > self.frame().depth() || cell.at.iter().any(|&a| a >> cell.level != 0) {
             return None;
@@ -236,7 +241,8 @@ impl<'a> OctreeRef<'a> {
         }
     }
 
-    /// The PARTIAL cell of the planes in which a cell lies, or nothing for it if it is the universe; and its level.
+    /// The PARTIAL cell of the planes in which a cell lies, or nothing for it if it is the universe; and its
+    /// level.
     fn partial_above(&self, cell: Cell) -> Option<(Option<PartialCell>, u8)> {
         match self.root_tag() {
             Tag::Branch => {}

@@ -9,8 +9,8 @@ use crate::error::Error;
 use crate::lattice::Cell;
 use yoke::Yokeable;
 
-/// A square between two leaves of which one has a tag that was asked for, and the other has none: a whole face
-/// of the smaller one.
+/// A square between two leaves of which one has a tag that was asked for, and the other has none: a whole
+/// face of the smaller one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BoundaryFace {
     /// The leaf that has such a tag.
@@ -50,12 +50,12 @@ impl<'a> OctreeRef<'a> {
     /// [exterior](OctreeRef::exterior) is decides about faces on the boundary of the universe. Where cells of
     /// different sizes meet there is one face for each of the smaller ones, so that the faces are disjoint.
     /// They come in the Morton order of the inner cells, for each of these in the order of
-    /// [`Direction::FACES`], and for each face in the Morton order of the outer cells. A box and levels of the
-    /// filter are those of the inner cells. BRANCH cells do not count.
+    /// [`Direction::FACES`], and for each face in the Morton order of the outer cells. A box and levels of
+    /// the filter are those of the inner cells. BRANCH cells do not count.
     ///
-    /// O(elements + leaves), with no allocation. In a sound tree an element touches six leaves that are larger
-    /// than its cell, at most, one on each side. So six times as many elements as there are may be met beside
-    /// cells; over damaged bytes, everything beyond is PARTIAL.
+    /// O(elements + leaves), with no allocation. In a sound tree an element touches six leaves that are
+    /// larger than its cell, at most, one on each side. So six times as many elements as there are may be met
+    /// beside cells; over damaged bytes, everything beyond is PARTIAL.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, Tag, build, octree::CellFilter};
@@ -77,8 +77,8 @@ impl<'a> OctreeRef<'a> {
 }
 
 impl BoundaryFaces<'_> {
-    /// Goes on with the faces of `cell`, or of the leaf that contains it, or of the first wanted cell after it
-    /// in Morton order. O(depth).
+    /// Goes on with the faces of `cell`, or of the leaf that contains it, or of the first wanted cell after
+    /// it in Morton order. O(depth).
     ///
     /// # Errors
     /// [`Error::Argument`] if `cell` does not lie in the universe, or is finer than the finest cells.

@@ -185,7 +185,8 @@ impl Windows {
         }
     }
 
-    /// Takes back the admission of element `first` of level `e` and of those behind it, which are admitted again when they are copied.
+    /// Takes back the admission of element `first` of level `e` and of those behind it, which are admitted
+    /// again when they are copied.
     pub(crate) fn put_back(&mut self, e: usize, first: usize) {
         self.next[e] = self.next[e].min(first);
     }

@@ -7,8 +7,9 @@ use alloc::vec::Vec;
 
 /// UTF-8 keys and values, sorted by key. They mean nothing to the library; files carry them along.
 ///
-/// Names in use: `name`, `units` (the unit of length), `source` (a fingerprint of what the tree was made from),
-/// `rule`. Operations on views make octrees without metadata; [`common`](Self::common) tells what to keep.
+/// Names in use: `name`, `units` (the unit of length), `source` (a fingerprint of what the tree was made
+/// from), `rule`. Operations on views make octrees without metadata; [`common`](Self::common) tells what to
+/// keep.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Metadata(Vec<(String, String)>);
 
@@ -92,9 +93,9 @@ impl Metadata {
         Ok(changed)
     }
 
-    /// What holds of a set made of octrees with these metadata: `name` and `units`, each if all of them have it
-    /// with one value. Nothing of none. (What an octree was made from, and by which rule, is another matter for
-    /// the result.)
+    /// What holds of a set made of octrees with these metadata: `name` and `units`, each if all of them have
+    /// it with one value. Nothing of none. (What an octree was made from, and by which rule, is another
+    /// matter for the result.)
     ///
     /// ```
     /// use leafless::{Control, Frame, Metadata, Octree, Tag, union};

@@ -104,8 +104,8 @@ impl<'a> OctreeRef<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// The neighbour of the cursor's cell in `direction`, through a face, an edge or a vertex: the cell of the
-    /// same size, which is a BRANCH if it is split, or the larger leaf that contains a cell of that size.
+    /// The neighbour of the cursor's cell in `direction`, through a face, an edge or a vertex: the cell of
+    /// the same size, which is a BRANCH if it is split, or the larger leaf that contains a cell of that size.
     /// `None` outside of the universe. The cursor stays where it is.
     ///
     /// Along a walk amortised O(1), at most O(depth): only elements below the common ancestor are read.

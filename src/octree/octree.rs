@@ -27,26 +27,29 @@ use yoke::erased::ErasedArcCart;
 ///
 /// # Extended octrees
 ///
-/// An octree may have *cuts* ([`build_extended`](crate::build_extended)): a PARTIAL cell then keeps the surfaces that cross it, up to
-/// three, and the function of their sides that the solid is. So it is as exact as what it was made of. Without its cuts it is a
-/// certified octree, and canonical as ever.
+/// An octree may have *cuts* ([`build_extended`](crate::build_extended)): a PARTIAL cell then keeps the
+/// surfaces that cross it, up to three, and the function of their sides that the solid is. So it is as exact
+/// as what it was made of. Without its cuts it is a certified octree, and canonical as ever.
 ///
-/// *Surfaces* are planes, quadrics, sums of powers and tori in exact numbers, under any placements, and *slabs*, planes with a width,
-/// where nothing exact is known. They lie in one table, in the order of their first use. Exact surfaces are one if their
-/// polynomials are proportional, or figure and place are the same; a complement is the same surface negated. A slab stands for a
-/// set that nobody knows: it is the same as another one only if both have the same origin, a fingerprint of the source and the build, and the
-/// same number there.
+/// *Surfaces* are planes, quadrics, sums of powers and tori in exact numbers, under any placements, and
+/// *slabs*, planes with a width, where nothing exact is known. They lie in one table, in the order of their
+/// first use. Exact surfaces are one if their polynomials are proportional, or figure and place are the same;
+/// a complement is the same surface negated. A slab stands for a set that nobody knows: it is the same as
+/// another one only if both have the same origin, a fingerprint of the source and the build, and the same
+/// number there.
 ///
-/// *The law* of a cut: at a point of the open cell that lies on no surface, each surface has a side, but for the slabs in whose width
-/// the point lies. Where the function has one value for all sides that these may have, that is the answer; elsewhere it is
-/// undecided. On a surface either answer is right.
+/// *The law* of a cut: at a point of the open cell that lies on no surface, each surface has a side, but for
+/// the slabs in whose width the point lies. Where the function has one value for all sides that these may
+/// have, that is the answer; elsewhere it is undecided. On a surface either answer is right.
 ///
-/// *Split records.* Where all descendants of a cell are PARTIAL, the tree has no node for them. If the cell's function takes more
-/// than three surfaces, its cut is a split into eight cuts, and so on, down to the frame's depth. A cell that is still crossed
-/// by more there is *given up*: PARTIAL, and nothing is known of it ([`CutCounts::given_up`](crate::octree::CutCounts::given_up)).
+/// *Split records.* Where all descendants of a cell are PARTIAL, the tree has no node for them. If the cell's
+/// function takes more than three surfaces, its cut is a split into eight cuts, and so on, down to the
+/// frame's depth. A cell that is still crossed by more there is *given up*: PARTIAL, and nothing is known of
+/// it ([`CutCounts::given_up`](crate::octree::CutCounts::given_up)).
 ///
-/// *Normal form.* A function depends on each of its surfaces; surfaces of a cut ascend; nothing is stored for cells that are decided,
-/// surfaces that no cell uses are not kept. Equality and fingerprints include cuts, and the bytes are the same for any number of threads.
+/// *Normal form.* A function depends on each of its surfaces; surfaces of a cut ascend; nothing is stored for
+/// cells that are decided, surfaces that no cell uses are not kept. Equality and fingerprints include cuts,
+/// and the bytes are the same for any number of threads.
 ///
 /// What takes octrees sees cuts in one of four ways:
 ///
@@ -57,35 +60,41 @@ use yoke::erased::ErasedArcCart;
 /// | set operations | [`union`](crate::union), [`intersection`](crate::intersection), [`difference`](crate::difference), [`xor`](crate::xor), [`complement`](crate::complement), [`union_of`](crate::op::union_of), [`intersection_of`](crate::op::intersection_of), [`difference_of`](crate::op::difference_of), [`xor_of`](crate::op::xor_of) | the result keeps the operands' surfaces |
 /// | of cells | [`tag_at`](OctreeRef::tag_at), [`statistics`](Octree::statistics), [`Cursor`](crate::octree::Cursor), [`cells`](OctreeRef::cells), [`BoundaryFaces`](crate::octree::BoundaryFaces), [`bitmap`](OctreeRef::bitmap), [`columns`](OctreeRef::columns), [`heights`](OctreeRef::heights), [`cells_in_box`](OctreeRef::cells_in_box), [`volume_in_box`](OctreeRef::volume_in_box), [`cells_in`](OctreeRef::cells_in), [`volume_in`](OctreeRef::volume_in), [`distance`](OctreeRef::distance), [`nearest_cells`](OctreeRef::nearest_cells), voxels, components, slices, surfaces of trees, and pictures of the faces of cells | cuts are not seen. What they say is true, and blunt: take the tree of [`plain`](crate::op::plain) |
 ///
-/// [`resolve`](crate::op::resolve) refuses trees with cuts: the cells that they have are few and large. [`compact`](crate::compact)
-/// keeps the cuts.
+/// [`resolve`](crate::op::resolve) refuses trees with cuts: the cells that they have are few and large.
+/// [`compact`](crate::compact) keeps the cuts.
 ///
 /// ## Set operations
 ///
-/// Set operations keep surfaces, if one operand does. A tree without cuts takes part as a certified octree: nothing is known in its
-/// PARTIAL cells, and nothing is known in those of the result that depend on them.
+/// Set operations keep surfaces, if one operand does. A tree without cuts takes part as a certified octree:
+/// nothing is known in its PARTIAL cells, and nothing is known in those of the result that depend on them.
 ///
-/// *How cells end.* All operands are walked at once. Subtrees that only one operand cuts are copied as runs of its arrays, with their
-/// cuts. Where several operands end with functions, these become one function, and the cell ends as soon as three surfaces are left in
-/// it. The cell is split otherwise, down to the frame's depth, where it is given up. A cell that an operand has given up is
-/// given up in the result, unless another operand decides it.
+/// *How cells end.* All operands are walked at once. Subtrees that only one operand cuts are copied as runs
+/// of its arrays, with their cuts. Where several operands end with functions, these become one function, and
+/// the cell ends as soon as three surfaces are left in it. The cell is split otherwise, down to the frame's
+/// depth, where it is given up. A cell that an operand has given up is given up in the result, unless another
+/// operand decides it.
 ///
-/// *Identity.* Surfaces that are one are one: a pin fits into a bore of its own radius, and the two touch. `A ∖ A` is EMPTY where
-/// nothing was given up in `A`. Slabs are one only if they have the same origin and number. `A ∪ A` is `A`, `A ∪ B` is
-/// `B ∪ A`, and `¬¬A` is `A`, byte for byte. Associativity and distributivity hold as sets, but for cells that are given up.
+/// *Identity.* Surfaces that are one are one: a pin fits into a bore of its own radius, and the two touch.
+/// `A ∖ A` is EMPTY where nothing was given up in `A`. Slabs are one only if they have the same origin and
+/// number. `A ∪ A` is `A`, `A ∪ B` is `B ∪ A`, and `¬¬A` is `A`, byte for byte. Associativity and
+/// distributivity hold as sets, but for cells that are given up.
 ///
-/// *Planes and functions.* Eight cells that one function describes become one cell. So the planes of a result may be blunter than
-/// Kleene's logic of the operands' planes. What those cells decide then stands in the function.
+/// *Planes and functions.* Eight cells that one function describes become one cell. So the planes of a result
+/// may be blunter than Kleene's logic of the operands' planes. What those cells decide then stands in the
+/// function.
 ///
-/// *Cutting a batch.* An operation on two trees copies the larger one. [`difference_of`](crate::op::difference_of) walks the stock and
-/// all tools at once, and copies nothing but the result. It is the way to cut a part by many tools.
+/// *Cutting a batch.* An operation on two trees copies the larger one.
+/// [`difference_of`](crate::op::difference_of) walks the stock and all tools at once, and copies nothing but
+/// the result. It is the way to cut a part by many tools.
 ///
-/// *Cost.* Time and memory are linear in the cells where operands meet. Curved surfaces that nearly coincide, and are not one, may meet
-/// in very many cells of a great depth: set [`Control::max_bytes`](crate::Control::max_bytes) where operands are not your own choice.
+/// *Cost.* Time and memory are linear in the cells where operands meet. Curved surfaces that nearly coincide,
+/// and are not one, may meet in very many cells of a great depth: set
+/// [`Control::max_bytes`](crate::Control::max_bytes) where operands are not your own choice.
 ///
-/// Marching cubes and coplanar shrink of solids sample the corners of cells, on a lattice that no stored tree is known on: they refuse
-/// extended trees, too. Instead take [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) of [`dexelize`](crate::dexelize),
-/// whose vertices lie on the surfaces, or the surface of the tree of [`plain`](crate::op::plain) with
+/// Marching cubes and coplanar shrink of solids sample the corners of cells, on a lattice that no stored tree
+/// is known on: they refuse extended trees, too. Instead take
+/// [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) of [`dexelize`](crate::dexelize), whose
+/// vertices lie on the surfaces, or the surface of the tree of [`plain`](crate::op::plain) with
 /// [`Rule::Sampled`](crate::Rule::Sampled). So does the program.
 ///
 /// [`LazyOctree`]: crate::LazyOctree
@@ -107,8 +116,8 @@ impl Octree {
             .unwrap_or_else(|_: core::convert::Infallible| unreachable!())
     }
 
-    /// Bytes that the arrays of the tree, its cuts and its channels take, in memory or where a file is mapped. Arrays may be
-    /// shared: a clone has the same.
+    /// Bytes that the arrays of the tree, its cuts and its channels take, in memory or where a file is
+    /// mapped. Arrays may be shared: a clone has the same.
     pub fn bytes(&self) -> u64 {
         let OctreeRef { planes, rel, base, bricks, table, .. } = self.view();
         let links = size_of_val(*planes) + size_of_val(*rel) + size_of_val(*base);
@@ -232,8 +241,8 @@ impl Octree {
         octree
     }
 
-    /// The same tree without the moments of the solid that it may keep ([`OctreeRef::moments`]): [`measure`](crate::measure) looks at
-    /// cells and surfaces; the arrays are shared.
+    /// The same tree without the moments of the solid that it may keep ([`OctreeRef::moments`]):
+    /// [`measure`](crate::measure) looks at cells and surfaces; the arrays are shared.
     #[must_use]
     pub fn without_moments(&self) -> Octree {
         let mut octree = self.clone();
@@ -337,8 +346,8 @@ impl core::fmt::Debug for Octree {
     }
 }
 
-/// Equal as sets of cells with the same tags and cuts on the same frame: trees are canonical, so their arrays agree
-/// however the bricks are encoded. Metadata does not count, nor what the cells prove. O(n).
+/// Equal as sets of cells with the same tags and cuts on the same frame: trees are canonical, so their arrays
+/// agree however the bricks are encoded. Metadata does not count, nor what the cells prove. O(n).
 impl PartialEq for Octree {
     fn eq(&self, other: &Octree) -> bool {
         let (a, b) = (self.view(), other.view());

@@ -13,13 +13,13 @@ use alloc::vec::Vec;
 const MOST: usize = 1 << 24;
 
 impl OctreeRef<'_> {
-    /// The cells of `level` of which nothing is known, in Morton order: each is PARTIAL, or lies in a PARTIAL cell, and no surfaces are
-    /// kept there. Of a [top](crate::Shard::Top) of that level these are the cells that need a shard. O(cells of the levels above,
-    /// and of the result).
+    /// The cells of `level` of which nothing is known, in Morton order: each is PARTIAL, or lies in a PARTIAL
+    /// cell, and no surfaces are kept there. Of a [top](crate::Shard::Top) of that level these are the cells
+    /// that need a shard. O(cells of the levels above, and of the result).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the frame has no such level; [`Error::Limit`] if there are more than 2^24 cells; [`Error::Damaged`] if the
-    /// cuts of an unverified tree turn out damaged; [`Error::OutOfMemory`].
+    /// [`Error::Argument`] if the frame has no such level; [`Error::Limit`] if there are more than 2^24
+    /// cells; [`Error::Damaged`] if the cuts of an unverified tree turn out damaged; [`Error::OutOfMemory`].
     pub fn open_cells(&self, level: u8) -> Result<Vec<Cell>, Error> {
         if level > self.frame.depth() {
             return Err(Error::Argument { name: "level", problem: "is below the depth of the frame" });

@@ -20,9 +20,9 @@ use crate::error::Error;
 /// | of [voxel records](crate::voxel::VoxelSolid) | if their boundary voxels are not taken for FULL | nor for EMPTY |
 /// | of a [tri-dexel model](crate::surface::DexelSolid) | | |
 ///
-/// A mesh or a bitmap of an octree is a solid of its own, which says nothing of what the octree was made from:
-/// what is built of it is proven of the region inside of the mesh, or of the union of the voxels. So are the
-/// cells of a [channel's values](crate::attribute::ChannelRef::region).
+/// A mesh or a bitmap of an octree is a solid of its own, which says nothing of what the octree was made
+/// from: what is built of it is proven of the region inside of the mesh, or of the union of the voxels. So
+/// are the cells of a [channel's values](crate::attribute::ChannelRef::region).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proof {
     /// A FULL cell is proven to lie in the solid; so is a FULL exterior.

@@ -7,12 +7,14 @@ use crate::lattice::Cell;
 use alloc::vec::Vec;
 
 impl Octree {
-    /// The statistics of the octree that [`join`](crate::op::join) makes of this tree, a [top](crate::Shard::Top), and of shards of
-    /// cells of its level, each with its statistics: nothing is joined. A cell that is not among them is PARTIAL. O(cells × depth).
+    /// The statistics of the octree that [`join`](crate::op::join) makes of this tree, a
+    /// [top](crate::Shard::Top), and of shards of cells of its level, each with its statistics: nothing is
+    /// joined. A cell that is not among them is PARTIAL. O(cells × depth).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the cells do not ascend in Morton order on one level, one is not open in the top, or is not split in its
-    /// shard: what such a shard knows belongs into the top, which [`join`](crate::op::join) brings about.
+    /// [`Error::Argument`] if the cells do not ascend in Morton order on one level, one is not open in the
+    /// top, or is not split in its shard: what such a shard knows belongs into the top, which
+    /// [`join`](crate::op::join) brings about.
     pub fn statistics_with(&self, shards: &[(Cell, Statistics)]) -> Result<Statistics, Error> {
         let mut counts = Vec::from(self.counts());
         let wrong = |problem| Error::Argument { name: "shards", problem };

@@ -65,8 +65,8 @@ impl Statistics {
         Statistics { levels }
     }
 
-    /// The same of numbers that somebody has counted: of each level of the frame, from the universe on, the nodes, the FULL and the
-    /// PARTIAL cells.
+    /// The same of numbers that somebody has counted: of each level of the frame, from the universe on, the
+    /// nodes, the FULL and the PARTIAL cells.
     pub fn of_counts(frame: &Frame, counts: &[[u64; 3]]) -> Statistics {
         let level = |&[nodes, full, partial]: &[u64; 3]| LevelCounts { nodes, full, partial };
         Statistics::new(frame, &counts.iter().map(level).collect::<Vec<_>>())

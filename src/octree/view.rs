@@ -50,8 +50,8 @@ pub(crate) struct LevelCounts {
 /// [`Tag`]s, and one array entry, an *element*, carries two octree levels: the 64 grandchildren of a cell as
 /// two words ([`Planes`]). Byte k of the two words is exactly the node of octant k, so nothing of the octree
 /// is lost; a link is just never spent on every other level. (The leaf-free octree: 改进的八叉树数据结构, 许胤龙 (Xu
-/// Yinlong), 陈国良 (Chen Guoliang) and others, 计算机科学 27 (6), 2000; the nearest relatives are OctoMap's `.bt` stream
-/// and sparse 64-trees.)
+/// Yinlong), 陈国良 (Chen Guoliang) and others, 计算机科学 27 (6), 2000; the nearest relatives are OctoMap's `.bt`
+/// stream and sparse 64-trees.)
 ///
 /// Elements lie in level order: level by level, in Morton order within a level. So the children of an
 /// element follow each other, a subtree is one contiguous range per level, and a child is found by rank:
@@ -72,8 +72,8 @@ pub(crate) struct LevelCounts {
 /// A view may lie over bytes that nobody has checked. Reading is then still memory-safe, terminates, and does
 /// bounded work; a damaged link or index reads as PARTIAL, or makes a bulk operation return
 /// [`Error::Damaged`](crate::Error::Damaged). A flipped tag cannot be told from a true one that way: only the
-/// checksums and [`check`](OctreeRef::check) find it. Also a [`Cursor`](crate::octree::Cursor) that walks over all of
-/// an unchecked tree meets no element twice.
+/// checksums and [`check`](OctreeRef::check) find it. Also a [`Cursor`](crate::octree::Cursor) that walks
+/// over all of an unchecked tree meets no element twice.
 #[derive(Debug, Clone, Copy, Yokeable)]
 pub struct OctreeRef<'a> {
     pub(crate) frame: Frame,
@@ -88,7 +88,8 @@ pub struct OctreeRef<'a> {
     pub(crate) starts: [usize; MAX_ELEMENT_LEVELS + 1],
     /// The stored level table, if there is one.
     pub(crate) table: Option<&'a [LevelCounts]>,
-    /// Whether all links are known to be sound: they were made here or checked, and nobody else can change them.
+    /// Whether all links are known to be sound: they were made here or checked, and nobody else can change
+    /// them.
     pub(crate) is_linked: bool,
     /// What PARTIAL cells keep of the surfaces that cross them, if they do.
     pub(crate) cuts: Option<CutsRef<'a>>,

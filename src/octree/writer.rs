@@ -161,7 +161,8 @@ pub(crate) struct Writer<'j> {
     bricks: BrickChunks,
     /// Whether parts were appended.
     joined: bool,
-    /// Runs of elements that were copied, with their levels, since somebody last asked; nothing if nobody asks.
+    /// Runs of elements that were copied, with their levels, since somebody last asked; nothing if nobody
+    /// asks.
     runs: Option<Vec<(usize, Range<usize>)>>,
     // Written since the job was last told.
     nodes: usize,

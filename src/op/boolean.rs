@@ -28,15 +28,17 @@ use core::ops::Range;
 /// The points that lie in `a`, in `b`, or in both.
 ///
 /// The operands must lie on the same frame. Time is linear in the cells where both are cut, plus the memory
-/// traffic of what is copied from one of them; the result of two trees without cuts is never larger than both together.
-/// The result has no metadata; [`Metadata::common`](crate::Metadata::common) tells which of the operands' hold of it.
+/// traffic of what is copied from one of them; the result of two trees without cuts is never larger than both
+/// together. The result has no metadata; [`Metadata::common`](crate::Metadata::common) tells which of the
+/// operands' hold of it.
 ///
-/// If an operand keeps surfaces, the result keeps surfaces: see [*Set operations*](Octree#set-operations), which also says
-/// why `max_bytes` should be set. More than two operands are combined fastest by [`union_of`].
+/// If an operand keeps surfaces, the result keeps surfaces: see [*Set operations*](Octree#set-operations),
+/// which also says why `max_bytes` should be set. More than two operands are combined fastest by
+/// [`union_of`].
 ///
 /// # Errors
-/// [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified operand turns out damaged; [`Error::Limit`] if the exact
-/// map of a surface's placements is too long; and what `control` asks for.
+/// [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified operand turns out damaged; [`Error::Limit`]
+/// if the exact map of a surface's placements is too long; and what `control` asks for.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build, difference, union};
@@ -91,8 +93,8 @@ pub fn xor(a: &OctreeRef<'_>, b: &OctreeRef<'_>, control: &Control<'_>) -> Resul
     combine(Kernel { operands: [Operand::of(a), Operand::of(b)], op: Op::Xor, flip: false }, control)
 }
 
-/// Everything but `a`, inside of its universe and out. One pass over the arrays. A tree that keeps surfaces keeps them
-/// all. The complement of the complement is the tree, byte for byte.
+/// Everything but `a`, inside of its universe and out. One pass over the arrays. A tree that keeps surfaces
+/// keeps them all. The complement of the complement is the tree, byte for byte.
 ///
 /// # Errors
 /// As [`union`].
@@ -106,10 +108,11 @@ pub fn complement(a: &OctreeRef<'_>, control: &Control<'_>) -> Result<Octree, Er
 
 /// The union of any number of trees, at least one. The order of the trees does not show in the result.
 ///
-/// Trees without cuts are combined two by two; limits of `control` concern each of these steps. If a tree keeps surfaces, all
-/// trees are walked at once: nothing is copied that another tree changes, and no intermediate result exists. So a batch of tools
-/// costs what the tools cost, where one operation a tool copies the part once a tool. A cell may be split more
-/// often on one way than on the other, so that a batch and single operations agree as sets, and not always byte for byte.
+/// Trees without cuts are combined two by two; limits of `control` concern each of these steps. If a tree
+/// keeps surfaces, all trees are walked at once: nothing is copied that another tree changes, and no
+/// intermediate result exists. So a batch of tools costs what the tools cost, where one operation a tool
+/// copies the part once a tool. A cell may be split more often on one way than on the other, so that a batch
+/// and single operations agree as sets, and not always byte for byte.
 ///
 /// # Errors
 /// [`Error::Argument`] if there is no tree; else as [`union`].
@@ -131,7 +134,8 @@ pub fn intersection_of(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result
     reduce(trees, intersection, control)
 }
 
-/// The points of the first of the trees, at least one, that lie in none of the others. Like [`union_of`] in all else.
+/// The points of the first of the trees, at least one, that lie in none of the others. Like [`union_of`] in
+/// all else.
 ///
 /// This is the way to cut a part by many tools.
 ///
@@ -331,8 +335,9 @@ struct Visit<'v, 'a, 'w, 'j> {
     parallel: bool,
 }
 
-/// Entries of both operands from which threads pay: below, joining what they wrote takes longer than they save.
-/// (Measured on a solid and the same turned by 0.002: 1.8 million entries lose a third, 7 million gain 1.4 times.)
+/// Entries of both operands from which threads pay: below, joining what they wrote takes longer than they
+/// save. (Measured on a solid and the same turned by 0.002: 1.8 million entries lose a third, 7 million gain
+/// 1.4 times.)
 const WORTH_THREADS: u64 = 1 << 21;
 
 fn combine(kernel: Kernel<'_>, control: &Control<'_>) -> Result<Octree, Error> {

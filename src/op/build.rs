@@ -39,11 +39,12 @@ pub fn build<S: Solid>(solid: &S, frame: &Frame, rule: Rule, control: &Control<'
     build_on(&solid.on(frame, control)?, rule, control)
 }
 
-/// Builds the cells of a [`Shard`] of what [`build`] makes: of all others nothing is known, whatever the rule. Time and memory
-/// are linear in the nodes that are visited, which are those of the shard and the way to it.
+/// Builds the cells of a [`Shard`] of what [`build`] makes: of all others nothing is known, whatever the
+/// rule. Time and memory are linear in the nodes that are visited, which are those of the shard and the way
+/// to it.
 ///
-/// [`join`](super::join) makes of the top and of the shards of all cells that it leaves open the octree that [`build`] makes, byte
-/// for byte.
+/// [`join`](super::join) makes of the top and of the shards of all cells that it leaves open the octree that
+/// [`build`] makes, byte for byte.
 ///
 /// # Errors
 /// As [`build`]; [`Error::Argument`] if the frame does not have the shard's cells.
@@ -117,8 +118,8 @@ fn build_cells<C: Classifier>(
     })
 }
 
-/// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`]. Of a tree that keeps surfaces
-/// it is not known which cells are meant: [`plain`](super::plain) takes a depth, and
+/// The tree with its PARTIAL cells resolved: EMPTY under [`Rule::Inner`], FULL under [`Rule::Outer`]. Of a
+/// tree that keeps surfaces it is not known which cells are meant: [`plain`](super::plain) takes a depth, and
 /// [`without_cuts`](OctreeRef::without_cuts) leaves the cells that there are.
 ///
 /// # Errors

@@ -10,17 +10,17 @@ use crate::octree::block::BLOCK_LEVELS;
 use crate::octree::{Block, Octree, Proof, Tag};
 use crate::solid::{Classifier, FreeParts, OneByOne, Question, Verdict, WholeQuestion, Worker};
 
-/// The octree of a tri-dexel model by the centres of its cells: a finest cell is FULL if its centre lies inside, and EMPTY
-/// if it does not.
+/// The octree of a tri-dexel model by the centres of its cells: a finest cell is FULL if its centre lies
+/// inside, and EMPTY if it does not.
 ///
-/// Where the directions of the model disagree, as those of arrays from elsewhere may, the highest axis that has rays
-/// decides, as in [`TriDexelRef::contains_cell`]. A model without rays gives an EMPTY octree.
+/// Where the directions of the model disagree, as those of arrays from elsewhere may, the highest axis that
+/// has rays decides, as in [`TriDexelRef::contains_cell`]. A model without rays gives an EMPTY octree.
 ///
-/// The result is canonical and binary. Around the universe it is EMPTY. Its cells prove nothing of the solid that the
-/// rays came from ([`Proof`]), as those of [`Rule::Sampled`](crate::Rule::Sampled).
+/// The result is canonical and binary. Around the universe it is EMPTY. Its cells prove nothing of the solid
+/// that the rays came from ([`Proof`]), as those of [`Rule::Sampled`](crate::Rule::Sampled).
 ///
-/// O(rays + intervals + octree), with rays of the windows, of which empty ones cost next to nothing. A block of 64³ cells in
-/// which no centre lies inside costs nothing. The same for any number of threads.
+/// O(rays + intervals + octree), with rays of the windows, of which empty ones cost next to nothing. A block
+/// of 64³ cells in which no centre lies inside costs nothing. The same for any number of threads.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`], and what `control` asks for.

@@ -11,8 +11,8 @@ use crate::solid::Solid;
 const SHARE: f64 = 0.9;
 
 impl DexelEditor {
-    /// Adds a solid. Only rays that cross the solid's bounding box are looked at, as far as the solid tells one.
-    /// Its intervals are those of [`dexelize`] with [`Rule::Sampled`], and carry what the editor stores.
+    /// Adds a solid. Only rays that cross the solid's bounding box are looked at, as far as the solid tells
+    /// one. Its intervals are those of [`dexelize`] with [`Rule::Sampled`], and carry what the editor stores.
     ///
     /// # Errors
     /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
@@ -20,8 +20,9 @@ impl DexelEditor {
         self.with_dexels_of(solid, control, Self::unite)
     }
 
-    /// Takes a solid away: one step of a tool. Only rays that cross the solid's bounding box are looked at, as far as the
-    /// solid tells one. Its intervals are those of [`dexelize`] with [`Rule::Sampled`], and carry what the editor stores.
+    /// Takes a solid away: one step of a tool. Only rays that cross the solid's bounding box are looked at,
+    /// as far as the solid tells one. Its intervals are those of [`dexelize`] with [`Rule::Sampled`], and
+    /// carry what the editor stores.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, dexelize, dexel::DexelEditor, op::DexelOptions};
@@ -46,8 +47,8 @@ impl DexelEditor {
         self.with_dexels_of(solid, control, Self::subtract)
     }
 
-    /// Keeps only the points that lie in a solid, too. O(rays of the lattice). The solid's intervals are those of [`dexelize`] with
-    /// [`Rule::Sampled`], and carry what the editor stores.
+    /// Keeps only the points that lie in a solid, too. O(rays of the lattice). The solid's intervals are
+    /// those of [`dexelize`] with [`Rule::Sampled`], and carry what the editor stores.
     ///
     /// # Errors
     /// As [`dexelize`], before anything changes, and as [`unite`](Self::unite).
@@ -59,8 +60,8 @@ impl DexelEditor {
         self.with_dexels_of(solid, control, Self::intersect)
     }
 
-    /// Takes away what lies in both, and adds the rest of a solid. Its intervals are those of [`dexelize`] with
-    /// [`Rule::Sampled`], and carry what the editor stores.
+    /// Takes away what lies in both, and adds the rest of a solid. Its intervals are those of [`dexelize`]
+    /// with [`Rule::Sampled`], and carry what the editor stores.
     ///
     /// # Errors
     /// As [`dexelize`], before anything changes, and as [`xor`](Self::xor).

@@ -9,21 +9,22 @@ use crate::lattice::{Cell, Frame, axes};
 use crate::octree::{Octree, Proof, Tag};
 use crate::solid::{Classifier, FreeParts, OneByOne, Question, Verdict, WholeQuestion, Worker};
 
-/// The octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays through it are inside all the
-/// way, EMPTY if all are outside all the way, and PARTIAL if an end lies in it or the directions disagree. An end that lies
-/// just in a face between two cells lies in neither.
+/// The octree of a tri-dexel model by the ends of its intervals: a finest cell is FULL if all rays through it
+/// are inside all the way, EMPTY if all are outside all the way, and PARTIAL if an end lies in it or the
+/// directions disagree. An end that lies just in a face between two cells lies in neither.
 ///
-/// **What that proves.** A decided cell agrees with every ray through it, as far as the model stores their ends: along the
-/// rays nothing is rounded to cells, and what is thinner than a cell is undecided where a ray meets it, not lost. **What it
-/// does not prove.** A cell has one ray of a direction, through its middle. A surface may cut off its corners, and what lies
-/// between the rays is seen by none; so the cells prove nothing of the solid that the rays came from ([`Proof`]), and the
-/// volumes of FULL and of PARTIAL cells are no proven bounds. Where the surface is smooth and the cells are small, the true
-/// volume lies between them as a rule.
+/// **What that proves.** A decided cell agrees with every ray through it, as far as the model stores their
+/// ends: along the rays nothing is rounded to cells, and what is thinner than a cell is undecided where a ray
+/// meets it, not lost. **What it does not prove.** A cell has one ray of a direction, through its middle. A
+/// surface may cut off its corners, and what lies between the rays is seen by none; so the cells prove
+/// nothing of the solid that the rays came from ([`Proof`]), and the volumes of FULL and of PARTIAL cells are
+/// no proven bounds. Where the surface is smooth and the cells are small, the true volume lies between them
+/// as a rule.
 ///
 /// The result is canonical. Around the universe it is EMPTY. A model without rays gives an EMPTY octree.
 ///
-/// O(depth · rays of the lattice · log intervals of a ray), with as many rays as cells on the faces of the universe. The same
-/// for any number of threads.
+/// O(depth · rays of the lattice · log intervals of a ray), with as many rays as cells on the faces of the
+/// universe. The same for any number of threads.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`], and what `control` asks for.

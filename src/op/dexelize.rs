@@ -1,9 +1,9 @@
 //! From any solid to a tri-dexel model.
 //!
-//! Rays are made in tiles, each with a descent of its own through the cells that it crosses. A solid that knows rays
-//! ([`Question::Chords`](crate::solid::Question::Chords)) answers for large cells at once: meshes by scan conversion, expressions of half-spaces by roots. Of
-//! others the finest cells are sampled, and between two centres on different sides the crossing is narrowed down by finer
-//! cells and their slabs.
+//! Rays are made in tiles, each with a descent of its own through the cells that it crosses. A solid that
+//! knows rays ([`Question::Chords`](crate::solid::Question::Chords)) answers for large cells at once: meshes
+//! by scan conversion, expressions of half-spaces by roots. Of others the finest cells are sampled, and
+//! between two centres on different sides the crossing is narrowed down by finer cells and their slabs.
 
 use super::rule::Rule;
 use crate::control::{Control, Job, WHOLE};
@@ -52,31 +52,33 @@ impl Default for DexelOptions {
 
 /// Makes a tri-dexel model of a solid on the lattice of a frame.
 ///
-/// A ray runs through the centres of finest cells, in thought shifted by (ε, ε², ε³), so that it meets no edge and no face
-/// of the solid at its side; it has an end where it crosses the surface. An end says of the centres beside it just what the
-/// solid does, so that the model has the samples of [`build`](crate::build) with [`Rule::Sampled`]; apart from that it is off
-/// by at most 2^-31 of the universe's edge, or 2^-36 with [`DexelEnds::Double`]. Intervals shorter than this vanish.
+/// A ray runs through the centres of finest cells, in thought shifted by (ε, ε², ε³), so that it meets no
+/// edge and no face of the solid at its side; it has an end where it crosses the surface. An end says of the
+/// centres beside it just what the solid does, so that the model has the samples of [`build`](crate::build)
+/// with [`Rule::Sampled`]; apart from that it is off by at most 2^-31 of the universe's edge, or 2^-36 with
+/// [`DexelEnds::Double`]. Intervals shorter than this vanish.
 ///
-/// So it is with closed meshes, under any fill rule, with half-spaces (planes, quadrics, powers, tori) and expressions of
-/// them, and with stored octrees. Around the holes of open meshes, too, every crossing of a triangle is an end if it changes
-/// the side; where the solid is bounded by no triangle, it has an end between two centres on different sides, where the
-/// winding number passes one half. Of other solids (expressions with other solids as operands, transforms, functions of a
-/// host, volumes) cells and samples are asked. Ends between centres on different sides
-/// are narrowed down by cells to a depth of 20. So are ends between a face of the universe and the centre next to it, if the
-/// centre lies inside and the ray does not where it meets the face. Walls between two neighbouring centres on one side are not
-/// seen. With a frame of depth 20 ends of such solids lie in the planes between cells. Surfaces at ends are numbers of triangles and of half-spaces, the latter in the order
-/// of the expression written out.
+/// So it is with closed meshes, under any fill rule, with half-spaces (planes, quadrics, powers, tori) and
+/// expressions of them, and with stored octrees. Around the holes of open meshes, too, every crossing of a
+/// triangle is an end if it changes the side; where the solid is bounded by no triangle, it has an end
+/// between two centres on different sides, where the winding number passes one half. Of other solids
+/// (expressions with other solids as operands, transforms, functions of a host, volumes) cells and samples
+/// are asked. Ends between centres on different sides are narrowed down by cells to a depth of 20. So are
+/// ends between a face of the universe and the centre next to it, if the centre lies inside and the ray does
+/// not where it meets the face. Walls between two neighbouring centres on one side are not seen. With a frame
+/// of depth 20 ends of such solids lie in the planes between cells. Surfaces at ends are numbers of triangles
+/// and of half-spaces, the latter in the order of the expression written out.
 ///
 /// (The method is that of Gao, Zhang and Hou 2007 for polygons, with exact decisions at edges and vertices.)
 ///
-/// O(rays + crossings), and the descent to where the solid knows rays. Each end that an open mesh has without a triangle takes
-/// some sums over the edges of all holes. The same for any number of threads.
+/// O(rays + crossings), and the descent to where the solid knows rays. Each end that an open mesh has without
+/// a triangle takes some sums over the edges of all holes. The same for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if no direction is asked for, or for [`Rule::Certified`], as intervals cannot be undecided;
-/// [`Error::NotSampled`] if the solid cannot decide points ([`Rule::Inner`] and [`Rule::Outer`] do without that);
-/// [`Error::Limit`] for 2^32 rays or intervals in one direction, and [`Error::TooLarge`] where the rays alone take more than
-/// `control.max_bytes`; and as [`build`](crate::build).
+/// [`Error::Argument`] if no direction is asked for, or for [`Rule::Certified`], as intervals cannot be
+/// undecided; [`Error::NotSampled`] if the solid cannot decide points ([`Rule::Inner`] and [`Rule::Outer`] do
+/// without that); [`Error::Limit`] for 2^32 rays or intervals in one direction, and [`Error::TooLarge`] where
+/// the rays alone take more than `control.max_bytes`; and as [`build`](crate::build).
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, dexelize, op::DexelOptions};
@@ -339,7 +341,8 @@ impl<T: Solid> Tiles<'_, T> {
         }
     }
 
-    /// Moves the ends at sampled cells from the planes between cells, and from the universe's faces, to where the surface is.
+    /// Moves the ends at sampled cells from the planes between cells, and from the universe's faces, to where
+    /// the surface is.
     fn refine(&self, hand: &mut Hand<T>) -> Result<(), Error> {
         let depth = self.frame.depth();
         if depth >= MAX_DEPTH {

@@ -1,4 +1,5 @@
-//! What makes octrees: building from a solid, splitting on demand, the set algebra of stored trees, and tri-dexel models.
+//! What makes octrees: building from a solid, splitting on demand, the set algebra of stored trees, and
+//! tri-dexel models.
 
 mod boolean;
 mod build;

@@ -7,30 +7,34 @@ use crate::lattice::Shard;
 use crate::memory;
 use crate::octree::{Octree, OctreeRef};
 
-/// Puts together what several trees know of one solid: a cell is FULL or EMPTY if one of them says so, and PARTIAL where all leave it
-/// open. Surfaces of a PARTIAL cell are kept, if one of them does.
+/// Puts together what several trees know of one solid: a cell is FULL or EMPTY if one of them says so, and
+/// PARTIAL where all leave it open. Surfaces of a PARTIAL cell are kept, if one of them does.
 ///
-/// This is the reverse of cutting an octree into [shards](Shard), plain or extended: the bytes are those of the whole. A shard that is
-/// missing is a PARTIAL cell. The trees may overlap. A cell of which one keeps surfaces ends there: what others know of its parts is
-/// passed over, and if two keep surfaces of it, those of the first are kept.
-/// Moments are those of the first that has them. The result has no metadata and no channels.
+/// This is the reverse of cutting an octree into [shards](Shard), plain or extended: the bytes are those of
+/// the whole. A shard that is missing is a PARTIAL cell. The trees may overlap. A cell of which one keeps
+/// surfaces ends there: what others know of its parts is passed over, and if two keep surfaces of it, those
+/// of the first are kept. Moments are those of the first that has them. The result has no metadata and no
+/// channels.
 ///
-/// Time is linear in the cells that are cut in one tree and known in another one, plus the memory traffic of what is copied.
+/// Time is linear in the cells that are cut in one tree and known in another one, plus the memory traffic of
+/// what is copied.
 ///
 /// # Errors
-/// [`Error::Argument`] if there is no tree, or one says FULL where another one says EMPTY: they are not of one solid;
-/// [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified tree turns out damaged; and what `control` asks for.
+/// [`Error::Argument`] if there is no tree, or one says FULL where another one says EMPTY: they are not of
+/// one solid; [`Error::FrameMismatch`]; [`Error::Damaged`] if an unverified tree turns out damaged; and what
+/// `control` asks for.
 pub fn join(trees: &[OctreeRef<'_>], control: &Control<'_>) -> Result<Octree, Error> {
     let operands = memory::collected(trees.iter().map(|tree| (*tree, false)))?;
     extended::combine_cells(&operands, Combination::Known, None, control)
 }
 
 /// The [`Shard`] of an octree: the tree that [`build_shard`](crate::build_shard) and
-/// [`build_extended_shard`](crate::op::build_extended_shard) make of its source. Without metadata and channels.
+/// [`build_extended_shard`](crate::op::build_extended_shard) make of its source. Without metadata and
+/// channels.
 ///
 /// # Errors
-/// [`Error::Argument`] if the tree's frame does not have the shard's cells; [`Error::Damaged`] if an unverified tree turns out damaged;
-/// and what `control` asks for.
+/// [`Error::Argument`] if the tree's frame does not have the shard's cells; [`Error::Damaged`] if an
+/// unverified tree turns out damaged; and what `control` asks for.
 ///
 /// ```
 /// use leafless::op::{join, shard};

@@ -98,7 +98,8 @@ impl OctreeRef<'_> {
     /// Words in the bitmap of a box, whose parameters are those of [`bitmap`](Self::bitmap).
     ///
     /// # Errors
-    /// [`Error::Argument`] for a level below the frame's depth, and for a box that does not lie in the universe.
+    /// [`Error::Argument`] for a level below the frame's depth, and for a box that does not lie in the
+    /// universe.
     pub fn bitmap_words(&self, level: u8, min: [u32; 3], max: [u32; 3]) -> Result<u64, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
         if level > self.frame.depth() {

@@ -30,7 +30,8 @@ pub enum Region {
 /// of the box lies outside of the universe is undecided. Ends as soon as the answer is known, or once
 /// `control.max_splits` cells are split. One thread.
 ///
-/// A mesh tells of most boxes in the universe from a tree over its triangles, without cells ([`MeshSolid`](crate::MeshSolid)).
+/// A mesh tells of most boxes in the universe from a tree over its triangles, without cells
+/// ([`MeshSolid`](crate::MeshSolid)).
 ///
 /// # Errors
 /// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number; what the solid refuses;
@@ -124,8 +125,8 @@ impl Survey {
 impl OctreeRef<'_> {
     /// How the box `[min, max]` (model units, min ≤ max) lies to the solid; what of it lies outside of the
     /// universe is undecided. Ends as soon as the answer is known; whatever the bytes, no element is read
-    /// twice. Cuts decide in place, each by at most 64 boxes: a box that touches a surface, or comes very near to one, may be
-    /// undecided.
+    /// twice. Cuts decide in place, each by at most 64 boxes: a box that touches a surface, or comes very
+    /// near to one, may be undecided.
     ///
     /// # Errors
     /// [`Error::Argument`] if min > max on an axis, or a coordinate is not a number.
@@ -243,7 +244,8 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Looks at what of the box lies in a cell with a table: in pieces, which are halved where they are not decided.
+    /// Looks at what of the box lies in a cell with a table: in pieces, which are halved where they are not
+    /// decided.
     fn table(&mut self, cuts: &CutsRef<'_>, ids: &CellIds, table: u8, cell: Cell) {
         let mut figures = [None; 3];
         for (figure, &id) in figures.iter_mut().zip(ids.iter()) {

@@ -9,14 +9,15 @@ use crate::solid::{Classifier, Solid, Verdict, Worker};
 use crate::walk::Proven;
 use crate::walk::split_one;
 
-/// How a region lies to a solid, as far as cells of `frame` tell: a ball ([`Csg::ball`](crate::Csg::ball)), or any other
-/// solid. [`Region::Inside`] means that all of the region lies in the solid; [`Region::Outside`] that the interiors are
-/// disjoint, as they also are if the region is proven to be empty; [`Region::Crossing`] that some of the region does and
-/// some does not. Where region and solid go on outside of the universe, their exteriors are compared.
+/// How a region lies to a solid, as far as cells of `frame` tell: a ball ([`Csg::ball`](crate::Csg::ball)),
+/// or any other solid. [`Region::Inside`] means that all of the region lies in the solid; [`Region::Outside`]
+/// that the interiors are disjoint, as they also are if the region is proven to be empty;
+/// [`Region::Crossing`] that some of the region does and some does not. Where region and solid go on outside
+/// of the universe, their exteriors are compared.
 ///
-/// Ends as soon as the answer is known, or once `control.max_splits` cells of both are split. Cells where the region is
-/// not are never split; so the time is about that of building what both have in common near the region's boundary and
-/// the solid's. One thread.
+/// Ends as soon as the answer is known, or once `control.max_splits` cells of both are split. Cells where the
+/// region is not are never split; so the time is about that of building what both have in common near the
+/// region's boundary and the solid's. One thread.
 ///
 /// # Errors
 /// What solid and region refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].

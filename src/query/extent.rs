@@ -33,31 +33,32 @@ pub struct Extent {
     pub splits: u64,
 }
 
-/// Splits after which [`bounding_box`] ends if `control.max_splits` sets no other limit: some seconds, and some
-/// hundred megabytes at the most.
+/// Splits after which [`bounding_box`] ends if `control.max_splits` sets no other limit: some seconds, and
+/// some hundred megabytes at the most.
 pub const BOUNDING_BOX_SPLITS: u64 = 1 << 20;
 
-/// The bounding box of `solid` in the universe of `frame`: six intervals, one for each side. The result does not
-/// depend on the number of threads, since there is only one.
+/// The bounding box of `solid` in the universe of `frame`: six intervals, one for each side. The result does
+/// not depend on the number of threads, since there is only one.
 ///
-/// The search splits only cells that may reach beyond what is proven solid, those first that reach farthest. It
-/// ends, and the result's `stop_reason` says why:
+/// The search splits only cells that may reach beyond what is proven solid, those first that reach farthest.
+/// It ends, and the result's `stop_reason` says why:
 /// - `Tolerance`: no interval is wider than `tolerance` (model units), or than 2^-44 of the universe's edge.
-/// - `Exhausted`: the outermost undecided cells cannot be split, and either the interval is no wider than one of
-///   the frame's finest cells, or nothing else is left to split.
-/// - `Budget`: `control.max_splits` cells were split, or [`BOUNDING_BOX_SPLITS`] if that is `None`. Each side gets
-///   its share of what the sides before it have left. Or what is remembered of a side comes near to
+/// - `Exhausted`: the outermost undecided cells cannot be split, and either the interval is no wider than one
+///   of the frame's finest cells, or nothing else is left to split.
+/// - `Budget`: `control.max_splits` cells were split, or [`BOUNDING_BOX_SPLITS`] if that is `None`. Each side
+///   gets its share of what the sides before it have left. Or what is remembered of a side comes near to
 ///   `control.max_bytes`.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), a linear program bounds how far it
-/// reaches there. A corner of three plane faces is exact to rounding as soon as a cell holds no more than these,
-/// wherever the faces lie: a tilted plate takes 28 splits. At a curved side each level makes the interval four
-/// times as narrow. A level takes some ten splits a side, and twice as many as the level before where the side is
-/// touched along a line or a circle, as an upright cylinder's is. The tip of a cone, and a corner of more than three
-/// faces, are known to some finest cells.
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), a linear program
+/// bounds how far it reaches there. A corner of three plane faces is exact to rounding as soon as a cell
+/// holds no more than these, wherever the faces lie: a tilted plate takes 28 splits. At a curved side each
+/// level makes the interval four times as narrow. A level takes some ten splits a side, and twice as many as
+/// the level before where the side is touched along a line or a circle, as an upright cylinder's is. The tip
+/// of a cone, and a corner of more than three faces, are known to some finest cells.
 ///
-/// Without slabs, and with n the edge of the universe over the tolerance, a curved side takes some n splits. A flat
-/// one takes n², unless it lies on a plane of the lattice, because each cell in front of it must be proven empty.
+/// Without slabs, and with n the edge of the universe over the tolerance, a curved side takes some n splits.
+/// A flat one takes n², unless it lies on a plane of the lattice, because each cell in front of it must be
+/// proven empty.
 ///
 /// Time is linear in the splits but for a logarithm, and so is memory.
 ///
@@ -141,8 +142,8 @@ struct Search<'a, C: Classifier> {
     job: &'a Job<'a>,
     /// How many units an interval may be wide.
     goal: u64,
-    /// Where the solid begins as far as is proven: the first FULL cell, or the first point that an enclosure has
-    /// inside.
+    /// Where the solid begins as far as is proven: the first FULL cell, or the first point that an enclosure
+    /// has inside.
     inner: [u64; 6],
     /// Where the solid may begin.
     outer: [u64; 6],
@@ -171,8 +172,8 @@ fn start(side: usize, cell: Cell) -> u64 {
 }
 
 impl<C: Classifier> Search<'_, C> {
-    /// Whether the solid is proven empty: no part of the universe may hold some of it, or along some axis it would
-    /// end before it begins.
+    /// Whether the solid is proven empty: no part of the universe may hold some of it, or along some axis it
+    /// would end before it begins.
     fn is_empty(&self) -> bool {
         let ends_first = |axis: usize| {
             let [near, far] = [self.outer[axis], self.outer[axis + 3]];
@@ -186,8 +187,8 @@ impl<C: Classifier> Search<'_, C> {
         self.inner[side].saturating_sub(self.outer[side])
     }
 
-    /// Splits the cells in which the solid may begin first, and of those the smallest. `false` if the share has
-    /// ended it.
+    /// Splits the cells in which the solid may begin first, and of those the smallest. `false` if the share
+    /// has ended it.
     fn side(&mut self, side: usize, share: u64) -> Result<bool, Error> {
         self.job.check()?;
         let last = self.subject.splits + share;
@@ -300,8 +301,8 @@ impl<C: Classifier> Search<'_, C> {
     }
 }
 
-/// How far from the universe's face at a side the points of a cell lie, rounded down, that reach so far (−1 to 1)
-/// from its centre.
+/// How far from the universe's face at a side the points of a cell lie, rounded down, that reach so far (−1
+/// to 1) from its centre.
 fn distance(side: usize, cell: Cell, reach: f64) -> u64 {
     let half = half(cell);
     // The product is exact, being with a power of two, and at most half an edge of the universe.

@@ -17,28 +17,31 @@
 //!
 //! # A new question about any solids
 //!
-//! It is one file, or one folder, here. No question uses another one; `StopReason` and `Tolerance`, which several have, stand in
-//! `measure`. `classify_box` is the shortest to read, `extent` shows a search with a queue, `section` has all of it.
+//! It is one file, or one folder, here. No question uses another one; `StopReason` and `Tolerance`, which
+//! several have, stand in `measure`. `classify_box` is the shortest to read, `extent` shows a search with a
+//! queue, `section` has all of it.
 //!
 //! 1. **Solid.** A public function takes any [`Solid`](crate::Solid), a [`Frame`](crate::Frame) and a
-//!    [`Control`](crate::Control), and puts the solid on the frame once, by `Solid::on`. A method of `OctreeRef` beside it may
-//!    answer the same of a stored octree in place.
-//! 2. **Proof.** `walk::Proven` wraps the classifier: FULL and EMPTY that are not proven become PARTIAL, so that the answer
-//!    claims no more than the solid does.
-//! 3. **Budget.** What splits on demand heeds `control.max_splits`, or a default that is a public constant, and tells in its
-//!    answer whether it was spent. What keeps parts of cells heeds `control.max_bytes` by `Subject::takes`; the documentation of
-//!    that field lists the questions that do.
+//!    [`Control`](crate::Control), and puts the solid on the frame once, by `Solid::on`. A method of
+//!    `OctreeRef` beside it may answer the same of a stored octree in place.
+//! 2. **Proof.** `walk::Proven` wraps the classifier: FULL and EMPTY that are not proven become PARTIAL, so
+//!    that the answer claims no more than the solid does.
+//! 3. **Budget.** What splits on demand heeds `control.max_splits`, or a default that is a public constant,
+//!    and tells in its answer whether it was spent. What keeps parts of cells heeds `control.max_bytes` by
+//!    `Subject::takes`; the documentation of that field lists the questions that do.
 //! 4. **Walk.** `walk::split_one` splits a cell, `walk::descend` goes depth first, `walk::Queue` best first,
-//!    `walk::Subject` counts splits and keeps parts. A search that runs long gives back the memory of parts that it does not need
-//!    any more (`Subject::is_wasteful`, `keep` with `Queue::change`). Slabs (`Question::Enclosure`) make an answer better by an
-//!    order. What planes cut off a cell is computed in `cut`. The slabs of a host may hold NaN, infinities and contradictions:
-//!    such a cell counts as unknown.
-//! 5. **Job.** `Job` checks for a cancel now and then and reports progress, of which all shares make up `WHOLE`;
-//!    `parallel::each` shares out what is independent, in an order that does not depend on the number of threads.
-//! 6. **Doors.** The name below (at the root of the library too, if everyone uses it), and in the table above and that of `lib.rs`;
-//!    a module in `tests/queries` with a dense oracle and a ball's formula, and its row in `tests/README.md`; a line in the
-//!    operations of `tests/memory/failures.rs`; a function in `capi/src` (the recipe stands in its `lib.rs`); the fuzz target
-//!    `measures`; CHANGELOG.md; and a row in `tests/octrees/proof_table.rs` if a solid comes out.
+//!    `walk::Subject` counts splits and keeps parts. A search that runs long gives back the memory of parts
+//!    that it does not need any more (`Subject::is_wasteful`, `keep` with `Queue::change`). Slabs
+//!    (`Question::Enclosure`) make an answer better by an order. What planes cut off a cell is computed in
+//!    `cut`. The slabs of a host may hold NaN, infinities and contradictions: such a cell counts as unknown.
+//! 5. **Job.** `Job` checks for a cancel now and then and reports progress, of which all shares make up
+//!    `WHOLE`; `parallel::each` shares out what is independent, in an order that does not depend on the
+//!    number of threads.
+//! 6. **Doors.** The name below (at the root of the library too, if everyone uses it), and in the table above
+//!    and that of `lib.rs`; a module in `tests/queries` with a dense oracle and a ball's formula, and its row
+//!    in `tests/README.md`; a line in the operations of `tests/memory/failures.rs`; a function in `capi/src`
+//!    (the recipe stands in its `lib.rs`); the fuzz target `measures`; CHANGELOG.md; and a row in
+//!    `tests/octrees/proof_table.rs` if a solid comes out.
 
 mod bitmap;
 mod classify_box;

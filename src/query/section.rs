@@ -22,11 +22,12 @@ pub struct SectionPlane {
 }
 
 impl SectionPlane {
-    /// The plane through a point (model units) and perpendicular to `normal`, which may have any length and either
-    /// direction.
+    /// The plane through a point (model units) and perpendicular to `normal`, which may have any length and
+    /// either direction.
     ///
     /// # Errors
-    /// [`Error::Argument`] if `normal` is zero, or if a number is not zero and not of a magnitude between 2^-256 and 2^256.
+    /// [`Error::Argument`] if `normal` is zero, or if a number is not zero and not of a magnitude between
+    /// 2^-256 and 2^256.
     pub fn new(point: [f64; 3], normal: [f64; 3]) -> Result<SectionPlane, Error> {
         valid::numbers("point", &point)?;
         valid::numbers("normal", &normal)?;
@@ -57,7 +58,8 @@ pub struct SectionArea {
     pub area: Interval,
     /// What of the solid is proven: what is not counts as undecided.
     pub proof: Proof,
-    /// Whether the solid may go on outside of the universe, or does: then the area is that of the section inside.
+    /// Whether the solid may go on outside of the universe, or does: then the area is that of the section
+    /// inside.
     pub clipped: bool,
     /// Why it ended.
     pub stop_reason: StopReason,
@@ -65,39 +67,42 @@ pub struct SectionArea {
     pub splits: u64,
 }
 
-/// Splits after which [`section_area`] ends if `control.max_splits` sets no other limit: some seconds, and some hundred
-/// megabytes at the most.
+/// Splits after which [`section_area`] ends if `control.max_splits` sets no other limit: some seconds, and
+/// some hundred megabytes at the most.
 pub const SECTION_SPLITS: u64 = 1 << 20;
 
-/// The area of the section of `solid` with a plane, in the universe of `frame`. The result does not depend on the number of
-/// threads, since there is only one.
+/// The area of the section of `solid` with a plane, in the universe of `frame`. The result does not depend on
+/// the number of threads, since there is only one.
 ///
-/// The search splits only cells that the plane runs through, those first of which most is in doubt. It ends, and the
-/// result's `stop_reason` says why:
-/// - `Tolerance`: the interval is no wider than `tolerance` says (a number is relative to the middle of the interval).
-/// - `Exhausted`: no cell is left whose split would help. What is in doubt has the size of the frame's finest cells, or the
-///   solid knows no more about it, or nothing but rounding is in doubt, about 2^-40 of the area.
-/// - `Budget`: `control.max_splits` cells were split, or [`SECTION_SPLITS`] if that is `None`. Or what is remembered of the
-///   solid comes near to `control.max_bytes`.
+/// The search splits only cells that the plane runs through, those first of which most is in doubt. It ends,
+/// and the result's `stop_reason` says why:
+/// - `Tolerance`: the interval is no wider than `tolerance` says (a number is relative to the middle of the
+///   interval).
+/// - `Exhausted`: no cell is left whose split would help. What is in doubt has the size of the frame's finest
+///   cells, or the solid knows no more about it, or nothing but rounding is in doubt, about 2^-40 of the
+///   area.
+/// - `Budget`: `control.max_splits` cells were split, or [`SECTION_SPLITS`] if that is `None`. Or what is
+///   remembered of the solid comes near to `control.max_bytes`.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), only what lies between them is in
-/// doubt. With N splits the width then goes down with 1/N² on curved surfaces, and plane faces are known to rounding as soon
-/// as no cell holds more than three of them. Without slabs the width goes down with 1/N. Time is linear in the splits but for
-/// a logarithm, and so is memory.
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), only what lies between
+/// them is in doubt. With N splits the width then goes down with 1/N² on curved surfaces, and plane faces are
+/// known to rounding as soon as no cell holds more than three of them. Without slabs the width goes down with
+/// 1/N. Time is linear in the splits but for a logarithm, and so is memory.
 ///
 /// # Faces in the plane
-/// If faces of the solid lie in the plane, the sections on both sides of it differ. What counts is the limit of the areas from
-/// one side:
-/// - A plane perpendicular to an axis is taken as the limit from above, as a point between two cells lies in the upper one;
-///   in the universe's upper face it is the limit from below. If the plane is one of the lattice's, the cells above it are
-///   those that count. A box with faces in planes of the lattice so has an exact area, also where it is cut in a face.
-/// - For any other plane the interval contains the limits from both sides. A face in it stays in doubt, and so does a face
-///   in a plane perpendicular to an axis that is none of the lattice's. All its cells are split as deep as the frame or the
-///   budget allows.
+/// If faces of the solid lie in the plane, the sections on both sides of it differ. What counts is the limit
+/// of the areas from one side:
+/// - A plane perpendicular to an axis is taken as the limit from above, as a point between two cells lies in
+///   the upper one; in the universe's upper face it is the limit from below. If the plane is one of the
+///   lattice's, the cells above it are those that count. A box with faces in planes of the lattice so has an
+///   exact area, also where it is cut in a face.
+/// - For any other plane the interval contains the limits from both sides. A face in it stays in doubt, and
+///   so does a face in a plane perpendicular to an axis that is none of the lattice's. All its cells are
+///   split as deep as the frame or the budget allows.
 ///
 /// # Errors
-/// [`Error::Argument`] if a number of `tolerance` is negative or none; what the solid refuses, as [`build`](crate::build);
-/// [`Error::Cancelled`]; [`Error::OutOfMemory`].
+/// [`Error::Argument`] if a number of `tolerance` is negative or none; what the solid refuses, as
+/// [`build`](crate::build); [`Error::Cancelled`]; [`Error::OutOfMemory`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::{SectionPlane, section_area}};
@@ -155,12 +160,12 @@ const BITS: u32 = SHARE_BITS + 2 * MAX_DEPTH as u32;
 const STEP_BITS: i64 = 80;
 const FAR_BITS: i64 = STEP_BITS + MAX_DEPTH as i64 + 6;
 
-/// More than the error of a plane's function anywhere in the universe: each step is off by less than 3, the start by less
-/// than 64, and no coordinate is larger than 2^21.
+/// More than the error of a plane's function anywhere in the universe: each step is off by less than 3, the
+/// start by less than 64, and no coordinate is larger than 2^21.
 const SLACK: i128 = 1 << 25;
 
-/// A plane on the lattice. Coordinates t count halves of the finest cells of the deepest frame, from the lower corner of the
-/// universe: points of the plane have start + steps · t = 0.
+/// A plane on the lattice. Coordinates t count halves of the finest cells of the deepest frame, from the
+/// lower corner of the universe: points of the plane have start + steps · t = 0.
 struct Placed {
     /// The axis that the normal is nearest to comes last.
     order: [usize; 3],
@@ -174,7 +179,8 @@ struct Placed {
 }
 
 impl Placed {
-    /// `None` if the plane is so far from the universe, or perpendicular to an axis and beside it. (Others meet no cell.)
+    /// `None` if the plane is so far from the universe, or perpendicular to an axis and beside it. (Others
+    /// meet no cell.)
     fn new(plane: &SectionPlane, frame: &Frame) -> Option<Placed> {
         let SectionPlane { point, normal } = *plane;
         let last = plane.axis();
@@ -234,8 +240,8 @@ struct Search<'a, C: Classifier> {
     told: usize,
     /// A unit of the sums in square model units.
     unit: Interval,
-    /// The sums of lower and upper bounds, as the plane is seen along an axis. In whole numbers they are the same in any
-    /// order.
+    /// The sums of lower and upper bounds, as the plane is seen along an axis. In whole numbers they are the
+    /// same in any order.
     sums: [i128; 2],
     open: Queue<Key, Open<Part<C>>>,
 }
@@ -311,8 +317,8 @@ impl<C: Classifier> Search<'_, C> {
         self.job.check()
     }
 
-    /// Gives back memory that only parts hold which are not in use. `false` if those in use take too much of what is
-    /// allowed.
+    /// Gives back memory that only parts hold which are not in use. `false` if those in use take too much of
+    /// what is allowed.
     fn tidy(&mut self) -> Result<bool, Error> {
         let subject = &mut self.subject;
         let is_full = subject.takes(4);

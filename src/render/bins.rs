@@ -7,7 +7,8 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// First column, first row, last column and last row of tiles; the first column lies beyond the last one if there are none.
+/// First column, first row, last column and last row of tiles; the first column lies beyond the last one if
+/// there are none.
 type Span = [u16; 4];
 
 const NOWHERE: Span = [1, 0, 0, 0];
@@ -26,8 +27,9 @@ pub struct Bins {
 }
 
 impl Bins {
-    /// Sorts `count` things, at most 2^32, into the tiles of a picture of this size. `place` tells where a thing is seen: the
-    /// least x and y and the greatest ones, in pixels, which may be infinite. O(count + tiles).
+    /// Sorts `count` things, at most 2^32, into the tiles of a picture of this size. `place` tells where a
+    /// thing is seen: the least x and y and the greatest ones, in pixels, which may be infinite. O(count +
+    /// tiles).
     pub fn new(
         size: [u32; 2],
         count: usize,

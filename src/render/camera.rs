@@ -35,8 +35,8 @@ impl Camera {
     /// A camera at `eye` that looks at the point `at`; `up`, of any length, is shown upward. Model units.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if eye and point are one, if `up` is zero or lies along
-    /// the view, or if the lens is not as it must be.
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if eye and
+    /// point are one, if `up` is zero or lies along the view, or if the lens is not as it must be.
     pub fn new(eye: [f64; 3], at: [f64; 3], up: [f64; 3], lens: Lens) -> Result<Camera, Error> {
         let [eye, at, up] = [("eye", eye), ("at", at), ("up", up)].map(|(name, v)| vector(name, v));
         let (eye, at, up) = (eye?, at?, up?);
@@ -51,14 +51,15 @@ impl Camera {
         Ok(Camera::facing(eye, forward, right.normalize(), lens))
     }
 
-    /// A camera that shows all of some points (model units), one at least, in a picture of width : height = `aspect`, as
-    /// large as can be with a small margin. It looks at them from an azimuth and an elevation in degrees: 0, 0 is from −y with
-    /// x to the right and z upward, a positive azimuth from further right, a positive elevation from further above.
-    /// `field_of_view`: degrees, as in [`Lens::Perspective`]; `None` for a parallel lens. O(points).
+    /// A camera that shows all of some points (model units), one at least, in a picture of width : height =
+    /// `aspect`, as large as can be with a small margin. It looks at them from an azimuth and an elevation in
+    /// degrees: 0, 0 is from −y with x to the right and z upward, a positive azimuth from further right, a
+    /// positive elevation from further above. `field_of_view`: degrees, as in [`Lens::Perspective`]; `None`
+    /// for a parallel lens. O(points).
     ///
     /// # Errors
-    /// [`Error::Argument`] if there is no point, a number is not zero and not between 2^-256 and 2^256 in magnitude, the field of view not between 0 and
-    /// 180, or the aspect not above 0.
+    /// [`Error::Argument`] if there is no point, a number is not zero and not between 2^-256 and 2^256 in
+    /// magnitude, the field of view not between 0 and 180, or the aspect not above 0.
     pub fn fitted(
         points: &[[f64; 3]],
         [azimuth, elevation]: [f64; 2],
@@ -104,7 +105,8 @@ impl Camera {
                 camera.lens = Lens::Parallel(height.max(size * 1e-9));
             }
             Lens::Perspective(_) => {
-                // The eye lies where the wedges from left and right, and those from above and below, just hold all points.
+                // The eye lies where the wedges from left and right, and those from above and below, just
+                // hold all points.
                 let [wide, high] = [(tangent * aspect, 0), (tangent, 1)].map(|(tangent, axis)| {
                     let sides = seen(&camera).fold([f64::NEG_INFINITY; 2], |sides, at| {
                         let (across, deep) = (at[axis] / tangent, at.z);
@@ -150,7 +152,8 @@ impl Camera {
         self.lens
     }
 
-    /// A point in the camera's own coordinates: to the right, upward, and away from the plane of the eye. Model units.
+    /// A point in the camera's own coordinates: to the right, upward, and away from the plane of the eye.
+    /// Model units.
     #[inline]
     pub(crate) fn seen(&self, point: DVec3) -> DVec3 {
         let from = point - self.eye;
@@ -207,8 +210,8 @@ impl View {
         matches!(self.camera.lens, Lens::Perspective(_))
     }
 
-    /// What is seen at a place of the picture, in pixels from its upper left corner: from where, and in which direction. The
-    /// direction is 1 long along the view, so that what is t times it away has the depth t.
+    /// What is seen at a place of the picture, in pixels from its upper left corner: from where, and in which
+    /// direction. The direction is 1 long along the view, so that what is t times it away has the depth t.
     #[inline]
     pub fn line(&self, x: f64, y: f64) -> (DVec3, DVec3) {
         let camera = &self.camera;
@@ -220,15 +223,16 @@ impl View {
         }
     }
 
-    /// Where a point in the camera's own coordinates is seen: place in pixels, and depth. Behind the eye of a perspective it
-    /// is nowhere (infinite, or mirrored).
+    /// Where a point in the camera's own coordinates is seen: place in pixels, and depth. Behind the eye of a
+    /// perspective it is nowhere (infinite, or mirrored).
     #[inline]
     pub fn place(&self, seen: DVec3) -> [f64; 2] {
         let scale = if self.is_perspective() { 1.0 / (self.pixel * seen.z) } else { 1.0 / self.pixel };
         [0.5 * f64::from(self.width) + seen.x * scale, 0.5 * f64::from(self.height) - seen.y * scale]
     }
 
-    /// How near the universe of a frame comes to the eye, in model units: a sixteenth of its edge if the eye is in it.
+    /// How near the universe of a frame comes to the eye, in model units: a sixteenth of its edge if the eye
+    /// is in it.
     pub fn nearest(&self, frame: &Frame) -> f64 {
         let (eye, low) = (self.camera.eye, DVec3::from(frame.origin()));
         (eye.clamp(low, low + frame.edge()) - eye).length().max(frame.edge() / 16.0)
@@ -284,7 +288,8 @@ mod tests {
                     }
                     let least = margins.iter().flatten().fold(1.0f64, |least, margin| least.min(*margin));
                     assert!(least > 0.0399, "{margins:?}");
-                    // Both sides of one axis are as near as they may be, unless a point would come too near to the eye.
+                    // Both sides of one axis are as near as they may be, unless a point would come too near
+                    // to the eye.
                     let tight = |[low, high]: [f64; 2]| low < 0.0401 && high < 0.0401;
                     assert!(lens == Some(120.0) || margins.iter().any(|&sides| tight(sides)), "{margins:?}");
                 }

@@ -25,7 +25,8 @@ pub(crate) struct Shown {
     pub entry: Option<DVec3>,
 }
 
-/// Whether something at a depth is shown, between these depths. A face in a clip plane is, whatever rounding says.
+/// Whether something at a depth is shown, between these depths. A face in a clip plane is, whatever rounding
+/// says.
 #[inline]
 pub(crate) fn holds([from, to]: [f64; 2], depth: f64) -> bool {
     const ROUNDING: f64 = 1e-9;
@@ -41,7 +42,8 @@ impl Clip {
     /// Keeps only points p with a x + b y + c z + d ≥ 0.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if a, b and c are zero; [`Error::OutOfMemory`].
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if a, b
+    /// and c are zero; [`Error::OutOfMemory`].
     pub fn plane(mut self, [a, b, c, d]: [f64; 4]) -> Result<Clip, Error> {
         numbers("plane", &[a, b, c, d])?;
         let normal = DVec3::new(a, b, c);

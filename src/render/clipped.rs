@@ -6,7 +6,8 @@ use super::stage::{Draw, Painter, Stage};
 use crate::error::Error;
 use alloc::boxed::Box;
 
-/// A layer that has its own clip planes, instead of the picture's: as surfaces that are cut away to show the volume behind them.
+/// A layer that has its own clip planes, instead of the picture's: as surfaces that are cut away to show the
+/// volume behind them.
 pub struct ClippedLayer<'a> {
     layer: &'a dyn Layer,
     clip: Clip,

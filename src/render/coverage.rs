@@ -1,12 +1,14 @@
 //! Which samples a triangle covers, exactly.
 //!
-//! A corner is a vector from the eye, and a sample is the vector d = (x, y, 1) of its line of sight. The line meets the
-//! triangle in front of the eye if d · (a × b), d · (b × c) and d · (c × a) have the sign of a · (b × c). No triangle has to
-//! be clipped at the plane of the eye for that. Under a parallel lens the corners are (x, y, 1), and all else is the same.
+//! A corner is a vector from the eye, and a sample is the vector d = (x, y, 1) of its line of sight. The line
+//! meets the triangle in front of the eye if d · (a × b), d · (b × c) and d · (c × a) have the sign of a · (b
+//! × c). No triangle has to be clipped at the plane of the eye for that. Under a parallel lens the corners
+//! are (x, y, 1), and all else is the same.
 //!
-//! The signs are those of the exact determinants of the corners as they were rounded. So two triangles with a common edge
-//! never cover one sample both and never leave one out between them, however small they are. A sample on an edge counts as
-//! shifted by (ε, −ε²), to the right and downward: edges on the left and on top belong to a triangle.
+//! The signs are those of the exact determinants of the corners as they were rounded. So two triangles with a
+//! common edge never cover one sample both and never leave one out between them, however small they are. A
+//! sample on an edge counts as shifted by (ε, −ε²), to the right and downward: edges on the left and on top
+//! belong to a triangle.
 
 use crate::lattice::exact::{certain, sign, sign_of_products, sign_of_sum, two_product};
 use core::ops::Range;
@@ -96,7 +98,8 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// The samples that a triangle with these corners covers, with |x| and |y| up to `reach`; `None` if it is seen on edge.
+    /// The samples that a triangle with these corners covers, with |x| and |y| up to `reach`; `None` if it is
+    /// seen on edge.
     pub fn new([a, b, c]: [DVec3; 3], reach: [f64; 2]) -> Option<Coverage> {
         let facing = determinant_sign(a, b, c);
         let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| EdgeFunction::new(from, to, reach));
@@ -119,7 +122,8 @@ impl Coverage {
         Some(if sum > 0.0 { weights.map(|weight| weight / sum) } else { [1.0 / 3.0; 3] })
     }
 
-    /// A part of the columns with x = x₀ + i · step, 0 ≤ i < count, that holds all whose samples in the row y are covered.
+    /// A part of the columns with x = x₀ + i · step, 0 ≤ i < count, that holds all whose samples in the row y
+    /// are covered.
     #[inline]
     pub fn columns(&self, y: f64, [x, step]: [f64; 2], columns: Range<usize>) -> Range<usize> {
         let (mut low, mut high) = (columns.start as f64, columns.end as f64);

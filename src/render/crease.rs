@@ -8,7 +8,8 @@ use crate::mesh::{Edge, TriangleMesh, for_each_edge};
 use alloc::vec::Vec;
 use glam::{DVec3, Vec3};
 
-/// Triangles at a vertex beyond which their normals are not averaged. It bounds the work: each is compared with each.
+/// Triangles at a vertex beyond which their normals are not averaged. It bounds the work: each is compared
+/// with each.
 const MOST_TRIANGLES: usize = 256;
 
 /// What is not steeper than this counts as plane, for the rounding: the cosine of a fiftieth of a degree.
@@ -43,9 +44,9 @@ pub fn normals(mesh: &TriangleMesh, job: &Job<'_>) -> Result<Vec<DVec3>, Error> 
     })
 }
 
-/// The normals at the corners of each triangle: the mean over the triangles at the vertex whose normals differ by less than
-/// `crease` (degrees), weighted by their angles there. A vertex of more than 256 triangles is not smooth. O(t + v) if few
-/// triangles meet in a vertex.
+/// The normals at the corners of each triangle: the mean over the triangles at the vertex whose normals
+/// differ by less than `crease` (degrees), weighted by their angles there. A vertex of more than 256
+/// triangles is not smooth. O(t + v) if few triangles meet in a vertex.
 pub fn corner_normals(
     mesh: &TriangleMesh,
     normals: &[DVec3],
@@ -53,7 +54,8 @@ pub fn corner_normals(
     job: &Job<'_>,
 ) -> Result<Vec<[Vec3; 3]>, Error> {
     let least = libm::cos(crease.to_radians());
-    // Slot v + 1 counts first, then holds the place of the next triangle of vertex v, and at last the end of its list.
+    // Slot v + 1 counts first, then holds the place of the next triangle of vertex v, and at last the end of
+    // its list.
     let mut ends: Vec<usize> = memory::filled(mesh.vertices().len() + 2, 0)?;
     for &v in mesh.triangles().iter().flatten() {
         ends[v as usize + 2] += 1;

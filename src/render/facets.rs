@@ -1,8 +1,8 @@
 //! The triangles of a solid that is a mesh and nothing else.
 //!
-//! From outside, what is seen of a closed mesh is what is seen of its solid: the first triangle that a line of sight meets leads
-//! in, if it is met from the front, by every fill rule. So triangles are drawn, which takes less time than rays. Where one is seen
-//! from behind, the tile is drawn as any solid's.
+//! From outside, what is seen of a closed mesh is what is seen of its solid: the first triangle that a line
+//! of sight meets leads in, if it is met from the front, by every fill rule. So triangles are drawn, which
+//! takes less time than rays. Where one is seen from behind, the tile is drawn as any solid's.
 
 use super::mesh::MeshLayer;
 use super::sight::Finish;
@@ -31,8 +31,8 @@ impl<'a> Facets<'a> {
         Facets { mesh, layer: MeshLayer::new(mesh).colour(finish.colour).inside(BEHIND).crease(0.0) }
     }
 
-    /// Whether the triangles show what the solid does: the mesh is closed, lies in the universe and before the eye, is opaque,
-    /// and nothing of it is cut away.
+    /// Whether the triangles show what the solid does: the mesh is closed, lies in the universe and before
+    /// the eye, is opaque, and nothing of it is cut away.
     pub fn show_the_solid(&self, skin: &Skin<'_>, frame: &Frame, stage: &Stage<'_>) -> Result<bool, Error> {
         let Finish { colour, edges, .. } = skin.finish;
         if skin.values.is_some() || edges.is_some() || colour[3] < 255 || !stage.clip.is_empty() {

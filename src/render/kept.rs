@@ -8,7 +8,8 @@ use crate::solid::{Verdict, Worker};
 use crate::walk::split_one;
 use hashbrown::HashMap;
 
-/// A worker, and the parts of all cells that it was asked for. A cache: when there are too many it forgets all of them.
+/// A worker, and the parts of all cells that it was asked for. A cache: when there are too many it forgets
+/// all of them.
 pub struct Kept<W: Worker> {
     worker: W,
     root: Verdict<W::Part>,

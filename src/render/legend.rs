@@ -36,10 +36,12 @@ const INK: Rgb888 = Rgb888::new(20, 20, 20);
 /// Longest labels and titles, in characters.
 const LONGEST: usize = 64;
 
-/// Draws a bar of the colours of the values in a range, with a title and numbers: 1, 2 or 5 times a power of ten apart. The
-/// legend is drawn on a light panel. It covers at most a third of the picture along one axis. Longer titles are cut.
+/// Draws a bar of the colours of the values in a range, with a title and numbers: 1, 2 or 5 times a power of
+/// ten apart. The legend is drawn on a light panel. It covers at most a third of the picture along one axis.
+/// Longer titles are cut.
 ///
-/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no legend.
+/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no
+/// legend.
 ///
 /// # Errors
 /// [`Error::Argument`] if the range is not two finite numbers in ascending order.
@@ -126,11 +128,11 @@ pub fn draw_colour_bar(
     Ok(Some(covered))
 }
 
-/// Draws a title, if it is not empty, and boxes of colours with their names, on a light panel. The legend covers at most a
-/// third of the picture along one axis. Names that find no room are left out, or cut.
+/// Draws a title, if it is not empty, and boxes of colours with their names, on a light panel. The legend
+/// covers at most a third of the picture along one axis. Names that find no room are left out, or cut.
 ///
-/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no legend, or if there
-/// is nothing to draw.
+/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no
+/// legend, or if there is nothing to draw.
 pub fn draw_names(
     picture: &mut Picture,
     title: &str,
@@ -152,8 +154,8 @@ pub fn draw_names(
         LegendSide::Right => (limit, canvas.size[1]),
         LegendSide::Bottom => (canvas.size[0], limit),
     };
-    // Where each entry lies in the panel: side by side below, one under another on the right. Those beyond its end are not
-    // visited.
+    // Where each entry lies in the panel: side by side below, one under another on the right. Those beyond
+    // its end are not visited.
     let place_all = |visit: Visit<'_>| {
         let [mut x, mut y] = [pad, pad + heading];
         for &(name, colour) in names {
@@ -188,12 +190,14 @@ pub fn draw_names(
     Some([left, top, width, height])
 }
 
-/// Draws a bar in the lower left corner that is as long as a round number of model units, with the number, and a note above it
-/// unless that is empty: on a light panel of at most half of the width and a third of the height. A picture of a plane that one
-/// looks at along its normal through a [`Parallel`](super::Lens::Parallel) lens has one scale everywhere: its height in model
-/// units, divided by that in pixels.
+/// Draws a bar in the lower left corner that is as long as a round number of model units, with the number,
+/// and a note above it unless that is empty: on a light panel of at most half of the width and a third of the
+/// height. A picture of a plane that one looks at along its normal through a
+/// [`Parallel`](super::Lens::Parallel) lens has one scale everywhere: its height in model units, divided by
+/// that in pixels.
 ///
-/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no legend.
+/// Returns the box that it covers; `None` if the picture is smaller than 160 × 120 pixels, which has no
+/// legend.
 ///
 /// # Errors
 /// [`Error::Argument`] unless `units_per_pixel` lies between 1e-250 and 1e250.
@@ -231,7 +235,8 @@ pub fn draw_scale_bar(
     Ok(Some(covered))
 }
 
-/// The greatest number that is 1, 2 or 5 times a power of ten and not above a number: the factor, and the exponent.
+/// The greatest number that is 1, 2 or 5 times a power of ten and not above a number: the factor, and the
+/// exponent.
 fn round_below(most: f64) -> (i64, i32) {
     let exponent = libm::floor(libm::log10(most)) as i32;
     let mut found = (1, exponent - 1);
@@ -407,8 +412,8 @@ struct Ticks {
 }
 
 impl Ticks {
-    /// At most `most` numbers in a range, at least 2. None if the range is so narrow, or so small, that its numbers are not
-    /// told apart.
+    /// At most `most` numbers in a range, at least 2. None if the range is so narrow, or so small, that its
+    /// numbers are not told apart.
     fn new([low, high]: [f64; 2], most: u32) -> Ticks {
         let none = Ticks { first: 0, last: -1, step: 1, exponent: 0 };
         let extent = high - low;

@@ -107,8 +107,8 @@ fn linear_of(x: f32) -> f32 {
     if x <= 0.04045 { x / 12.92 } else { libm::powf((x + 0.055) / 1.055, 2.4) }
 }
 
-/// What lights a picture: a lamp on the upper left behind the camera, a weaker one on the right, and some light from
-/// everywhere, so that no side is black.
+/// What lights a picture: a lamp on the upper left behind the camera, a weaker one on the right, and some
+/// light from everywhere, so that no side is black.
 #[derive(Debug, Clone, Copy)]
 pub struct Lamps {
     /// Directions, of length 1, to the lamps.
@@ -124,8 +124,8 @@ impl Lamps {
         Lamps { key: lamp(-0.5, 0.7, 0.75), fill: lamp(0.8, 0.1, 0.6), up }
     }
 
-    /// How bright a matt surface is with an outward normal, of any length, that is seen in a direction. A surface that is seen
-    /// from behind is lit as if it faced the camera.
+    /// How bright a matt surface is with an outward normal, of any length, that is seen in a direction. A
+    /// surface that is seen from behind is lit as if it faced the camera.
     pub fn brightness(&self, normal: DVec3, along: DVec3) -> f32 {
         let normal = normal.normalize_or_zero();
         let normal = if normal.dot(along) > 0.0 { -normal } else { normal };

@@ -17,8 +17,9 @@ use glam::DVec3;
 /// Widest lines, in pixels.
 const WIDEST: f64 = 256.0;
 
-/// Lines in space, drawn some pixels wide with round ends. A surface hides what lies behind it; a line on a surface is seen,
-/// because lines count as nearer than they are by their width and a pixel. Clip planes cut lines.
+/// Lines in space, drawn some pixels wide with round ends. A surface hides what lies behind it; a line on a
+/// surface is seen, because lines count as nearer than they are by their width and a pixel. Clip planes cut
+/// lines.
 ///
 /// Making ready: O(lines + tiles). Drawing: O(samples that the lines cover).
 #[derive(Debug, Clone, PartialEq)]
@@ -29,13 +30,14 @@ pub struct LinesLayer<'a> {
 }
 
 impl<'a> LinesLayer<'a> {
-    /// Lines between pairs of points (model units): black, one pixel wide. A line between equal points is a dot.
+    /// Lines between pairs of points (model units): black, one pixel wide. A line between equal points is a
+    /// dot.
     pub fn new(lines: &'a [[[f64; 3]; 2]]) -> LinesLayer<'a> {
         LinesLayer { lines: Cow::Borrowed(lines), width: 1.0, colour: [0, 0, 0, 255] }
     }
 
-    /// The edges of cells. What several cells have in common is drawn once, also if the cells differ in size. A cell that
-    /// is none of the frame is left out. O(n log n); 24 bytes a cell and an edge, then 48 a line.
+    /// The edges of cells. What several cells have in common is drawn once, also if the cells differ in size.
+    /// A cell that is none of the frame is left out. O(n log n); 24 bytes a cell and an edge, then 48 a line.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

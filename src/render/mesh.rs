@@ -26,19 +26,19 @@ pub enum MeshEdges {
     None,
     /// Those at which the mesh ends, or where triangles meet at more than the crease angle.
     Features,
-    /// Those of all triangles. The edges of triangles that are seen only a few pixels large are fainter, and those of smaller
-    /// ones not drawn: a fine mesh does not turn black.
+    /// Those of all triangles. The edges of triangles that are seen only a few pixels large are fainter, and
+    /// those of smaller ones not drawn: a fine mesh does not turn black.
     All,
 }
 
 /// A triangle mesh: its faces are shaded and hide what lies behind them.
 ///
-/// A sample of the picture shows a triangle if its line of sight meets it. Which triangle that is, is decided exactly: on a
-/// closed mesh no sample is left out between two triangles, and none is counted twice. Faces that are seen from behind, as
-/// those inside of a mesh that is cut open, have a colour of their own.
+/// A sample of the picture shows a triangle if its line of sight meets it. Which triangle that is, is decided
+/// exactly: on a closed mesh no sample is left out between two triangles, and none is counted twice. Faces
+/// that are seen from behind, as those inside of a mesh that is cut open, have a colour of their own.
 ///
-/// Making ready: O(triangles + vertices + tiles), and some hundred bytes a triangle. Drawing: O(samples that the triangles
-/// cover).
+/// Making ready: O(triangles + vertices + tiles), and some hundred bytes a triangle. Drawing: O(samples that
+/// the triangles cover).
 #[derive(Debug, Clone, Copy)]
 pub struct MeshLayer<'a> {
     mesh: &'a TriangleMesh,
@@ -51,8 +51,8 @@ pub struct MeshLayer<'a> {
     edge_colour: [u8; 4],
 }
 
-/// The edges of a triangle whose least height is seen as fewer pixels are not drawn; with the greater number they are drawn
-/// wholly. (In a triangle with two equal sides at a right angle, these have 2 and 8 pixels.)
+/// The edges of a triangle whose least height is seen as fewer pixels are not drawn; with the greater number
+/// they are drawn wholly. (In a triangle with two equal sides at a right angle, these have 2 and 8 pixels.)
 const FADE: [f64; 2] = [1.5, 5.5];
 
 /// What faces that are seen from behind are mixed with, unless they have a colour of their own: vermilion.
@@ -73,7 +73,8 @@ impl<'a> MeshLayer<'a> {
         }
     }
 
-    /// The same in another colour: red, green, blue (sRGB) and opacity. Through what is not opaque all faces behind are seen.
+    /// The same in another colour: red, green, blue (sRGB) and opacity. Through what is not opaque all faces
+    /// behind are seen.
     #[must_use]
     pub fn colour(self, colour: [u8; 4]) -> MeshLayer<'a> {
         MeshLayer { colour, ..self }
@@ -85,13 +86,15 @@ impl<'a> MeshLayer<'a> {
         MeshLayer { colours: Some(colours), ..self }
     }
 
-    /// The same with another colour for faces that are seen from behind. By default it is the face's own mixed with orange.
+    /// The same with another colour for faces that are seen from behind. By default it is the face's own
+    /// mixed with orange.
     #[must_use]
     pub fn inside(self, colour: [u8; 4]) -> MeshLayer<'a> {
         MeshLayer { inside: Some(colour), ..self }
     }
 
-    /// The same, smooth where triangles meet at less than an angle in degrees, 0 to 180. With 0 every triangle is flat.
+    /// The same, smooth where triangles meet at less than an angle in degrees, 0 to 180. With 0 every
+    /// triangle is flat.
     #[must_use]
     pub fn crease(self, degrees: f64) -> MeshLayer<'a> {
         MeshLayer { crease: degrees, ..self }
@@ -106,8 +109,8 @@ impl<'a> MeshLayer<'a> {
 
 impl Draw for MeshLayer<'_> {
     /// # Errors
-    /// [`Error::Argument`] unless the crease angle is 0 to 180, the width of lines above 0 and at most 256, and
-    /// there are as many colours as triangles.
+    /// [`Error::Argument`] unless the crease angle is 0 to 180, the width of lines above 0 and at most 256,
+    /// and there are as many colours as triangles.
     fn prepare<'a>(&'a self, stage: &Stage<'a>) -> Result<Box<dyn Painter + 'a>, Error> {
         let mesh = self.mesh;
         check_width(self.edge_width)?;
@@ -155,8 +158,8 @@ impl Draw for MeshLayer<'_> {
     }
 }
 
-/// Where a triangle is seen: the least x and y and the greatest ones, in pixels. It may be infinite. `None` if the triangle
-/// lies behind the eye.
+/// Where a triangle is seen: the least x and y and the greatest ones, in pixels. It may be infinite. `None`
+/// if the triangle lies behind the eye.
 fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
     const NOWHERE: [f64; 4] = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
     let is_before = |corner: &DVec3| corner.z > 0.0;
@@ -188,8 +191,8 @@ fn place(view: &View, corners: [DVec3; 3]) -> Option<[f64; 4]> {
         }
         let next = corners[(i + 1) % 3];
         if is_before(&corner) != is_before(&next) {
-            // The edge leads to infinity, in the direction of its point in the plane of the eye. What is next to nothing
-            // may lie on either side.
+            // The edge leads to infinity, in the direction of its point in the plane of the eye. What is next
+            // to nothing may lie on either side.
             let (a, b) = (corner * next.z, next * corner.z);
             let to = (b - a) * if is_before(&corner) { 1.0 } else { -1.0 };
             let most = 1e-12 * (a.abs() + b.abs());

@@ -1,8 +1,8 @@
 //! Pictures: what solids, meshes and volumes look like.
 //!
-//! A picture is made of [layers](Layer), each of which draws into small tiles: surfaces hide each other by their depth, and
-//! volumes are seen before, between and behind them. Tiles are independent of each other, so that a picture is the same for
-//! any number of threads.
+//! A picture is made of [layers](Layer), each of which draws into small tiles: surfaces hide each other by
+//! their depth, and volumes are seen before, between and behind them. Tiles are independent of each other, so
+//! that a picture is the same for any number of threads.
 
 mod bins;
 mod camera;
@@ -88,8 +88,9 @@ impl Shot {
         Shot { camera, size, samples: 4, clip: Clip::new(), background: [255; 4] }
     }
 
-    /// The line of sight of a place in the picture, in pixels from its upper left corner (the middle of the first pixel is
-    /// ½, ½): from where, and in which direction. What is seen there at the depth d is at from + d · direction.
+    /// The line of sight of a place in the picture, in pixels from its upper left corner (the middle of the
+    /// first pixel is ½, ½): from where, and in which direction. What is seen there at the depth d is at from +
+    /// d · direction.
     ///
     /// ```
     /// use leafless::render::{Camera, Lens, Shot};
@@ -109,8 +110,8 @@ impl Shot {
     }
 }
 
-/// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one depth the first
-/// layer's is seen. O(pixels · samples), and what each layer says.
+/// Takes a picture of layers. Surfaces hide what lies behind them, whichever layer it is of; of two at one
+/// depth the first layer's is seen. O(pixels · samples), and what each layer says.
 ///
 /// # Errors
 /// [`Error::Argument`] for a size or a number of samples that is not as it must be; what a layer reports;

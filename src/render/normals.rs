@@ -1,9 +1,10 @@
 //! Normals of surfaces of which only cells are known.
 //!
-//! Cells of one size say little of a direction: a plane that rises by less than a cell over five of them looks level. So a
-//! plane is fitted to the surface about each block of 8³ cells, in a window of 24³, and the planes of the 27 blocks about a
-//! point are blended. Where the surface is not plane there, it is blocks of 4³ in windows of 12³; and where it is not plane
-//! there either, about edges and thin walls, the gradient of the occupancy over 5³ cells.
+//! Cells of one size say little of a direction: a plane that rises by less than a cell over five of them
+//! looks level. So a plane is fitted to the surface about each block of 8³ cells, in a window of 24³, and the
+//! planes of the 27 blocks about a point are blended. Where the surface is not plane there, it is blocks of
+//! 4³ in windows of 12³; and where it is not plane there either, about edges and thin walls, the gradient of
+//! the occupancy over 5³ cells.
 
 use super::occupancy::Occupancy;
 use super::place_cache::Places;
@@ -16,7 +17,8 @@ use crate::octree::view::OctreeRef;
 use crate::query::TouchedCell;
 use glam::{DVec3, Vec3A, Vec4};
 
-/// Normals of a stored octree. What was found out before is kept: most samples lie in the block of the one before.
+/// Normals of a stored octree. What was found out before is kept: most samples lie in the block of the one
+/// before.
 pub struct Normals<'a> {
     occupancy: Occupancy<'a>,
     sizes: [Blocks; 2],
@@ -39,8 +41,8 @@ struct About {
 /// Edges of blocks, large and small.
 const EDGES: [f64; 2] = [8.0, 4.0];
 
-/// How planes are fitted about large blocks and about small ones. (In small windows rounding to cells alone makes root mean
-/// squares of some 0.3.)
+/// How planes are fitted about large blocks and about small ones. (In small windows rounding to cells alone
+/// makes root mean squares of some 0.3.)
 const FITTINGS: [Fitting; 2] = [
     Fitting { full: 128, edge: 4.0, plane: [0.25, 0.45] },
     Fitting { full: 16, edge: 2.0, plane: [0.45, 0.8] },
@@ -55,8 +57,8 @@ impl<'a> Normals<'a> {
         Normals { occupancy: Occupancy::new(tree), sizes: [blocks(), blocks()] }
     }
 
-    /// The outward normal at a point of the surface, in cells from the universe's lower corner, that lies in or on the finest
-    /// cell `at`; of length 1, or zero if nothing is known.
+    /// The outward normal at a point of the surface, in cells from the universe's lower corner, that lies in
+    /// or on the finest cell `at`; of length 1, or zero if nothing is known.
     pub fn at(&mut self, point: DVec3, at: [u32; 3]) -> Result<DVec3, Error> {
         for size in [0, 1] {
             if let Some(normal) = self.blended(size, point)? {
@@ -161,7 +163,8 @@ const WEIGHTS: [f64; 13] = [
 ];
 
 impl About {
-    /// The sum of the planes by the weights of their blocks along each axis, and of the weights of those that have one.
+    /// The sum of the planes by the weights of their blocks along each axis, and of the weights of those that
+    /// have one.
     #[inline]
     fn blended(&self, weights: [Vec3A; 3]) -> (Vec4, f32) {
         let mut of_blocks = [0.0; 27];

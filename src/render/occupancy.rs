@@ -49,8 +49,8 @@ impl<'a> Occupancy<'a> {
         Ok(word_of(&self.tree, self.parts.item(part).source, index(at)))
     }
 
-    /// How full the octants of 3³ blocks are, each in one byte, eight octants to a block: of blocks of 4³ cells, or of 8³ if
-    /// they are `large`. The block in the middle is `at`, counted in blocks.
+    /// How full the octants of 3³ blocks are, each in one byte, eight octants to a block: of blocks of 4³
+    /// cells, or of 8³ if they are `large`. The block in the middle is `at`, counted in blocks.
     pub fn window(&mut self, at: [i32; 3], large: bool) -> Result<[u64; 27], Error> {
         // Blocks of a part along each axis: 2^shift.
         let shift = if large { 1 } else { 2 };

@@ -15,13 +15,14 @@ use glam::DVec3;
 
 /// The surface of a stored octree: the first cells that are not EMPTY along each line of sight.
 ///
-/// An extended octree ([`build_extended`](crate::build_extended)) is shown as the solid that its cuts describe, like a
-/// [`SolidLayer`](crate::render::SolidLayer). With [`faces`](Finish::faces) its own cells are shown; take the tree of
-/// [`plain`](crate::op::plain) for smaller ones.
+/// An extended octree ([`build_extended`](crate::build_extended)) is shown as the solid that its cuts
+/// describe, like a [`SolidLayer`](crate::render::SolidLayer). With [`faces`](Finish::faces) its own cells
+/// are shown; take the tree of [`plain`](crate::op::plain) for smaller ones.
 ///
-/// Normals are those of planes fitted to the surface in windows of 24³ cells, or of 12³ where it is not plane; where it is not
-/// plane there either, the gradient of the occupancy over 5³ cells, in which PARTIAL cells count half. What is cut open by a
-/// clip plane is shown flat. Through what is translucent other layers are seen, but nothing more of this one.
+/// Normals are those of planes fitted to the surface in windows of 24³ cells, or of 12³ where it is not
+/// plane; where it is not plane there either, the gradient of the occupancy over 5³ cells, in which PARTIAL
+/// cells count half. What is cut open by a clip plane is shown flat. Through what is translucent other layers
+/// are seen, but nothing more of this one.
 ///
 /// O(samples · cells along a line of sight).
 #[derive(Clone, Copy)]
@@ -42,8 +43,9 @@ impl<'a> OctreeLayer<'a> {
         OctreeLayer { tree: *tree, skin: Skin { finish, values: None } }
     }
 
-    /// The same in the colours of an attribute's values, as a channel has them: `colour` tells the colour of a value, and of
-    /// none. Values are those half a finest cell below the surface, where a solid's channel has one.
+    /// The same in the colours of an attribute's values, as a channel has them: `colour` tells the colour of
+    /// a value, and of none. Values are those half a finest cell below the surface, where a solid's channel
+    /// has one.
     #[must_use]
     pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> OctreeLayer<'a> {
         OctreeLayer { skin: Skin { values: Some((attribute, colour)), ..self.skin }, ..self }

@@ -1,8 +1,8 @@
 //! Edges of surfaces of which lines of sight are all that is known: silhouettes, and creases between faces.
 //!
-//! A sample lies on a silhouette if a sample near by shows nothing, or something that lies behind. It lies on a crease if the
-//! planes of the surface on both sides meet there. The sides are sought beyond what normals are blurred over: where a
-//! surface is known by its cells, its normals turn slowly at an edge.
+//! A sample lies on a silhouette if a sample near by shows nothing, or something that lies behind. It lies on
+//! a crease if the planes of the surface on both sides meet there. The sides are sought beyond what normals
+//! are blurred over: where a surface is known by its cells, its normals turn slowly at an edge.
 
 use super::light::Light;
 use super::lines::check_width;
@@ -17,8 +17,9 @@ use glam::DVec3;
 
 /// The edges of a surface that are drawn as lines: silhouettes, and creases, at which faces meet.
 ///
-/// Edges are found at the samples of the picture. A round edge counts as a crease if it turns within two pixels, or within
-/// six cells where only cells are known. Where these are larger than two pixels, only silhouettes are drawn.
+/// Edges are found at the samples of the picture. A round edge counts as a crease if it turns within two
+/// pixels, or within six cells where only cells are known. Where these are larger than two pixels, only
+/// silhouettes are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outline {
     /// In pixels: above 0, at most 8.
@@ -194,14 +195,15 @@ impl<'v> Field<'v> {
         if turn < self.outline.crease.to_radians() || angle(before.normal, after.normal) < SUDDEN * turn {
             return false;
         }
-        // Both sides lead here: they are no surfaces one behind the other. (A surface that is seen from its side is long.)
+        // Both sides lead here: they are no surfaces one behind the other. (A surface that is seen from its
+        // side is long.)
         let (_, along) = self.window.line_at(at);
         let step = self.step(here) / (here.normal.dot(along).abs() / along.length()).max(0.1);
         if [first, last].iter().any(|side| (here.place - side.place).dot(side.normal).abs() > step) {
             return false;
         }
-        // By how much one side's plane lies behind the other's at a sample, in what is linear on the picture: depths, or under a
-        // perspective one over them.
+        // By how much one side's plane lies behind the other's at a sample, in what is linear on the picture:
+        // depths, or under a perspective one over them.
         let is_perspective = self.window.view.is_perspective();
         let gap = |at: [i32; 2]| {
             let (from, along) = self.window.line_at(at);

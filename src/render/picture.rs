@@ -17,12 +17,12 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of somebody else's colours, row by row from the upper left corner, without depths: to draw a legend on it,
-    /// or to write it.
+    /// A picture of somebody else's colours, row by row from the upper left corner, without depths: to draw a
+    /// legend on it, or to write it.
     ///
     /// # Errors
-    /// [`Error::Argument`] unless the sides (width and height) are 1 to 16384 pixels and there is one colour for each pixel;
-    /// [`Error::OutOfMemory`].
+    /// [`Error::Argument`] unless the sides (width and height) are 1 to 16384 pixels and there is one colour
+    /// for each pixel; [`Error::OutOfMemory`].
     pub fn of_colours([width, height]: [u32; 2], colours: Vec<[u8; 4]>) -> Result<Picture, Error> {
         check_size([width, height])?;
         if colours.len() != width as usize * height as usize {
@@ -32,7 +32,8 @@ impl Picture {
         Ok(Picture { width, height, colours, depths })
     }
 
-    /// The same picture with depths, row by row from the upper left corner: of one that was taken apart, and is put together again.
+    /// The same picture with depths, row by row from the upper left corner: of one that was taken apart, and
+    /// is put together again.
     ///
     /// # Errors
     /// [`Error::Argument`] unless there is one depth for each pixel.
@@ -58,7 +59,8 @@ impl Picture {
         &self.colours
     }
 
-    /// The distance from the plane of the eye to what is nearest and opaque, in model units; ∞ where nothing is.
+    /// The distance from the plane of the eye to what is nearest and opaque, in model units; ∞ where nothing
+    /// is.
     pub fn depths(&self) -> &[f32] {
         &self.depths
     }

@@ -17,15 +17,16 @@ pub struct Fitting {
     pub full: u8,
     /// Cells along the edge of an octant.
     pub edge: f64,
-    /// Root mean squares of the distances from the plane, in cells, up to which a surface counts as plane, and from which on
-    /// not at all.
+    /// Root mean squares of the distances from the plane, in cells, up to which a surface counts as plane,
+    /// and from which on not at all.
     pub plane: [f64; 2],
 }
 
 /// Octants along each axis of a window.
 const COARSE: usize = 6;
 
-/// Which part of what leads out must do so to one side: that below which a window has no plane, and that above which it has.
+/// Which part of what leads out must do so to one side: that below which a window has no plane, and that
+/// above which it has.
 const AGREEMENT: [f64; 2] = [0.5, 0.8];
 
 /// The high bits of bytes.
@@ -35,7 +36,8 @@ const HIGH: u64 = 0x8080_8080_8080_8080;
 const HAS_NEXT: [u64; 2] = [0o37_37_37_37_37_37, 0o77_77_77_77_77];
 
 impl Fitting {
-    /// The plane about the block in the middle of a window, of which is given how full the octants of its 3³ blocks are.
+    /// The plane about the block in the middle of a window, of which is given how full the octants of its 3³
+    /// blocks are.
     pub fn plane(&self, window: &[u64; 27]) -> Plane {
         // The high bit of each byte: at least half full.
         let bias = u64::from(0x80 - self.full / 2) * 0x0101_0101_0101_0101;
@@ -126,7 +128,8 @@ impl Fitting {
     }
 }
 
-/// Where lines along one axis cross the surface: how many, and the sums of their places and of the products of these.
+/// Where lines along one axis cross the surface: how many, and the sums of their places and of the products
+/// of these.
 #[derive(Clone, Copy, Default)]
 struct Crossings {
     count: f32,
@@ -141,7 +144,8 @@ struct Crossings {
 }
 
 impl Crossings {
-    /// A crossing between an octant and the next one along an axis, given how full both are; `half`: how much is half full.
+    /// A crossing between an octant and the next one along an axis, given how full both are; `half`: how much
+    /// is half full.
     #[inline(always)]
     fn add(&mut self, axis: usize, place: Vec3A, here: f32, next: f32, half: f32) {
         let mut at = place - 0.5 * (COARSE as f32 - 1.0);

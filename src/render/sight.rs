@@ -64,8 +64,8 @@ impl SightLine {
         let shown = stage.clip.shown(eye, along)?;
         let (low, high) = (DVec3::from(universe.min), DVec3::from(universe.max));
         let unit = (high.x - low.x) / along.length();
-        // Cells are closed: those beyond a clip plane that only touch it are not seen. An eye in a plane of the lattice would
-        // have all lines of sight begin on faces.
+        // Cells are closed: those beyond a clip plane that only touch it are not seen. An eye in a plane of
+        // the lattice would have all lines of sight begin on faces.
         let aside = |depth: f64| (ASIDE * unit).max(ROUNDINGS * depth);
         // Far from the universe a time would say little of a place in it.
         let enters = (0..3).fold(0.0f64, |enters, axis| {

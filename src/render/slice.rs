@@ -19,8 +19,9 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// The colours of EMPTY, FULL and PARTIAL cells in a slice unless others are chosen: sky blue, hardly visible, blue and
-/// orange of the palette that Okabe and Ito made to be told apart by the colour-blind (*Color Universal Design*, 2002).
+/// The colours of EMPTY, FULL and PARTIAL cells in a slice unless others are chosen: sky blue, hardly
+/// visible, blue and orange of the palette that Okabe and Ito made to be told apart by the colour-blind
+/// (*Color Universal Design*, 2002).
 pub const TAG_COLOURS: [[u8; 4]; 3] = [[86, 180, 233, 40], [0, 114, 178, 255], [230, 159, 0, 255]];
 
 /// A cell of fewer pixels has no outline; one of the greater number has all of it.
@@ -41,7 +42,8 @@ impl SlicePlane {
     /// The points p with `normal` · p + `offset` = 0 (model units times the normal's length).
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if the normal is zero.
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, or if the
+    /// normal is zero.
     pub fn new(normal: [f64; 3], offset: f64) -> Result<SlicePlane, Error> {
         numbers("normal", &normal)?;
         numbers("offset", &[offset])?;
@@ -58,11 +60,12 @@ impl SlicePlane {
         Ok(SlicePlane { normal: vector / length, offset: offset / length, across })
     }
 
-    /// The plane across an axis (0 to 2 for x, y and z) at a coordinate (model units). Where it is a plane of the lattice,
-    /// the cells above it are those that are cut.
+    /// The plane across an axis (0 to 2 for x, y and z) at a coordinate (model units). Where it is a plane of
+    /// the lattice, the cells above it are those that are cut.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the axis is none, or the coordinate not zero and not between 2^-256 and 2^256 in magnitude.
+    /// [`Error::Argument`] if the axis is none, or the coordinate not zero and not between 2^-256 and 2^256
+    /// in magnitude.
     pub fn across(axis: usize, coordinate: f64) -> Result<SlicePlane, Error> {
         if axis > 2 {
             return Err(Error::Argument { name: "axis", problem: "must be 0, 1 or 2" });
@@ -94,11 +97,12 @@ impl SlicePlane {
     }
 }
 
-/// A plane section of a solid on a frame: each sample shows the tag of the cell in which the line of sight meets the plane,
-/// or the value of an attribute there, and the outlines of the cells that the plane cuts. Nothing is seen outside of the
-/// universe.
+/// A plane section of a solid on a frame: each sample shows the tag of the cell in which the line of sight
+/// meets the plane, or the value of an attribute there, and the outlines of the cells that the plane cuts.
+/// Nothing is seen outside of the universe.
 ///
-/// Drawing: for an octree O(samples) and O(depth) for each change of the cell; for other solids as many splits as these.
+/// Drawing: for an octree O(samples) and O(depth) for each change of the cell; for other solids as many
+/// splits as these.
 pub struct SliceLayer<'a> {
     source: Box<dyn Source + 'a>,
     plane: SlicePlane,
@@ -119,7 +123,8 @@ impl<'a> SliceLayer<'a> {
         SliceLayer::of_source(Box::new(*tree), plane)
     }
 
-    /// A section of a solid on a frame, whose cells are split down to its depth. Otherwise as [`new`](Self::new).
+    /// A section of a solid on a frame, whose cells are split down to its depth. Otherwise as
+    /// [`new`](Self::new).
     pub fn of_solid<S: Solid>(solid: &'a S, frame: &Frame, plane: SlicePlane) -> SliceLayer<'a> {
         SliceLayer::of_source(Box::new(SolidOnFrame { solid, frame: *frame }), plane)
     }
@@ -134,15 +139,15 @@ impl<'a> SliceLayer<'a> {
         SliceLayer { colours, ..self }
     }
 
-    /// The same with outlines of this colour, or without any. The outline of a cell that is only a few pixels large is
-    /// fainter, and that of a smaller one not drawn.
+    /// The same with outlines of this colour, or without any. The outline of a cell that is only a few pixels
+    /// large is fainter, and that of a smaller one not drawn.
     #[must_use]
     pub fn outlines(self, colour: Option<[u8; 4]>) -> SliceLayer<'a> {
         SliceLayer { outlines: colour, ..self }
     }
 
-    /// The same with the values of an attribute, as a channel is one, where cells are FULL or PARTIAL: `colour` tells the
-    /// colour of a value, and of none.
+    /// The same with the values of an attribute, as a channel is one, where cells are FULL or PARTIAL:
+    /// `colour` tells the colour of a value, and of none.
     #[must_use]
     pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> SliceLayer<'a> {
         SliceLayer { values: Some((attribute, colour)), ..self }
@@ -348,8 +353,8 @@ impl Slice<'_> {
         clip.is_empty() || clip.shown(from, along).is_some_and(|shown| holds([shown.from, shown.to], depth))
     }
 
-    /// How much the outline of a cell covers of a sample at a point: all if it is less than half a pixel away, so that the
-    /// outlines of two neighbours are a pixel wide together.
+    /// How much the outline of a cell covers of a sample at a point: all if it is less than half a pixel
+    /// away, so that the outlines of two neighbours are a pixel wide together.
     fn outline(&self, along: DVec3, depth: f64, point: DVec3, cell: Cell) -> f32 {
         let frame = self.layer.source.frame();
         let steps = self.layer.plane.steps(self.stage.view, along, depth);

@@ -26,14 +26,16 @@ use glam::DVec3;
 
 /// The surface of any solid within a universe.
 ///
-/// The solid is split to cells as large as a pixel, 2^11 to an axis at the most. In an undecided cell a line of sight meets what
-/// the solid knows of it: a crossing, or the middle of its slabs, with their normals. Of cells of which nothing is known the
-/// surface and its normals are those of an [`OctreeLayer`](crate::render::OctreeLayer). Through what is translucent other layers are seen,
-/// but nothing more of this one.
+/// The solid is split to cells as large as a pixel, 2^11 to an axis at the most. In an undecided cell a line
+/// of sight meets what the solid knows of it: a crossing, or the middle of its slabs, with their normals. Of
+/// cells of which nothing is known the surface and its normals are those of an
+/// [`OctreeLayer`](crate::render::OctreeLayer). Through what is translucent other layers are seen, but
+/// nothing more of this one.
 ///
-/// Where a solid tells where rays go, its cells are not split: lines of sight ask. A closed mesh does so, and in an expression in all
-/// cells in which nothing else is open. Of a solid that is a closed mesh and nothing else ([`Solid::sole_mesh`]) the triangles are
-/// drawn, each of them flat, where these show what the solid does.
+/// Where a solid tells where rays go, its cells are not split: lines of sight ask. A closed mesh does so, and
+/// in an expression in all cells in which nothing else is open. Of a solid that is a closed mesh and nothing
+/// else ([`Solid::sole_mesh`]) the triangles are drawn, each of them flat, where these show what the solid
+/// does.
 ///
 /// O(cells of the surface), once; then O(samples · cells along a line of sight).
 pub struct SolidLayer<'a, S> {
@@ -59,8 +61,8 @@ impl<'a, S: Solid> SolidLayer<'a, S> {
         SolidLayer { solid, frame: *frame, skin: Skin { finish, values: None }, deepest: DEEPEST, facets }
     }
 
-    /// The same in the colours of an attribute's values: `colour` tells the colour of a value, and of none. Values are those
-    /// half a pixel below the surface.
+    /// The same in the colours of an attribute's values: `colour` tells the colour of a value, and of none.
+    /// Values are those half a pixel below the surface.
     #[must_use]
     pub fn values(self, attribute: &'a dyn Attribute, colour: Colouring<'a>) -> SolidLayer<'a, S> {
         SolidLayer { skin: Skin { values: Some((attribute, colour)), ..self.skin }, ..self }
@@ -73,7 +75,8 @@ impl<'a, S: Solid> SolidLayer<'a, S> {
     }
 }
 
-/// The frame whose cells are as large as a pixel where the universe is nearest, of no more levels than `deepest`.
+/// The frame whose cells are as large as a pixel where the universe is nearest, of no more levels than
+/// `deepest`.
 fn pixelled(frame: &Frame, deepest: u8, stage: &Stage<'_>) -> Result<Frame, Error> {
     let pixel = stage.view.pixel_at(stage.view.nearest(frame));
     let fine = (1..deepest).find(|&depth| frame.edge() / f64::from(1u32 << depth) <= pixel);
@@ -183,8 +186,8 @@ enum Met {
 }
 
 impl<C: Classifier> SolidPainter<'_, C> {
-    /// Where a line of sight meets the surface whose cells it first meets so, and the outward normal there; `None` for the
-    /// normal if it begins inside.
+    /// Where a line of sight meets the surface whose cells it first meets so, and the outward normal there;
+    /// `None` for the normal if it begins inside.
     fn sees(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -236,7 +239,8 @@ impl<C: Classifier> SolidPainter<'_, C> {
         Ok(None)
     }
 
-    /// Where a line of sight meets the surface in a cell of any size, which it crosses between two times and enters by a face.
+    /// Where a line of sight meets the surface in a cell of any size, which it crosses between two times and
+    /// enters by a face.
     fn within(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -283,8 +287,8 @@ impl<C: Classifier> SolidPainter<'_, C> {
     ) -> Result<Option<Met>, Error> {
         let near = 1e-6 * self.octree.frame().cell_size() / sight.along.length();
         let enters = enters.max(0.0);
-        // As a rule the line of sight begins outside of what is met, whose first triangle is found soonest. What it went into
-        // before the cell may not count, so that it is asked for again from there.
+        // As a rule the line of sight begins outside of what is met, whose first triangle is found soonest.
+        // What it went into before the cell may not count, so that it is asked for again from there.
         for start in [0.0, enters] {
             let Some(ray) = sight.beyond(start) else { return Ok(Some(Met::Nowhere(DVec3::ZERO))) };
             let trace = &mut hand.trace;
@@ -366,8 +370,8 @@ impl<C: Classifier> SolidPainter<'_, C> {
         Ok(hand.enclosures.item(kept))
     }
 
-    /// Where it meets the surface in a smaller cell about the place and the normal that were found, in which the boundary
-    /// turns less; `None` if nothing is known of that.
+    /// Where it meets the surface in a smaller cell about the place and the normal that were found, in which
+    /// the boundary turns less; `None` if nothing is known of that.
     fn closer(
         &self,
         hand: &mut Hand<'_, C::Worker>,
@@ -530,7 +534,8 @@ mod tests {
     use crate::solid::Csg;
     use std::vec::Vec;
 
-    /// Angles in degrees between the normals that are seen of a ball and its own, and how far off the points are.
+    /// Angles in degrees between the normals that are seen of a ball and its own, and how far off the points
+    /// are.
     fn angles(depth: u8, use_slabs: bool, lens: Lens) -> (Vec<f64>, f64) {
         let centre = DVec3::new(0.013, -0.021, 0.017);
         let ball = Csg::ball(centre.to_array(), 0.8).unwrap();

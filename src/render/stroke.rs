@@ -10,11 +10,12 @@ use crate::memory;
 use alloc::vec::Vec;
 use glam::{DVec2, DVec3};
 
-/// The nearest part of a line that is drawn, as a part of its farthest depth: nearer ones are seen far beside the picture.
+/// The nearest part of a line that is drawn, as a part of its farthest depth: nearer ones are seen far beside
+/// the picture.
 const NEAREST: f64 = 1e-9;
 
-/// Samples count as shifted by this, in pixels: a line of a whole number of pixels that runs between samples covers that
-/// number, not one more.
+/// Samples count as shifted by this, in pixels: a line of a whole number of pixels that runs between samples
+/// covers that number, not one more.
 const NUDGE: DVec2 = DVec2::new(1e-6, 2e-6);
 
 /// An end of a line: its place in pixels, and its depth or, under a perspective, one over its depth.
@@ -31,8 +32,8 @@ struct Line {
     opacity: f32,
 }
 
-/// Lines in space that are ready to be drawn. A line on a surface is seen, because it counts as nearer than it is by its
-/// width and a pixel.
+/// Lines in space that are ready to be drawn. A line on a surface is seen, because it counts as nearer than
+/// it is by its width and a pixel.
 pub struct Strokes {
     lines: Vec<Line>,
     bins: Bins,
@@ -42,8 +43,8 @@ pub struct Strokes {
 }
 
 impl Strokes {
-    /// Lines between points of model space, cut by the clip planes, with the parts of the opacity of `light` that they have,
-    /// 0 to 1. `width` in pixels. O(lines + tiles).
+    /// Lines between points of model space, cut by the clip planes, with the parts of the opacity of `light`
+    /// that they have, 0 to 1. `width` in pixels. O(lines + tiles).
     pub fn new(
         stage: &Stage<'_>,
         lines: impl ExactSizeIterator<Item = ([DVec3; 2], f32)>,
@@ -82,8 +83,8 @@ impl Strokes {
         Ok(Strokes { lines: seen, bins, half_width, light })
     }
 
-    /// Draws what is seen in a tile. Where several of these lines overlap only the nearest is drawn, so that translucent ones
-    /// are no darker there.
+    /// Draws what is seen in a tile. Where several of these lines overlap only the nearest is drawn, so that
+    /// translucent ones are no darker there.
     pub fn paint(&self, tile: &mut Tile<'_>) -> Result<(), Error> {
         let lines = self.bins.of(tile)?;
         if lines.is_empty() || self.light.0.w <= 0.0 {
@@ -104,7 +105,8 @@ impl Strokes {
         Ok(())
     }
 
-    /// Brings the depth and the opacity of a line to the samples that it covers: those that lie within half its width.
+    /// Brings the depth and the opacity of a line to the samples that it covers: those that lie within half
+    /// its width.
     fn reach(&self, tile: &Tile<'_>, line: Line, nearest: &mut [(f64, f32)]) {
         let [a, b] = line.ends;
         let along = b.place - a.place;

@@ -26,7 +26,8 @@ impl Skin<'_> {
         self.finish.edges.map_or(Ok(()), |outline| outline.check())
     }
 
-    /// What it looks like at a point, given the outward normal, or the direction to who looks; values are those `below` it.
+    /// What it looks like at a point, given the outward normal, or the direction to who looks; values are
+    /// those `below` it.
     fn finish(&self, place: DVec3, outward: DVec3, below: f64) -> Result<Finish, Error> {
         let Some((attribute, colour)) = self.values else { return Ok(self.finish) };
         let shown = colour(attribute.value((place - below * outward.normalize_or_zero()).to_array())?);
@@ -42,8 +43,8 @@ pub struct Seen {
     pub normal: Option<DVec3>,
 }
 
-/// Draws what `see` makes of the cells of an octree that lines of sight meet. `blur`: the length over which normals change
-/// where the surface has an edge.
+/// Draws what `see` makes of the cells of an octree that lines of sight meet. `blur`: the length over which
+/// normals change where the surface has an edge.
 pub fn paint(
     tile: &mut Tile<'_>,
     stage: &Stage<'_>,

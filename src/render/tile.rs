@@ -1,7 +1,8 @@
 //! A small part of a picture while it is drawn.
 //!
-//! Each pixel has k × k samples on a grid. A sample has the nearest opaque surface, the translucent ones before it, and what
-//! volumes before or between these let through. In the end all is put together from front to back.
+//! Each pixel has k × k samples on a grid. A sample has the nearest opaque surface, the translucent ones
+//! before it, and what volumes before or between these let through. In the end all is put together from front
+//! to back.
 
 use super::camera::View;
 use super::light::Light;
@@ -80,8 +81,8 @@ impl<'v> Tile<'v> {
         memory::push(&mut self.fragments, Fragment { sample: sample as u32, order, depth, light })
     }
 
-    /// Puts the translucent surfaces in order; those of one depth stay in the order in which they were drawn. Call it once all
-    /// surfaces are drawn, before volumes are.
+    /// Puts the translucent surfaces in order; those of one depth stay in the order in which they were drawn.
+    /// Call it once all surfaces are drawn, before volumes are.
     pub fn sort(&mut self) {
         let opaque = &self.opaque;
         self.fragments.retain(|fragment| fragment.depth < opaque[fragment.sample as usize].depth);

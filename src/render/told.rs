@@ -8,9 +8,11 @@ use crate::solid::forward::{forward_batch, forward_classifier, forward_parts};
 use crate::solid::{Batch, Classifier, Parts, Question, RayQuestion, RayTrace, Subtree, Verdict, Worker};
 use alloc::vec::Vec;
 
-/// Where a ray goes in and out, as a solid tells it of one of its PARTIAL cells: good within the cell, until its first way in.
+/// Where a ray goes in and out, as a solid tells it of one of its PARTIAL cells: good within the cell, until
+/// its first way in.
 ///
-/// What is open alone in a cell answers for itself: an expression in which one mesh is open tells the mesh's way.
+/// What is open alone in a cell answers for itself: an expression in which one mesh is open tells the mesh's
+/// way.
 pub fn ask<W: Worker>(
     worker: &mut W,
     cell: Cell,

@@ -7,7 +7,8 @@ use crate::memory;
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// A colour map: a colour for every number from 0 to 1. Equal steps of the number look like equal steps of the colour.
+/// A colour map: a colour for every number from 0 to 1. Equal steps of the number look like equal steps of
+/// the colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ColourMap {
     /// From dark violet by way of green to yellow (van der Walt and Smith).
@@ -61,8 +62,8 @@ impl ColourMap {
         found.ok_or(Error::Argument { name: "map", problem })
     }
 
-    /// The colour of a number: red, green and blue in sRGB. Numbers below 0 have the first colour, numbers above 1 the last
-    /// one; NaN has the first. A map has 256 colours, and the nearest one is taken.
+    /// The colour of a number: red, green and blue in sRGB. Numbers below 0 have the first colour, numbers
+    /// above 1 the last one; NaN has the first. A map has 256 colours, and the nearest one is taken.
     pub fn colour(self, number: f64) -> [u8; 3] {
         self.step(step_of(number))
     }
@@ -89,12 +90,14 @@ fn step_of(number: f64) -> usize {
 
 /// A transfer function: the colour and the opacity of a value.
 ///
-/// A value of one number has the colour of a [`ColourMap`] over a range. A value of three or four numbers is a colour itself:
-/// red, green and blue in sRGB, 0 to 255, and an opacity, 0 to 255, that scales the transfer function's opacity. (Of a value of
-/// two numbers only the first counts.) Numbers beyond the ends of their range count as the end.
+/// A value of one number has the colour of a [`ColourMap`] over a range. A value of three or four numbers is
+/// a colour itself: red, green and blue in sRGB, 0 to 255, and an opacity, 0 to 255, that scales the transfer
+/// function's opacity. (Of a value of two numbers only the first counts.) Numbers beyond the ends of their
+/// range count as the end.
 ///
-/// Opacity holds for a length: if a path of that length absorbs the share α of the light, a path of length s lets
-/// (1 − α)^(s / length) through. So a picture does not depend on how finely a solid is divided into voxels.
+/// Opacity holds for a length: if a path of that length absorbs the share α of the light, a path of length s
+/// lets (1 − α)^(s / length) through. So a picture does not depend on how finely a solid is divided into
+/// voxels.
 ///
 /// ```
 /// use leafless::render::{ColourMap, Transfer};
@@ -116,12 +119,12 @@ impl Transfer {
     /// The colour of voxels without a value: a neutral grey, in sRGB.
     pub const NEUTRAL: [u8; 3] = [160; 3];
 
-    /// A transfer function that maps the values from `range[0]` to `range[1]` to the colours of a map. The opacity `alpha`, 0 to
-    /// 1, holds for a path of `length` model units, whatever the value.
+    /// A transfer function that maps the values from `range[0]` to `range[1]` to the colours of a map. The
+    /// opacity `alpha`, 0 to 1, holds for a path of `length` model units, whatever the value.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if the range is empty, if `alpha` is not in [0, 1], or if
-    /// `length` is not above 0.
+    /// [`Error::Argument`] if a number is not zero and not between 2^-256 and 2^256 in magnitude, if the
+    /// range is empty, if `alpha` is not in [0, 1], or if `length` is not above 0.
     pub fn new(map: ColourMap, range: [f64; 2], alpha: f64, length: f64) -> Result<Transfer, Error> {
         numbers("range", &range)?;
         if range[0] >= range[1] {
@@ -131,8 +134,9 @@ impl Transfer {
         Transfer { map, range, alpha: [alpha; 2], length }.ramp([alpha; 2])
     }
 
-    /// The same transfer function with an opacity that rises or falls linearly from `alpha[0]` at the low end of the range to
-    /// `alpha[1]` at the high end. Voxels without a value, and values that are colours, have the opacity `alpha[1]`.
+    /// The same transfer function with an opacity that rises or falls linearly from `alpha[0]` at the low end
+    /// of the range to `alpha[1]` at the high end. Voxels without a value, and values that are colours, have
+    /// the opacity `alpha[1]`.
     ///
     /// # Errors
     /// [`Error::Argument`] if one of the two is not in [0, 1].
@@ -163,7 +167,8 @@ impl Transfer {
         self.length
     }
 
-    /// The colour of a value: red, green and blue in sRGB. A value that is empty or has NaN among its numbers is none.
+    /// The colour of a value: red, green and blue in sRGB. A value that is empty or has NaN among its numbers
+    /// is none.
     pub fn colour(&self, value: &[f64]) -> [u8; 3] {
         match *value {
             [r, g, b] | [r, g, b, _] if is_known(value) => [r, g, b].map(|x| step_of(x / 255.0) as u8),
@@ -172,7 +177,8 @@ impl Transfer {
         }
     }
 
-    /// The colour of a surface with a value of `components` numbers, opaque: [`NEUTRAL`](Self::NEUTRAL) where there is none.
+    /// The colour of a surface with a value of `components` numbers, opaque: [`NEUTRAL`](Self::NEUTRAL) where
+    /// there is none.
     pub fn opaque(&self, value: Option<[f64; 4]>, components: usize) -> [u8; 4] {
         let value = value.as_ref().map_or(&[][..], |value| &value[..components.min(4)]);
         let [r, g, b] = self.colour(value);

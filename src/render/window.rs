@@ -45,7 +45,8 @@ impl<'v> Window<'v> {
         ]
     }
 
-    /// The samples that lie between two places along x (axis 0) or y (1), in pixels, as columns or rows of the tile.
+    /// The samples that lie between two places along x (axis 0) or y (1), in pixels, as columns or rows of
+    /// the tile.
     #[inline]
     pub fn between(&self, axis: usize, low: f64, high: f64) -> core::ops::Range<usize> {
         let grid = f64::from(self.grid);

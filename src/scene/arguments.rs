@@ -21,9 +21,9 @@ pub(super) struct Given<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Given<'a, N> {
-    /// Arguments without a name are for the parameters in order. Those `ignored` have no effect on a shape, nor
-    /// have those whose names begin with `$`, but for the three that say how fine curves are drawn; all others
-    /// must be parameters.
+    /// Arguments without a name are for the parameters in order. Those `ignored` have no effect on a shape,
+    /// nor have those whose names begin with `$`, but for the three that say how fine curves are drawn; all
+    /// others must be parameters.
     pub fn new(
         tree: &'a Tree<'a>,
         call: &Call<'a>,

@@ -314,8 +314,8 @@ impl Checker<'_> {
         self.node(Node::Solid(solid))
     }
 
-    /// What `rotate_extrude` makes of a figure if it is drawn as a polygon; notes which. Figures with curves are
-    /// turned exactly.
+    /// What `rotate_extrude` makes of a figure if it is drawn as a polygon; notes which. Figures with curves
+    /// are turned exactly.
     fn turned(
         &mut self,
         call: &Call<'_>,

@@ -23,7 +23,8 @@ impl Checker<'_> {
             return Err(file.fault("files cannot be read by this scene, which has no folder"));
         };
         let path = folder.join(&name);
-        // What is no file may have no end, and opening a pipe may wait for ever. (What cannot be asked is told below.)
+        // What is no file may have no end, and opening a pipe may wait for ever. (What cannot be asked is
+        // told below.)
         if let Ok(metadata) = std::fs::metadata(&path) {
             if !metadata.is_file() {
                 return Err(file.fault(format!("{name}: is no regular file")));

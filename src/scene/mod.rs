@@ -28,13 +28,15 @@ use alloc::vec::Vec;
 /// # The language
 ///
 /// That of the CSG dumps which OpenSCAD exports (`openscad -o part.csg part.scad`), with some calls of our
-/// own, and those that move things from OpenSCAD's language. Numbers mean just the doubles that they are read as.
+/// own, and those that move things from OpenSCAD's language. Numbers mean just the doubles that they are read
+/// as.
 ///
 /// Circles, balls, cylinders and solids of revolution are exact, unless `$fn` is given and not more than 12:
 /// then they are the polygons, prisms and polyhedra that OpenSCAD draws, so that a hexagonal nut is one.
 /// [`SceneOptions`] ask for all of them to be exact, or for all of them to be polygons;
-/// [`report`](Scene::report) tells how many are. A polygon has its corners where OpenSCAD has them: a cosine and
-/// a sine, rounded to doubles, times the radius. A `rotate_extrude` of a figure with curves is exact always.
+/// [`report`](Scene::report) tells how many are. A polygon has its corners where OpenSCAD has them: a cosine
+/// and a sine, rounded to doubles, times the radius. A `rotate_extrude` of a figure with curves is exact
+/// always.
 ///
 /// | calls | |
 /// |---|---|
@@ -54,10 +56,10 @@ use alloc::vec::Vec;
 /// | `mesh(file, deviation)` `import(file, deviation)` | a mesh file of any known format, as [`open_mesh`](crate::exchange::open_mesh) reads it, [sewn](crate::TriangleMesh::sewn); within `deviation` of it lies the [true boundary](crate::TriangleMesh::with_deviation) |
 /// | `octree(file)` | a file of this library |
 ///
-/// The faces of a polyhedron may face inward as well as outward, but all must face one side. Where one is turned
-/// over or missing, the fill rule decides by the winding number, and what it encloses is not what was meant:
-/// near a face that is turned over, the inside becomes outside, and some of the outside becomes inside. The same
-/// holds for mesh files. [`report`](Scene::report) tells of such faces.
+/// The faces of a polyhedron may face inward as well as outward, but all must face one side. Where one is
+/// turned over or missing, the fill rule decides by the winding number, and what it encloses is not what was
+/// meant: near a face that is turned over, the inside becomes outside, and some of the outside becomes
+/// inside. The same holds for mesh files. [`report`](Scene::report) tells of such faces.
 ///
 /// The sides of a `linear_extrude` whose scales along x and y differ are the ruled surfaces over the straight
 /// edges, and `slices` has no effect: OpenSCAD comes the closer to them the more slices there are.
@@ -78,8 +80,8 @@ use alloc::vec::Vec;
 ///
 /// A text may hold anything: nesting costs memory, not stack, and all memory is linear in the text, but for
 /// the files that it names, and for what [`Facets::Polygon`] makes of it: up to half a million half-spaces a
-/// ball. The files are looked for in the folder given and are whatever file the text says, by absolute paths or
-/// through `..` too; without a folder there are none.
+/// ball. The files are looked for in the folder given and are whatever file the text says, by absolute paths
+/// or through `..` too; without a folder there are none.
 #[derive(Clone)]
 pub struct Scene {
     /// Each after those that it consists of; the last one is the whole. Empty, if there is nothing.

@@ -45,7 +45,8 @@ impl Checker<'_> {
         )
     }
 
-    /// The mirror image in the plane through the origin that is normal to a vector; nothing is mirrored in that of no vector.
+    /// The mirror image in the plane through the origin that is normal to a vector; nothing is mirrored in
+    /// that of no vector.
     pub(super) fn mirror(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
         let normal = Given::new(self.tree, call, ["v"], &[])?.required(0)?;
         let n = components(&normal, 0.0)?;
@@ -57,7 +58,8 @@ impl Checker<'_> {
         self.moved(&normal, linear([0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))), first)
     }
 
-    /// Turned by an angle about an axis, which is z unless it is given; or about x, then y, then z, each by its own angle.
+    /// Turned by an angle about an axis, which is z unless it is given; or about x, then y, then z, each by
+    /// its own angle.
     pub(super) fn rotate(&mut self, call: &Call<'_>, first: usize) -> Result<Shape, Error> {
         let given = Given::new(self.tree, call, ["a", "v"], &[])?;
         let angle = given.required(0)?;

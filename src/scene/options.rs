@@ -32,14 +32,14 @@ impl SceneOptions {
         SceneOptions { facets, ..SceneOptions::default() }
     }
 
-    /// Reads a scene from its text, in UTF-8. Files that it names are looked for in `folder`; without one they
-    /// are refused, and so are pipes and devices, which may have no end.
+    /// Reads a scene from its text, in UTF-8. Files that it names are looked for in `folder`; without one
+    /// they are refused, and so are pipes and devices, which may have no end.
     ///
     /// O(text) for what is exact, times the sides of polygons, and the files.
     ///
     /// # Errors
-    /// [`SceneError`](crate::error::SceneError) with line and column for whatever is wrong with the text or a file that
-    /// it names; [`Error::OutOfMemory`].
+    /// [`SceneError`](crate::error::SceneError) with line and column for whatever is wrong with the text or a
+    /// file that it names; [`Error::OutOfMemory`].
     pub fn read(&self, text: impl AsRef<[u8]>, folder: Option<&Path>) -> Result<Scene, Error> {
         let bytes = text.as_ref();
         let text = core::str::from_utf8(bytes).map_err(|error| {
@@ -53,8 +53,8 @@ impl SceneOptions {
     /// Reads a scene from a file. Files that it names are looked for beside it.
     ///
     /// # Errors
-    /// [`Error::File`] with the path and one of these causes: as [`read`](Self::read), or [`Error::Io`] if the
-    /// file itself cannot be read, [`Error::Limit`] if it is a pipe that goes on after 1 GiB;
+    /// [`Error::File`] with the path and one of these causes: as [`read`](Self::read), or [`Error::Io`] if
+    /// the file itself cannot be read, [`Error::Limit`] if it is a pipe that goes on after 1 GiB;
     /// [`Error::OutOfMemory`].
     pub fn open(&self, path: impl AsRef<Path>) -> Result<Scene, Error> {
         let path = path.as_ref();

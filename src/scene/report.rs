@@ -13,8 +13,9 @@ pub struct SceneReport {
     pub polygons: u64,
     /// Calls of these that are exact. OpenSCAD draws them as polygons.
     pub exact: u64,
-    /// Calls of `linear_extrude` of which `slices` has no effect though it has one in OpenSCAD: the scales along
-    /// x and y differ, and the sides are the curved ones that OpenSCAD comes closer to with more slices.
+    /// Calls of `linear_extrude` of which `slices` has no effect though it has one in OpenSCAD: the scales
+    /// along x and y differ, and the sides are the curved ones that OpenSCAD comes closer to with more
+    /// slices.
     pub ignored_slices: u64,
     /// The meshes and polyhedra that have triangles, in the order of the text.
     pub meshes: Vec<SceneMesh>,

@@ -10,12 +10,13 @@ use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, Cell, Cube, Frame, valid};
 use alloc::vec::Vec;
 
-/// A solid whose cells are not split where its surface is known to lie within a layer thinner than a tolerance: an
-/// octree of it stays coarse where the surface is flat, and is fine where it bends and at edges.
+/// A solid whose cells are not split where its surface is known to lie within a layer thinner than a
+/// tolerance: an octree of it stays coarse where the surface is flat, and is fine where it bends and at
+/// edges.
 ///
-/// Such cells are [`Verdict::Undecided`], so PARTIAL in an octree. The solid itself knows more about them: its
-/// [`Enclosure`]s. The distance between the inner and the outer side of each slab is at most the tolerance. A
-/// solid that knows no enclosures is split as ever.
+/// Such cells are [`Verdict::Undecided`], so PARTIAL in an octree. The solid itself knows more about them:
+/// its [`Enclosure`]s. The distance between the inner and the outer side of each slab is at most the
+/// tolerance. A solid that knows no enclosures is split as ever.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build, solid::Adaptive};

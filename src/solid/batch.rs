@@ -8,20 +8,22 @@ use alloc::vec::Vec;
 
 /// How a worker answers questions about many cells or points at once.
 ///
-/// A host program's function may take milliseconds a call, or answer a thousand boxes as fast as one. A caller that meets such
-/// a solid gathers cells, and asks a level at once, with all its threads. So that this works through every wrapper, no method
-/// has a default. A worker that gains nothing from many questions at once says so in one line: [`OneByOne`].
+/// A host program's function may take milliseconds a call, or answer a thousand boxes as fast as one. A
+/// caller that meets such a solid gathers cells, and asks a level at once, with all its threads. So that this
+/// works through every wrapper, no method has a default. A worker that gains nothing from many questions at
+/// once says so in one line: [`OneByOne`].
 ///
 /// # Laws
-/// The answers are those of the single forms: of [`Worker::split`] and of [`Question::Centre`](super::Question::Centre). All
-/// verdicts of one call have parts that live together: the memory of none of them is released before that of the others.
+/// The answers are those of the single forms: of [`Worker::split`] and of
+/// [`Question::Centre`](super::Question::Centre). All verdicts of one call have parts that live together: the
+/// memory of none of them is released before that of the others.
 pub trait Batch: Parts {
     /// Whether answers are dear, or come more cheaply many at a time. A caller then gathers cells for
     /// [`split_many`](Self::split_many), and uses threads even for few of them.
     fn likes_many(&self) -> bool;
 
-    /// Splits many PARTIAL cells: appends what [`Worker::split`] says of each, in their order. `control` can cancel the call
-    /// half-way. What was appended before an error is right.
+    /// Splits many PARTIAL cells: appends what [`Worker::split`] says of each, in their order. `control` can
+    /// cancel the call half-way. What was appended before an error is right.
     ///
     /// # Errors
     /// As all questions, and [`Error::Cancelled`].
@@ -33,8 +35,8 @@ pub trait Batch: Parts {
     ) -> Result<(), Error>;
 
     /// Samples the centres of many PARTIAL cells of the frame's depth: appends what
-    /// [`Question::Centre`](super::Question::Centre) answers for each, in their order. `control` can cancel the call half-way.
-    /// What was appended before an error is right.
+    /// [`Question::Centre`](super::Question::Centre) answers for each, in their order. `control` can cancel
+    /// the call half-way. What was appended before an error is right.
     ///
     /// # Errors
     /// As all questions, and [`Error::Cancelled`].
@@ -45,19 +47,21 @@ pub trait Batch: Parts {
         inside: &mut Vec<Option<bool>>,
     ) -> Result<(), Error>;
 
-    /// Whether points of the universe (model units) lie in the solid: sets `answers[i]` for `points[i]` where that is known
-    /// without a descent. On the boundary either answer is right. Where nothing is set, the caller descends.
+    /// Whether points of the universe (model units) lie in the solid: sets `answers[i]` for `points[i]` where
+    /// that is known without a descent. On the boundary either answer is right. Where nothing is set, the
+    /// caller descends.
     ///
     /// # Errors
     /// As all questions.
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error>;
 
-    /// The part of a PARTIAL cell without the way to it, if the part depends on the cell alone; then no caller replays splits. A
-    /// worker that answers for one cell answers for all.
+    /// The part of a PARTIAL cell without the way to it, if the part depends on the cell alone; then no
+    /// caller replays splits. A worker that answers for one cell answers for all.
     fn recall(&mut self, cell: Cell) -> Option<Self::Part>;
 }
 
-/// A worker that answers one question after the other, and knows nothing of points: it has [`Batch`] by this line alone.
+/// A worker that answers one question after the other, and knows nothing of points: it has [`Batch`] by this
+/// line alone.
 pub trait OneByOne {}
 
 impl<W: Worker + OneByOne> Batch for W {

@@ -1,9 +1,11 @@
 //! Handing on: the methods of the traits, written once for all who pass them to somebody else.
 //!
-//! `forward_solid!`, `forward_classifier!`, `forward_parts!`, `forward_batch!` and `forward_answers!` write methods whose bodies are
-//! one call. What is missing of methods without defaults does not compile where it is used.
+//! `forward_solid!`, `forward_classifier!`, `forward_parts!`, `forward_batch!` and `forward_answers!` write
+//! methods whose bodies are one call. What is missing of methods without defaults does not compile where it
+//! is used.
 
-/// All methods of [`Solid`](super::Solid) but `placed`: what is moved is another solid, which a reference cannot be.
+/// All methods of [`Solid`](super::Solid) but `placed`: what is moved is another solid, which a reference
+/// cannot be.
 macro_rules! forward_solid {
     ($classifier:ty, $self:ident => $to:expr) => {
         type Classifier = $classifier;

@@ -7,8 +7,9 @@
 //!
 //! # A new solid
 //!
-//! [`Solid`] has an example. What a worker writes beside [`root`](Worker::root) and [`split`](Worker::split) makes answers
-//! better, one step at a time (`examples/metaball.rs` climbs the first three steps and prints what each gains):
+//! [`Solid`] has an example. What a worker writes beside [`root`](Worker::root) and [`split`](Worker::split)
+//! makes answers better, one step at a time (`examples/metaball.rs` climbs the first three steps and prints
+//! what each gains):
 //!
 //! | a worker that | gains |
 //! |---|---|
@@ -26,16 +27,18 @@
 //! | writes [`Batch`] in place of [`OneByOne`] | threads and whole levels at once, for functions that take long; points without a descent ([`Batch::inside`]); cells without the way to them ([`Batch::recall`]) |
 //! | writes [`Parts`] in place of [`FreeParts`] | parts that are lists in scratch memory, so that children look only at what cut their parent |
 //!
-//! Laws for all of them stand with each trait. A test of a new solid compares it with a slow oracle cell by cell, and has its
-//! row in `tests/octrees/proof_table.rs`.
+//! Laws for all of them stand with each trait. A test of a new solid compares it with a slow oracle cell by
+//! cell, and has its row in `tests/octrees/proof_table.rs`.
 //!
 //! # A new wrapper
 //!
-//! A solid that is made of another one writes all of [`Parts`], [`Batch`], [`Classifier::proof`] and the two `answer`s: they have no
-//! defaults, because what they say would be lost in silence. Questions that a wrapper does not change are handed on as they are,
-//! those of the future included. The other methods have defaults that are right, and slower or less sure.
+//! A solid that is made of another one writes all of [`Parts`], [`Batch`], [`Classifier::proof`] and the two
+//! `answer`s: they have no defaults, because what they say would be lost in silence. Questions that a wrapper
+//! does not change are handed on as they are, those of the future included. The other methods have defaults
+//! that are right, and slower or less sure.
 
-// The contract: what a solid answers (here), where parts live, many questions at once, and what else can be known.
+// The contract: what a solid answers (here), where parts live, many questions at once, and what else can be
+// known.
 mod batch;
 mod parts;
 mod question;
@@ -219,9 +222,10 @@ use alloc::vec::Vec;
 /// What [`on`](Solid::on) returns depends on the shape and the frame alone.
 ///
 /// # One question after the other
-/// Every query puts the solid on its frame first: O(1) for octrees that this library made and for a host's functions, O(n) in
-/// the half-spaces of an expression, the triangles of a mesh, and the links of an octree that was mapped. Whoever asks one point
-/// after the other wraps the solid in [`Prepared`], which keeps what was prepared.
+/// Every query puts the solid on its frame first: O(1) for octrees that this library made and for a host's
+/// functions, O(n) in the half-spaces of an expression, the triangles of a mesh, and the links of an octree
+/// that was mapped. Whoever asks one point after the other wraps the solid in [`Prepared`], which keeps what
+/// was prepared.
 pub trait Solid: Send + Sync {
     /// The shape on a frame.
     type Classifier: Classifier;
@@ -262,8 +266,8 @@ pub trait Solid: Send + Sync {
         Ok(None)
     }
 
-    /// The mesh whose solid this is, if it is nothing else: a picture draws its triangles. `None`, the default, if that is not
-    /// known.
+    /// The mesh whose solid this is, if it is nothing else: a picture draws its triangles. `None`, the
+    /// default, if that is not known.
     fn sole_mesh(&self) -> Option<&TriangleMesh> {
         None
     }
@@ -273,9 +277,10 @@ pub trait Solid: Send + Sync {
         Motion::Conservative
     }
 
-    /// About how many bytes of memory (or of mapped files) the shape keeps alive: its own, and those of the meshes, octrees and
-    /// samples that it shares with others. An expression counts each of its parts once, but two parts that share a mesh count the
-    /// mesh twice. 0, the default, if nobody knows. A solid in small structs only may say 0.
+    /// About how many bytes of memory (or of mapped files) the shape keeps alive: its own, and those of the
+    /// meshes, octrees and samples that it shares with others. An expression counts each of its parts once,
+    /// but two parts that share a mesh count the mesh twice. 0, the default, if nobody knows. A solid in
+    /// small structs only may say 0.
     fn kept_bytes(&self) -> u64 {
         0
     }
@@ -301,12 +306,12 @@ pub trait Classifier: Clone + Send + Sync {
         Tag::Partial
     }
 
-    /// What the verdicts prove. [`Proof::CERTIFIED`]: all that they say. The verdicts of a stored octree prove what its cells
-    /// do; those of a solid that is known at points only prove nothing.
+    /// What the verdicts prove. [`Proof::CERTIFIED`]: all that they say. The verdicts of a stored octree
+    /// prove what its cells do; those of a solid that is known at points only prove nothing.
     fn proof(&self) -> Proof;
 
-    /// Answers a question about the whole shape, if the shape knows more than its cells tell. A shape that does not is done
-    /// with `Ok(())`.
+    /// Answers a question about the whole shape, if the shape knows more than its cells tell. A shape that
+    /// does not is done with `Ok(())`.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and [`Error::Cancelled`] by `control`.
@@ -321,8 +326,8 @@ pub trait Classifier: Clone + Send + Sync {
 
 /// A classifier with scratch memory: what answers.
 ///
-/// A worker remembers something about PARTIAL cells, their *parts* ([`Parts`], or [`FreeParts`]), and may answer many questions
-/// at once ([`Batch`], or [`OneByOne`]).
+/// A worker remembers something about PARTIAL cells, their *parts* ([`Parts`], or [`FreeParts`]), and may
+/// answer many questions at once ([`Batch`], or [`OneByOne`]).
 ///
 /// # Laws
 /// 1. A FULL or EMPTY verdict is proven, unless [`Classifier::proof`] says otherwise. Contact is not overlap:
@@ -351,8 +356,8 @@ pub trait Worker: Batch {
     /// As all questions.
     fn split(&mut self, cell: Cell, part: &Self::Part) -> Result<[Verdict<Self::Part>; 8], Error>;
 
-    /// Answers what else is known of a PARTIAL cell: sets the place in the question, or leaves it. A worker that knows
-    /// nothing beyond verdicts is done with `Ok(())`.
+    /// Answers what else is known of a PARTIAL cell: sets the place in the question, or leaves it. A worker
+    /// that knows nothing beyond verdicts is done with `Ok(())`.
     ///
     /// # Errors
     /// As all questions.

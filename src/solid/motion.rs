@@ -9,8 +9,8 @@ pub enum Motion {
     /// The vertices of a mesh are moved and rounded, by some 10^-16 of their coordinates; what is proven
     /// allows for that.
     Vertices = 1,
-    /// A surface that is not parallel to the lattice blurs by about a cell, as [`Transform`](crate::solid::Transform) does, and as a
-    /// host's functions do, which are asked about boxes around inverse images. Where cells are the images of cells, nothing
-    /// blurs.
+    /// A surface that is not parallel to the lattice blurs by about a cell, as
+    /// [`Transform`](crate::solid::Transform) does, and as a host's functions do, which are asked about boxes
+    /// around inverse images. Where cells are the images of cells, nothing blurs.
     Conservative = 2,
 }

@@ -4,12 +4,12 @@ use crate::error::Error;
 
 /// What a worker remembers about PARTIAL cells, and the scratch memory that it remembers this in.
 ///
-/// A *part* may refer to the worker's scratch memory, which is a stack: parts that were made after a [mark](Parts::mark) are
-/// gone once the mark is [released](Parts::release). A part means something to the worker that made it, and to no other.
-/// (Another worker may take it for anything, and may panic.)
+/// A *part* may refer to the worker's scratch memory, which is a stack: parts that were made after a
+/// [mark](Parts::mark) are gone once the mark is [released](Parts::release). A part means something to the
+/// worker that made it, and to no other. (Another worker may take it for anything, and may panic.)
 ///
-/// No method has a default, because these methods are right together or wrong across threads. A worker whose parts refer to
-/// nothing says so in one line: [`FreeParts`].
+/// No method has a default, because these methods are right together or wrong across threads. A worker whose
+/// parts refer to nothing says so in one line: [`FreeParts`].
 ///
 /// ```
 /// use leafless::{Error, solid::Parts};
@@ -63,7 +63,8 @@ pub trait Parts: Send + Sync {
     /// Takes the scratch memory back to an earlier height.
     fn release(&mut self, mark: usize);
 
-    /// Bytes that the scratch memory takes for parts. A caller that keeps many parts at once limits this number.
+    /// Bytes that the scratch memory takes for parts. A caller that keeps many parts at once limits this
+    /// number.
     fn scratch_bytes(&self) -> usize;
 
     /// Takes over a part of another worker of the same classifier, with what the part refers to.
@@ -73,8 +74,9 @@ pub trait Parts: Send + Sync {
     fn hand_over(&mut self, from: &Self, part: &Self::Part) -> Result<Self::Part, Error>;
 }
 
-/// A worker whose parts refer to nothing: they are copied, they never become invalid, and any worker of the same classifier
-/// understands them. The worker then needs no scratch memory, and has [`Parts`] by this line alone.
+/// A worker whose parts refer to nothing: they are copied, they never become invalid, and any worker of the
+/// same classifier understands them. The worker then needs no scratch memory, and has [`Parts`] by this line
+/// alone.
 pub trait FreeParts: Send + Sync {
     /// What is remembered about one PARTIAL cell.
     type Part: Clone + Send + Sync;

@@ -11,16 +11,16 @@ use crate::error::Error;
 use crate::lattice::{Bounds, Cell, CellMoments, Interval, Ray, VolumeMoments};
 use alloc::vec::Vec;
 
-/// A question about one PARTIAL cell, with the place for the answer, in which nothing is to be before. Nothing is put there where
-/// nothing is known.
+/// A question about one PARTIAL cell, with the place for the answer, in which nothing is to be before.
+/// Nothing is put there where nothing is known.
 ///
-/// The answers are proven as verdicts are, and depend on the cell and the shape alone. Questions may be added: a worker
-/// answers those that it knows, and passes over the others. A wrapper hands the question on.
+/// The answers are proven as verdicts are, and depend on the cell and the shape alone. Questions may be
+/// added: a worker answers those that it knows, and passes over the others. A wrapper hands the question on.
 #[non_exhaustive]
 pub enum Question<'q> {
-    /// Whether the centre of the cell, which has the frame's depth, lies in the solid. A centre on the boundary is decided as
-    /// if all centres were shifted by (ε, ε², ε³), to first order: on a curved surface too, the first axis that leads across
-    /// it decides.
+    /// Whether the centre of the cell, which has the frame's depth, lies in the solid. A centre on the
+    /// boundary is decided as if all centres were shifted by (ε, ε², ε³), to first order: on a curved surface
+    /// too, the first axis that leads across it decides.
     Centre(&'q mut Option<bool>),
 
     /// Slabs between which the boundary lies in the cell, by the law that [`Enclosure`] states.
@@ -29,37 +29,37 @@ pub enum Question<'q> {
     /// Volume and moments of the solid in the cell, if they are known better than by an enclosure.
     Moments(&'q mut Option<CellMoments>),
 
-    /// Bounds of the area that the boundary has in the cell, in squares of the cell's half edge, if any are known beside those
-    /// by an enclosure with a cone.
+    /// Bounds of the area that the boundary has in the cell, in squares of the cell's half edge, if any are
+    /// known beside those by an enclosure with a cone.
     Area(&'q mut Option<Interval>),
 
-    /// Where a segment with both ends in the closed cell first crosses the boundary, by the law that [`Crossing`] states.
-    /// Nothing if it does not, or the solid cannot tell.
+    /// Where a segment with both ends in the closed cell first crosses the boundary, by the law that
+    /// [`Crossing`] states. Nothing if it does not, or the solid cannot tell.
     Crossing(&'q Segment, &'q mut Option<Crossing>),
 
-    /// Where rays through the centres of finest cells enter and leave the solid in the cell, if that is known for all rays that
-    /// the beam asks for.
+    /// Where rays through the centres of finest cells enter and leave the solid in the cell, if that is known
+    /// for all rays that the beam asks for.
     Chords(Chords<'q>),
 
-    /// Which surfaces of the classifier's list ([`WholeQuestion::Surfaces`]) cross the cell, and which function of their signs the
-    /// solid is, by the law that [`OpenSurfaces`] states. Nothing if there are too many, the solid is made otherwise, or nobody has
-    /// asked for the list yet.
+    /// Which surfaces of the classifier's list ([`WholeQuestion::Surfaces`]) cross the cell, and which
+    /// function of their signs the solid is, by the law that [`OpenSurfaces`] states. Nothing if there are
+    /// too many, the solid is made otherwise, or nobody has asked for the list yet.
     Surfaces(&'q mut Option<OpenSurfaces>),
 
-    /// The same of the list with layers ([`WholeQuestion::Layers`]): where nothing exact is known of a surface, planes with a width
-    /// may stand for it.
+    /// The same of the list with layers ([`WholeQuestion::Layers`]): where nothing exact is known of a
+    /// surface, planes with a width may stand for it.
     Layers(LayersQuestion<'q>),
 
-    /// Where a ray goes in and out of the solid in the cell: of the root, in the universe. Beyond the cell the trace need not be right.
-    /// Nothing is told unless [`WholeQuestion::Direct`] was asked before.
+    /// Where a ray goes in and out of the solid in the cell: of the root, in the universe. Beyond the cell
+    /// the trace need not be right. Nothing is told unless [`WholeQuestion::Direct`] was asked before.
     Ray(RayQuestion<'q>),
 
-    /// Which point of the whole boundary is nearest to a point (model units): asked of the root alone. Nothing is told unless
-    /// [`WholeQuestion::Direct`] was asked before.
+    /// Which point of the whole boundary is nearest to a point (model units): asked of the root alone.
+    /// Nothing is told unless [`WholeQuestion::Direct`] was asked before.
     Nearest([f64; 3], &'q mut Option<NearestSurface>),
 
-    /// How a box in the universe lies to the solid: asked of the root alone. Nothing is told unless [`WholeQuestion::Direct`] was
-    /// asked before.
+    /// How a box in the universe lies to the solid: asked of the root alone. Nothing is told unless
+    /// [`WholeQuestion::Direct`] was asked before.
     Box(&'q Bounds, &'q mut Option<BoxContent>),
 }
 
@@ -67,19 +67,20 @@ pub enum Question<'q> {
 pub struct LayersQuestion<'q> {
     /// No point of a layer is to be further than twice this from the surface (model units).
     pub tolerance: f64,
-    /// Layers for this cell alone are added: a surface with the number [`OpenSurfaces::OWN`] + i is number i of these.
+    /// Layers for this cell alone are added: a surface with the number [`OpenSurfaces::OWN`] + i is number i
+    /// of these.
     pub own: &'q mut Vec<PlacedHalfSpace>,
     /// The function, of surfaces of the list and own ones.
     pub known: &'q mut Option<OpenSurfaces>,
 }
 
 impl LayersQuestion<'_> {
-    /// How wide any layer may be, as a share of the tolerance. Next to a wall of the cell a point in it is up to 1 + √3 of its widths
-    /// away from the surface, which is to be less than twice the tolerance.
+    /// How wide any layer may be, as a share of the tolerance. Next to a wall of the cell a point in it is up
+    /// to 1 + √3 of its widths away from the surface, which is to be less than twice the tolerance.
     pub(crate) const SHARE: f64 = 0.7;
 
-    /// Whether a layer that alone bounds the solid in a cell is thin enough for a tolerance, in half edges of the cell. (It may get a
-    /// little thicker when it is stored.)
+    /// Whether a layer that alone bounds the solid in a cell is thin enough for a tolerance, in half edges of
+    /// the cell. (It may get a little thicker when it is stored.)
     pub(crate) fn admits(slab: &Slab, tolerance: f64) -> bool {
         let width = (slab.outer - slab.inner) / libm::sqrt(slab.normal.iter().map(|c| c * c).sum::<f64>());
         // (What is no number is not less.)
@@ -89,8 +90,8 @@ impl LayersQuestion<'_> {
 
 /// The place for intervals of rays.
 pub struct Chords<'q> {
-    /// The rays. Their intervals in the cell are added; each holds just those centres that [`Question::Centre`] would find
-    /// inside.
+    /// The rays. Their intervals in the cell are added; each holds just those centres that
+    /// [`Question::Centre`] would find inside.
     pub beam: &'q mut Beam,
     /// Set once the intervals of all rays have been added.
     pub found: &'q mut bool,
@@ -244,7 +245,8 @@ impl<W: Worker + ?Sized> Ask for W {}
 
 /// The same, for wrappers and builders.
 pub(crate) trait AskLayers: Worker {
-    /// Which surfaces and layers cross a PARTIAL cell, and which function of them the solid is: [`Question::Layers`].
+    /// Which surfaces and layers cross a PARTIAL cell, and which function of them the solid is:
+    /// [`Question::Layers`].
     ///
     /// # Errors
     /// As all questions.
@@ -306,8 +308,9 @@ pub(crate) trait AskDirect: Worker {
 
 impl<W: Worker + ?Sized> AskDirect for W {}
 
-/// A question about a whole shape on a frame, inside and outside of the universe, with the place for the answer, in which
-/// nothing is to be before. Nothing is put there where nothing is known. The answers are proven as verdicts are.
+/// A question about a whole shape on a frame, inside and outside of the universe, with the place for the
+/// answer, in which nothing is to be before. Nothing is put there where nothing is known. The answers are
+/// proven as verdicts are.
 #[non_exhaustive]
 pub enum WholeQuestion<'q> {
     /// The volume and the moments, if they are known without splitting cells.
@@ -316,32 +319,35 @@ pub enum WholeQuestion<'q> {
     /// The area of the boundary (square model units), if it is known without splitting cells.
     Area(&'q mut Option<Interval>),
 
-    /// Whether no piece of the boundary lies in a plane of the lattice, so that all area of the boundary lies in open PARTIAL
-    /// cells. The flag is set if that is known.
+    /// Whether no piece of the boundary lies in a plane of the lattice, so that all area of the boundary lies
+    /// in open PARTIAL cells. The flag is set if that is known.
     OffLattice(&'q mut bool),
 
-    /// The surfaces that cells are crossed by, which [`Question::Surfaces`] tells by their places in this list. Surfaces may be
-    /// equal.
+    /// The surfaces that cells are crossed by, which [`Question::Surfaces`] tells by their places in this
+    /// list. Surfaces may be equal.
     Surfaces(&'q mut Option<Vec<PlacedHalfSpace>>),
 
-    /// The surfaces that cells are crossed by, and planes with a width that stand for such of which nothing exact is known: the list
-    /// of [`Question::Layers`]. A solid that tells nothing has none but its [`Surfaces`](Self::Surfaces).
+    /// The surfaces that cells are crossed by, and planes with a width that stand for such of which nothing
+    /// exact is known: the list of [`Question::Layers`]. A solid that tells nothing has none but its
+    /// [`Surfaces`](Self::Surfaces).
     Layers(&'q mut Option<Vec<PlacedHalfSpace>>),
 
-    /// Whether questions of this kind about the universe are answered without a descent as a rule. What that takes is made now,
-    /// once, and kept for all that share the shape; the flag is set if there is such a thing.
+    /// Whether questions of this kind about the universe are answered without a descent as a rule. What that
+    /// takes is made now, once, and kept for all that share the shape; the flag is set if there is such a
+    /// thing.
     Direct(Direct, &'q mut bool),
 
-    /// The triangles that the whole boundary consists of, none of which lies inside of the solid or outside of it, if there are such
-    /// and all of the boundary lies in the universe. Whether the solid or its complement is meant does not matter.
+    /// The triangles that the whole boundary consists of, none of which lies inside of the solid or outside
+    /// of it, if there are such and all of the boundary lies in the universe. Whether the solid or its
+    /// complement is meant does not matter.
     Facets(&'q mut Option<BoundaryFacets>),
 
-    /// The same where triangles intersect: those are cut into pieces, and where pieces meet others they have sides no longer than the given
-    /// size (model units).
+    /// The same where triangles intersect: those are cut into pieces, and where pieces meet others they have
+    /// sides no longer than the given size (model units).
     Pieces(f64, &'q mut Option<BoundaryPieces>),
 
-    /// The triangles of [`Facets`](Self::Facets) with triangles beside those of the boundary, all of which lie in the closed solid, or, if its complement is meant, outside of
-    /// that.
+    /// The triangles of [`Facets`](Self::Facets) with triangles beside those of the boundary, all of which
+    /// lie in the closed solid, or, if its complement is meant, outside of that.
     Walls(&'q mut Option<BoundaryFacets>),
 }
 
@@ -359,8 +365,8 @@ pub enum Direct {
     Boxes,
 }
 
-/// The questions about whole shapes as functions. Every classifier has them, and none can change them: they ask
-/// [`Classifier::answer_whole`].
+/// The questions about whole shapes as functions. Every classifier has them, and none can change them: they
+/// ask [`Classifier::answer_whole`].
 pub trait AskWhole: Classifier {
     /// The volume and the moments of the shape: [`WholeQuestion::Moments`].
     ///
@@ -402,7 +408,8 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// Whether questions of a kind are answered without a descent, and gets ready for them: [`WholeQuestion::Direct`].
+    /// Whether questions of a kind are answered without a descent, and gets ready for them:
+    /// [`WholeQuestion::Direct`].
     ///
     /// # Errors
     /// As [`moments`](Self::moments).
@@ -442,7 +449,8 @@ pub trait AskWhole: Classifier {
         Ok(known)
     }
 
-    /// Whether no piece of the boundary is known to lie in a plane of the lattice: [`WholeQuestion::OffLattice`].
+    /// Whether no piece of the boundary is known to lie in a plane of the lattice:
+    /// [`WholeQuestion::OffLattice`].
     fn is_off_lattice(&self) -> bool {
         let mut known = false;
         // (What cannot be found out is not known.)

@@ -9,8 +9,8 @@ use alloc::vec::Vec;
 
 /// Where a ray goes in and out of a solid.
 ///
-/// The solid is a closed set. Beside its crossings a ray is either proven inside or proven outside, and within the interval of
-/// a crossing it may be either.
+/// The solid is a closed set. Beside its crossings a ray is either proven inside or proven outside, and
+/// within the interval of a crossing it may be either.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RayTrace {
     /// Whether the ray is inside until its first crossing.
@@ -28,7 +28,8 @@ pub struct RayCrossing {
     pub t: Interval,
     /// Whether the ray is inside from then on until the next crossing.
     pub is_inside_after: bool,
-    /// Whether a point of the interval is proven to be inside: a crossing of which both sides are outside may be a touch.
+    /// Whether a point of the interval is proven to be inside: a crossing of which both sides are outside may
+    /// be a touch.
     pub is_met: bool,
     /// The outward normal of the boundary there, of any length.
     pub normal: [f64; 3],
@@ -151,7 +152,8 @@ impl NearestSurface {
 /// Triangles that the boundary of a solid consists of.
 #[derive(Clone)]
 pub struct BoundaryFacets {
-    /// The triangles; its [`displacement`](TriangleMesh::displacement) is how far, along each axis, the boundary may lie from them.
+    /// The triangles; its [`displacement`](TriangleMesh::displacement) is how far, along each axis, the
+    /// boundary may lie from them.
     pub mesh: Arc<TriangleMesh>,
     /// Whether each triangle belongs to the boundary. Empty: all of them do.
     pub chosen: Vec<bool>,

@@ -52,11 +52,13 @@ struct Task {
 pub(super) const FINDING: usize = WHOLE / 4;
 
 impl Blocks {
-    /// Finds the blocks of a surface that takes `least` at the least. O(blocks), and what [`Samples::new`] costs.
+    /// Finds the blocks of a surface that takes `least` at the least. O(blocks), and what [`Samples::new`]
+    /// costs.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] and [`Error::Limit`] by the job's control, [`MeshError::TooMany`] for more vertices or triangles than 32 bits can number, [`Error::Damaged`],
-    /// [`Error::OutOfMemory`], and [`Error::Cancelled`].
+    /// [`Error::TooLarge`] and [`Error::Limit`] by the job's control, [`MeshError::TooMany`] for more
+    /// vertices or triangles than 32 bits can number, [`Error::Damaged`], [`Error::OutOfMemory`], and
+    /// [`Error::Cancelled`].
     pub fn find(
         samples: &Samples<'_>,
         least: &Least,

@@ -38,9 +38,10 @@ use alloc::vec::Vec;
 ///
 /// # Errors
 /// [`Error::Argument`] if the tree has PARTIAL cells and `resolve` is `None`, or if the frame is so far from
-/// the origin that doubles cannot tell its cells apart; [`MeshError::TooMany`](crate::error::MeshError::TooMany) for
-/// more than 2^32 − 1 vertices or triangles; [`Error::Damaged`]; [`Error::OutOfMemory`];
-/// [`Error::Cancelled`]; and with [`Resolve::Source`] what the solid refuses.
+/// the origin that doubles cannot tell its cells apart;
+/// [`MeshError::TooMany`](crate::error::MeshError::TooMany) for more than 2^32 − 1 vertices or triangles;
+/// [`Error::Damaged`]; [`Error::OutOfMemory`]; [`Error::Cancelled`]; and with [`Resolve::Source`] what the
+/// solid refuses.
 ///
 /// ```
 /// use leafless::{Control, Csg, FillRule, Frame, Rule, build, marching_cubes};
@@ -85,13 +86,15 @@ pub fn marching_cubes_reusing(
     in_memory(mesh.into_arrays(), tree, resolve, control)
 }
 
-/// The triangles that [`marching_cubes`] makes in one cell of the frame, and the vertices of these: those of the dual cells whose first
-/// sample lies there. The surfaces of all cells of a level are together that of the tree, each triangle once, and vertices at one place
-/// have the same coordinates to the bit. So a [sharded](crate::Shard) octree has its surface made cell by cell, each from its own
-/// shard and those of the up to seven neighbours towards +x, +y and +z: what lies further away does not matter.
+/// The triangles that [`marching_cubes`] makes in one cell of the frame, and the vertices of these: those of
+/// the dual cells whose first sample lies there. The surfaces of all cells of a level are together that of
+/// the tree, each triangle once, and vertices at one place have the same coordinates to the bit. So a
+/// [sharded](crate::Shard) octree has its surface made cell by cell, each from its own shard and those of the
+/// up to seven neighbours towards +x, +y and +z: what lies further away does not matter.
 ///
 /// # Errors
-/// As [`marching_cubes`]; [`Error::Argument`] if the cell is none of the frame, or has less than 4³ finest cells.
+/// As [`marching_cubes`]; [`Error::Argument`] if the cell is none of the frame, or has less than 4³ finest
+/// cells.
 ///
 /// ```
 /// use leafless::surface::{Resolve, marching_cubes_in};

@@ -27,33 +27,35 @@ use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct DexelSurfaceReport {
-    /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the surface.
+    /// Edges between neighbouring centres of cells of which one lies inside: places where a ray crosses the
+    /// surface.
     pub crossings: u64,
     /// Crossings on edges that the ray crosses more than once: what is thinner than a cell is lost there.
     pub several: u64,
     /// Crossings that were put in the middle of their edges, because the model has no rays along these.
     pub without_rays: u64,
-    /// Crossings that were put in the middle of their edges, because the ray along it does not leave the solid there: the
-    /// directions of the model disagree.
+    /// Crossings that were put in the middle of their edges, because the ray along it does not leave the
+    /// solid there: the directions of the model disagree.
     pub disagreeing: u64,
     /// Crossings of which no normal is known. (By dual contouring alone.)
     pub without_normals: u64,
-    /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring alone.)
+    /// Vertices with no normal at any of their crossings, which are the mean of these. (By dual contouring
+    /// alone.)
     pub means: u64,
     /// Vertices that would fit their planes better outside of their cells. (By dual contouring alone.)
     pub clamped: u64,
-    /// Bodies that the mesh does not show at all. A body is a set of centres of cells that lie inside and hang together, each
-    /// with the next one along an axis. It vanishes if none of its crossings has a triangle: its surface lies nearer to its
-    /// centres than doubles can tell, so that its vertices lie at these, and each of its triangles has two corners at one
-    /// place.
+    /// Bodies that the mesh does not show at all. A body is a set of centres of cells that lie inside and
+    /// hang together, each with the next one along an axis. It vanishes if none of its crossings has a
+    /// triangle: its surface lies nearer to its centres than doubles can tell, so that its vertices lie at
+    /// these, and each of its triangles has two corners at one place.
     pub vanished: u64,
-    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is thinner than the
-    /// lattice there is no part of any body, and no crossing tells of it.
+    /// Intervals in all directions that hold no centre of a cell, those that touch counted as one: what is
+    /// thinner than the lattice there is no part of any body, and no crossing tells of it.
     pub without_centres: u64,
 }
 
-/// The surface of a solid by dual contouring, with sharp edges and corners: [`dual_contouring_dexels`] of a tri-dexel
-/// model with normals, which is made of the solid on `frame` and dropped afterwards.
+/// The surface of a solid by dual contouring, with sharp edges and corners: [`dual_contouring_dexels`] of a
+/// tri-dexel model with normals, which is made of the solid on `frame` and dropped afterwards.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, surface::dual_contouring_solid};
@@ -78,24 +80,26 @@ pub fn dual_contouring_solid<S: Solid>(
     control.share([0.6, 1.0], |control| dual_contouring_dexels(model.view(), control))
 }
 
-/// The surface of a tri-dexel model by marching cubes: a closed mesh, with vertices where rays cross the solid's surface.
+/// The surface of a tri-dexel model by marching cubes: a closed mesh, with vertices where rays cross the
+/// solid's surface.
 ///
-/// Samples are the centres of cells, as [`octree_from_dexels`](crate::op::octree_from_dexels) has them; everything outside of the
-/// universe is outside. On each edge between two neighbouring centres of which one lies inside, there is one vertex. It
-/// lies where the ray along this edge leaves the solid, nearest to the inside centre. The report counts edges that the
-/// ray crosses more often, and edges on which there is no such place: because the model has no rays in this direction,
-/// or because its directions disagree. There the vertex lies half-way.
+/// Samples are the centres of cells, as [`octree_from_dexels`](crate::op::octree_from_dexels) has them;
+/// everything outside of the universe is outside. On each edge between two neighbouring centres of which one
+/// lies inside, there is one vertex. It lies where the ray along this edge leaves the solid, nearest to the
+/// inside centre. The report counts edges that the ray crosses more often, and edges on which there is no
+/// such place: because the model has no rays in this direction, or because its directions disagree. There the
+/// vertex lies half-way.
 ///
-/// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Vertices that lie at one place, which is a
-/// centre on the surface, are one vertex, and triangles without area are dropped: there more than two triangles may meet
-/// on an edge, in balance. Else every edge belongs to exactly two triangles. A body that loses all of its triangles so
-/// [is counted](DexelSurfaceReport::vanished), and so is what [holds no centre](DexelSurfaceReport::without_centres) and is
-/// not seen.
+/// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Vertices that lie at one place,
+/// which is a centre on the surface, are one vertex, and triangles without area are dropped: there more than
+/// two triangles may meet on an edge, in balance. Else every edge belongs to exactly two triangles. A body
+/// that loses all of its triangles so [is counted](DexelSurfaceReport::vanished), and so is what [holds no
+/// centre](DexelSurfaceReport::without_centres) and is not seen.
 ///
 /// Edges and corners of the solid are cut off by up to a cell; [`dual_contouring_dexels`] keeps them.
 ///
-/// O(rays + intervals + octree + mesh), with the octree of [`octree_from_dexels`](crate::op::octree_from_dexels). The result is the
-/// same for any number of threads.
+/// O(rays + intervals + octree + mesh), with the octree of
+/// [`octree_from_dexels`](crate::op::octree_from_dexels). The result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if the frame is so far from the origin that doubles cannot tell its cells apart;
@@ -161,25 +165,28 @@ pub fn marching_cubes_dexels(
     })
 }
 
-/// The surface of a tri-dexel model by dual contouring: a closed mesh that keeps the solid's edges and corners.
+/// The surface of a tri-dexel model by dual contouring: a closed mesh that keeps the solid's edges and
+/// corners.
 ///
-/// Samples are those of [`marching_cubes_dexels`], and the crossings are found as there. In each cube between eight
-/// centres the mesh has a vertex for each sheet of the surface. It lies where the planes at the sheet's crossings, with
-/// the normals that the model stores, fit best (their quadratic error function has its minimum), and never outside of the
-/// cube. On a smooth surface that is near the mean of the crossings, on an edge of the solid it is on the edge, and
-/// where three faces meet at the corner. Two faces that meet at less than about 11 degrees count as smooth. Crossings of
-/// which no normal is known count for the mean alone; so a model without normals gives a smooth mesh.
+/// Samples are those of [`marching_cubes_dexels`], and the crossings are found as there. In each cube between
+/// eight centres the mesh has a vertex for each sheet of the surface. It lies where the planes at the sheet's
+/// crossings, with the normals that the model stores, fit best (their quadratic error function has its
+/// minimum), and never outside of the cube. On a smooth surface that is near the mean of the crossings, on an
+/// edge of the solid it is on the edge, and where three faces meet at the corner. Two faces that meet at less
+/// than about 11 degrees count as smooth. Crossings of which no normal is known count for the mean alone; so
+/// a model without normals gives a smooth mesh.
 ///
-/// For each crossing there is a quadrilateral between the four cubes around, which is split by the diagonal that leads
-/// nearer to the crossing. (Ju, Losasso, Schaefer and Warren 2002; one vertex for each sheet after Nielson 2004 and
-/// Schaefer, Ju and Warren 2007.)
+/// For each crossing there is a quadrilateral between the four cubes around, which is split by the diagonal
+/// that leads nearer to the crossing. (Ju, Losasso, Schaefer and Warren 2002; one vertex for each sheet after
+/// Nielson 2004 and Schaefer, Ju and Warren 2007.)
 ///
-/// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Every edge belongs to exactly two triangles,
-/// in opposite directions. For that there are some more vertices where two sheets come near each other: on a face between
-/// two cubes with two inside centres at the ends of a diagonal, if the sheets around both hang together in both cubes.
-/// Vertices that lie at one place, as on the common face of two cubes, are one vertex, and triangles without area are
-/// dropped: there more than two triangles may meet on an edge, in balance. Triangles may intersect. A body is not shown, and
-/// counted, as by [`marching_cubes_dexels`]; a body of one centre is else a cuboid around it.
+/// The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Every edge belongs to exactly
+/// two triangles, in opposite directions. For that there are some more vertices where two sheets come near
+/// each other: on a face between two cubes with two inside centres at the ends of a diagonal, if the sheets
+/// around both hang together in both cubes. Vertices that lie at one place, as on the common face of two
+/// cubes, are one vertex, and triangles without area are dropped: there more than two triangles may meet on
+/// an edge, in balance. Triangles may intersect. A body is not shown, and counted, as by
+/// [`marching_cubes_dexels`]; a body of one centre is else a cuboid around it.
 ///
 /// Time as [`marching_cubes_dexels`]. The result is the same for any number of threads.
 ///

@@ -10,13 +10,13 @@ use crate::octree::{Proof, Tag};
 use crate::solid::{Classifier, Fingerprint, MeshSolid, Motion, Solid, WholeQuestion};
 use alloc::sync::Arc;
 
-/// A tri-dexel model as a solid: the region inside of the surface that [`marching_cubes_dexels`] finds. Cheap to
-/// clone.
+/// A tri-dexel model as a solid: the region inside of the surface that [`marching_cubes_dexels`] finds. Cheap
+/// to clone.
 ///
-/// It can be built on any frame, moved, queried, and taken into expressions. Its verdicts are exact about this surface.
-/// Of the solid that the model was made from they prove nothing, since rays see nothing of what lies between them:
-/// [`Classifier::proof`] says so, and measures and other certified queries then tell what is certain, which is little.
-/// [`as_truth`](DexelSolid::as_truth) takes the surface itself for the solid.
+/// It can be built on any frame, moved, queried, and taken into expressions. Its verdicts are exact about
+/// this surface. Of the solid that the model was made from they prove nothing, since rays see nothing of what
+/// lies between them: [`Classifier::proof`] says so, and measures and other certified queries then tell what
+/// is certain, which is little. [`as_truth`](DexelSolid::as_truth) takes the surface itself for the solid.
 ///
 /// ```
 /// use leafless::{
@@ -52,15 +52,16 @@ impl DexelSolid {
     /// The solid of a model. The surface is extracted once, here; the model is not kept.
     ///
     /// # Errors
-    /// As [`marching_cubes_dexels`], and [`MeshError::Empty`](crate::error::MeshError::Empty) if no centre of a cell lies
-    /// inside.
+    /// As [`marching_cubes_dexels`], and [`MeshError::Empty`](crate::error::MeshError::Empty) if no centre of
+    /// a cell lies inside.
     pub fn new(model: &TriDexelRef<'_>, control: &Control<'_>) -> Result<DexelSolid, Error> {
         let (mesh, report) = marching_cubes_dexels(model, control)?;
         let surface = MeshSolid::new(mesh, FillRule::NonZero)?;
         Ok(DexelSolid { surface, report, proof: Proof::new(false, false) })
     }
 
-    /// The same solid, its surface taken for the truth: what it says is proven of the region inside of that surface.
+    /// The same solid, its surface taken for the truth: what it says is proven of the region inside of that
+    /// surface.
     #[must_use]
     pub fn as_truth(&self) -> DexelSolid {
         DexelSolid { proof: Proof::CERTIFIED, ..self.clone() }

@@ -1,14 +1,14 @@
 //! Dual contouring: a vertex in each cube between eight samples, where the planes at its crossings meet.
 //!
-//! Whoever has samples and, for each cut edge, a crossing with a normal gets a mesh here: rays, expressions, meshes.
-//! Cubes are numbered block by block, in the order of their lowest samples; vertices loop by loop of each cube. The
-//! quadrilateral of a cut edge belongs to the lowest of the four cubes around the edge, in which the edge is the last
-//! one along its axis.
+//! Whoever has samples and, for each cut edge, a crossing with a normal gets a mesh here: rays, expressions,
+//! meshes. Cubes are numbered block by block, in the order of their lowest samples; vertices loop by loop of
+//! each cube. The quadrilateral of a cut edge belongs to the lowest of the four cubes around the edge, in
+//! which the edge is the last one along its axis.
 //!
-//! **Joints.** The sides of quadrilaterals lead from cube to cube. Where a face has two segments, and in both cubes
-//! beside it these belong to one loop each, two sides have the same ends, and four triangles would meet on them. Each of
-//! the two then gets a vertex of its own on the face, in the middle of its segment: a joint. So exactly two triangles
-//! meet on every edge. Joints are numbered behind all other vertices.
+//! **Joints.** The sides of quadrilaterals lead from cube to cube. Where a face has two segments, and in both
+//! cubes beside it these belong to one loop each, two sides have the same ends, and four triangles would meet
+//! on them. Each of the two then gets a vertex of its own on the face, in the middle of its segment: a joint.
+//! So exactly two triangles meet on every edge. Joints are numbered behind all other vertices.
 
 use super::blocks::{Block, Blocks, FINDING};
 use super::chunks;
@@ -317,8 +317,8 @@ impl Cube {
     }
 }
 
-/// The sides of the quadrilaterals along an axis, in cyclic order: the step to the lower one of the cubes, and the axis
-/// along which the other one lies.
+/// The sides of the quadrilaterals along an axis, in cyclic order: the step to the lower one of the cubes,
+/// and the axis along which the other one lies.
 #[inline(always)]
 fn sides(axis: usize) -> [(usize, usize); 4] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -494,8 +494,8 @@ impl Dual<'_> {
         }
     }
 
-    /// The vertex of the last edge of cube `c` along an axis in the cube that lies one step further along the axes of
-    /// `step`.
+    /// The vertex of the last edge of cube `c` along an axis in the cube that lies one step further along the
+    /// axes of `step`.
     #[inline(always)]
     fn vertex(&self, nodes: &[Option<usize>; 8], c: u32, axis: usize, step: usize) -> u32 {
         let (_, cube) = self.cubes.beside(self.blocks, nodes, c, step);
@@ -504,8 +504,8 @@ impl Dual<'_> {
         cube.vertex + u32::from(LOOPS[cube.configuration as usize].of_edge[edge])
     }
 
-    /// Whether the diagonal of a quadrilateral between its second and fourth corner is better than the other one: whether
-    /// its triangles meet the edge nearer to the crossing, or it is shorter.
+    /// Whether the diagonal of a quadrilateral between its second and fourth corner is better than the other
+    /// one: whether its triangles meet the edge nearer to the crossing, or it is shorter.
     fn turns(&self, axis: usize, crossing: [f64; 3], corners: [[f64; 3]; 4]) -> bool {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         let cell = self.lattice.cell();
@@ -543,8 +543,8 @@ fn split([p, q, r]: [u32; 3], joints: [Option<u32>; 2], put: &mut impl FnMut([u3
     }
 }
 
-/// How high above the origin the triangles of a quadrilateral with the diagonal from its first to its third corner lie.
-/// Its corners lie around the origin, as seen from above.
+/// How high above the origin the triangles of a quadrilateral with the diagonal from its first to its third
+/// corner lie. Its corners lie around the origin, as seen from above.
 fn height([p, q, r, s]: [[f64; 3]; 4]) -> Option<f64> {
     let cross = |a: [f64; 3], b: [f64; 3]| a[0] * b[1] - a[1] * b[0];
     // On the left of the diagonal lies the last corner.

@@ -36,8 +36,8 @@ pub(super) enum Said {
     },
 }
 
-/// What a model says of an edge between two centres of cells, one of which lies inside. Of the places where the ray
-/// leaves the solid it is the nearest to the inside sample.
+/// What a model says of an edge between two centres of cells, one of which lies inside. Of the places where
+/// the ray leaves the solid it is the nearest to the inside sample.
 pub(super) fn said(model: &TriDexelRef<'_>, edge: &Edge) -> Said {
     match &model.rays[edge.axis] {
         None => Said::NoRays,

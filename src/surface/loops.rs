@@ -1,8 +1,8 @@
 //! The loops of each configuration, computed when the library is compiled.
 //!
-//! In a dual cell the segments on its faces form loops, each of which bounds one disc ([`table`](super::table)). The
-//! dual surface has one vertex for each loop, so that sheets that pass through one cell stay apart. (Nielson 2004;
-//! Schaefer, Ju and Warren 2007.)
+//! In a dual cell the segments on its faces form loops, each of which bounds one disc
+//! ([`table`](super::table)). The dual surface has one vertex for each loop, so that sheets that pass through
+//! one cell stay apart. (Nielson 2004; Schaefer, Ju and Warren 2007.)
 
 use super::table::{ENDS, NONE, successors};
 
@@ -97,7 +97,8 @@ mod tests {
             assert_eq!(list.len(), edges - 2 * usize::from(loops.count), "{configuration}");
         }
         assert_eq!(LOOPS.iter().map(|loops| loops.count).max(), Some(4));
-        // Two inside corners of the lower face that are joined by way of the upper one; and all but two opposite ones.
+        // Two inside corners of the lower face that are joined by way of the upper one; and all but two
+        // opposite ones.
         assert_eq!((LOOPS[0b1011_1001].count, LOOPS[0b1011_1001].twice), (1, 1 << 4));
         assert!(LOOPS.iter().all(|loops| loops.twice == 0 || loops.count < 3));
     }

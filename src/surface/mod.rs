@@ -9,17 +9,19 @@
 //! memory is asked for.
 //!
 //! From the bottom up, each file uses only files named before it: `table` (marching cubes, cell by cell),
-//! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `size` (what is known
-//! of a surface beforehand), `blocks` (the walk), `lattice` (where samples lie), `chunks` (threads), `resolve` (undecided cells), `cubes` (marching
-//! cubes), `snapped` and `simple` (simple marching cubes), `plane`, `points`, `bon` (coplanar cells merged),
-//! `outline` (regions), `sweep` (their triangles), `published` (cells of several sizes as they are), `shrink`
-//! (coplanar shrink), `weld` (vertices at one place), `solid` (any
-//! solid), `volume` (samples of a field), `loops` (the sheets in a cube), `qef` (the point that fits planes best),
-//! `hermite` (crossings with normals, and how rays tell them), `vanished` (bodies without triangles), `dual` (dual contouring),
-//! `nets` (surface nets), `dexel` (tri-dexel models), `dexel_solid` (these as solids).
+//! `masks` (blocks as words), `key` (the order of blocks), `samples` (an octree as samples), `size` (what is
+//! known of a surface beforehand), `blocks` (the walk), `lattice` (where samples lie), `chunks` (threads),
+//! `resolve` (undecided cells), `cubes` (marching cubes), `snapped` and `simple` (simple marching cubes),
+//! `plane`, `points`, `bon` (coplanar cells merged), `outline` (regions), `sweep` (their triangles),
+//! `published` (cells of several sizes as they are), `shrink` (coplanar shrink), `weld` (vertices at one
+//! place), `solid` (any solid), `volume` (samples of a field), `loops` (the sheets in a cube), `qef` (the
+//! point that fits planes best), `hermite` (crossings with normals, and how rays tell them), `vanished`
+//! (bodies without triangles), `dual` (dual contouring), `nets` (surface nets), `dexel` (tri-dexel models),
+//! `dexel_solid` (these as solids).
 //!
-//! `boundary` goes another way: where a solid knows its surfaces, these are cut to the pieces that bound it, and nothing is sampled.
-//! `contour` is dual contouring with cells of several sizes, of any solid. `simplify` takes vertices out of meshes.
+//! `boundary` goes another way: where a solid knows its surfaces, these are cut to the pieces that bound it,
+//! and nothing is sampled. `contour` is dual contouring with cells of several sizes, of any solid. `simplify`
+//! takes vertices out of meshes.
 //!
 //! Solids that are no octrees are sampled at the corners of the lattice, as an octree whose cells have these
 //! corners as centres.

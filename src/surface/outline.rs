@@ -84,7 +84,8 @@ impl Outlines {
     /// ones have on their faces.
     ///
     /// # Errors
-    /// [`MeshError::TooMany`](crate::error::MeshError::TooMany), [`Error::OutOfMemory`] and [`Error::Cancelled`].
+    /// [`MeshError::TooMany`](crate::error::MeshError::TooMany), [`Error::OutOfMemory`] and
+    /// [`Error::Cancelled`].
     pub fn of(
         cells: &[Cell],
         bias: i32,

@@ -1,19 +1,20 @@
 //! The point that fits planes best: the minimum of a quadratic error function in a unit cube.
 //!
-//! Each plane is given by a point and a unit normal; the error of a place is the sum of the squares of its distances
-//! from all planes. (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002.) On a smooth surface
-//! the planes nearly coincide, and the minimum is found only across them: the eigenvectors of the normals' matrix with
-//! small eigenvalues are left out, and along these the place is that of the points' mean.
+//! Each plane is given by a point and a unit normal; the error of a place is the sum of the squares of its
+//! distances from all planes. (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002.) On
+//! a smooth surface the planes nearly coincide, and the minimum is found only across them: the eigenvectors
+//! of the normals' matrix with small eigenvalues are left out, and along these the place is that of the
+//! points' mean.
 
 use crate::lattice::axes;
 use crate::lattice::exact::sqrt;
 
-/// Eigenvalues below this part of the greatest one say nothing. Two planes of equal weight meet at an edge if their
-/// normals differ by more than 11.5 degrees.
+/// Eigenvalues below this part of the greatest one say nothing. Two planes of equal weight meet at an edge if
+/// their normals differ by more than 11.5 degrees.
 const LEAST: f64 = 0.01;
 
-/// How much stays of an eigenvalue that says nothing, as part of the greatest one, where the minimum lies outside of
-/// the cube: of places that fit the planes alike the one nearest to the mean is taken.
+/// How much stays of an eigenvalue that says nothing, as part of the greatest one, where the minimum lies
+/// outside of the cube: of places that fit the planes alike the one nearest to the mean is taken.
 const STAY: f64 = 1e-4;
 
 /// Planes of which a point is wanted.
@@ -103,8 +104,8 @@ impl Qef {
     }
 }
 
-/// The place in the unit cube at which (x − best)ᵀ M (x − best) is least. M is positive definite, so that there is one:
-/// on the inside of a face, of an edge, or at a corner, where the rest is solved for.
+/// The place in the unit cube at which (x − best)ᵀ M (x − best) is least. M is positive definite, so that
+/// there is one: on the inside of a face, of an edge, or at a corner, where the rest is solved for.
 fn in_cube(matrix: &[f64; 6], best: [f64; 3]) -> [f64; 3] {
     let m = full(matrix);
     let (mut least, mut at) = (f64::INFINITY, best.map(|c| if c > 0.5 { 1.0 } else { 0.0 }));

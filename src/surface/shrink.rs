@@ -22,8 +22,8 @@ use crate::octree::OctreeRef;
 use alloc::vec::Vec;
 
 /// The surface of an octree by simple marching cubes, *shrunk*: the same surface as that of
-/// [`simple_marching_cubes`](crate::surface::simple_marching_cubes) with far fewer triangles where it has plane parts. A block of cells has 44, however
-/// large it is.
+/// [`simple_marching_cubes`](crate::surface::simple_marching_cubes) with far fewer triangles where it has
+/// plane parts. A block of cells has 44, however large it is.
 ///
 /// All that lies in one plane becomes one region with straight edges, from corner to corner, and each region
 /// is cut into triangles without new vertices. Regions beside each other have the same edges between them. So
@@ -70,9 +70,9 @@ pub fn coplanar_shrink(
 /// The dual cells at the surface lie in an octree that branches on need. From the bottom up, the cells of a
 /// node become one if all of them have a *coplanar configuration*, one of the 54 that a plane with one of 13
 /// normals makes, and all lie in the same plane. A merged cell has the triangles of marching cubes, with
-/// vertices where the plane cuts its edges; others have those of [`simple_marching_cubes`](crate::surface::simple_marching_cubes). Where cells of several
-/// sizes meet, the smaller ones have vertices on the edges of the larger ones' triangles, and the mesh is
-/// open there.
+/// vertices where the plane cuts its edges; others have those of
+/// [`simple_marching_cubes`](crate::surface::simple_marching_cubes). Where cells of several sizes meet, the
+/// smaller ones have vertices on the edges of the larger ones' triangles, and the mesh is open there.
 ///
 /// The method is that of <https://github.com/chnhideyoshi/OctreeBaseSimplifiedMarchingCubes>, which has
 /// vertices at the outer samples ([`Snap::Fat`]).

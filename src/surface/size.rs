@@ -14,10 +14,11 @@ pub(super) struct Least {
 }
 
 impl Least {
-    /// Marching cubes: a vertex for each edge. A closed surface around one sample has six vertices and eight triangles,
-    /// and no closed surface has fewer triangles for its vertices.
+    /// Marching cubes: a vertex for each edge. A closed surface around one sample has six vertices and eight
+    /// triangles, and no closed surface has fewer triangles for its vertices.
     pub const CUBES: Least = Least { bytes: 24 + 4 * 12 / 3, edges_a_vertex: 1 };
-    /// Surface nets: two triangles for each edge, and a vertex for twelve edges at most, each of which is one in four cubes.
+    /// Surface nets: two triangles for each edge, and a vertex for twelve edges at most, each of which is one
+    /// in four cubes.
     pub const NETS: Least = Least { bytes: 24 + 24 / 3, edges_a_vertex: 3 };
     /// Vertices at samples, of which each is the end of six edges at most.
     pub const SAMPLES: Least = Least { bytes: 4, edges_a_vertex: 6 };
@@ -25,10 +26,11 @@ impl Least {
     pub const REGIONS: Least = Least { bytes: 0, edges_a_vertex: u64::MAX };
 }
 
-/// Refuses a surface that is known to be larger than the caller allows, or than numbers of vertices reach. `block` is what
-/// a block of samples takes, which has 192 edges at the most.
+/// Refuses a surface that is known to be larger than the caller allows, or than numbers of vertices reach.
+/// `block` is what a block of samples takes, which has 192 edges at the most.
 ///
-/// O(elements of the tree). Edges are counted only where the cells alone, each with all of its faces, could have too many.
+/// O(elements of the tree). Edges are counted only where the cells alone, each with all of its faces, could
+/// have too many.
 pub(super) fn afford(
     samples: &Samples<'_>,
     least: &Least,
@@ -60,8 +62,8 @@ fn most_edges(tree: &OctreeRef<'_>, partial: bool) -> u64 {
     })
 }
 
-/// How many edges between neighbouring samples are cut, of those in the box of the first `end` samples on each axis. No
-/// fewer are, counting those to what lies beyond the box.
+/// How many edges between neighbouring samples are cut, of those in the box of the first `end` samples on
+/// each axis. No fewer are, counting those to what lies beyond the box.
 fn cut_edges(tree: &OctreeRef<'_>, partial: bool, end: u32) -> u64 {
     // Around the universe everything is outside.
     let tree = OctreeRef { exterior: Tag::Empty, ..*tree };

@@ -32,15 +32,15 @@ pub enum VertexPlacement {
     Midpoint,
     /// Where the edge crosses the solid's surface. If it does so several times, at one of them.
     ///
-    /// The solid is asked for the crossing ([`Question::Crossing`](crate::solid::Question::Crossing)). If it cannot
-    /// tell, cells along the edge are split, down to the depth of 20, and their verdicts and slabs narrow
-    /// down where the crossing is. With slabs, as half-spaces, CSG and meshes know them, it is found to
-    /// rounding in a few steps; without, to a finest cell of depth 20 or somewhat more.
+    /// The solid is asked for the crossing ([`Question::Crossing`](crate::solid::Question::Crossing)). If it
+    /// cannot tell, cells along the edge are split, down to the depth of 20, and their verdicts and slabs
+    /// narrow down where the crossing is. With slabs, as half-spaces, CSG and meshes know them, it is found
+    /// to rounding in a few steps; without, to a finest cell of depth 20 or somewhat more.
     ///
     /// Vertices that then lie at one place, which is a sample, are one vertex, and triangles without area are
-    /// dropped. Faces that lie in planes of the lattice come out exactly there; edges between them are cut off
-    /// by one cell where samples on both faces lie outside. Where the solid has no thickness at a sample, the
-    /// mesh is closed and balanced, but more than two triangles may meet on an edge.
+    /// dropped. Faces that lie in planes of the lattice come out exactly there; edges between them are cut
+    /// off by one cell where samples on both faces lie outside. Where the solid has no thickness at a sample,
+    /// the mesh is closed and balanced, but more than two triangles may meet on an edge.
     Crossing,
 }
 
@@ -107,7 +107,8 @@ pub fn marching_cubes_solid<S: Solid>(
 }
 
 /// The surface of a solid by simple marching cubes, sampled as by [`marching_cubes_solid`]: its vertices are
-/// corners of the lattice, or of cells beside the universe. Else as [`simple_marching_cubes`](crate::surface::simple_marching_cubes).
+/// corners of the lattice, or of cells beside the universe. Else as
+/// [`simple_marching_cubes`](crate::surface::simple_marching_cubes).
 ///
 /// # Errors
 /// As [`marching_cubes_solid`].

@@ -1,8 +1,8 @@
 //! Bodies of which a mesh has no triangle.
 //!
-//! Vertices that lie at one place are one vertex, and triangles without area are dropped. A body whose surface lies nearer
-//! to its centres than doubles can tell loses all of its triangles so: its vertices lie at its centres, and for a body of one
-//! centre these are one place.
+//! Vertices that lie at one place are one vertex, and triangles without area are dropped. A body whose
+//! surface lies nearer to its centres than doubles can tell loses all of its triangles so: its vertices lie
+//! at its centres, and for a body of one centre these are one place.
 
 use super::blocks::Blocks;
 use super::solid::edges;
@@ -23,8 +23,9 @@ enum Centre {
     Met(u32),
 }
 
-/// How many bodies have no triangle: sets of inside centres that hang together along edges of the lattice, none of whose
-/// crossings has one. `covered` says of each crossing, in the order of the cut edges, whether it has a triangle.
+/// How many bodies have no triangle: sets of inside centres that hang together along edges of the lattice,
+/// none of whose crossings has one. `covered` says of each crossing, in the order of the cut edges, whether
+/// it has a triangle.
 ///
 /// O(crossings), and O(log intervals of a ray) for each crossing without a triangle.
 ///

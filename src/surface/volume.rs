@@ -22,21 +22,23 @@ use crate::walk::Edge;
 use alloc::vec::Vec;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// The surface of a volume by marching cubes, with vertices where the field, interpolated linearly between neighbouring
-/// samples, leaves the band ([`Volume::crossing_between`]). For samples of a smooth function, vertices lie on the surface
-/// to second order in the spacing.
+/// The surface of a volume by marching cubes, with vertices where the field, interpolated linearly between
+/// neighbouring samples, leaves the band ([`Volume::crossing_between`]). For samples of a smooth function,
+/// vertices lie on the surface to second order in the spacing.
 ///
-/// Samples are the centres of voxels, which need not be cubes; everything beyond the grid is outside, so that the mesh
-/// is closed, with vertices in the outer faces of the grid. Between bits, and where a sample is infinite or not a number,
-/// a vertex lies half-way. The mesh is oriented as that of [`marching_cubes`](crate::marching_cubes). Vertices that lie at
-/// one place, which is a sample on the surface, are one vertex, and triangles without area are dropped: there more than
-/// two triangles may meet on an edge, in balance.
+/// Samples are the centres of voxels, which need not be cubes; everything beyond the grid is outside, so that
+/// the mesh is closed, with vertices in the outer faces of the grid. Between bits, and where a sample is
+/// infinite or not a number, a vertex lies half-way. The mesh is oriented as that of
+/// [`marching_cubes`](crate::marching_cubes). Vertices that lie at one place, which is a sample on the
+/// surface, are one vertex, and triangles without area are dropped: there more than two triangles may meet on
+/// an edge, in balance.
 ///
 /// O(n / 64 + surface) for n samples. The result is the same for any number of threads.
 ///
 /// # Errors
 /// [`Error::Argument`] if the grid is so far from the origin that doubles cannot tell its voxels apart;
-/// [`MeshError::TooMany`] for more than 2^32 − 1 vertices or triangles; [`Error::OutOfMemory`]; [`Error::Cancelled`].
+/// [`MeshError::TooMany`] for more than 2^32 − 1 vertices or triangles; [`Error::OutOfMemory`];
+/// [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Volume, solid::{Band, VoxelGrid}, surface::marching_cubes_volume};
@@ -57,14 +59,15 @@ pub fn marching_cubes_volume(volume: &Volume<'_>, control: &Control<'_>) -> Resu
 }
 
 /// The surface of an octree whose finest cells are voxels of a volume, as that of
-/// [`marching_cubes`](crate::marching_cubes), with the vertices of [`marching_cubes_volume`] where the volume's own
-/// surface passes between two cells. Elsewhere, as where the octree was cut by set operations, they lie half-way.
+/// [`marching_cubes`](crate::marching_cubes), with the vertices of [`marching_cubes_volume`] where the
+/// volume's own surface passes between two cells. Elsewhere, as where the octree was cut by set operations,
+/// they lie half-way.
 ///
 /// `resolve` says what PARTIAL cells count as; `None` will do for trees without any.
 ///
 /// # Errors
-/// [`Error::Argument`] if the finest cells are no voxels of the volume's lattice ([`VoxelGrid::frame`] makes a frame of
-/// which they are), and as [`marching_cubes`](crate::marching_cubes).
+/// [`Error::Argument`] if the finest cells are no voxels of the volume's lattice ([`VoxelGrid::frame`] makes
+/// a frame of which they are), and as [`marching_cubes`](crate::marching_cubes).
 pub fn marching_cubes_with_volume(
     tree: &OctreeRef<'_>,
     volume: &Volume<'_>,
@@ -160,7 +163,8 @@ impl Places<'_> {
         if x.abs() < SMALLEST { 0.0 } else { x }
     }
 
-    /// Where an edge is crossed, from the sample `at` on; half-way if the volume does not cross it in this sense.
+    /// Where an edge is crossed, from the sample `at` on; half-way if the volume does not cross it in this
+    /// sense.
     fn crossing(&self, edge: &Edge, at: [i64; 3]) -> f64 {
         // (What is beyond such numbers is beyond the grid.)
         let at = at.map(|a| i32::try_from(a).unwrap_or(i32::MAX - 1));

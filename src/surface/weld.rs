@@ -5,8 +5,8 @@ use crate::memory;
 use crate::mesh::TriangleMesh;
 use alloc::vec::Vec;
 
-/// The mesh with equal vertices made one, without triangles that have lost their area by that, and without vertices that
-/// are then in no triangle. The others keep their order.
+/// The mesh with equal vertices made one, without triangles that have lost their area by that, and without
+/// vertices that are then in no triangle. The others keep their order.
 ///
 /// # Errors
 /// As [`TriangleMesh::new`].

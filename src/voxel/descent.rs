@@ -48,8 +48,8 @@ impl VoxelRecordsRef<'_> {
         })
     }
 
-    /// Hands over all records: those of a cell octant by octant in the order that `order` gives, a refined one
-    /// before those that it consists of. No two records are compared. O(n · levels).
+    /// Hands over all records: those of a cell octant by octant in the order that `order` gives, a refined
+    /// one before those that it consists of. No two records are compared. O(n · levels).
     pub(super) fn visit(
         &self,
         part: &Part,

@@ -13,8 +13,8 @@ use alloc::vec::Vec;
 /// A row of voxels along y that are all of one kind and of one material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LongVoxel {
-    /// Its first voxel. A voxel (x, y, z) lies between the centres of the cells x − 1 and x, and likewise on the other
-    /// axes; so its indices go from 0 to the cells of an axis, that number included.
+    /// Its first voxel. A voxel (x, y, z) lies between the centres of the cells x − 1 and x, and likewise on
+    /// the other axes; so its indices go from 0 to the cells of an axis, that number included.
     pub first: [u32; 3],
     /// How many voxels it consists of.
     pub length: u32,
@@ -49,8 +49,8 @@ pub struct DexelVoxels {
 }
 
 impl DexelVoxels {
-    /// The rows of voxels that do not lie outside: by z, then by x, then by y. Two that follow each other along y differ
-    /// in kind or in material.
+    /// The rows of voxels that do not lie outside: by z, then by x, then by y. Two that follow each other
+    /// along y differ in kind or in material.
     pub fn list(&self) -> &[LongVoxel] {
         &self.list
     }
@@ -61,21 +61,22 @@ impl DexelVoxels {
     }
 }
 
-/// The voxels of a tri-dexel model, as Gao, Zhang and Hou have them (*DEXEL model of polyhedrons and boolean operations*,
-/// 2007): the rays of three directions cut space into voxels whose corners are the centres of cells. A voxel lies inside
-/// if all of its eight corners do, outside if none does, and else on the boundary: those are the voxels in which
-/// [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) makes triangles. Centres outside of the universe lie
-/// outside. Voxels that do not lie outside are merged along y, between four neighbouring rays, as far as their kind and
-/// their material are the same.
+/// The voxels of a tri-dexel model, as Gao, Zhang and Hou have them (*DEXEL model of polyhedrons and boolean
+/// operations*, 2007): the rays of three directions cut space into voxels whose corners are the centres of
+/// cells. A voxel lies inside if all of its eight corners do, outside if none does, and else on the boundary:
+/// those are the voxels in which [`marching_cubes_dexels`](crate::surface::marching_cubes_dexels) makes
+/// triangles. Centres outside of the universe lie outside. Voxels that do not lie outside are merged along y,
+/// between four neighbouring rays, as far as their kind and their material are the same.
 ///
-/// The material of a voxel is that of the model at the voxel's first corner that lies inside. Corners are counted with x
-/// running fastest and z slowest. If the model stores no materials it is 0. Its colour is the one that `colours` has for the
-/// material, at the place of the material's number; materials beyond are grey (128, 128, 128, 255).
+/// The material of a voxel is that of the model at the voxel's first corner that lies inside. Corners are
+/// counted with x running fastest and z slowest. If the model stores no materials it is 0. Its colour is the
+/// one that `colours` has for the material, at the place of the material's number; materials beyond are grey
+/// (128, 128, 128, 255).
 ///
 /// Which centres lie inside is what [`TriDexelRef::contains_cell`] says.
 ///
-/// O(rays of the window + blocks + rows), for blocks of 64³ cells in which centres lie inside, and O(log) for each voxel
-/// that does not lie outside if the model stores materials; by the calling thread.
+/// O(rays of the window + blocks + rows), for blocks of 64³ cells in which centres lie inside, and O(log) for
+/// each voxel that does not lie outside if the model stores materials; by the calling thread.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`], [`Error::Cancelled`].
@@ -198,8 +199,9 @@ struct Layer<'a> {
     z: u32,
 }
 
-/// Hands out, by z, x and y, the words of voxels of which any has a corner inside: their place along x, the number of the
-/// word along y, their place along z, and which of the voxels have any corner inside, and which all.
+/// Hands out, by z, x and y, the words of voxels of which any has a corner inside: their place along x, the
+/// number of the word along y, their place along z, and which of the voxels have any corner inside, and which
+/// all.
 fn each_word(
     model: &TriDexelRef<'_>,
     control: &Control<'_>,

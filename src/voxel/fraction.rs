@@ -12,9 +12,10 @@ use crate::walk::Trail;
 use alloc::vec::Vec;
 
 impl VoxelRecordsRef<'_> {
-    /// Which part of each voxel is solid, 0 to 1: as a volume's [weights](crate::render::VolumeLayer::weights). Inside voxels have 1,
-    /// outside and refined ones 0. Of a boundary voxel it is what `solid` knows of its moments there, or the middle between
-    /// what its slabs enclose; ½ where the solid knows neither. One thread; O(records · levels).
+    /// Which part of each voxel is solid, 0 to 1: as a volume's
+    /// [weights](crate::render::VolumeLayer::weights). Inside voxels have 1, outside and refined ones 0. Of a
+    /// boundary voxel it is what `solid` knows of its moments there, or the middle between what its slabs
+    /// enclose; ½ where the solid knows neither. One thread; O(records · levels).
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, build, voxel::{VoxelOptions, VoxelRecords}};

@@ -10,10 +10,11 @@ use crate::octree::{Octree, Proof, Tag};
 use crate::op::{Rule, build};
 use crate::solid::{Classifier, FreeParts, OneByOne, Question, Solid, Verdict, WholeQuestion, Worker};
 
-/// Records as a solid on their own universe: inside voxels are FULL, outside voxels and what no record speaks of
-/// are EMPTY, boundary voxels are what one asks for.
+/// Records as a solid on their own universe: inside voxels are FULL, outside voxels and what no record speaks
+/// of are EMPTY, boundary voxels are what one asks for.
 ///
-/// Its verdicts prove what the records do ([`VoxelRecordsRef::proof`]), less what boundary voxels are taken for:
+/// Its verdicts prove what the records do ([`VoxelRecordsRef::proof`]), less what boundary voxels are taken
+/// for:
 ///
 /// | boundary voxels as | FULL | EMPTY |
 /// |---|---|---|
@@ -74,10 +75,10 @@ impl<'a> VoxelSolid<'a> {
 }
 
 impl VoxelRecordsRef<'_> {
-    /// The octree that the records speak of, to the depth of their frame. Records of an octree give that octree
-    /// again, as far as they went into it: cells that were split for an attribute merge, and values are left
-    /// behind. `boundary` is what boundary voxels become: PARTIAL for those that are not decided, FULL for those
-    /// of a binary octree.
+    /// The octree that the records speak of, to the depth of their frame. Records of an octree give that
+    /// octree again, as far as they went into it: cells that were split for an attribute merge, and values
+    /// are left behind. `boundary` is what boundary voxels become: PARTIAL for those that are not decided,
+    /// FULL for those of a binary octree.
     ///
     /// The exterior is what is known of the records, and cells prove what [`VoxelSolid`] says.
     ///

@@ -25,15 +25,15 @@ struct Range {
 }
 
 impl VoxelRecordsRef<'_> {
-    /// The records under a symmetry about the centre of their universe, and then an offset of whole finest cells, on the
-    /// same lattice. Exact. O(n · levels + m log m) for m records of the result.
+    /// The records under a symmetry about the centre of their universe, and then an offset of whole finest
+    /// cells, on the same lattice. Exact. O(n · levels + m log m) for m records of the result.
     ///
-    /// A record whose image is no cell becomes the largest cells that make its image up; each has the record's kind and
-    /// value. What is moved out of the universe is cut off. No record speaks of what comes in from outside of it. A
-    /// refined voxel is left out if its image is no cell of the universe.
+    /// A record whose image is no cell becomes the largest cells that make its image up; each has the
+    /// record's kind and value. What is moved out of the universe is cut off. No record speaks of what comes
+    /// in from outside of it. A refined voxel is left out if its image is no cell of the universe.
     ///
-    /// The result [proves](Self::proof) of EMPTY what the records do only if the space around their universe is EMPTY. If
-    /// inside or boundary voxels are cut off, the space around is not known any more.
+    /// The result [proves](Self::proof) of EMPTY what the records do only if the space around their universe
+    /// is EMPTY. If inside or boundary voxels are cut off, the space around is not known any more.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`], and what `control` asks for: its limit of bytes holds for the arrays.
@@ -104,8 +104,8 @@ impl Range {
         }
     }
 
-    /// Hands out the largest cells in `cell` that make up what of the range lies there. The recursion is as deep as the
-    /// lattice, 20 levels at the most.
+    /// Hands out the largest cells in `cell` that make up what of the range lies there. The recursion is as
+    /// deep as the lattice, 20 levels at the most.
     fn cut(
         &self,
         cell: Cell,

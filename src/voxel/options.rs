@@ -9,12 +9,13 @@ use crate::octree::OctreeRef;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum VoxelBoundary {
     /// Cells of the boundary depth that are cut further there, and cells that are not decided: where the
-    /// surface may go through. A surface that lies in a plane of the lattice goes through no cell, and a binary
-    /// octree has no other.
+    /// surface may go through. A surface that lies in a plane of the lattice goes through no cell, and a
+    /// binary octree has no other.
     #[default]
     Undecided,
-    /// These, and inside cells of the boundary depth that touch an outside cell with a face: an inside cell that
-    /// does is split down to the boundary depth. Faces of the universe count if the solid is known to end in it.
+    /// These, and inside cells of the boundary depth that touch an outside cell with a face: an inside cell
+    /// that does is split down to the boundary depth. Faces of the universe count if the solid is known to
+    /// end in it.
     Touching,
 }
 
@@ -46,8 +47,8 @@ impl VoxelOptions {
         VoxelOptions::default()
     }
 
-    /// The level of boundary voxels: what is cut there is not looked into. Without it, and beyond the octree's
-    /// depth, it is the octree's depth.
+    /// The level of boundary voxels: what is cut there is not looked into. Without it, and beyond the
+    /// octree's depth, it is the octree's depth.
     #[must_use]
     pub fn boundary_depth(self, depth: u8) -> VoxelOptions {
         VoxelOptions { boundary_depth: Some(depth), ..self }
@@ -71,8 +72,8 @@ impl VoxelOptions {
         VoxelOptions { refined, ..self }
     }
 
-    /// How finely inside voxels follow the attribute: they are split until they are
-    /// [fine](Detail::is_fine). Those next to the boundary may be smaller. Boundary voxels are not split for it.
+    /// How finely inside voxels follow the attribute: they are split until they are [fine](Detail::is_fine).
+    /// Those next to the boundary may be smaller. Boundary voxels are not split for it.
     #[must_use]
     pub fn detail(self, detail: Detail) -> VoxelOptions {
         VoxelOptions { detail: Some(detail), ..self }

@@ -32,8 +32,9 @@ impl Viewpoint {
 }
 
 impl VoxelRecordsRef<'_> {
-    /// The indices of the records from front to back: a voxel comes before every other one of which it hides a
-    /// part. Refined voxels are left out, and what they consist of is there. From back to front it is the reverse.
+    /// The indices of the records from front to back: a voxel comes before every other one of which it hides
+    /// a part. Refined voxels are left out, and what they consist of is there. From back to front it is the
+    /// reverse.
     ///
     /// The octants of a cell are put in order, and no two records are compared: an octant on the near side of
     /// the planes through the cell's centre hides those on the far side, never the other way round.
@@ -50,8 +51,8 @@ impl VoxelRecordsRef<'_> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] if the direction is zero or a number is not finite (of an eye also one beyond ±2^256
-    /// or, but zero, below 2^-256), [`Error::OutOfMemory`], [`Error::Cancelled`].
+    /// [`Error::Argument`] if the direction is zero or a number is not finite (of an eye also one beyond
+    /// ±2^256 or, but zero, below 2^-256), [`Error::OutOfMemory`], [`Error::Cancelled`].
     pub fn depth_order(&self, from: &Viewpoint, control: &Control<'_>) -> Result<Vec<u64>, Error> {
         from.check()?;
         let leaves = self.len() as u64 - self.count(VoxelKind::Refined);

@@ -12,7 +12,8 @@ pub enum VoxelKind {
     Outside = 0,
     /// It lies inside.
     Inside = 1,
-    /// The boundary of the solid goes through it, or along it: see [`VoxelBoundary`](crate::voxel::VoxelBoundary).
+    /// The boundary of the solid goes through it, or along it: see
+    /// [`VoxelBoundary`](crate::voxel::VoxelBoundary).
     Boundary = 2,
     /// It is refined: it consists of the smaller voxels that follow it.
     Refined = 3,

@@ -34,8 +34,8 @@ pub struct VoxelRecords {
 ///
 /// The records lie in four arrays: the numbers of the [linear codes](LinearCode), levels, the numbers of the
 /// [kinds](VoxelKind), and values, as many numbers a record as the values have components. A record without
-/// value has NaN in each. Records are sorted by code, and of two with one code the coarser comes first. Voxels
-/// are disjoint, except that a [refined](VoxelKind::Refined) one is followed by those in it.
+/// value has NaN in each. Records are sorted by code, and of two with one code the coarser comes first.
+/// Voxels are disjoint, except that a [refined](VoxelKind::Refined) one is followed by those in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VoxelRecordsRef<'a> {
     frame: Frame,
@@ -68,8 +68,8 @@ impl VoxelRecords {
     /// [built](crate::build) into. O(records).
     ///
     /// # Errors
-    /// As [`Voxels::new`], what the attribute reports, [`Error::OutOfMemory`], and what `control` asks for: its
-    /// limit of bytes holds for the arrays.
+    /// As [`Voxels::new`], what the attribute reports, [`Error::OutOfMemory`], and what `control` asks for:
+    /// its limit of bytes holds for the arrays.
     pub fn of(
         tree: &OctreeRef<'_>,
         options: &VoxelOptions,
@@ -107,9 +107,9 @@ impl VoxelRecords {
         Ok(records)
     }
 
-    /// Records from arrays, as [`VoxelRecordsRef`] describes them. The exterior and what boundary voxels are is
-    /// not known, and nothing is proven, until somebody says so: [`with_exterior`](Self::with_exterior) and
-    /// [`with_boundary`](Self::with_boundary).
+    /// Records from arrays, as [`VoxelRecordsRef`] describes them. The exterior and what boundary voxels are
+    /// is not known, and nothing is proven, until somebody says so: [`with_exterior`](Self::with_exterior)
+    /// and [`with_boundary`](Self::with_boundary).
     ///
     /// # Errors
     /// As [`VoxelRecordsRef::new`].
@@ -136,9 +136,9 @@ impl VoxelRecords {
         })
     }
 
-    /// The same records, of which this is known: the tag of the space outside of the universe (BRANCH counts as
-    /// PARTIAL), and what voxels prove ([`VoxelRecordsRef::proof`]). Only a list that is complete may say that
-    /// EMPTY is proven: whoever leaves out or changes records of a solid must take that back.
+    /// The same records, of which this is known: the tag of the space outside of the universe (BRANCH counts
+    /// as PARTIAL), and what voxels prove ([`VoxelRecordsRef::proof`]). Only a list that is complete may say
+    /// that EMPTY is proven: whoever leaves out or changes records of a solid must take that back.
     #[must_use]
     pub fn with_exterior(self, exterior: Tag, proof: Proof) -> VoxelRecords {
         let exterior = if exterior == Tag::Branch { Tag::Partial } else { exterior };
@@ -211,9 +211,9 @@ impl<'a> VoxelRecordsRef<'a> {
     /// Records in arrays of somebody else. O(records).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the arrays are not of one length (times `components`, 0 to 4, for the values), if a
-    /// level is beyond the frame's depth, a code is not one of its level, a kind is none, or records are out of
-    /// order or overlap.
+    /// [`Error::Argument`] if the arrays are not of one length (times `components`, 0 to 4, for the values),
+    /// if a level is beyond the frame's depth, a code is not one of its level, a kind is none, or records are
+    /// out of order or overlap.
     pub fn new(
         frame: &Frame,
         codes: &'a [u64],
@@ -289,21 +289,22 @@ impl<'a> VoxelRecordsRef<'a> {
         self.exterior
     }
 
-    /// What voxels prove of the solid that they were made from. FULL is proven if inside voxels are proven to lie
-    /// in it. EMPTY is proven if outside voxels **and all that no record speaks of** are proven to lie outside: so
-    /// the list is complete. Of boundary voxels nothing is proven but what [`boundary`](Self::boundary) says.
+    /// What voxels prove of the solid that they were made from. FULL is proven if inside voxels are proven to
+    /// lie in it. EMPTY is proven if outside voxels **and all that no record speaks of** are proven to lie
+    /// outside: so the list is complete. Of boundary voxels nothing is proven but what
+    /// [`boundary`](Self::boundary) says.
     ///
-    /// The records of an octree prove what its cells do, and so do their images under symmetries and
-    /// [exact placements](Self::placed_exactly). Those that were [sampled](Self::placed_by_centres), and arrays of
+    /// The records of an octree prove what its cells do, and so do their images under symmetries and [exact
+    /// placements](Self::placed_exactly). Those that were [sampled](Self::placed_by_centres), and arrays of
     /// somebody else, prove nothing.
     pub fn proof(&self) -> Proof {
         self.proof
     }
 
-    /// What is known of boundary voxels: FULL if each lies inside as inside voxels do, else PARTIAL. It is FULL for
-    /// the records of a binary octree, whose boundary voxels are inside cells that
-    /// [touch](crate::voxel::VoxelBoundary::Touching) an outside one, but not if their level is above the octree's depth
-    /// and cells that are cut became boundary voxels.
+    /// What is known of boundary voxels: FULL if each lies inside as inside voxels do, else PARTIAL. It is
+    /// FULL for the records of a binary octree, whose boundary voxels are inside cells that
+    /// [touch](crate::voxel::VoxelBoundary::Touching) an outside one, but not if their level is above the
+    /// octree's depth and cells that are cut became boundary voxels.
     pub fn boundary(&self) -> Tag {
         self.boundary
     }
@@ -426,7 +427,8 @@ impl<'a> VoxelRecordsRef<'a> {
         core::array::from_fn(|octant| if is_split { self.within(cell.child(octant as u8)) } else { 0..0 })
     }
 
-    /// The record, not of a refined voxel, that contains a cell, which may be finer than the lattice. O(log n).
+    /// The record, not of a refined voxel, that contains a cell, which may be finer than the lattice. O(log
+    /// n).
     pub fn containing(&self, cell: Cell) -> Option<usize> {
         let depth = self.frame.depth();
         let finer = (depth + 1..=MAX_DEPTH).contains(&cell.level);

@@ -1,9 +1,9 @@
 //! Whether a closed triangle and a closed cube have a point in common, exactly.
 //!
-//! Two convex polytopes are apart if one of finitely many directions separates them (the separating-axis test,
-//! Gottschalk, Lin and Manocha 1996): for a triangle and a cube the cube's axes, the triangle's normal, and the
-//! products of the axes with the triangle's edges. Intervals decide nearly all; what they leave open is decided
-//! in integers.
+//! Two convex polytopes are apart if one of finitely many directions separates them (the separating-axis
+//! test, Gottschalk, Lin and Manocha 1996): for a triangle and a cube the cube's axes, the triangle's normal,
+//! and the products of the axes with the triangle's edges. Intervals decide nearly all; what they leave open
+//! is decided in integers.
 
 use crate::lattice::axes;
 use crate::lattice::exact::Dyadic;
@@ -127,8 +127,8 @@ impl Number for Dyadic {
     }
 }
 
-/// Whether a direction separates a triangle, its corners seen from the centre of a cube, from the cube; `None`
-/// if that is not sure.
+/// Whether a direction separates a triangle, its corners seen from the centre of a cube, from the cube;
+/// `None` if that is not sure.
 fn apart<N: Number>(places: &[[N; 3]; 3], edges: &[[N; 3]; 3], half: &N) -> Option<bool> {
     let mut sure = true;
     // Whether all of these numbers lie beyond the reach, on one side.

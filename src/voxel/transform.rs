@@ -53,8 +53,8 @@ impl VoxelRecordsRef<'_> {
         Ok(turned)
     }
 
-    /// The records under a map that takes cells to cells: one of the 48 symmetries, a scale by a power of two,
-    /// and any translation. The universe moves along, and nothing is rounded. O(n · levels).
+    /// The records under a map that takes cells to cells: one of the 48 symmetries, a scale by a power of
+    /// two, and any translation. The universe moves along, and nothing is rounded. O(n · levels).
     ///
     /// # Errors
     /// [`Error::Argument`] if the map is another one, or the image of the universe is no frame: its corner no
@@ -83,17 +83,17 @@ impl VoxelRecordsRef<'_> {
         self.turned_into(symmetry, image, control)
     }
 
-    /// The records under any affine map, on the lattice of any frame, by the centres of its finest cells: such a
-    /// cell is what the record is that contains the preimage of its centre, computed in doubles, and has its
-    /// value; where there is no record there is none. Equal cells merge, except boundary voxels. Refined voxels
-    /// are left out.
+    /// The records under any affine map, on the lattice of any frame, by the centres of its finest cells:
+    /// such a cell is what the record is that contains the preimage of its centre, computed in doubles, and
+    /// has its value; where there is no record there is none. Equal cells merge, except boundary voxels.
+    /// Refined voxels are left out.
     ///
-    /// This samples: nothing is proven of the result, and voxels that are thinner than a cell may vanish. What
-    /// lies beyond the frame is cut off. O(cells next to faces between records · log n).
+    /// This samples: nothing is proven of the result, and voxels that are thinner than a cell may vanish.
+    /// What lies beyond the frame is cut off. O(cells next to faces between records · log n).
     ///
     /// # Errors
-    /// [`Error::Argument`] if doubles hold no inverse of the map; [`Error::OutOfMemory`], and what `control` asks for:
-    /// its limit of bytes holds for the arrays.
+    /// [`Error::Argument`] if doubles hold no inverse of the map; [`Error::OutOfMemory`], and what `control`
+    /// asks for: its limit of bytes holds for the arrays.
     pub fn placed_by_centres(
         &self,
         placement: &Affine,
@@ -128,8 +128,8 @@ enum Known {
 }
 
 impl Sampler<'_, '_, '_> {
-    /// A box around the preimages of all finest centres in a cell, as they are computed: of each sum every summand
-    /// is taken where it is least, or largest, and rounding keeps the order.
+    /// A box around the preimages of all finest centres in a cell, as they are computed: of each sum every
+    /// summand is taken where it is least, or largest, and rounding keeps the order.
     fn preimages(&self, cell: Cell) -> ([f64; 3], [f64; 3]) {
         let depth = self.frame.depth();
         let finest = |at: [u32; 3]| centre(self.frame, Cell { level: depth, at });
@@ -218,7 +218,8 @@ impl VoxelRecords {
     }
 }
 
-/// The inverse of a map's matrix, rounded. An error if rounding leaves none, of a matrix that is nearly singular.
+/// The inverse of a map's matrix, rounded. An error if rounding leaves none, of a matrix that is nearly
+/// singular.
 fn inverse(map: &Affine) -> Result<[[f64; 3]; 3], Error> {
     let m = map.rows();
     let minor = |i: usize, j: usize| {

@@ -43,7 +43,8 @@ impl VoxelRecordsRef<'_> {
     /// For each boundary voxel the triangles of `mesh` (in model units) that meet it; none for other records.
     ///
     /// Voxels and triangles are closed sets here: a triangle that only touches a voxel, with a corner in its
-    /// face, meets it. So a triangle in a plane of the lattice meets the voxels on both sides. Decided exactly.
+    /// face, meets it. So a triangle in a plane of the lattice meets the voxels on both sides. Decided
+    /// exactly.
     ///
     /// Each cell is given the triangles that meet its parent. O((n + triangles that are met) · levels).
     ///

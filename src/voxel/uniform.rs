@@ -21,9 +21,9 @@ struct Look<'r> {
 }
 
 impl VoxelRecordsRef<'_> {
-    /// What all of the box from the finest cell `first` to `last` is: a record that is equal to all others in it, or none
-    /// if there are none. A box that goes on `beyond` the universe has a part without records. `None` if the box is not
-    /// known to be of one kind: boundary voxels are, each by itself. O(log n).
+    /// What all of the box from the finest cell `first` to `last` is: a record that is equal to all others in
+    /// it, or none if there are none. A box that goes on `beyond` the universe has a part without records.
+    /// `None` if the box is not known to be of one kind: boundary voxels are, each by itself. O(log n).
     pub(super) fn uniform(&self, first: [u32; 3], last: [u32; 3], beyond: bool) -> Option<Option<usize>> {
         let mut look = Look { records: self, first, last, visits: 0, found: None, has_nothing: beyond };
         look.visit(&self.whole()).then_some(look.found)
@@ -31,8 +31,8 @@ impl VoxelRecordsRef<'_> {
 }
 
 impl Look<'_> {
-    /// Whether what was seen so far, and what of a cell lies in the box, is of one kind. The recursion is as deep as the
-    /// lattice, 20 levels at the most.
+    /// Whether what was seen so far, and what of a cell lies in the box, is of one kind. The recursion is as
+    /// deep as the lattice, 20 levels at the most.
     fn visit(&mut self, part: &Part) -> bool {
         self.visits += 1;
         if self.visits > VISITS {

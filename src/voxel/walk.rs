@@ -96,8 +96,8 @@ impl<'a> Walk<'a> {
         &self.frame
     }
 
-    /// As many voxels as there are at the least: undecided cells, what inside cells are split into for their size, and
-    /// voxels at faces to outside cells. O(elements).
+    /// As many voxels as there are at the least: undecided cells, what inside cells are split into for their
+    /// size, and voxels at faces to outside cells. O(elements).
     fn least(&self) -> u64 {
         let (level, touching) = (self.boundary_level, self.options.touching());
         // The level that inside cells are split to for their size.
@@ -228,8 +228,8 @@ impl<'a> Walk<'a> {
 /// Records whose values are asked for at once.
 const BATCH: usize = 64;
 
-/// The records of an octree's voxels one after another, in the order of their codes. See
-/// [`VoxelOptions`] for which these are, and [`VoxelRecords::of`](crate::voxel::VoxelRecords::of) for all at once.
+/// The records of an octree's voxels one after another, in the order of their codes. See [`VoxelOptions`] for
+/// which these are, and [`VoxelRecords::of`](crate::voxel::VoxelRecords::of) for all at once.
 ///
 /// After an error there is nothing more.
 pub struct Voxels<'a> {
@@ -257,8 +257,9 @@ impl<'a> Voxels<'a> {
     /// ```
     ///
     /// # Errors
-    /// As [`VoxelOptions::frame`], and [`Error::Damaged`] if cells beside cells are asked for and links of the
-    /// tree are damaged. (Else damage reads as boundary voxels.) Items are errors if the attribute reports one.
+    /// As [`VoxelOptions::frame`], and [`Error::Damaged`] if cells beside cells are asked for and links of
+    /// the tree are damaged. (Else damage reads as boundary voxels.) Items are errors if the attribute
+    /// reports one.
     pub fn new(
         tree: &OctreeRef<'a>,
         options: &VoxelOptions,
@@ -388,7 +389,8 @@ mod tests {
                         let voxels = Voxels::new(tree.view(), &options, None).unwrap();
                         let (least, all) = (voxels.least_records(), voxels.count_records().unwrap());
                         assert!(least <= all, "{rule:?} {options:?}: {least} of {all}");
-                        // Most of what lies at the surface is known beforehand, and what is split for its size.
+                        // Most of what lies at the surface is known beforehand, and what is split for its
+                        // size.
                         if touching && depth == 5 || !touching && detail == Some(0.01) {
                             assert!(12 * least >= all, "{rule:?} {options:?}: {least} of {all}");
                         }

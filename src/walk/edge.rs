@@ -86,8 +86,8 @@ impl Edge {
         }
     }
 
-    /// Whether the edge's lower end, or its upper one, lies inside: by the finest cell of the universe there, and by the
-    /// centre of this cell if it is not decided. `None` if the solid cannot tell.
+    /// Whether the edge's lower end, or its upper one, lies inside: by the finest cell of the universe there,
+    /// and by the centre of this cell if it is not decided. `None` if the solid cannot tell.
     ///
     /// # Errors
     /// The solid's own.

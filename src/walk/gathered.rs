@@ -116,8 +116,9 @@ struct Asking<'a, C: Classifier> {
     threads: usize,
 }
 
-/// If the parts of a level take more, what is below it is asked in pieces: a level has eight times as many parts as the one
-/// before where all of it is open, and a part of a solid that is moved twice may have a thousand cells.
+/// If the parts of a level take more, what is below it is asked in pieces: a level has eight times as many
+/// parts as the one before where all of it is open, and a part of a solid that is moved twice may have a
+/// thousand cells.
 const MOST_BYTES: usize = 1 << 26;
 
 /// How many pieces there are then.

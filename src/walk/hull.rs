@@ -13,8 +13,9 @@ const STEP: u8 = 4;
 /// Splits that an attempt may take.
 const SPLITS: u32 = 1 << 14;
 
-/// The finest cells of each axis between which the solid lies: a box that holds all that is not EMPTY. It is as narrow as
-/// some thousand splits can tell; cells that lie in the box of others are not split. The box of an empty solid is empty.
+/// The finest cells of each axis between which the solid lies: a box that holds all that is not EMPTY. It is
+/// as narrow as some thousand splits can tell; cells that lie in the box of others are not split. The box of
+/// an empty solid is empty.
 ///
 /// # Errors
 /// Those of the worker, and [`Error::Cancelled`].
@@ -52,8 +53,8 @@ struct Search<'a, W> {
 }
 
 impl<W: Worker> Search<'_, W> {
-    /// Widens the box by what of a cell is not EMPTY. The answer is `false` if splits are spent. The recursion is as deep
-    /// as the frame, 20 levels at the most.
+    /// Widens the box by what of a cell is not EMPTY. The answer is `false` if splits are spent. The
+    /// recursion is as deep as the frame, 20 levels at the most.
     fn visit(&mut self, cell: Cell, verdict: Verdict<W::Part>) -> Result<bool, Error> {
         let shift = self.depth - cell.level;
         let (low, high) = (cell.at.map(|a| a << shift), cell.at.map(|a| (a + 1) << shift));

@@ -50,8 +50,8 @@ impl<'s, C: Classifier> Subject<'s, C> {
         self.worker.mark() > 4 * self.used + 4096
     }
 
-    /// Whether the parts in memory take more than one in `share` of the bytes that the caller allows. (While memory grows or
-    /// is handed over there are two of them, and there may be another solid.)
+    /// Whether the parts in memory take more than one in `share` of the bytes that the caller allows. (While
+    /// memory grows or is handed over there are two of them, and there may be another solid.)
     pub(crate) fn takes(&self, share: u64) -> bool {
         self.control.max_bytes.is_some_and(|limit| self.worker.scratch_bytes() as u64 > limit / share)
     }

@@ -125,8 +125,8 @@ impl<W: Worker> Trail<W> {
     }
 
     #[cfg(feature = "render")]
-    /// The level of the cell that the way, led to a parent, ends at: one below that of the parent, or that of an ancestor
-    /// which the solid does not split.
+    /// The level of the cell that the way, led to a parent, ends at: one below that of the parent, or that of
+    /// an ancestor which the solid does not split.
     pub(crate) fn level(&self) -> u8 {
         self.steps.len() as u8
     }
@@ -147,7 +147,8 @@ impl<W: Worker> Trail<W> {
         self.ask(cell, |worker, part| worker.moments(cell, part))
     }
 
-    /// Where a segment in `cell`, to whose parent the way was led, crosses the boundary, if the solid can tell.
+    /// Where a segment in `cell`, to whose parent the way was led, crosses the boundary, if the solid can
+    /// tell.
     ///
     /// # Errors
     /// The solid's own.
@@ -155,7 +156,8 @@ impl<W: Worker> Trail<W> {
         self.ask(cell, |worker, part| worker.crossing(cell, part, segment))
     }
 
-    /// Whether the centre of a finest `cell`, to whose parent the way was led, lies inside, if the solid can tell.
+    /// Whether the centre of a finest `cell`, to whose parent the way was led, lies inside, if the solid can
+    /// tell.
     ///
     /// # Errors
     /// The solid's own.

@@ -25,7 +25,8 @@ pub fn lattice_frame(depth: u8) -> Frame {
     Frame::new([0.0; 3], (1u32 << depth) as f64, depth).unwrap()
 }
 
-/// What `work` makes of each item, on as many threads as there are processors: for the few tests that take long.
+/// What `work` makes of each item, on as many threads as there are processors: for the few tests that take
+/// long.
 pub fn on_all_processors<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
     let next = AtomicUsize::new(0);
@@ -50,7 +51,8 @@ pub fn on_all_processors<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R +
     found.into_iter().map(|(_, result)| result).collect()
 }
 
-/// How often something random is repeated, and how much of what takes long is done: `most` with LEAFLESS_THOROUGH=1, `few` without.
+/// How often something random is repeated, and how much of what takes long is done: `most` with
+/// LEAFLESS_THOROUGH=1, `few` without.
 pub fn repeated<T>(few: T, most: T) -> T {
     if std::env::var_os("LEAFLESS_THOROUGH").is_some_and(|value| value == "1") { most } else { few }
 }
@@ -424,8 +426,8 @@ pub fn shapes(depths: std::ops::RangeInclusive<u8>) -> impl Strategy<Value = Sha
     depths.prop_flat_map(shapes_of)
 }
 
-/// So many cases of a property, and without LEAFLESS_THOROUGH=1 a third of them. Failures print their shrunk input; nothing is written
-/// beside the sources.
+/// So many cases of a property, and without LEAFLESS_THOROUGH=1 a third of them. Failures print their shrunk
+/// input; nothing is written beside the sources.
 pub fn cases(cases: u32) -> ProptestConfig {
     let cases = repeated(cases.div_ceil(3), cases);
     ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() }

@@ -1,4 +1,5 @@
-//! Ends of intervals beside centres of cells, against exact rationals: on all ways into tri-dexel models and out of them.
+//! Ends of intervals beside centres of cells, against exact rationals: on all ways into tri-dexel models and
+//! out of them.
 
 use crate::common::exact::Exact;
 use leafless::dexel::{Dexel, DexelEditor, DexelEnd, DexelEnds, DexelFormat, DexelNormals, TriDexelRef};
@@ -303,7 +304,8 @@ fn cube_mesh(low: [f64; 3], high: [f64; 3]) -> TriangleMesh {
     TriangleMesh::new((0..8).map(corner).collect(), triangles.to_vec()).unwrap()
 }
 
-/// Solids with faces within a few ulps of centres hold the centres that exact arithmetic says, and so do all operations.
+/// Solids with faces within a few ulps of centres hold the centres that exact arithmetic says, and so do all
+/// operations.
 #[test]
 fn solids_operations_and_edits_keep_sides() {
     let (mut random, control) = (Random(77), Control::default());

@@ -56,7 +56,8 @@ fn cuboid([low, high]: [[f64; 3]; 2]) -> AnySolid {
     AnySolid::new(MeshSolid::new(mesh, FillRule::NonZero).unwrap())
 }
 
-/// Every end is an end of the truth, or lies at a face of the universe that lies inside; every centre is as in truth.
+/// Every end is an end of the truth, or lies at a face of the universe that lies inside; every centre is as
+/// in truth.
 fn check(solid: &AnySolid, truth: &Truth, axis: usize, depth: u8, name: &str) -> usize {
     let (frame, control) = (Frame::new([0.0; 3], EDGE, depth).unwrap(), Control::default());
     let (mut walls, n) = (0, frame.cells());

@@ -153,7 +153,8 @@ fn materials_become_a_channel() {
     ));
 }
 
-/// The library's way to an octree with surfaces: the surface that ends and normals make is a mesh, and that is a solid.
+/// The library's way to an octree with surfaces: the surface that ends and normals make is a mesh, and that
+/// is a solid.
 #[test]
 fn a_model_with_normals_becomes_an_octree_with_surfaces() {
     let (centre, radius) = ([8.1, 7.9, 8.2], 5.3);

@@ -1,4 +1,5 @@
-//! Tri-dexel models of real meshes: samples, surfaces there and back, edges; and what one, two and three directions lose.
+//! Tri-dexel models of real meshes: samples, surfaces there and back, edges; and what one, two and three
+//! directions lose.
 
 use crate::common;
 use crate::common::model;
@@ -54,7 +55,8 @@ fn all_directions_have_the_samples_of_closed_meshes() {
         let solid = MeshSolid::new(mesh, FillRule::NonZero).unwrap();
         let tree = build(&solid, &frame, Rule::Sampled, &control).unwrap();
         for axis in 0..3 {
-            // An odd number of crossings would be a runaway interval, and samples along its ray that are wrong.
+            // An odd number of crossings would be a runaway interval, and samples along its ray that are
+            // wrong.
             let directions = [0, 1, 2].map(|a| a == axis);
             let model = dexelize(&solid, &frame, &DexelOptions { directions, ..marked() }, &control).unwrap();
             model.view().check().unwrap();
@@ -175,8 +177,9 @@ fn surfaces_lead_back_to_closed_meshes() {
             assert!(surface.volume() > 0.0);
             let far = points(&surface, 4000).iter().map(|&(p, _)| source.distance(p)).fold(0.0, f64::max);
             assert!(far <= most, "{name}, {way}: {} cells from the source", far / cell);
-            // Where walls and gaps are at least two cells, nothing of the source is far from the surface. Of marching cubes
-            // that holds where balls of this size touch from both sides: it cuts corners off by up to 1.15 cells.
+            // Where walls and gaps are at least two cells, nothing of the source is far from the surface. Of
+            // marching cubes that holds where balls of this size touch from both sides: it cuts corners off
+            // by up to 1.15 cells.
             let back = Nearest::new(&surface, 2.0 * cell);
             let contains = |p: DVec3| fine.contains(p.to_array()) == Membership::Inside;
             let is_wide = |&(p, n): &(DVec3, DVec3)| {
@@ -226,8 +229,8 @@ fn dual_contouring_keeps_the_edges_of_a_part() {
             let [a, b] = [*a, *b].map(|v| DVec3::from(mesh.vertices()[v as usize]));
             for k in 1..8 {
                 let p = a.lerp(b, f64::from(k) / 8.0);
-                // In a cube between eight centres on one side there is no vertex; the edge is cut off there by what its
-                // neighbours have, since no vertex leaves its own cube.
+                // In a cube between eight centres on one side there is no vertex; the edge is cut off there
+                // by what its neighbours have, since no vertex leaves its own cube.
                 let has_vertex = |p: DVec3| {
                     let corner = ((p - DVec3::from(frame.origin())) / cell - 0.5).floor();
                     let inside = |k: i32| {
@@ -303,7 +306,8 @@ fn ball_between([low, high]: [f64; 2]) -> f64 {
     below(high) - below(low)
 }
 
-/// The part of the unit ball that lies beyond what the rays of some directions cross. (The caps do not overlap.)
+/// The part of the unit ball that lies beyond what the rays of some directions cross. (The caps do not
+/// overlap.)
 fn lost(model: &TriDexel) -> f64 {
     let ball = 4.0 / 3.0 * std::f64::consts::PI;
     let mut lost = 0.0;

@@ -202,7 +202,8 @@ fn dual(model: &TriDexel, control: &Control<'_>) -> Result<(TriangleMesh, DexelS
     dual_contouring_dexels(model.view(), control)
 }
 
-/// The surface by any method, which is balanced, the same for any number of threads, and says how many edges are cut.
+/// The surface by any method, which is balanced, the same for any number of threads, and says how many edges
+/// are cut.
 fn surface(method: Method, model: &TriDexel) -> (TriangleMesh, DexelSurfaceReport) {
     let (mesh, report) = method(model, &Control::threads(1)).unwrap();
     let (again, report_again) = method(model, &Control::threads(2)).unwrap();
@@ -407,7 +408,8 @@ fn dual_contouring_keeps_turned_edges() {
     let shape = |p: [f64; 3]| (0..3).map(|k| along(p, k).abs() - half[k]).fold(f64::MIN, f64::max);
     let model = implicit(&frame, ALL, &shape);
     let (mesh, report) = surface(dual, &model);
-    // Where the solid's edge leaves a cube that sees both its faces, the vertex stays behind. All others lie on it.
+    // Where the solid's edge leaves a cube that sees both its faces, the vertex stays behind. All others lie
+    // on it.
     let off: Vec<f64> =
         mesh.vertices().iter().map(|&v| shape(v).abs() / cell).filter(|&d| d > 2e-3).collect();
     assert!(off.len() as u64 <= report.clamped, "{} {report:?}", off.len());
@@ -522,7 +524,8 @@ fn of_several_crossings_the_nearest_to_the_inside_counts() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();
     let rays = |_: usize, ray: [u32; 2], list: &mut Vec<Dexel>| {
         if ray == [4, 4] {
-            // From the centre at 2.5 to that at 3.5: in at 2.7, out at 2.9, in at 3.25. Out at 5.6, in at 5.7, out at 6.1.
+            // From the centre at 2.5 to that at 3.5: in at 2.7, out at 2.9, in at 3.25. Out at 5.6, in at
+            // 5.7, out at 6.1.
             for (start, end) in [(2.7, 2.9), (3.25, 5.6), (5.7, 6.1)] {
                 list.push(Dexel { start: plain_end(start), end: plain_end(end), material: 0 });
             }
@@ -735,8 +738,8 @@ fn time_of_1024() -> Result<(), Error> {
     Ok(())
 }
 
-/// A model of inside centres, which the rays of all directions hold; how far intervals go beyond their outermost centres
-/// each ray knows.
+/// A model of inside centres, which the rays of all directions hold; how far intervals go beyond their
+/// outermost centres each ray knows.
 fn around(
     frame: &Frame,
     inside: &BTreeSet<[u32; 3]>,

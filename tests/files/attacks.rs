@@ -1,4 +1,5 @@
-//! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense arrays.
+//! Attacks that are fuzz targets, too: any bytes as scenes of unit cells and as attributes, against dense
+//! arrays.
 
 use crate::common::repeated;
 use crate::{attributes, contacts, direct, layouts, measures, records, surfaces};

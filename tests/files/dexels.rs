@@ -66,7 +66,8 @@ fn agrees(view: &TriDexelRef<'_>, model: &Dexels) {
             met += usize::from(!list.is_empty());
             for (found, one) in rays.dexels([u, v]).zip(list) {
                 for (k, end) in [found.start, found.end].into_iter().enumerate() {
-                    // The place exactly, and its coordinate rounded once (`dexel_ends` has it against exact numbers).
+                    // The place exactly, and its coordinate rounded once (`dexel_ends` has it against exact
+                    // numbers).
                     assert_eq!(end.cells, Some(one.ends[k]));
                     let (rounded, along) = (origin[axis] + one.ends[k] * cell, one.ends[k] * cell);
                     assert!((end.at - rounded).abs() <= 2.0 * f64::EPSILON * (end.at.abs() + along));

@@ -535,8 +535,8 @@ fn each_reason_of_the_library_has_a_vector() {
         let (body, _) = body.split_once("\n}").unwrap();
         for line in body.lines().filter_map(|line| line.strip_prefix("    ")) {
             let variant: String = line.chars().take_while(|c| c.is_alphanumeric()).collect();
-            // The memory's alignment, the machine's byte order and the kind of a file are no matter of the bytes.
-            // Which kind of file is wanted is no matter of the bytes either.
+            // The memory's alignment, the machine's byte order and the kind of a file are no matter of the
+            // bytes. Which kind of file is wanted is no matter of the bytes either.
             let elsewhere = ["", "Alignment", "Endianness", "NotRegular", "OtherModel"];
             if !elsewhere.contains(&&*variant) {
                 let kind = if of == "Damage" { "Damaged" } else { "Format" };
@@ -550,9 +550,9 @@ fn each_reason_of_the_library_has_a_vector() {
 
 // ---- what the reader accepts ----------------------------------------------------------------------------
 
-/// Each single byte of small files is given every eighth value, with right checksums, and with a record of the solid
-/// that says what the header says and without: what is then verified must be what the writer would have
-/// written, or stand in `permissive.md`.
+/// Each single byte of small files is given every eighth value, with right checksums, and with a record of
+/// the solid that says what the header says and without: what is then verified must be what the writer would
+/// have written, or stand in `permissive.md`.
 #[test]
 fn what_is_accepted_is_canonical_or_listed() {
     let accepted = accept(8);

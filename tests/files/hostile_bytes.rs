@@ -67,8 +67,8 @@ fn small_files() -> Vec<Vec<u8>> {
         file.sections.iter().any(|section| section.kind() == kind)
     };
     // Without an element, with raw bricks, with elements, with a dictionary, with metadata, with a section
-    // that nobody knows, with one of an application, with other objects, of a later version, with channels, with
-    // cuts of one cell and with splits.
+    // that nobody knows, with one of an application, with other objects, of a later version, with channels,
+    // with cuts of one cell and with splits.
     let mut chosen = vec![files[0].clone()];
     for kind in [BRICKS, PLANES, bodies::layout::ENTRIES, bodies::layout::METADATA, 17, 1 << 31] {
         chosen.extend(files.iter().find(|bytes| has(bytes, kind)).cloned());
@@ -570,7 +570,8 @@ fn numbers_that_are_none_do_not_make_a_tree_unlike_itself() {
     }
 }
 
-/// Trees without surfaces but slabs of cells have no records, and the slabs of two of them were taken for the same.
+/// Trees without surfaces but slabs of cells have no records, and the slabs of two of them were taken for the
+/// same.
 #[test]
 fn tables_without_records_are_not_taken_for_one() {
     let vectors = Path::new(env!("CARGO_MANIFEST_DIR")).join("format_spec/vectors/valid");

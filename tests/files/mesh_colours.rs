@@ -1,5 +1,5 @@
-//! Colours and materials of PLY and 3MF files, as attributes of their meshes; and files that say them badly, whose
-//! meshes are read all the same.
+//! Colours and materials of PLY and 3MF files, as attributes of their meshes; and files that say them badly,
+//! whose meshes are read all the same.
 
 use crate::packages::zip;
 
@@ -64,8 +64,8 @@ mod ply {
         bytes.extend(number);
     }
 
-    /// Elements of one kind: name, properties as type and name, rows. A face's list stands where a property is
-    /// called `list`, and has its first three numbers.
+    /// Elements of one kind: name, properties as type and name, rows. A face's list stands where a property
+    /// is called `list`, and has its first three numbers.
     type Element<'a> = (&'a str, &'a [(&'a str, &'a str)], Vec<Vec<f64>>);
 
     fn file(format: &str, elements: &[Element]) -> Vec<u8> {
@@ -236,7 +236,8 @@ mod ply {
 
     #[test]
     fn vertices_that_are_welded_keep_their_colours() {
-        // Two triangles, each with vertices of its own, and a third one that is degenerate once they are welded.
+        // Two triangles, each with vertices of its own, and a third one that is degenerate once they are
+        // welded.
         let row = |place: [f64; 3], red: f64| [place.to_vec(), vec![red, 0.0, 0.0]].concat();
         let [a, b, c, d] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
         let vertices = [(a, 1.), (b, 2.), (c, 3.), (a, 4.), (c, 5.), (d, 6.)];

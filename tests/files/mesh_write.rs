@@ -34,8 +34,8 @@ fn mesh(seed: u64) -> TriangleMesh {
     TriangleMesh::new(vertices, triangles.filter(|[a, b, c]| a != b && b != c && c != a).collect()).unwrap()
 }
 
-/// A box with a small one beside it and a vertex that no triangle uses, so far away that single precision keeps all, some or
-/// nothing of it.
+/// A box with a small one beside it and a vertex that no triangle uses, so far away that single precision
+/// keeps all, some or nothing of it.
 fn far_away(seed: u64, far: i32) -> TriangleMesh {
     let mut random = Random(seed);
     let at = [0; 3].map(|_| random.between(1.0, 2.0) * 2f64.powi(far));

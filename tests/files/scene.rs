@@ -414,8 +414,8 @@ fn limits_say_what_they_are_of() {
     }
 }
 
-/// A tetrahedron with a facet turned over and one missing encloses points below its lowest corner, as the fill
-/// rule has it.
+/// A tetrahedron with a facet turned over and one missing encloses points below its lowest corner, as the
+/// fill rule has it.
 #[test]
 fn bounds_hold_what_a_polyhedron_with_a_turned_facet_encloses() {
     let text = "polyhedron([[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]], [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);";

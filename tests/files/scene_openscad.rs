@@ -153,7 +153,8 @@ fn all_curves_as_polygons_have_the_volumes_of_openscad() {
 }
 
 /// Scales that differ need sides without curves. OpenSCAD splits each side into two triangles: 225.1666 for
-/// this solid, 228.4142 with 64 slices. Ours is what more and more slices come to: by its formula, A h (1 − 1/12).
+/// this solid, 228.4142 with 64 slices. Ours is what more and more slices come to: by its formula, A h (1 −
+/// 1/12).
 #[test]
 fn tapers_of_polygons_may_have_two_scales() {
     let taper = |slices: &str| {

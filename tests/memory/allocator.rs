@@ -1,4 +1,5 @@
-//! The system's allocator, which counts what a thread holds, and can be told to refuse the n-th request of a thread.
+//! The system's allocator, which counts what a thread holds, and can be told to refuse the n-th request of a
+//! thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

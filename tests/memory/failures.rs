@@ -765,7 +765,8 @@ fn child() {
 }
 
 /// Runs an operation until no request of more than `spared` bytes is left that could be refused. Returns how
-/// many came back as an error, and how many ended the process. After the first of these, requests are left out.
+/// many came back as an error, and how many ended the process. After the first of these, requests are left
+/// out.
 fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     let (mut first, mut errors) = (1, 0);
@@ -803,8 +804,9 @@ fn try_all(name: &str, spared: u64, for_good: bool) -> (u64, u64) {
     }
 }
 
-/// Runs all operations; tells how many requests came back as an error, and how many ended a process. Where small requests end it,
-/// which takes many processes, memory comes back after a refusal in every other operation and stays away in the rest.
+/// Runs all operations; tells how many requests came back as an error, and how many ended a process. Where
+/// small requests end it, which takes many processes, memory comes back after a refusal in every other
+/// operation and stays away in the rest.
 fn try_every_operation(spared: u64) -> (u64, u64) {
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("tree.lfl"), old_file()).unwrap();
@@ -1101,8 +1103,8 @@ fn each_write_may_fail_or_be_short_or_interrupted() {
     assert!(pieces > 3 && failing(pieces).0 && !failing(pieces + 1).0);
 }
 
-/// A file-size limit by which the system ends the process: nobody can clean up then, but the old file stays. Where files
-/// need no names, nothing else does.
+/// A file-size limit by which the system ends the process: nobody can clean up then, but the old file stays.
+/// Where files need no names, nothing else does.
 #[test]
 fn a_process_that_is_ended_while_it_saves_leaves_the_old_file() {
     use std::os::unix::process::ExitStatusExt;

@@ -1,4 +1,5 @@
-//! Memory that is counted, and memory that is refused. The allocator of this program does both, thread by thread.
+//! Memory that is counted, and memory that is refused. The allocator of this program does both, thread by
+//! thread.
 
 #[path = "../../fuzz/bodies/mod.rs"]
 mod bodies;

@@ -1,5 +1,5 @@
-//! Data on meshes: through everything that meshes go through, on polyhedra, and as attributes of space, against
-//! a look at all triangles.
+//! Data on meshes: through everything that meshes go through, on polyhedra, and as attributes of space,
+//! against a look at all triangles.
 
 use crate::common::{Random, alone};
 use leafless::attribute::{
@@ -26,8 +26,8 @@ fn one(value: Option<[f64; 4]>) -> f64 {
     value.unwrap()[0]
 }
 
-/// Checks that each triangle has the label of one that was given, in their order, and at each corner the value
-/// that `expected` makes of the corner's place; up to `tolerance`.
+/// Checks that each triangle has the label of one that was given, in their order, and at each corner the
+/// value that `expected` makes of the corner's place; up to `tolerance`.
 #[track_caller]
 fn check(mesh: &TriangleMesh, given: usize, tolerance: f64, expected: impl Fn(Point) -> Point) {
     let (source, place) = (mesh.attribute("source").unwrap(), mesh.attribute("place").unwrap());
@@ -229,7 +229,8 @@ fn parts_of_polyhedra() {
 
 #[test]
 fn faces_of_triangles_that_are_dropped() {
-    // A prism over a hexagon that touches itself: two vertices at one place, between which a triangle may lie.
+    // A prism over a hexagon that touches itself: two vertices at one place, between which a triangle may
+    // lie.
     let ring = [[0.0, 0.0], [2.0, -1.0], [2.0, 1.0], [0.0, 0.0], [-2.0, 1.0], [-2.0, -1.0]];
     let vertices: Vec<Point> = [0.0, 1.0].into_iter().flat_map(|z| ring.map(|[x, y]| [x, y, z])).collect();
     let mut loops: Vec<Vec<u32>> = vec![(0..6).rev().collect(), (6..12).collect()];
@@ -270,8 +271,8 @@ fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The distance of a point from a triangle, and the weights of the nearest point: by Ericson's regions, unlike
-/// the library.
+/// The distance of a point from a triangle, and the weights of the nearest point: by Ericson's regions,
+/// unlike the library.
 pub fn distance(p: Point, [a, b, c]: [Point; 3]) -> (f64, Point) {
     let (ab, ac) = (sub(b, a), sub(c, a));
     let at = |weights: Point| {

@@ -212,7 +212,8 @@ fn set_algebra_of_two_origins() {
     }
 }
 
-/// A set less itself is empty, also within the slabs that bound it: both sides of the difference have the same ones.
+/// A set less itself is empty, also within the slabs that bound it: both sides of the difference have the
+/// same ones.
 #[test]
 fn a_set_less_itself_is_empty_outside_of_cells_that_were_given_up() {
     let [a, b] = two().map(|smooth| smooth.tree);

@@ -192,7 +192,8 @@ fn a_cylinder_in_chords() {
     }
 }
 
-/// Faces of two solids that lie in one plane as far as their meshes tell may lie on either side of each other.
+/// Faces of two solids that lie in one plane as far as their meshes tell may lie on either side of each
+/// other.
 #[test]
 fn contacts_are_not_decided() {
     let stated = |low: f64, deviation: f64| {

@@ -1,4 +1,5 @@
-//! Rays, points and distances that a mesh answers without cells, beside every triangle by itself and beside cells.
+//! Rays, points and distances that a mesh answers without cells, beside every triangle by itself and beside
+//! cells.
 
 use crate::common::{Random, alone};
 use crate::descended::Descended;
@@ -48,7 +49,8 @@ fn encloses(fill: FillRule, winding: i32) -> bool {
     }
 }
 
-/// On which sides of a point, which is a fraction with the denominator `q`, blocks lie: whether on some, whether on all.
+/// On which sides of a point, which is a fraction with the denominator `q`, blocks lie: whether on some,
+/// whether on all.
 fn around(blocks: &[Block], fill: FillRule, p: Ints, q: i64) -> (bool, bool) {
     let inside = |octant: usize| {
         let within = |k: usize, min: Ints, max: Ints| {
@@ -72,8 +74,8 @@ fn is_on_facet(blocks: &[Block], p: Ints, q: i64) -> bool {
 
 const RULES: [FillRule; 3] = [FillRule::NonZero, FillRule::EvenOdd, FillRule::Positive];
 
-/// Rays through corners, along edges and in faces of blocks that overlap, nest, touch and are inside out: what is said of
-/// each stretch between planes is what integers say.
+/// Rays through corners, along edges and in faces of blocks that overlap, nest, touch and are inside out:
+/// what is said of each stretch between planes is what integers say.
 #[test]
 fn rays_of_blocks_are_those_of_integers() {
     let mut random = Random(1);
@@ -118,7 +120,8 @@ fn rays_of_blocks_are_those_of_integers() {
                 assert!(!inner || some, "not inside: {place}");
                 assert!(outer || !some, "not outside: {place}");
                 assert!(inner || !all, "known to be inside: {place}");
-                // (A facet that does not bound the solid, as one between two negative winding numbers, may be one that does.)
+                // (A facet that does not bound the solid, as one between two negative winding numbers, may be
+                // one that does.)
                 assert!(!outer || some || is_on_facet(&blocks, at, 8), "known to be outside: {place}");
                 (inside, outside, on) =
                     (inside + i32::from(all), outside + i32::from(!some), on + i32::from(some && !all));
@@ -235,7 +238,8 @@ fn is_near(mesh: &TriangleMesh, p: Point, distance: f64) -> bool {
     (0..mesh.triangles().len()).any(|triangle| from_triangle(corners(mesh, triangle), p).0 <= distance)
 }
 
-/// Beside cells, whose intervals hold the answers; and at points of the ray away from the surface beside all triangles.
+/// Beside cells, whose intervals hold the answers; and at points of the ray away from the surface beside all
+/// triangles.
 #[test]
 fn rays_are_those_of_all_triangles_and_of_cells() {
     let mut random = Random(3);
@@ -264,7 +268,8 @@ fn rays_are_those_of_all_triangles_and_of_cells() {
                 let place = format!("{round} {fill:?} {on:?} {ray:?} {own:?} {by_cells:?}");
                 match (own, by_cells) {
                     (Some(own), Some(by_cells)) => {
-                        // (Points at which it only touches count for cells that they lie in, and not for others.)
+                        // (Points at which it only touches count for cells that they lie in, and not for
+                        // others.)
                         let touches = own.t.upper <= by_cells.t.lower && {
                             let (from, to) = ends(ray);
                             let at = [0, 1, 2].map(|k| from[k] + own.t.upper * (to[k] - from[k]));
@@ -421,7 +426,8 @@ fn a_mesh_that_sticks_out_is_cut_by_the_universe() {
     );
 }
 
-/// A turned mesh is known but for the rounding of its vertices; it is asked as any other, and never lies about its edges.
+/// A turned mesh is known but for the rounding of its vertices; it is asked as any other, and never lies
+/// about its edges.
 #[test]
 fn turned_meshes_are_asked_without_cells_too() {
     let turn = Affine::new([[0.6, -0.8, 0.0, 0.1], [0.8, 0.6, 0.0, 0.2], [0.0, 0.0, 1.0, 0.3]]).unwrap();
@@ -512,7 +518,8 @@ fn points_of_open_meshes_are_those_of_solid_angles() {
     assert!(inside > 1000 && undecided == 0, "{inside} {undecided}");
 }
 
-/// Boxes beside points of all of them, and beside cells, which may be undecided where the tree is not, and the other way round.
+/// Boxes beside points of all of them, and beside cells, which may be undecided where the tree is not, and
+/// the other way round.
 #[test]
 fn boxes_are_those_of_points_and_of_cells() {
     let mut random = Random(8);

@@ -1,5 +1,5 @@
-//! Meshes, rays and points at the ends of what is answered without cells: empty lists, numbers without bounds, all sizes and
-//! places of meshes, triangles without area, and bodies in the same place.
+//! Meshes, rays and points at the ends of what is answered without cells: empty lists, numbers without
+//! bounds, all sizes and places of meshes, triangles without area, and bodies in the same place.
 
 use crate::common::{Random, alone};
 use crate::oracle::PointOracle;
@@ -208,7 +208,8 @@ fn slanted_triangles_of_all_sizes() {
                 let away = [0, 1, 2].map(|k| corner[k] - middle[k]);
                 let RaySpans { inner, outer } =
                     ray_spans(&solid, &frame, &ray(middle, away), &alone()).unwrap();
-                // It passes the corner but for rounding; the other way it meets the middle of the facet on the other side.
+                // It passes the corner but for rounding; the other way it meets the middle of the facet on
+                // the other side.
                 assert!(inner.len() == 1 && outer.len() == 1, "{size} {corners:?} {i}");
                 assert!((outer[0].upper - 1.0).abs() < 1e-9, "{size} {corners:?} {i} {outer:?}");
                 let back = ray_spans(&solid, &frame, &ray(middle, away.map(|c| -c)), &alone()).unwrap();
@@ -395,7 +396,8 @@ fn bodies_in_the_same_place() {
 #[test]
 fn threads_change_nothing() {
     let mut random = Random(11);
-    // Enough triangles that the tree is made on several threads, and enough questions that they are shared out.
+    // Enough triangles that the tree is made on several threads, and enough questions that they are shared
+    // out.
     let mut soup = shapes::torus([0.1, 0.2, 0.3], 3.0, 1.0, 96, 64);
     soup.extend(shapes::octahedron([0.5; 3], 3.0));
     let frame = frame();

@@ -1,9 +1,12 @@
-//! A million rays and a million points on each of some models, answered without cells, beside each triangle by itself:
+//! A million rays and a million points on each of some models, answered without cells, beside each triangle
+//! by itself:
 //!
-//!     LEAFLESS_MODELS=… cargo test --release --test meshes direct_heavy:: -- --ignored --nocapture --test-threads 1
+//!     LEAFLESS_MODELS=… cargo test --release --test meshes direct_heavy:: -- --ignored --nocapture
+//!     --test-threads 1
 //!
-//! A ray's truth is made of the triangles that it may meet by doubles with generous bounds, each with the time during which it
-//! may; between these times the winding number is constant, and exact arithmetic tells it of a point in their middle.
+//! A ray's truth is made of the triangles that it may meet by doubles with generous bounds, each with the
+//! time during which it may; between these times the winding number is constant, and exact arithmetic tells
+//! it of a point in their middle.
 
 use crate::common::{Random, alone, model, on_all_processors};
 use crate::oracle::{PointOracle, over};

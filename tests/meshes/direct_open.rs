@@ -1,4 +1,5 @@
-//! Rays, boxes and distances that an open mesh answers without cells, beside winding numbers by solid angles and beside cells.
+//! Rays, boxes and distances that an open mesh answers without cells, beside winding numbers by solid angles
+//! and beside cells.
 
 use crate::common::{Random, alone, repeated};
 use crate::descended::Descended;
@@ -77,7 +78,8 @@ fn from_mesh(mesh: &TriangleMesh, p: Point) -> f64 {
     (0..mesh.triangles().len()).map(|t| from_triangle(corners(mesh, t), p)).fold(f64::INFINITY, f64::min)
 }
 
-/// Shapes with holes: some facets that are gone, a box without a lid, part of a ball, a band, and loose triangles.
+/// Shapes with holes: some facets that are gone, a box without a lid, part of a ball, a band, and loose
+/// triangles.
 fn open(random: &mut Random, kind: usize) -> Soup {
     let soup = open_facets(random, kind);
     if soup.is_empty() { open(random, kind) } else { soup }

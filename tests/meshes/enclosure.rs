@@ -1,4 +1,5 @@
-//! The slabs of meshes, against winding numbers in exact arithmetic, and by their definition where the surface is open.
+//! The slabs of meshes, against winding numbers in exact arithmetic, and by their definition where the
+//! surface is open.
 
 use crate::common::slabs::{bits, told};
 use crate::common::{Random, Way, alone, lattice_frame};
@@ -193,7 +194,8 @@ fn slabs_of_open_surfaces_hold() {
     assert!(found.inside > 1000 && found.outside > 1000, "{found:?}");
 }
 
-/// Beyond the coarsest cells, the slabs of a finely faceted ball are thin: their width falls with the cell's square.
+/// Beyond the coarsest cells, the slabs of a finely faceted ball are thin: their width falls with the cell's
+/// square.
 #[test]
 fn slabs_are_thin_to_second_order() {
     let middle = [2048.0; 3];

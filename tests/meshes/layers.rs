@@ -1,4 +1,5 @@
-//! Extended octrees of meshes: which planes bound the solid in a cell, and which function of their sides it is.
+//! Extended octrees of meshes: which planes bound the solid in a cell, and which function of their sides it
+//! is.
 
 use crate::attributes::distance;
 use crate::common::{Random, alone, model, on_all_processors, repeated};
@@ -262,7 +263,8 @@ fn moments_of_meshes_are_kept() {
 /// A function of two booleans.
 type Joins = fn(bool, bool) -> bool;
 
-/// Set operations of a stored mesh with a ball, a turned block and the same mesh moved: no point is told wrong.
+/// Set operations of a stored mesh with a ball, a turned block and the same mesh moved: no point is told
+/// wrong.
 fn check_booleans(name: &str, trial: &Trial, random: &mut Random, count: usize) {
     let (low, high) = trial.mesh.bounds();
     let middle = at(|k| low[k].midpoint(high[k]));
@@ -395,8 +397,8 @@ const TURNS: [[[f64; 4]; 3]; 2] = [
     [[5.0, 0.0, 0.0, 0.0], [0.0, 3.0, -4.0, 0.0], [0.0, 4.0, 3.0, 0.0]],
 ];
 
-/// A stored mesh that is turned again and again: no point is told wrong. Returns the numbers of nodes and of points that are told, of
-/// `count` each time.
+/// A stored mesh that is turned again and again: no point is told wrong. Returns the numbers of nodes and of
+/// points that are told, of `count` each time.
 fn turned_stored(name: &str, trial: &Trial, turns: usize, count: usize) -> Vec<(u64, usize)> {
     let mut random = Random(0x7057);
     let (low, high) = trial.mesh.bounds();
@@ -404,7 +406,8 @@ fn turned_stored(name: &str, trial: &Trial, turns: usize, count: usize) -> Vec<(
     let unit = 2f64.powi(reach.log2().ceil() as i32 - 45);
     let mut points = trial.points(&mut random, count);
     points.iter_mut().for_each(|p| *p = p.map(|c| (c / unit).round() * unit + 0.0));
-    // (On a facet that is parallel to its rays the oracle decides by a shift: such points count as undecided.)
+    // (On a facet that is parallel to its rays the oracle decides by a shift: such points count as
+    // undecided.)
     let truth_off_surface = |p: Point| {
         let truth = trial.truth(p)?;
         let beside =

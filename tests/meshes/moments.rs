@@ -1,5 +1,5 @@
-//! The moments of meshes without splitting, against sums in exact arithmetic; and triangles that intersect, against
-//! a slow search in exact arithmetic.
+//! The moments of meshes without splitting, against sums in exact arithmetic; and triangles that intersect,
+//! against a slow search in exact arithmetic.
 
 use crate::common::exact::Exact;
 use crate::common::{Random, model};
@@ -98,8 +98,8 @@ fn check(what: &str, interval: Interval, numerator: &Exact, denominator: &Exact,
     assert!(interval.width() <= width, "{what} is known too badly: {interval:?}");
 }
 
-/// Everything that is known of a solid which a mesh encloses, of the signed triangles given, against exact sums.
-/// `size` is the extent of the mesh, `far` its distance from the origin.
+/// Everything that is known of a solid which a mesh encloses, of the signed triangles given, against exact
+/// sums. `size` is the extent of the mesh, `far` its distance from the origin.
 #[track_caller]
 fn check_all(measures: &MassProperties, facets: Vec<(Facet, i32)>, size: f64, far: f64) {
     let sums = Sums::of(facets);
@@ -352,8 +352,8 @@ fn pairs_without_common_vertices() {
     assert!(counts[0] > 5000 && counts[1] > 5000, "{counts:?}");
 }
 
-/// Close to a common vertex triangles are cones: they meet beyond it if a segment across one of them, close to the
-/// vertex, meets the other one. With a common edge it is a segment beside the edge.
+/// Close to a common vertex triangles are cones: they meet beyond it if a segment across one of them, close
+/// to the vertex, meets the other one. With a common edge it is a segment beside the edge.
 #[test]
 fn pairs_with_common_vertices() {
     let mut random = Random(4);

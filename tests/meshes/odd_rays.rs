@@ -14,11 +14,12 @@ fn odd_rays(mesh: TriangleMesh) -> [u64; 3] {
     solid.odd_rays(&frame(), &Control::default()).unwrap()
 }
 
-/// The same from the definition: each ray against each triangle. Vertices are multiples of 1/2 below 64 from the origin.
+/// The same from the definition: each ray against each triangle. Vertices are multiples of 1/2 below 64 from
+/// the origin.
 ///
-/// In units of 2^-51, differences are multiples of 2^50 below 2^59, and determinants multiples of 2^100. The shift along x
-/// adds less than 2^99 to them, so that it decides those that are zero alone; 2^88 at the least, if it adds anything, and the
-/// shift along y less than 2^85; and so on.
+/// In units of 2^-51, differences are multiples of 2^50 below 2^59, and determinants multiples of 2^100. The
+/// shift along x adds less than 2^99 to them, so that it decides those that are zero alone; 2^88 at the
+/// least, if it adds anything, and the shift along y less than 2^85; and so on.
 fn one_by_one(mesh: &TriangleMesh) -> [u64; 3] {
     let scaled = |x: f64| {
         let doubled = 2.0 * x;
@@ -69,8 +70,8 @@ fn a_closed_mesh_has_none() {
     assert_eq!(one_by_one(&octahedron(0)), [0; 3]);
 }
 
-/// Of the face that is missing each projection is the triangle of the centres with i + j + 1 ≤ 8; those on its hypotenuse
-/// are shifted out of it.
+/// Of the face that is missing each projection is the triangle of the centres with i + j + 1 ≤ 8; those on
+/// its hypotenuse are shifted out of it.
 #[test]
 fn a_missing_face_makes_the_rays_through_it_odd() {
     let found = odd_rays(octahedron(1));

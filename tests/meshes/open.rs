@@ -241,8 +241,9 @@ fn the_checks_see_lies() {
     assert!(coward.faults.is_empty() && coward.left_open * 100 > coward.decidable, "{coward:?}");
 }
 
-/// Every damage to every shape, and those variants that are to be filled by `only`: every other one.
-/// With `only`, one of two variants of its rule is examined; with four instead of one behind the rule, one of eight.
+/// Every damage to every shape, and those variants that are to be filled by `only`: every other one. With
+/// `only`, one of two variants of its rule is examined; with four instead of one behind the rule, one of
+/// eight.
 fn damage_all(
     seed: u64,
     detail: usize,
@@ -738,8 +739,8 @@ fn cube() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     (corners, facets)
 }
 
-/// Random facets of a cube turned over, left out or doubled: nothing is enclosed outside of the bounds, though
-/// something is outside of the box around the corners.
+/// Random facets of a cube turned over, left out or doubled: nothing is enclosed outside of the bounds,
+/// though something is outside of the box around the corners.
 #[test]
 fn bounds_hold_whatever_an_open_surface_encloses() {
     let (corners, whole) = cube();

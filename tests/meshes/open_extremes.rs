@@ -117,8 +117,8 @@ fn sewn_vertices_move_each_in_its_own_direction() {
         let on = face.map(|p| [0, 1, 2].map(|axis| centre[axis] + 100.0 * p[axis]));
         let middle = [0, 1, 2].map(|axis| (on[0][axis] + on[1][axis] + on[2][axis]) / 3.0);
         let shrunk = on.map(|p| [0, 1, 2].map(|axis| middle[axis] + 0.712 * (p[axis] - middle[axis])));
-        // Hairs at the corners, onto which these are sewn: away from the middles of the triangles. They are so
-        // long, outward, that they reach a tenth of a cell at least.
+        // Hairs at the corners, onto which these are sewn: away from the middles of the triangles. They are
+        // so long, outward, that they reach a tenth of a cell at least.
         for p in shrunk {
             let outward = unit(minus(p, centre));
             let end = [0, 1, 2].map(|axis| p[axis] + 3f64.sqrt() * 0.1 * f64::from(1 << 24) * outward[axis]);

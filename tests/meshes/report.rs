@@ -183,8 +183,8 @@ fn divided(low: [f64; 3], high: [f64; 3], count: u32) -> Vec<[[f64; 3]; 3]> {
     facets
 }
 
-/// Hundreds of bodies in one of many triangles: each is decided, for which all triangles of the large one need not be
-/// looked at each time.
+/// Hundreds of bodies in one of many triangles: each is decided, for which all triangles of the large one
+/// need not be looked at each time.
 #[test]
 fn many_bodies_in_a_large_one() {
     let outer = divided([0.0; 3], [64.0; 3], 64);
@@ -289,7 +289,8 @@ fn faces_that_are_not_flat() {
         (report.polygons, report.bent_polygons, report.polygon_deviation)
     };
     assert_eq!(report(0.0, ""), (3, 0, 0.0));
-    // The plane of a square with the heights 0, 0, z, 0 has its corners z/4 above and below, but for the tilt.
+    // The plane of a square with the heights 0, 0, z, 0 has its corners z/4 above and below, but for the
+    // tilt.
     let (polygons, bent, deviation) = report(0.25, "");
     assert_eq!((polygons, bent), (3, 2));
     assert!((deviation - 0.0625).abs() < 0.001, "{deviation}");

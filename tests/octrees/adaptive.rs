@@ -26,9 +26,9 @@ fn thickness<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Walks through the solid beside an octree of its adaptive form: each cell of the octree is what the solid says, and
-/// each undecided one above the finest level is known to the tolerance. Eight equal cells are one in an octree: there
-/// the cursor stays above (`is_below`).
+/// Walks through the solid beside an octree of its adaptive form: each cell of the octree is what the solid
+/// says, and each undecided one above the finest level is known to the tolerance. Eight equal cells are one
+/// in an octree: there the cursor stays above (`is_below`).
 fn check<W: Worker>(
     worker: &mut W,
     (cell, verdict): (Cell, Verdict<W::Part>),

@@ -125,7 +125,8 @@ proptest! {
     ) {
         let n = f64::from(1u32 << values.depth);
         let channel = values.channel(values.depth, kind, None, 1);
-        // From the moved cube back: axis i of the image is axis axes[i] of the point, turned about if flipped.
+        // From the moved cube back: axis i of the image is axis axes[i] of the point, turned about if
+        // flipped.
         let mut rows = [[0.0; 4]; 3];
         for i in 0..3 {
             let flipped = flips >> i & 1 != 0;

@@ -426,7 +426,8 @@ proptest! {
                     let by_level = most.is_some() && !matches!(zone, Zone::Ray { .. });
                     if by_level {
                         let all = (0..level).all(|only| model.refine(&zone, Some(only), level, &mut left));
-                        // A resumed octree does not know which cells splitting does not help, and may end at one.
+                        // A resumed octree does not know which cells splitting does not help, and may end at
+                        // one.
                         let forgot = model.resumed && left == 0;
                         assert!((done == Refinement::Done) == all || all && forgot);
                     } else if most.is_none() {

@@ -1,4 +1,5 @@
-//! Stored octrees: what builds them, their laws, their Booleans, their channels and voxel records, and what they prove.
+//! Stored octrees: what builds them, their laws, their Booleans, their channels and voxel records, and what
+//! they prove.
 
 #[path = "../../fuzz/bodies/aligned.rs"]
 mod aligned;

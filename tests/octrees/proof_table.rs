@@ -1,11 +1,14 @@
-//! What comes out proven of what goes in: one table of all ways in which the library makes a solid of another.
+//! What comes out proven of what goes in: one table of all ways in which the library makes a solid of
+//! another.
 //!
-//! An octree of a ball goes in, by each of the four rules. Each way says which bits of [`Proof`] come out, and what the
-//! truth is that they speak of. The bits are compared with the table; and where FULL or EMPTY is claimed, the cells are
-//! held against the truth, point by point and exactly, so that a wrong bit is a lie and no mere difference from the table.
+//! An octree of a ball goes in, by each of the four rules. Each way says which bits of [`Proof`] come out,
+//! and what the truth is that they speak of. The bits are compared with the table; and where FULL or EMPTY is
+//! claimed, the cells are held against the truth, point by point and exactly, so that a wrong bit is a lie
+//! and no mere difference from the table.
 //!
-//! The table is complete: all types that are solids, and all public functions that return one, are looked for in the
-//! sources, and each must be covered by a row, or stand in a list of those that make solids of numbers.
+//! The table is complete: all types that are solids, and all public functions that return one, are looked for
+//! in the sources, and each must be covered by a row, or stand in a list of those that make solids of
+//! numbers.
 
 #![cfg(feature = "std")]
 
@@ -179,8 +182,8 @@ fn moved(p: [f64; 3]) -> Option<bool> {
 /// One way, and what comes out of it.
 struct Way {
     name: &'static str,
-    /// Types that are solids and public functions, with the folder and the file where they stand, that the way goes
-    /// through.
+    /// Types that are solids and public functions, with the folder and the file where they stand, that the
+    /// way goes through.
     through: &'static [&'static str],
     make: fn(&Given) -> Outcome,
     /// FULL and EMPTY for each rule of [`RULES`]: `1` if it is proven; `--` where the way refuses that rule.
@@ -1053,8 +1056,8 @@ fn what_comes_out_is_what_the_table_says_and_true() {
 
 // ---- that the table is complete -------------------------------------------------------------------------
 
-/// Files whose functions make solids of numbers, of what was written by other programs, or of what the program's own
-/// table holds against the truth (`cli/tests/program/proof_table.rs`).
+/// Files whose functions make solids of numbers, of what was written by other programs, or of what the
+/// program's own table holds against the truth (`cli/tests/program/proof_table.rs`).
 const NUMBERS: &[&str] = &[
     "exchange/volume/mod.rs",
     "scene/lower.rs",

@@ -1,4 +1,5 @@
-//! Shards of an octree: joined they are the whole, byte for byte, and alone they say nothing that is not true of it.
+//! Shards of an octree: joined they are the whole, byte for byte, and alone they say nothing that is not true
+//! of it.
 
 use crate::common::{Random, alone, repeated, shapes};
 use leafless::op::{build_extended_shard, join, shard};
@@ -364,7 +365,8 @@ fn what_is_refused() {
     }
     let coarse = build(&part(), &unit(3), Rule::Certified, &alone()).unwrap();
     assert!(matches!(join(&[*tree.view(), *coarse.view()], &alone()), Err(Error::FrameMismatch { .. })));
-    // Of one solid by two rules something is known together that neither knows alone, or they contradict each other.
+    // Of one solid by two rules something is known together that neither knows alone, or they contradict each
+    // other.
     let [inner, outer] =
         [Rule::Inner, Rule::Outer].map(|rule| build(&part(), &frame, rule, &alone()).unwrap());
     assert!(join(&[*inner.view(), *outer.view()], &alone()).is_err());

@@ -958,8 +958,8 @@ fn solid_parts_add_up() {
 
 #[test]
 fn equal_records_beside_each_other_cost_nothing_where_they_meet() {
-    // Four octants inside and four outside, on a lattice of 2^20 cells to an axis, moved by no lattice step. Where equal
-    // octants meet nothing is split; where the others do, the result is larger than the limit.
+    // Four octants inside and four outside, on a lattice of 2^20 cells to an axis, moved by no lattice step.
+    // Where equal octants meet nothing is split; where the others do, the result is larger than the limit.
     let frame = Frame::new([0.0; 3], 1.0, 20).unwrap();
     let codes: Vec<u64> = (0..8).map(|octant| octant << 57).collect();
     let records = |kinds: Vec<u8>| {
@@ -977,8 +977,8 @@ fn equal_records_beside_each_other_cost_nothing_where_they_meet() {
 
 #[test]
 fn faces_that_run_along_the_lattice_cost_nothing() {
-    // Two of eight octants, of which nothing lies beside the others, on a lattice of 2^20 cells to an axis: 2^40 finest
-    // cells lie along each face.
+    // Two of eight octants, of which nothing lies beside the others, on a lattice of 2^20 cells to an axis:
+    // 2^40 finest cells lie along each face.
     let frame = Frame::new([-1.0, 0.5, 3.0], 4.0, 20).unwrap();
     let (codes, kinds) = (vec![0, 3 << 57], vec![VoxelKind::Inside as u8, VoxelKind::Boundary as u8]);
     let records = VoxelRecords::from_arrays(&frame, codes, vec![1; 2], kinds, 0, vec![]).unwrap();

@@ -107,7 +107,8 @@ fn each_budget_holds_the_truth() {
             let control = Control { max_splits: Some(budget), ..Control::default() };
             let found = surface_area(&placed, &frame(), 0.0, &control).unwrap();
             assert!(found.splits <= budget, "{name} {found:?}");
-            // (As long as a cell knows only how large it is, eight smaller ones may know less; and roundings add up.)
+            // (As long as a cell knows only how large it is, eight smaller ones may know less; and roundings
+            // add up.)
             assert!(budget < 50 || found.area.width() <= last + 1e-9, "{name} {budget} {found:?}");
             assert_ne!(found.stop_reason, StopReason::Tolerance);
             holds(&found, truth * scale * scale, name);
@@ -257,7 +258,8 @@ fn an_extended_tree_has_the_area_of_its_source() {
     }
 }
 
-/// Faces in planes of the lattice at each depth of trees, between cells that are decided, and beside cells that are cut.
+/// Faces in planes of the lattice at each depth of trees, between cells that are decided, and beside cells
+/// that are cut.
 #[test]
 fn faces_in_planes_of_the_lattice_are_counted_once() {
     let frame = Frame::new([-4.0; 3], 8.0, 12).unwrap();
@@ -371,8 +373,8 @@ fn the_same_for_any_number_of_threads() {
     assert_eq!(surface_area(&solid, &frame(), tolerance, &alone()).unwrap(), many);
 }
 
-/// Bounds of the area in a cell by those of cells that are some levels finer, in squares of the cell's half edge.
-/// (Where a solid ends in a wall between two cells the area there is in neither.)
+/// Bounds of the area in a cell by those of cells that are some levels finer, in squares of the cell's half
+/// edge. (Where a solid ends in a wall between two cells the area there is in neither.)
 fn by_finer<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u8) -> Interval {
     if levels == 0 {
         return worker.area(cell, part).unwrap().unwrap_or(Interval::new(0.0, f64::INFINITY).unwrap());

@@ -1,5 +1,5 @@
-//! Clearance to second order: distances of primitives against closed forms, the points that are told with them, how deep solids
-//! overlap, and gaps that are decided.
+//! Clearance to second order: distances of primitives against closed forms, the points that are told with
+//! them, how deep solids overlap, and gaps that are decided.
 
 use crate::common::{Random, alone};
 use leafless::query::{GapVerdict, StopReason, clearance_at, gap_at_least, gap_at_least_at};
@@ -118,7 +118,8 @@ fn a_tilted_shaft_in_a_ring() {
     assert!(found.distance.width() <= 1e-4, "{found:?}");
 }
 
-/// A convex body that knows how far it is from others: the points within a radius of a box's or of a segment's points, in a place.
+/// A convex body that knows how far it is from others: the points within a radius of a box's or of a
+/// segment's points, in a place.
 #[derive(Debug, Clone)]
 struct Body {
     half: [f64; 3],
@@ -190,9 +191,11 @@ impl Body {
     }
 }
 
-/// Bounds of the distance of two convex bodies: by their support functions, from below for sure, and by points of both from above.
+/// Bounds of the distance of two convex bodies: by their support functions, from below for sure, and by
+/// points of both from above.
 fn convex_distance(a: &Body, b: &Body) -> (f64, f64) {
-    // The nearest points to each other by turns, with what momentum adds; the support functions prove the distance.
+    // The nearest points to each other by turns, with what momentum adds; the support functions prove the
+    // distance.
     let mut p = a.nearest(b.placement.apply([0.0; 3]));
     let (mut lower, mut upper) = (0.0f64, f64::INFINITY);
     let mut before = p;
@@ -392,7 +395,8 @@ fn how_deep_solids_overlap() {
     assert_eq!((found.distance.upper, found.depth), (0.0, 0.0));
 }
 
-/// Solids that are known in other ways agree with expressions: meshes, stored octrees with and without surfaces, and moved ones.
+/// Solids that are known in other ways agree with expressions: meshes, stored octrees with and without
+/// surfaces, and moved ones.
 #[test]
 fn solids_of_all_kinds_agree() {
     let mut random = Random(15);

@@ -94,7 +94,8 @@ fn soup(mesh: &TriangleMesh, placement: &Affine) -> Vec<[Point; 3]> {
     mesh.triangles().iter().map(corners).collect()
 }
 
-/// The least distance of the triangles of two meshes. Pairs are left out whose balls around the first corners are further apart.
+/// The least distance of the triangles of two meshes. Pairs are left out whose balls around the first corners
+/// are further apart.
 fn by_pairs(a: &TriangleMesh, b: &TriangleMesh, placement: &Affine) -> f64 {
     let round = |t: [Point; 3]| (t, length(minus(t[1], t[0])).max(length(minus(t[2], t[0]))));
     let [own, others] = [soup(a, &Affine::IDENTITY), soup(b, placement)]
@@ -441,7 +442,8 @@ fn threads_and_cancelling() {
     assert!(matches!(refused, Err(Error::Cancelled)));
 }
 
-/// Of a mesh in many places beside itself, no vertices are nearer than the lower bound, and the bounds are one number but for rounding.
+/// Of a mesh in many places beside itself, no vertices are nearer than the lower bound, and the bounds are
+/// one number but for rounding.
 #[test]
 #[ignore = "minutes"]
 fn a_mesh_beside_itself() {

@@ -185,8 +185,8 @@ fn meshes_have_the_columns_of_their_octrees() {
     assert_built(&solid, &frame, &[[[0; 2], [128; 2]], [[17, 40], [91, 77]]]);
 }
 
-/// The height of a ball on a fine lattice lies in the interval: of the whole column, and so of the line through the
-/// centres of its cells.
+/// The height of a ball on a fine lattice lies in the interval: of the whole column, and so of the line
+/// through the centres of its cells.
 #[test]
 fn the_true_height_lies_in_the_interval() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();

@@ -36,7 +36,8 @@ fn ask<A: Solid, B: Solid>(a: &A, b: &B, frame: &Frame) -> Interference {
     interference(a, b, frame, PROOF, &alone()).unwrap()
 }
 
-/// All ways to ask about a pair: as it is and turned, as expressions, from octrees that keep the surfaces, and mixed.
+/// All ways to ask about a pair: as it is and turned, as expressions, from octrees that keep the surfaces,
+/// and mixed.
 fn check(name: &str, a: &Csg, b: &Csg, frame: &Frame, expected: Overlap, most: u64) {
     for placement in [Affine::IDENTITY, turned()] {
         let (a, b) = (placed(a, &placement), placed(b, &placement));
@@ -236,7 +237,8 @@ fn cones_on_planes() {
     let around = Csg::cuboid([-6.0; 3], [6.0; 3]).unwrap();
     let slope = Csg::half_space([4.0, 0.0, -3.0], 0.0).unwrap();
     let slope = Csg::intersection_of([slope, around]).unwrap();
-    // (Beside contact, the plane cuts the other nappe: nothing but cells tells, and of the cone's apex these do not.)
+    // (Beside contact, the plane cuts the other nappe: nothing but cells tells, and of the cone's apex these
+    // do not.)
     let cone = Csg::frustum(0.0, 3.0, 0.0, 4.0).unwrap();
     check_some_beside("a cone on a slope", &cone, &slope, &[BESIDE[0], BESIDE[3], BESIDE[4]], 20_000);
     let frustum = Csg::frustum(0.75, 3.0, 1.0, 4.0).unwrap();
@@ -253,7 +255,8 @@ fn ellipsoids_of_different_shapes() {
     check_beside("on a cylinder", &upright, &b, 2000);
 }
 
-/// The volume of what two convex polyhedra have in common, beside one that is clipped by the planes of the other.
+/// The volume of what two convex polyhedra have in common, beside one that is clipped by the planes of the
+/// other.
 #[test]
 fn overlaps_of_convex_polyhedra() {
     let mut random = Random(38);
@@ -291,7 +294,8 @@ fn overlaps_of_convex_polyhedra() {
     }
 }
 
-/// The volume of the points with n · x ≤ end of all planes, which are bounded: faces are squares that are clipped.
+/// The volume of the points with n · x ≤ end of all planes, which are bounded: faces are squares that are
+/// clipped.
 fn clipped_volume(planes: &[([f64; 3], f64)]) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let cross = |a: [f64; 3], b: [f64; 3]| {
@@ -393,7 +397,8 @@ impl Figure {
     }
 }
 
-/// Pairs on whole numbers, of which many touch exactly, or one of both a little beside that: returns how many stay undecided.
+/// Pairs on whole numbers, of which many touch exactly, or one of both a little beside that: returns how many
+/// stay undecided.
 fn random_pairs(count: u32) -> u32 {
     let mut random = Random(3838);
     let frame = Frame::new([-32.0; 3], 64.0, 20).unwrap();

@@ -1,5 +1,5 @@
-//! How many cells of a solid lie in regions of any shape, and what volume both have in common, against dense arrays,
-//! subdivided cells and formulas.
+//! How many cells of a solid lie in regions of any shape, and what volume both have in common, against dense
+//! arrays, subdivided cells and formulas.
 
 use crate::common;
 use crate::common::{Dense, DenseSolid, Random, alone, cases, lattice_frame, positions, shapes};
@@ -117,7 +117,8 @@ fn coded_region(tree: &Octree) -> Octree {
 /// Subdivisions of a cell's edge.
 const FINE: i64 = 16;
 
-/// How much of a cell lies in a ball, in subdivided cells that lie in it and that meet it; all in their edges.
+/// How much of a cell lies in a ball, in subdivided cells that lie in it and that meet it; all in their
+/// edges.
 fn in_ball(at: [u32; 3], centre: [i64; 3], radius: i64) -> [u64; 2] {
     // Squares of the least and the greatest distance of an interval from a coordinate.
     let reach = |low: i64, high: i64, c: i64| {

@@ -87,7 +87,8 @@ fn boxes_moved_and_turned() {
     let a = Csg::cuboid([-1.0; 3], [1.0; 3]).unwrap();
     let moved = Csg::cuboid([-0.9, -0.8, -1.0], [1.1, 1.2, 1.0]).unwrap();
     let truth = f64::hypot(1.1 - 1.0, 1.2 - 1.0);
-    // A corner of the one is as far from the other as the edges are moved, beyond them; inside, as far as the nearer face.
+    // A corner of the one is as far from the other as the edges are moved, beyond them; inside, as far as the
+    // nearer face.
     holds(&ask(&a, &moved, &frame, 1e-6), [truth, truth], 1e-6);
     // Faces in planes of the lattice.
     let half = Csg::cuboid([-1.0; 3], [1.0, 1.0, 0.5]).unwrap();
@@ -169,7 +170,8 @@ fn bumpy(size: f64) -> impl Fn(Point) -> f64 {
     move |[x, y, z]| 1.0 + size * ((5.0 * x).sin() + (4.0 * y + 1.0).cos() * (3.0 * z).sin())
 }
 
-/// The square of the distance of a point from a triangle, by the parts of the plane in which the nearest point may be.
+/// The square of the distance of a point from a triangle, by the parts of the plane in which the nearest
+/// point may be.
 fn square(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     let (u, v, w) = (minus(b, a), minus(c, a), minus(p, a));
     let (uu, uv, vv, uw, vw) = (dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w));

@@ -6,7 +6,8 @@ use leafless::{Control, Csg, Error, Frame, Octree, Rule, Tag, build, compact};
 use proptest::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// The square of the distance, in half cells, from a cell's centre to the nearest closed cell with one of these tags.
+/// The square of the distance, in half cells, from a cell's centre to the nearest closed cell with one of
+/// these tags.
 fn square(dense: &Dense, exterior: Tag, at: [u32; 3], tags: &[Tag]) -> Option<u64> {
     let apart = |a: u32, b: u32| (2 * u64::from(a.abs_diff(b))).saturating_sub(1).pow(2);
     let cells = positions(dense.depth).filter(|&other| tags.contains(&dense.at(other)));
@@ -16,7 +17,8 @@ fn square(dense: &Dense, exterior: Tag, at: [u32; 3], tags: &[Tag]) -> Option<u6
     inside.into_iter().chain(outside.filter(|_| tags.contains(&exterior))).min()
 }
 
-/// Whether a single is the last not above the root of a square (half cells of edge 1), or the first not below.
+/// Whether a single is the last not above the root of a square (half cells of edge 1), or the first not
+/// below.
 fn is_next_to(single: f32, square: Option<u64>, below: bool) -> bool {
     let Some(square) = square else { return single == f32::INFINITY };
     // The square of a single has 48 bits.

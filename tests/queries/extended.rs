@@ -1,5 +1,5 @@
-//! Whatever takes a solid gives of an extended octree what it gives of the expression that the tree was made from: intervals that
-//! overlap, and are as sharp.
+//! Whatever takes a solid gives of an extended octree what it gives of the expression that the tree was made
+//! from: intervals that overlap, and are as sharp.
 
 use crate::common::{Random, alone};
 use leafless::lattice::Frame;

@@ -1,5 +1,5 @@
-//! Bounding boxes by slabs, against formulas of how far shapes reach along a direction, and against the boxes of
-//! octrees, which know no slabs.
+//! Bounding boxes by slabs, against formulas of how far shapes reach along a direction, and against the boxes
+//! of octrees, which know no slabs.
 
 use crate::common::alone;
 use glam::{DMat3, DVec3, EulerRot};
@@ -172,8 +172,8 @@ fn intervals_hold_the_formulas_at_every_budget() {
                         assert!(side.lower - slack <= truth && truth <= side.upper + slack, "{at}");
                     }
                     if (max_splits, depth) == (10_000, 20) {
-                        // Where more than three planes meet, and where there is no gradient, a point is known to
-                        // some finest cells.
+                        // Where more than three planes meet, and where there is no gradient, a point is known
+                        // to some finest cells.
                         let is_tip = matches!(name, "cone" | "octahedron");
                         let width = tolerance.max(if is_tip { 64.0 * frame.cell_size() } else { 0.0 });
                         assert!(sides(&found).iter().all(|side| side.width() <= width + slack), "{at}");
@@ -211,7 +211,8 @@ fn a_tilted_plate_takes_few_splits() {
     }
 }
 
-/// Random polytopes, thin ones among them: the corners are what all planes hold of the points where three meet.
+/// Random polytopes, thin ones among them: the corners are what all planes hold of the points where three
+/// meet.
 #[test]
 fn polytopes_against_their_corners() {
     let mut random = Random(7);
@@ -249,8 +250,8 @@ fn polytopes_against_their_corners() {
             assert!(found.corners.is_none(), "round {round}, {points:?}: {found:?}");
             continue;
         }
-        // Where a sliver is so thin that more than three planes meet in a finest cell, a corner may lie as far along
-        // it as faces at a thousandth of a radian let it.
+        // Where a sliver is so thin that more than three planes meet in a finest cell, a corner may lie as
+        // far along it as faces at a thousandth of a radian let it.
         if found.stop_reason != StopReason::Tolerance {
             slivers += 1;
             assert!(found.stop_reason == StopReason::Exhausted && round % 3 == 0, "round {round}: {found:?}");
@@ -271,7 +272,8 @@ fn polytopes_against_their_corners() {
     assert!((10..150).contains(&empty) && slivers < 10, "{empty} {slivers}");
 }
 
-/// Boxes of expressions whose cells know unions, complements and one side only, beside those of their octrees.
+/// Boxes of expressions whose cells know unions, complements and one side only, beside those of their
+/// octrees.
 #[test]
 fn expressions_beside_their_octrees() {
     let mut random = Random(3);
@@ -378,8 +380,8 @@ fn flat_thin_and_empty_solids_end() {
     assert!(found.splits < 1000, "{found:?}");
 }
 
-/// What two sides prove of an empty solid, before it is proven empty, may contradict each other: it would end before
-/// it begins. That is a proof, and no box.
+/// What two sides prove of an empty solid, before it is proven empty, may contradict each other: it would end
+/// before it begins. That is a proof, and no box.
 #[test]
 fn a_box_that_ends_before_it_begins_is_none() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();

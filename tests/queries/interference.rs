@@ -712,8 +712,8 @@ fn cells_that_cannot_tell_more_end_a_search() {
     }
 }
 
-/// Two foils that are thinner than a cell, one on the other, each with a ball at its far end: nothing near the
-/// contact is FULL, and yet the distance is no greater than that of the balls.
+/// Two foils that are thinner than a cell, one on the other, each with a ball at its far end: nothing near
+/// the contact is FULL, and yet the distance is no greater than that of the balls.
 #[test]
 fn full_cells_anywhere_bound_a_distance() {
     let frame = Frame::new([0.0; 3], 16.0, 9).unwrap();
@@ -754,7 +754,8 @@ fn full_cells_of_thin_walls_are_found() {
     assert!(found.distance.upper < 3.2, "{found:?}");
 }
 
-/// Thousands of parts that all run through the same cells: what is remembered of a cell is as large as the solid.
+/// Thousands of parts that all run through the same cells: what is remembered of a cell is as large as the
+/// solid.
 #[test]
 fn searches_end_before_they_take_too_much_memory() {
     let frame = Frame::new([-1.0; 3], 4.0, 12).unwrap();

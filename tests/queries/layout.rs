@@ -83,7 +83,8 @@ fn assert_proven(layout: &Layout) {
     }
 }
 
-/// Eight blocks that fill a box to 80 %: all splits of the container and of the items are counted, whoever makes them.
+/// Eight blocks that fill a box to 80 %: all splits of the container and of the items are counted, whoever
+/// makes them.
 #[test]
 fn eight_blocks() {
     let sizes = [
@@ -221,7 +222,8 @@ fn check_arrangements(count: usize) {
     );
 }
 
-/// Solids of all kinds, found by a search, against dense samples: no point lies in two of them, or outside of the container.
+/// Solids of all kinds, found by a search, against dense samples: no point lies in two of them, or outside of
+/// the container.
 #[test]
 fn what_is_placed_is_apart() {
     let hook = Csg::cuboid([0.0; 3], [3.0, 1.0, 1.0]).unwrap();
@@ -506,7 +508,8 @@ fn containers_of_all_kinds() {
     }
 }
 
-/// Faces in one plane: blocks that touch each other and the walls do not overlap, and meshes that nearly do are told.
+/// Faces in one plane: blocks that touch each other and the walls do not overlap, and meshes that nearly do
+/// are told.
 #[test]
 fn what_touches_is_apart() {
     let items = vec![item(cuboid([2.0; 3])).with_count(27)];

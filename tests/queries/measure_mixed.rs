@@ -82,9 +82,9 @@ fn expressions_of_other_solids_to_a_ten_thousandth() {
     }
 }
 
-/// Children that are decided once their groups are taken apart leave nothing behind that belongs to their siblings: the small
-/// bodies lie on the faces of the mesh, so that both are open in many cells, and whoever walks depth first comes back to
-/// children whose siblings are done.
+/// Children that are decided once their groups are taken apart leave nothing behind that belongs to their
+/// siblings: the small bodies lie on the faces of the mesh, so that both are open in many cells, and whoever
+/// walks depth first comes back to children whose siblings are done.
 #[test]
 fn many_small_bodies_on_a_mesh_are_walked_depth_first() {
     let mut random = Random(11);

@@ -1,4 +1,5 @@
-//! Stored octrees under placements: every answer against all pairs of their cells, and against the search by cells.
+//! Stored octrees under placements: every answer against all pairs of their cells, and against the search by
+//! cells.
 
 use crate::common::{Random, alone, cases, pairs_of};
 use leafless::lattice::Cube;
@@ -377,7 +378,8 @@ fn what_is_no_whole_octree_is_searched_by_cells() {
     }
 }
 
-/// Behind any wrapper it is the same octree. Expressions of octrees are other solids, of which no less is true.
+/// Behind any wrapper it is the same octree. Expressions of octrees are other solids, of which no less is
+/// true.
 #[test]
 fn wrapped_octrees_are_octrees() {
     let mut random = Random(4);

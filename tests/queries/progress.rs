@@ -1,4 +1,5 @@
-//! What long operations tell of their progress: it rises, ends with all of the work, and has no gap that holds most of it.
+//! What long operations tell of their progress: it rises, ends with all of the work, and has no gap that
+//! holds most of it.
 
 use crate::common::Random;
 use leafless::attribute::{
@@ -73,7 +74,8 @@ impl Heard {
     }
 }
 
-/// Operations that are one search until what they look for is known well enough: nobody knows how long it will be.
+/// Operations that are one search until what they look for is known well enough: nobody knows how long it
+/// will be.
 const SEARCHES: &[&str] = &[
     "bounding box",
     "clearance",
@@ -344,8 +346,8 @@ fn progress_rises_to_all_without_a_wide_gap() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A difference of many operands is the first less each of the others; operands on another frame are refused before
-/// there is any progress, wherever they stand.
+/// A difference of many operands is the first less each of the others; operands on another frame are refused
+/// before there is any progress, wherever they stand.
 #[test]
 fn differences_of_many() {
     let frame = Frame::new([-1.0; 3], 2.0, 5).unwrap();

@@ -1,5 +1,5 @@
-//! Rays on meshes from files, on primitives and their combinations, and on mapped files: the true first hit lies in
-//! the interval that is told.
+//! Rays on meshes from files, on primitives and their combinations, and on mapped files: the true first hit
+//! lies in the interval that is told.
 
 use crate::common::{Random, alone, model};
 use crate::triangles::Triangles;
@@ -44,8 +44,8 @@ fn length(direction: [f64; 3]) -> f64 {
     direction.iter().map(|d| d * d).sum::<f64>().sqrt()
 }
 
-/// What is told of first hits on FULL or PARTIAL cells, beside intervals that hold the true ones: ∞ for none. Most
-/// intervals are narrower than `fine`.
+/// What is told of first hits on FULL or PARTIAL cells, beside intervals that hold the true ones: ∞ for none.
+/// Most intervals are narrower than `fine`.
 fn assert_hits(
     what: &str,
     plain: &[Plain],
@@ -244,8 +244,8 @@ fn rays_on_a_mapped_file() {
     }
 }
 
-/// The closed block [2, 6]³, and rays from its corners, edges, faces and inside, and from around it, along axes and
-/// diagonals: the times are whole numbers. A zero of either sign is no direction.
+/// The closed block [2, 6]³, and rays from its corners, edges, faces and inside, and from around it, along
+/// axes and diagonals: the times are whole numbers. A zero of either sign is no direction.
 #[test]
 fn rays_from_corners_edges_and_faces() {
     let frame = Frame::new([0.0; 3], 8.0, 3).unwrap();

@@ -236,8 +236,8 @@ proptest! {
     }
 }
 
-/// Rays that run side by side from somewhere around or in the universe of a tree of 2^depth cells with edge 1: some of
-/// them on lattice planes, of different lengths, some of them ended.
+/// Rays that run side by side from somewhere around or in the universe of a tree of 2^depth cells with edge
+/// 1: some of them on lattice planes, of different lengths, some of them ended.
 fn side_by_side(random: &mut Random, depth: u8, count: usize) -> Vec<Ray> {
     let cells = f64::from(1u32 << depth);
     let from = [0; 3].map(|_| random.between(-0.7, 1.7) * cells);
@@ -309,8 +309,8 @@ impl Aligned {
     }
 }
 
-/// Rays with all digits from around a ball; every third is parallel to an axis, every third nearly so, and some
-/// begin in the ball.
+/// Rays with all digits from around a ball; every third is parallel to an axis, every third nearly so, and
+/// some begin in the ball.
 fn rays_with_digits(random: &mut Random, count: usize) -> Vec<([f64; 3], [f64; 3])> {
     let number = |random: &mut Random| random.between(-1.0, 1.0);
     (0..count)
@@ -392,7 +392,8 @@ fn the_true_hit_of_a_ball_lies_in_the_interval() {
     assert!(met > 1000 && missed > 300, "{met} {missed}");
 }
 
-/// Intervals along a ray end where slabs say: those inside in the ball, those outside out of it, close to each other.
+/// Intervals along a ray end where slabs say: those inside in the ball, those outside out of it, close to
+/// each other.
 #[test]
 fn the_true_spans_of_a_ball_lie_between() {
     let frame = Frame::new([-1.0; 3], 2.0, 12).unwrap();

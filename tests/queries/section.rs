@@ -1,5 +1,5 @@
-//! Areas of plane sections, against formulas, against dense arrays that are cut cell by cell, and against the outlines that
-//! planes cut out of meshes.
+//! Areas of plane sections, against formulas, against dense arrays that are cut cell by cell, and against the
+//! outlines that planes cut out of meshes.
 
 use crate::common::{Dense, DenseSolid, Random, Shape, alone, lattice_frame, model, positions, repeated};
 use crate::random::Maker;
@@ -28,8 +28,8 @@ impl Plane {
         SectionPlane::new(self.point.into(), self.normal.into()).unwrap()
     }
 
-    /// The area of the plane's part in the intersection of half-spaces (n · p ≤ o) that lies near a point: a large square
-    /// in the plane, clipped by one after another.
+    /// The area of the plane's part in the intersection of half-spaces (n · p ≤ o) that lies near a point: a
+    /// large square in the plane, clipped by one after another.
     fn area_within(&self, near: DVec3, size: f64, halves: impl IntoIterator<Item = (DVec3, f64)>) -> f64 {
         let n = self.normal.normalize();
         let centre = near - n * n.dot(near - self.point);
@@ -66,8 +66,8 @@ impl Plane {
         self.area_in_box(min, min + frame.edge())
     }
 
-    /// The area within what a closed mesh with outward triangles encloses: each triangle that the plane cuts leaves a piece
-    /// of the outline.
+    /// The area within what a closed mesh with outward triangles encloses: each triangle that the plane cuts
+    /// leaves a piece of the outline.
     fn area_in_mesh(&self, mesh: &TriangleMesh) -> f64 {
         let n = self.normal.normalize();
         let mut sum = DVec3::ZERO;
@@ -288,7 +288,8 @@ fn polytopes_have_the_sections_of_their_planes() {
     assert!(cut > 200 && most < 2000, "{cut} {most}");
 }
 
-/// A face that leaves the plane at a slope of about 2^-k, along a line that is known exactly: rounding is to be in the interval.
+/// A face that leaves the plane at a slope of about 2^-k, along a line that is known exactly: rounding is to
+/// be in the interval.
 #[test]
 fn nearly_parallel_faces_are_told_apart() {
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
@@ -314,8 +315,8 @@ fn nearly_parallel_faces_are_told_apart() {
     }
 }
 
-/// Planes that have to do with a lattice of unit cells: oblique ones, those perpendicular to an axis, and those that run
-/// through edges and corners of cells.
+/// Planes that have to do with a lattice of unit cells: oblique ones, those perpendicular to an axis, and
+/// those that run through edges and corners of cells.
 fn lattice_plane(random: &mut Random, cells: f64) -> Plane {
     let point = DVec3::from_array([0; 3].map(|_| random.between(-0.1, 1.1) * cells));
     match random.below(4) {
@@ -332,8 +333,8 @@ fn lattice_plane(random: &mut Random, cells: f64) -> Plane {
     }
 }
 
-/// The area of a plane in the FULL cells of a dense array, and in the FULL and the PARTIAL ones, on the lattice of unit
-/// cells.
+/// The area of a plane in the FULL cells of a dense array, and in the FULL and the PARTIAL ones, on the
+/// lattice of unit cells.
 fn dense_sums(dense: &Dense, plane: &Plane) -> [f64; 2] {
     let frame = lattice_frame(dense.depth);
     let axis = (0..3).find(|&axis| plane.normal == DVec3::AXES[axis] * plane.normal[axis]);
@@ -388,8 +389,8 @@ fn octrees_have_the_sections_of_their_cells() {
     }
 }
 
-/// The same cells on frames whose planes are no doubles: an axis-perpendicular plane next to one of them belongs to the layer
-/// that point queries say.
+/// The same cells on frames whose planes are no doubles: an axis-perpendicular plane next to one of them
+/// belongs to the layer that point queries say.
 #[test]
 fn planes_beside_lattice_planes_meet_one_layer() {
     let mut random = Random(6);

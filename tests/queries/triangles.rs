@@ -106,8 +106,8 @@ fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Takes in what is known of a ray and a triangle, by the method of Möller and Trumbore: that they meet, that they
-/// do not, or that rounding errors tell.
+/// Takes in what is known of a ray and a triangle, by the method of Möller and Trumbore: that they meet, that
+/// they do not, or that rounding errors tell.
 fn meet(triangle: &[[f64; 3]; 3], from: [f64; 3], direction: [f64; 3], first: &mut Interval) {
     let [a, b, c] = *triangle;
     let (ab, ac, way) = (minus(b, a), minus(c, a), minus(from, a));

@@ -1,4 +1,5 @@
-//! Solids with meshes in them, against the same solids without: where they are seen, how they are lit and cut open.
+//! Solids with meshes in them, against the same solids without: where they are seen, how they are lit and cut
+//! open.
 
 use crate::common::alone;
 use leafless::render::{

@@ -1,4 +1,5 @@
-//! Meshes, lines, slices and legends in pictures, against a caster of rays at every triangle and against formulas.
+//! Meshes, lines, slices and legends in pictures, against a caster of rays at every triangle and against
+//! formulas.
 
 use leafless::attribute::FunctionAttribute;
 use leafless::octree::{CellFilter, TaggedCell};
@@ -73,7 +74,8 @@ fn triangles(mesh: &TriangleMesh) -> Vec<[V; 3]> {
     mesh.triangles().iter().map(|t| t.map(|v| mesh.vertices()[v as usize])).collect()
 }
 
-/// Compares depths with those of all triangles; returns how many pixels show one, and how many lay too near an edge.
+/// Compares depths with those of all triangles; returns how many pixels show one, and how many lay too near
+/// an edge.
 fn check_depths(mesh: &TriangleMesh, shot: &Shot) -> [usize; 2] {
     let picture = take(shot, &[&MeshLayer::new(mesh)]);
     let triangles = triangles(mesh);
@@ -198,7 +200,8 @@ fn layers([.., opacity]: [u8; 4]) -> u32 {
 
 const GLASS: [u8; 4] = [80, 120, 200, 64];
 
-/// A line of sight enters a convex body once, and leaves it once, however small its triangles are and wherever its vertices.
+/// A line of sight enters a convex body once, and leaves it once, however small its triangles are and
+/// wherever its vertices.
 #[test]
 fn closed_meshes_have_no_cracks() {
     // Far less than a pixel a triangle.
@@ -428,7 +431,8 @@ fn triangles_have_colours_of_their_own() {
     assert!(matches!(refused, Err(Error::Argument { name: "colours", .. })));
 }
 
-/// With a crease angle above the dihedral angles neighbours have one normal at their edge; without one each is flat.
+/// With a crease angle above the dihedral angles neighbours have one normal at their edge; without one each
+/// is flat.
 #[test]
 fn creases_are_kept_and_the_rest_is_smooth() {
     let mesh = ball(6);
@@ -496,8 +500,8 @@ fn edges_of_features_are_drawn() {
     );
 }
 
-/// A square of right-angled triangles, seen from in front, whose equal sides are so many pixels long: between the greatest
-/// size at which edges are left out and the least at which they are whole, they grow darker.
+/// A square of right-angled triangles, seen from in front, whose equal sides are so many pixels long: between
+/// the greatest size at which edges are left out and the least at which they are whole, they grow darker.
 #[test]
 fn edges_of_small_triangles_fade() {
     let picture = |pixels: f64, edges: MeshEdges| {

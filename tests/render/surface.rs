@@ -1,5 +1,5 @@
-//! Surfaces of octrees and solids in pictures, against formulas: where they are seen, how deep, cut open, in the colours of
-//! values.
+//! Surfaces of octrees and solids in pictures, against formulas: where they are seen, how deep, cut open, in
+//! the colours of values.
 
 use crate::common::alone;
 use leafless::attribute::FunctionAttribute;
@@ -395,7 +395,8 @@ fn edges_are_drawn_where_faces_meet() {
     let edges = Some(Outline { width: 2.0, colour: [255, 0, 0, 255], crease: 40.0 });
     let finish = Finish { edges, ..Finish::default() };
     let trees = [8, 7].map(|depth| build(&block, &frame(depth), Rule::Certified, &alone()).unwrap());
-    // How far ink may be from an edge, and how much must be ink so near to it. Cells of a third of a pixel, or two, move it.
+    // How far ink may be from an edge, and how much must be ink so near to it. Cells of a third of a pixel,
+    // or two, move it.
     let layers: [(&dyn Layer, f64, f64, f64); 3] = [
         (&SolidLayer::new(&block, &frame(7), finish), 1.2, 1.0, 0.7),
         (&OctreeLayer::new(trees[0].view(), finish), 1.6, 0.97, 0.4),
@@ -519,7 +520,8 @@ fn what_is_no_picture_is_refused() {
     assert!(matches!(render(&Shot::new(camera, [8, 8]), &[], &control), Err(Error::Cancelled)));
 }
 
-/// A plate with bores, whose extended tree has large cells: it is shown as the plate, and with faces as its cells.
+/// A plate with bores, whose extended tree has large cells: it is shown as the plate, and with faces as its
+/// cells.
 #[test]
 fn an_extended_tree_is_shown_as_its_source() {
     let bores = (0..6).map(|k| {

@@ -1,4 +1,5 @@
-//! Volumes in pictures, against all voxels of each line of sight, sorted by where it enters them, and against formulas.
+//! Volumes in pictures, against all voxels of each line of sight, sorted by where it enters them, and against
+//! formulas.
 
 use crate::common::Random;
 use leafless::render::{
@@ -132,7 +133,8 @@ fn encoded(x: f64) -> f64 {
     255.0 * if x <= 0.0031308 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// What a picture of a volume must be: for each pixel the colour in front of an opaque background, not rounded.
+/// What a picture of a volume must be: for each pixel the colour in front of an opaque background, not
+/// rounded.
 struct Oracle<'a> {
     records: VoxelRecordsRef<'a>,
     transfer: Transfer,

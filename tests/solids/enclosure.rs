@@ -148,7 +148,8 @@ fn hold_as(
     }
     println!("{name}: {found:?}");
     assert!(!name.starts_with("joined") || found.several > found.cells / 10, "{name}: {found:?}");
-    // Neither side is kept silent about. (Turned balls lie partly outside of the universe: 18 % of a million.)
+    // Neither side is kept silent about. (Turned balls lie partly outside of the universe: 18 % of a
+    // million.)
     assert!(found.inside > wanted / 6 && found.outside > wanted / 6, "{name}: {found:?}");
 }
 
@@ -390,8 +391,8 @@ fn a_million_points_of_each_producer() {
     every_producer(1_000_000);
 }
 
-/// What analysis says of a function at a point: its gradient, and a bound of the sum of the magnitudes of second
-/// derivatives over the cube of this half edge around it.
+/// What analysis says of a function at a point: its gradient, and a bound of the sum of the magnitudes of
+/// second derivatives over the cube of this half edge around it.
 fn derivatives(model: &Model, p: [f64; 3], half: f64) -> ([f64; 3], f64) {
     match model {
         Model::Plane(normal, _) => (*normal, 0.0),
@@ -443,7 +444,8 @@ fn cone_holds(model: &Model, enclosure: &Enclosure, centre: [f64; 3], half: f64,
     }
 }
 
-/// Slabs of single half-spaces are no wider than `share` of what the second derivatives allow, and than rounding.
+/// Slabs of single half-spaces are no wider than `share` of what the second derivatives allow, and than
+/// rounding.
 fn tight(name: &str, share: f64, make: impl Fn(&mut Maker<'_>) -> Model) {
     let mut asked = 0;
     for seed in 0..400 {

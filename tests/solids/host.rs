@@ -355,7 +355,8 @@ fn distances_decide_cells() {
     assert!(classified.load(Relaxed) < asked.load(Relaxed));
 }
 
-/// The ways in which a host's solid is part of another one that is just as large, or has a box in a corner besides.
+/// The ways in which a host's solid is part of another one that is just as large, or has a box in a corner
+/// besides.
 fn wrapped(solid: AnySolid) -> Vec<(&'static str, AnySolid)> {
     let corner = || Csg::cuboid([0.0625; 3], [0.125; 3]).unwrap();
     // Turns about the ball's centre, by the angle whose cosine is 0.8, and by a quarter.
@@ -384,7 +385,8 @@ fn wrapped(solid: AnySolid) -> Vec<(&'static str, AnySolid)> {
     ]
 }
 
-/// How many more boxes a turned shape may be asked about: cells of a turned lattice have larger boxes around them.
+/// How many more boxes a turned shape may be asked about: cells of a turned lattice have larger boxes around
+/// them.
 const TURNED: u64 = 3;
 
 #[test]
@@ -556,7 +558,8 @@ fn errors_and_cancels_pass_through_wrappers() {
     }
 }
 
-/// With a host of 50 ms a call, as `cargo test --release --test solids host:: -- --ignored --nocapture` prints it.
+/// With a host of 50 ms a call, as `cargo test --release --test solids host:: -- --ignored --nocapture`
+/// prints it.
 #[test]
 #[ignore = "takes three minutes: prints calls, threads and times"]
 fn fifty_milliseconds_a_call() {

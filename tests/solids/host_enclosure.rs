@@ -61,8 +61,8 @@ fn ball(min: [f64; 3], max: [f64; 3], middle: [f64; 3]) -> GradientRange {
     GradientRange { value: about(value), gradient }
 }
 
-/// sin x cos y + sin y cos z + sin z cos x, of which each product changes its slope by at most the edge of a box
-/// for each coordinate.
+/// sin x cos y + sin y cos z + sin z cos x, of which each product changes its slope by at most the edge of a
+/// box for each coordinate.
 fn gyroid(min: [f64; 3], max: [f64; 3], [x, y, z]: [f64; 3]) -> GradientRange {
     let value = x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos();
     let slopes = [
@@ -101,8 +101,8 @@ fn one_thread() -> Control<'static> {
     Control::threads(1)
 }
 
-/// Relative widths of the volume times splits, at tolerances that fall by a factor of 10: about constant if the
-/// width goes down with 1/N.
+/// Relative widths of the volume times splits, at tolerances that fall by a factor of 10: about constant if
+/// the width goes down with 1/N.
 fn products(solid: &AnySolid, frame: &Frame, truth: f64, tolerances: &[f64]) -> Vec<f64> {
     let product = |&tolerance: &f64| {
         let found = measure(solid, frame, tolerance, &one_thread()).unwrap();

@@ -1,4 +1,5 @@
-//! A solid that was made outside of the library: what it says of cells, in exact arithmetic, and how it converges.
+//! A solid that was made outside of the library: what it says of cells, in exact arithmetic, and how it
+//! converges.
 
 use crate::common::exact::Exact;
 use crate::common::slabs::told;
@@ -129,7 +130,8 @@ fn slabs_make_it_converge_by_an_order() {
         assert!(a.common(b).is_some(), "{a:?} {b:?}");
     }
     assert!(many > 20 * few, "{many} {few}");
-    // A hundred times as well: a hundred times the splits, where cells alone would take ten thousand times as many.
+    // A hundred times as well: a hundred times the splits, where cells alone would take ten thousand times as
+    // many.
     assert!(more < 400 * few, "{more} {few}");
     let sampled =
         build(&three_balls(Step::Slabs), &frame().with_depth(7).unwrap(), Rule::Sampled, &Control::default());

@@ -11,7 +11,8 @@ use leafless::{Cell, Classifier, Csg, Frame, Solid, SurfaceOptions, Verdict, Wor
 /// The order of second moments.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
-/// 1, x, y, z and the second moments, with the greatest error, and the volume in cells of which nothing is known.
+/// 1, x, y, z and the second moments, with the greatest error, and the volume in cells of which nothing is
+/// known.
 #[derive(Debug, Clone, Copy)]
 struct Sum {
     moments: [f64; 10],
@@ -41,8 +42,8 @@ impl Sum {
     }
 }
 
-/// The moments of a cell from cells some levels below: those that are decided, those that know their moments, and
-/// others, of which any part may be solid.
+/// The moments of a cell from cells some levels below: those that are decided, those that know their moments,
+/// and others, of which any part may be solid.
 fn below<W: Worker>(worker: &mut W, cell: Cell, part: &W::Part, levels: u32, fine: bool) -> Sum {
     let any = || {
         let mut half = Sum::of(&CubeMoments::FULL, 4.0);

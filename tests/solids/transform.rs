@@ -405,8 +405,8 @@ fn extreme_numbers_prove_nothing_wrong() {
     }
 }
 
-/// The universe's inverse image began beyond the numbers that a frame may have, and the error named an origin that
-/// nobody had given.
+/// The universe's inverse image began beyond the numbers that a frame may have, and the error named an origin
+/// that nobody had given.
 #[test]
 fn a_universe_at_the_end_of_all_numbers_is_refused_for_the_placement() {
     let frame = Frame::new([-1.0, 2f64.powi(256), 2.5], 2f64.powi(-20), 1).unwrap();

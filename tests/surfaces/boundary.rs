@@ -165,7 +165,8 @@ pub fn away_from_mesh(p: [f64; 3], mesh: &TriangleMesh) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// What is said to be proven of a mesh holds for points of the mesh, and for points of the boundary that rays find.
+/// What is said to be proven of a mesh holds for points of the mesh, and for points of the boundary that rays
+/// find.
 pub fn assert_deviation(solid: &Csg, found: &Boundary, random: &mut Random, text: &str) {
     let (mesh, most) = (found.mesh(), found.report().deviation);
     if mesh.triangles().is_empty() {
@@ -400,7 +401,8 @@ fn check_scenes(scenes: std::ops::Range<usize>) {
     assert!(beyond <= 1 + scenes.len() / 20, "{beyond}");
 }
 
-/// An octree that keeps its surfaces has the boundary of its source, also where faces lie in planes of its lattice.
+/// An octree that keeps its surfaces has the boundary of its source, also where faces lie in planes of its
+/// lattice.
 #[test]
 fn stored_octrees() {
     let frame = Frame::new([-10.0, -10.0, -20.0], 120.0, 9).unwrap();
@@ -472,7 +474,8 @@ fn refusals() {
     assert!(matches!(boundary(&tree, &frame, 0.1, &alone()), Err(Error::Argument { name: "solid", .. })));
 }
 
-/// The boundary of a closed mesh is that mesh, with fewer triangles; what lies inside of another body is none of it.
+/// The boundary of a closed mesh is that mesh, with fewer triangles; what lies inside of another body is none
+/// of it.
 #[test]
 fn meshes() {
     let frame = Frame::new([-1.0; 3], 2.0, 8).unwrap();
@@ -498,8 +501,8 @@ fn meshes() {
     assert!((0.001..0.0011).contains(&found.report().deviation), "{:?}", found.report());
 }
 
-/// A turned part whose surfaces meet three at a time in circles: a chamfer on a round, a countersink in a bore, a counterbore, on a
-/// flange with four holes.
+/// A turned part whose surfaces meet three at a time in circles: a chamfer on a round, a countersink in a
+/// bore, a counterbore, on a flange with four holes.
 fn turned_part() -> Csg {
     let about = |x: f64, y: f64, radii: [f64; 2], low: f64, high: f64| {
         Csg::frustum_between([x, y, low], [x, y, high], radii).unwrap()

@@ -29,7 +29,8 @@ fn frame_of(mesh: &TriangleMesh, depth: u8) -> Frame {
     Frame::around(low, high, depth).unwrap()
 }
 
-/// A block with a pocket, turned: few triangles, vertices in its corners, and what is proven of the deviation.
+/// A block with a pocket, turned: few triangles, vertices in its corners, and what is proven of the
+/// deviation.
 #[test]
 fn sharp_edges_of_meshes_stay() {
     let pocket = Csg::cuboid([2.0, 2.0, 3.0], [6.0, 4.0, 9.0]).unwrap();
@@ -46,7 +47,8 @@ fn sharp_edges_of_meshes_stay() {
         let least = found.mesh().vertices().iter().map(away).fold(f64::INFINITY, f64::min);
         assert!(least < 2.0 * tolerance, "{corner:?} {least:e}");
     }
-    // What is proven is what the search by itself finds, to a sixteenth of the tolerance, and no more than was asked for.
+    // What is proven is what the search by itself finds, to a sixteenth of the tolerance, and no more than
+    // was asked for.
     let proven = found.report().deviation;
     let other = MeshSolid::new(found.into_mesh(), FillRule::NonZero).unwrap();
     let found = deviation(&solid, &other, &frame, 1e-3 * tolerance, &alone()).unwrap().distance();
@@ -54,7 +56,8 @@ fn sharp_edges_of_meshes_stay() {
     assert!(proven <= tolerance, "{proven}");
 }
 
-/// Of balls, of all kinds of solids, the true deviation is known at each vertex and each middle of a triangle: never more than is proven.
+/// Of balls, of all kinds of solids, the true deviation is known at each vertex and each middle of a
+/// triangle: never more than is proven.
 #[test]
 fn what_is_proven_is_not_contradicted() {
     let (centre, radius, tolerance) = ([0.5, 0.25, 0.0], 4.0, 0.1);
@@ -73,7 +76,8 @@ fn what_is_proven_is_not_contradicted() {
     });
     let host = host.with_contains(move |point| Ok(away(point) < 0.0)).with_exterior(Tag::Empty);
     let tree = build(&ball, &frame.with_depth(4).unwrap(), Rule::Certified, &alone()).unwrap();
-    // What is known of each: slabs tell an expression well, cells of a size tell others about as well as they are large.
+    // What is known of each: slabs tell an expression well, cells of a size tell others about as well as they
+    // are large.
     let solids: [(&str, AnySolid, f64); 4] = [
         ("expression", AnySolid::new(ball.clone()), 1.5 * tolerance),
         (
@@ -103,7 +107,8 @@ fn what_is_proven_is_not_contradicted() {
     assert_eq!(found.report().deviation, f64::INFINITY);
 }
 
-/// Hosts whose functions are no numbers, say different things of one place, or end in the middle: closed manifolds, or their own error.
+/// Hosts whose functions are no numbers, say different things of one place, or end in the middle: closed
+/// manifolds, or their own error.
 #[test]
 fn hosts_that_contradict_themselves() {
     let frame = Frame::new([-8.0; 3], 16.0, 5).unwrap();
@@ -169,7 +174,8 @@ fn hosts_that_contradict_themselves() {
     assert!(matches!(contour(&cube, &frame, 0.1, &control), Err(Error::Cancelled)));
 }
 
-/// Expressions, expressions with meshes in them, volumes and stored octrees: closed manifolds of about the right volume.
+/// Expressions, expressions with meshes in them, volumes and stored octrees: closed manifolds of about the
+/// right volume.
 #[test]
 fn solids_of_all_kinds() {
     let ball = Csg::ball([0.5, 0.25, 0.0], 4.0).unwrap();

@@ -49,8 +49,8 @@ fn vector_area(vertices: &[[f64; 3]], corners: &[u32]) -> [f64; 3] {
     sum
 }
 
-/// What must hold of all faces: loops are paired, a region has the area of its triangles, holes run against their outer loop, plane
-/// faces have no corner that no third face has, and each region lies on one surface.
+/// What must hold of all faces: loops are paired, a region has the area of its triangles, holes run against
+/// their outer loop, plane faces have no corner that no third face has, and each region lies on one surface.
 fn assert_faces(found: &Boundary, faces: &BoundaryFaces, text: &str) {
     let (mesh, arrays) = (found.mesh(), faces.arrays());
     assert_eq!(arrays.vertices, mesh.vertices());
@@ -68,7 +68,8 @@ fn assert_faces(found: &Boundary, faces: &BoundaryFaces, text: &str) {
         }
     }
     assert!(sides.keys().all(|&(from, to)| sides.contains_key(&(to, from))), "{text}");
-    // (Two faces alone have a corner where a piece of a third, smaller than the tolerance, was taken out: their edge has a bend there.)
+    // (Two faces alone have a corner where a piece of a third, smaller than the tolerance, was taken out:
+    // their edge has a bend there.)
     for corners in (0..count).flat_map(|face| loops(&arrays, face)) {
         for (k, corner) in corners.iter().enumerate().filter(|(_, corner)| uses[corner] == 2) {
             let others = [corners.len() - 1, 1].map(|step| corners[(k + step) % corners.len()]);

@@ -1,4 +1,5 @@
-//! All methods of surfaces on one list of solids: closed, outward, of the right volume, and fit to each other.
+//! All methods of surfaces on one list of solids: closed, outward, of the right volume, and fit to each
+//! other.
 
 use crate::aligned::Aligned;
 use crate::common::surfaces::{assert_balanced, euler_of_manifold, outlines};

@@ -8,7 +8,8 @@ use leafless::{
 };
 use proptest::prelude::*;
 
-/// The vertices of cubes between eight samples that one sheet passes through, by definition: means of the middles of crossed edges.
+/// The vertices of cubes between eight samples that one sheet passes through, by definition: means of the
+/// middles of crossed edges.
 fn means(dense: &Dense) -> Vec<[f64; 3]> {
     let n = 1i64 << dense.depth;
     let inside =
@@ -85,7 +86,8 @@ fn two_hundred_thousand_bitmaps() {
 proptest! {
     #![proptest_config(cases(100))]
 
-    /// Octrees with cells of several sizes: undecided cells count as they are told to, and threads change nothing.
+    /// Octrees with cells of several sizes: undecided cells count as they are told to, and threads change
+    /// nothing.
     #[test]
     fn undecided_cells(shape in shapes(1..=4)) {
         let dense = shape.dense();

@@ -1,5 +1,5 @@
-//! Coplanar shrink: the same surface as that of simple marching cubes, in far fewer triangles, without cracks;
-//! and the published form beside it.
+//! Coplanar shrink: the same surface as that of simple marching cubes, in far fewer triangles, without
+//! cracks; and the published form beside it.
 
 use crate::common::surfaces::{Point, assert_balanced, components, euler_of_manifold, outlines, sample};
 use crate::common::{Dense, Random, alone, cases, lattice_frame, repeated, shapes};

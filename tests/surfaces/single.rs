@@ -38,8 +38,8 @@ fn assert_single(mesh: &TriangleMesh, single: &SinglePrecision) {
     assert!(single.rounding <= far * 2f64.powi(-24) && single.rounding <= single.deviation);
 }
 
-/// The plate by marching cubes, on lattices in whose planes its faces nearly lie: triangles are lost to rounding and intersect, and
-/// nothing is and does once the mesh is mended.
+/// The plate by marching cubes, on lattices in whose planes its faces nearly lie: triangles are lost to
+/// rounding and intersect, and nothing is and does once the mesh is mended.
 #[test]
 fn a_plate_by_marching_cubes() {
     let mut all = (0, 0);

@@ -1,4 +1,5 @@
-//! Surfaces that touch each other and go over into one another: a ball at the end of a round bar, the round ends of a slot.
+//! Surfaces that touch each other and go over into one another: a ball at the end of a round bar, the round
+//! ends of a slot.
 
 use super::boundary::{assert_deviation, assert_manifold, of, turn};
 use crate::common::surfaces::euler_of_manifold;
@@ -22,8 +23,8 @@ fn slot() -> Csg {
     Csg::union_of([middle, end(-3.0), end(3.0)]).unwrap()
 }
 
-/// Solids with a name, the curves in which their surfaces touch (as a measure of how far a point is from all of them), the genus as
-/// Euler's number, and the volume.
+/// Solids with a name, the curves in which their surfaces touch (as a measure of how far a point is from all
+/// of them), the genus as Euler's number, and the volume.
 type Case = (&'static str, Csg, fn([f64; 3]) -> f64, i64, f64);
 
 fn cases() -> Vec<Case> {

@@ -22,12 +22,13 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Gives a solid a channel: a value of one to four numbers at every point inside. The values are those of a function, a
-/// volume or a channel of another solid, at the centres of cells; equal neighbours are stored as one. The channel
-/// travels in the solid's file, and through the Boolean commands.
+/// Gives a solid a channel: a value of one to four numbers at every point inside. The values are those of a
+/// function, a volume or a channel of another solid, at the centres of cells; equal neighbours are stored as
+/// one. The channel travels in the solid's file, and through the Boolean commands.
 ///
-/// Without a detail, every cell of the channel's finest level has its own value, wherever it is not proven that all of a
-/// larger cell has one. With --coarse, --fine and --tolerance cells are split as far as the values demand it.
+/// Without a detail, every cell of the channel's finest level has its own value, wherever it is not proven
+/// that all of a larger cell has one. With --coarse, --fine and --tolerance cells are split as far as the
+/// values demand it.
 #[derive(Args)]
 #[command(group = clap::ArgGroup::new("values").required(true).args(["from", "bodies", "expr", "value", "remove"]))]
 pub struct Arguments {
@@ -36,12 +37,13 @@ pub struct Arguments {
     /// Name of the channel. One of this name is replaced, or changed with --in
     #[arg(long, value_name = "NAME")]
     name: String,
-    /// Take the values from this file: the samples of a volume (NRRD, MetaImage, raw), the colours or materials of a mesh
-    /// (3MF, PLY) at the nearest point of its surface, or the channel of this name of another solid (.lfl)
+    /// Take the values from this file: the samples of a volume (NRRD, MetaImage, raw), the colours or
+    /// materials of a mesh (3MF, PLY) at the nearest point of its surface, or the channel of this name of
+    /// another solid (.lfl)
     #[arg(long, value_name = "FILE")]
     from: Option<OsString>,
-    /// Take the number of the nearest body of this mesh (STL, OBJ, PLY, OFF, 3MF), counted from 0 in the order of their
-    /// first triangles
+    /// Take the number of the nearest body of this mesh (STL, OBJ, PLY, OFF, 3MF), counted from 0 in the
+    /// order of their first triangles
     #[arg(long, value_name = "MESH")]
     bodies: Option<OsString>,
     /// Which values of a mesh. Without it: those of the channel's name, or the only ones
@@ -62,7 +64,8 @@ pub struct Arguments {
     /// Type in which numbers are stored. Without it: f32, or that of the channel that is copied or changed
     #[arg(long, value_parser = scalars(), value_name = "TYPE")]
     store: Option<ScalarType>,
-    /// Levels of the channel's cells, 1 to 20. Without it: those of the solid, or 8 if its cells keep surfaces
+    /// Levels of the channel's cells, 1 to 20. Without it: those of the solid, or 8 if its cells keep
+    /// surfaces
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// Edge that no cell may exceed where the solid is. Without it: no limit
@@ -71,12 +74,12 @@ pub struct Arguments {
     /// Edge at which cells are not split any more. Without it: that of the finest cells
     #[arg(long, value_name = "EDGE", requires = "tolerance", allow_hyphen_values = true)]
     fine: Option<f64>,
-    /// Split cells until the values in them are proven to differ by no more than this, in each number; where nothing
-    /// is proven, to the fine edge
+    /// Split cells until the values in them are proven to differ by no more than this, in each number; where
+    /// nothing is proven, to the fine edge
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// Compare the values at the eight corners of a cell instead, as published: their standard deviation must be no more
-    /// than the tolerance. Details between the corners are missed
+    /// Compare the values at the eight corners of a cell instead, as published: their standard deviation must
+    /// be no more than the tolerance. Details between the corners are missed
     #[arg(long, requires = "tolerance")]
     corners: bool,
     /// Take the sample of the nearest voxel, and do not interpolate

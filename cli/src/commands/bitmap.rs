@@ -32,11 +32,12 @@ pub struct Arguments {
     /// Compress the samples of a NRRD
     #[arg(long)]
     gzip: bool,
-    /// What undecided cells count as, and cells of the level that are cut further. Without it: what their centres are, where
-    /// cells keep surfaces, and outer in other files, which is told
+    /// What undecided cells count as, and cells of the level that are cut further. Without it: what their
+    /// centres are, where cells keep surfaces, and outer in other files, which is told
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
-    /// Level of the cells, 0 to the solid's depth. Without it: the finest one, or 8 if the cells keep surfaces
+    /// Level of the cells, 0 to the solid's depth. Without it: the finest one, or 8 if the cells keep
+    /// surfaces
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=MAX_DEPTH as i64))]
     level: Option<u8>,
     /// Threads to use; 0: as many as there are processors. The result is the same

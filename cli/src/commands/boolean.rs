@@ -15,20 +15,23 @@ use leafless::Frame;
 use leafless::attribute::CarryRule;
 use std::ffi::OsString;
 
-/// Solids from files (.lfl) must lie on one frame: `leafless voxelize --like part.lfl` makes one on that of another. Meshes, scenes and
-/// volumes are cut into cells on the frame of the first solid; without any, on the voxels of a volume that comes first, or on a cube
-/// around all of them: `leafless xor old.stl new.stl -o changes.lfl`. The result may replace one of the files. Tri-dexel models can be
-/// combined with each other, made with the same --bounds and --resolution.
+/// Solids from files (.lfl) must lie on one frame: `leafless voxelize --like part.lfl` makes one on that of
+/// another. Meshes, scenes and volumes are cut into cells on the frame of the first solid; without any, on
+/// the voxels of a volume that comes first, or on a cube around all of them:
+/// `leafless xor old.stl new.stl -o changes.lfl`. The result may replace one of the files. Tri-dexel models
+/// can be combined with each other, made with the same --bounds and --resolution.
 ///
-/// Meshes, scenes and volumes make a triangle mesh, too, if the output has the extension .stl, .ply, .obj, .off or .3mf, as
-/// `leafless mesh` makes one of a scene: `leafless difference part.stl tool.stl -o cut.stl`.
+/// Meshes, scenes and volumes make a triangle mesh, too, if the output has the extension .stl, .ply, .obj,
+/// .off or .3mf, as `leafless mesh` makes one of a scene: `leafless difference part.stl tool.stl -o cut.stl`.
 ///
-/// --translate, --rotate, --scale and --place move the file that they stand behind, and put it onto the frame of the first file:
-/// `leafless difference part.lfl pin.lfl --rotate z,30 pin.lfl --rotate z,60 -o out.lfl` cuts two pins. What was moved by whole cells and
-/// quarter turns, or keeps surfaces, stays exact; otherwise its cells blur by about one.
+/// --translate, --rotate, --scale and --place move the file that they stand behind, and put it onto the frame
+/// of the first file: `leafless difference part.lfl pin.lfl --rotate z,30 pin.lfl --rotate z,60 -o out.lfl`
+/// cuts two pins. What was moved by whole cells and quarter turns, or keeps surfaces, stays exact; otherwise
+/// its cells blur by about one.
 ///
-/// If a solid keeps surfaces (`leafless csg --surfaces`), the result keeps them, too, and is as exact. Give all tools in one
-/// command: they are cut at once, and what is larger than they are is copied once. A solid without surfaces takes part with its cells.
+/// If a solid keeps surfaces (`leafless csg --surfaces`), the result keeps them, too, and is as exact. Give
+/// all tools in one command: they are cut at once, and what is larger than they are is copied once. A solid
+/// without surfaces takes part with its cells.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -42,8 +45,8 @@ pub struct Arguments {
 /// That is so outside of the bounds, too, but for tri-dexel models, which end at them.
 #[derive(Args)]
 pub struct ComplementArguments {
-    /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
-    /// standard input
+    /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
+    /// MetaImage), or `-` for standard input
     file: OsString,
     #[command(flatten)]
     common: Common,
@@ -51,14 +54,15 @@ pub struct ComplementArguments {
 
 #[derive(Args)]
 struct Common {
-    /// File to write, or `-` for standard output; it is written whole or not at all. The extension of a mesh makes it one
+    /// File to write, or `-` for standard output; it is written whole or not at all. The extension of a mesh
+    /// makes it one
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = crate::options::threads)]
     threads: usize,
-    /// Lower corner and edge length of the cube of cells, for meshes, scenes and volumes without a solid among them. Without it: the
-    /// voxels of a volume that comes first, or the cube around all of them
+    /// Lower corner and edge length of the cube of cells, for meshes, scenes and volumes without a solid
+    /// among them. Without it: the voxels of a volume that comes first, or the cube around all of them
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = crate::options::bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Levels of cells there, 1 to 20. Without it: 10, or 8 for a triangle mesh, or those of the voxels
@@ -68,12 +72,12 @@ struct Common {
     reading: Reading,
     #[command(flatten)]
     drawing: Drawing,
-    /// Whose value of a channel counts where several solids have one: that of the first, the last, the greatest, or
-    /// the mean. Without it: that of the first
+    /// Whose value of a channel counts where several solids have one: that of the first, the last, the
+    /// greatest, or the mean. Without it: that of the first
     #[arg(long, value_name = "NAME=left|right|max|mean", value_parser = carry)]
     carry: Vec<(String, CarryRule)>,
-    /// Drop the surfaces that undecided cells of the result keep, so that the cells are left alone, which may be few and large. With a
-    /// level, 1 to 20, the surfaces first decide the cells of that level
+    /// Drop the surfaces that undecided cells of the result keep, so that the cells are left alone, which may
+    /// be few and large. With a level, 1 to 20, the surfaces first decide the cells of that level
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
     plain: Option<Option<u8>>,
 }

@@ -24,46 +24,51 @@ use std::time::Instant;
 /// Makes an octree, a tri-dexel model or a triangle mesh of any of them, or of a scene or a volume, as
 /// `leafless voxelize`, `csg`, `dexelize` and `mesh` do where nothing more is asked for.
 ///
-/// Of a tri-dexel model an octree has the cells whose centres lie inside, and the materials as the channel `material`. With --by-ends
-/// a cell is inside or outside if all rays through it are so all the way, and undecided if one begins or ends in it: what is thinner
-/// than a cell is not lost. Neither proves anything of the part between the rays. Of an octree a tri-dexel model has just
-/// the cells, exactly; undecided ones count as --resolve says. An octree of a mesh or a scene is certified, and its
-/// undecided cells stay so without --resolve. Of an octree whose cells keep surfaces, an octree without them has the cells that the
-/// surfaces decide. A mesh that becomes a mesh keeps its triangles, unless --resolution, --bounds or --resolve asks for samples.
+/// Of a tri-dexel model an octree has the cells whose centres lie inside, and the materials as the channel
+/// `material`. With --by-ends a cell is inside or outside if all rays through it are so all the way, and
+/// undecided if one begins or ends in it: what is thinner than a cell is not lost. Neither proves anything of
+/// the part between the rays. Of an octree a tri-dexel model has just the cells, exactly; undecided ones
+/// count as --resolve says. An octree of a mesh or a scene is certified, and its undecided cells stay so
+/// without --resolve. Of an octree whose cells keep surfaces, an octree without them has the cells that the
+/// surfaces decide. A mesh that becomes a mesh keeps its triangles, unless --resolution, --bounds or
+/// --resolve asks for samples.
 ///
-/// With --translate, --rotate, --scale and --place all of them are moved. Without --to an octree or a tri-dexel model then stays what it
-/// is, surfaces and channels included: on the image of its own cube, or, if that is not along the axes, on a cube around its
-/// image. Moved by whole cells and quarter turns, an octree stays exact; otherwise its cells blur by about one.
+/// With --translate, --rotate, --scale and --place all of them are moved. Without --to an octree or a
+/// tri-dexel model then stays what it is, surfaces and channels included: on the image of its own cube, or,
+/// if that is not along the axes, on a cube around its image. Moved by whole cells and quarter turns, an
+/// octree stays exact; otherwise its cells blur by about one.
 #[derive(Args)]
 pub struct Arguments {
-    /// Octree or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-`
-    /// for standard input
+    /// Octree or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
+    /// MetaImage), or `-` for standard input
     #[arg(value_name = "FILE")]
     input: OsString,
     /// File to write, or `-` for standard output; it is written whole or not at all
     #[arg(short, long, value_name = "OUT")]
     output: OsString,
-    /// What to make. The extension .ply, .stl, .obj, .off or .3mf of the output says that it is a mesh; .lfl says nothing,
-    /// as octrees and tri-dexel models both have it. What is moved stays what it is without it
+    /// What to make. The extension .ply, .stl, .obj, .off or .3mf of the output says that it is a mesh; .lfl
+    /// says nothing, as octrees and tri-dexel models both have it. What is moved stays what it is without it
     #[arg(id = "target", long = "to", value_enum, value_name = "KIND")]
     kind: Option<KindName>,
     /// What cells count as that the surface passes through, or that are undecided
     #[arg(long, value_enum)]
     resolve: Option<ResolveName>,
-    /// Let the ends of a tri-dexel model's intervals decide the cells of an octree, and not the centres of cells
+    /// Let the ends of a tri-dexel model's intervals decide the cells of an octree, and not the centres of
+    /// cells
     #[arg(long, conflicts_with = "resolve")]
     by_ends: bool,
-    /// Cells to an axis of the cube around a mesh or scene, a power of two. Without it: 256, and of a volume the voxels; a mesh that
-    /// becomes a mesh keeps its triangles
+    /// Cells to an axis of the cube around a mesh or scene, a power of two. Without it: 256, and of a volume
+    /// the voxels; a mesh that becomes a mesh keeps its triangles
     #[arg(long, value_name = "N", value_parser = resolution)]
     resolution: Option<u8>,
-    /// Lower corner and edge length of the cube, for a mesh, a scene, or what is moved. Without it: the cube around it
+    /// Lower corner and edge length of the cube, for a mesh, a scene, or what is moved. Without it: the cube
+    /// around it
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]
     taking: Taking,
-    /// Take triangles out of a mesh, and move its surface by this at the most, in model units. Edges of the shape and values of
-    /// triangles stay, and how far the surface moved is proven
+    /// Take triangles out of a mesh, and move its surface by this at the most, in model units. Edges of the
+    /// shape and values of triangles stay, and how far the surface moved is proven
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     simplify: Option<f64>,
     /// Write an STL also if rounding to its 32-bit coordinates breaks the surface

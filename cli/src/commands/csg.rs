@@ -19,12 +19,13 @@ use std::time::Instant;
 /// Splits space where the surface of a scene passes, down to cells of 2^-N of its extent. By the certified
 /// rule every cell is proven inside, proven outside, or undecided.
 ///
-/// A scene is a text in the language of the CSG dumps that OpenSCAD writes (`openscad -o part.csg
-/// part.scad`): group union difference intersection multmatrix translate rotate scale mirror color render cube sphere cylinder polyhedron
-/// linear_extrude rotate_extrude square circle polygon, import of meshes, and some of ours:
-/// halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R) quadric([10 numbers]) torus(major,minor)
-/// mesh("file.stl") octree("file.lfl"). Curved surfaces are exact, but for those with a $fn of 12 or less, which
-/// are the prisms and pyramids that OpenSCAD draws: --fn exact or --fn polygon decides for all.
+/// A scene is a text in the language of the CSG dumps that OpenSCAD writes
+/// (`openscad -o part.csg part.scad`): group union difference intersection multmatrix translate rotate scale
+/// mirror color render cube sphere cylinder polyhedron linear_extrude rotate_extrude square circle polygon,
+/// import of meshes, and some of ours: halfspace([a,b,c,d]) power([A,a,n1],[B,b,n2],[C,c,n3],R) quadric([10
+/// numbers]) torus(major,minor) mesh("file.stl") octree("file.lfl"). Curved surfaces are exact, but for those
+/// with a $fn of 12 or less, which are the prisms and pyramids that OpenSCAD draws: --fn exact or --fn
+/// polygon decides for all.
 ///
 /// The file records the scene's name, length and checksum, and the rule. Equal input gives equal bytes, for
 /// any number of threads.
@@ -44,9 +45,9 @@ pub struct Arguments {
     /// What becomes of the finest cells that the surface passes through
     #[arg(long, value_parser = octree_rules(), default_value = "certified")]
     rule: Rule,
-    /// Leave cells whole in which the surface is known to lie within a layer of this thickness, in the units of
-    /// the scene: flat faces take few cells, curves more, and edges as many as the depth allows. Such cells are
-    /// undecided
+    /// Leave cells whole in which the surface is known to lie within a layer of this thickness, in the units
+    /// of the scene: flat faces take few cells, curves more, and edges as many as the depth allows. Such
+    /// cells are undecided
     #[arg(long, value_name = "T", value_parser = thickness, allow_hyphen_values = true)]
     adaptive: Option<f64>,
     #[command(flatten)]
@@ -57,8 +58,8 @@ pub struct Arguments {
     /// Lower corner and edge length of the cube to cut into cells, in the units of the scene. Solids can be
     /// combined if they were given the same bounds and depth. What sticks out is cut off, and reported.
     /// Without it: a cube around the scene whose edge and cells are powers of two, so that faces at round
-    /// numbers lie between cells; if the scene's bounds are no round numbers, the cube around their middle, its
-    /// edge 33/32 of their longest extent
+    /// numbers lie between cells; if the scene's bounds are no round numbers, the cube around their middle,
+    /// its edge 33/32 of their longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]

@@ -17,16 +17,18 @@ use leafless::{Affine, Control, Deviation, Frame, Interval, deviation};
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Prints the greatest distance of a point of one boundary from the nearest point of the other, both ways: intervals that hold the
-/// true numbers, and where the points are. The greater one is the Hausdorff distance of the boundaries.
+/// Prints the greatest distance of a point of one boundary from the nearest point of the other, both ways:
+/// intervals that hold the true numbers, and where the points are. The greater one is the Hausdorff distance
+/// of the boundaries.
 ///
-/// Closed meshes whose triangles do not intersect are compared as they are, to rounding. Of everything else, cells are split as far as
-/// the tolerance asks. With --within the exit code is 0 if the boundaries are proven to be that near to each other, else 1, with the
-/// reason. What is not known is null in JSON.
+/// Closed meshes whose triangles do not intersect are compared as they are, to rounding. Of everything else,
+/// cells are split as far as the tolerance asks. With --within the exit code is 0 if the boundaries are
+/// proven to be that near to each other, else 1, with the reason. What is not known is null in JSON.
 #[derive(Args)]
 #[command(mut_arg("place", |place| place.visible_alias("place-b")))]
 pub struct Arguments {
-    /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-`
+    /// for standard input
     #[arg(value_name = "A")]
     a: OsString,
     /// Second solid, mesh or scene; --translate, --rotate, --scale and --place move it
@@ -38,7 +40,8 @@ pub struct Arguments {
     /// Say whether the boundaries are within this distance of each other
     #[arg(long, value_name = "D", value_parser = tolerance, allow_hyphen_values = true)]
     within: Option<f64>,
-    /// Levels to look at, 1 to 20. Without it: as many as the solid has that is read from a file (.lfl), or 20
+    /// Levels to look at, 1 to 20. Without it: as many as the solid has that is read from a file (.lfl), or
+    /// 20
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// Lower corner and edge length of the cube to look at. Without it: the cube around both

@@ -15,26 +15,28 @@ use leafless::{Frame, Rule};
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Writes a tri-dexel model: along rays through the centres of N × N × N cells, in three directions, the intervals
-/// that lie inside. Where a ray enters and leaves is known as finely as a fixed-point number can tell, not as finely as
-/// cells are.
+/// Writes a tri-dexel model: along rays through the centres of N × N × N cells, in three directions, the
+/// intervals that lie inside. Where a ray enters and leaves is known as finely as a fixed-point number can
+/// tell, not as finely as cells are.
 ///
-/// Rays of meshes, scenes of half-spaces and stored octrees are exact. A stored octree has a frame of its own, and
-/// cells that may be undecided: these count as inside, which is told, unless the rule inner leaves them out.
+/// Rays of meshes, scenes of half-spaces and stored octrees are exact. A stored octree has a frame of its
+/// own, and cells that may be undecided: these count as inside, which is told, unless the rule inner leaves
+/// them out.
 ///
 /// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input
 /// gives equal bytes, for any number of threads.
 #[derive(Args)]
 pub struct Arguments {
-    /// Mesh (STL, OBJ, PLY, OFF or 3MF), scene (.csg), volume (NRRD, MetaImage) or octree (.lfl), or `-` for standard
-    /// input
+    /// Mesh (STL, OBJ, PLY, OFF or 3MF), scene (.csg), volume (NRRD, MetaImage) or octree (.lfl), or `-` for
+    /// standard input
     #[arg(value_name = "FILE")]
     input: OsString,
     /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
     /// whole or not at all
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
-    /// Cells to an axis of the cube, a power of two from 2 to 524288. Without it: 256, or those of an octree or a volume
+    /// Cells to an axis of the cube, a power of two from 2 to 524288. Without it: 256, or those of an octree
+    /// or a volume
     #[arg(long, value_name = "N", value_parser = resolution)]
     resolution: Option<u8>,
     /// Axes that rays run along: of x, y and z one, two or all
@@ -55,9 +57,9 @@ pub struct Arguments {
     /// What intervals are
     #[arg(long, value_parser = dexel_rules(), default_value = "sampled")]
     rule: Rule,
-    /// Lower corner and edge length of the cube, in the units of the mesh once it is converted and scaled. Models can
-    /// be combined if they were given the same bounds and resolution. What sticks out is cut off, and reported. Without
-    /// it: the cube that `leafless voxelize` takes
+    /// Lower corner and edge length of the cube, in the units of the mesh once it is converted and scaled.
+    /// Models can be combined if they were given the same bounds and resolution. What sticks out is cut off,
+    /// and reported. Without it: the cube that `leafless voxelize` takes
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]
@@ -65,7 +67,8 @@ pub struct Arguments {
     /// Threads to use; 0: as many as there are processors. The result is the same
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = threads)]
     threads: usize,
-    /// Print one JSON object with what each direction holds (on standard error if the model goes to standard output)
+    /// Print one JSON object with what each direction holds (on standard error if the model goes to standard
+    /// output)
     #[arg(long)]
     json: bool,
 }

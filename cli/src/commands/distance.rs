@@ -16,12 +16,12 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs or
-/// commas. Empty lines and lines that begin with # are skipped.
+/// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
+/// or commas. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints a line for each point: two numbers between which its distance lies. The second is `inf` where nothing is
-/// proven to be solid, and both are where it is proven that there is nothing. Answers come as soon as lines are there,
-/// so that another program can ask and wait.
+/// Prints a line for each point: two numbers between which its distance lies. The second is `inf` where
+/// nothing is proven to be solid, and both are where it is proven that there is nothing. Answers come as soon
+/// as lines are there, so that another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage)
@@ -32,14 +32,16 @@ pub struct Arguments {
     /// Distance from the boundary, negative inside: short for --target boundary
     #[arg(long, conflicts_with = "target")]
     signed: bool,
-    /// How wide the interval may be, in the solid's units. Without it: a millionth of the cube that is looked at. A solid
-    /// from a file (.lfl) is asked for what its cells tell
+    /// How wide the interval may be, in the solid's units. Without it: a millionth of the cube that is looked
+    /// at. A solid from a file (.lfl) is asked for what its cells tell
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// Level to which cells are split, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
+    /// Level to which cells are split, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or
+    /// scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
-    /// Cells to split at most for a point; where much of the surface is about as near, there is no end of them
+    /// Cells to split at most for a point; where much of the surface is about as near, there is no end of
+    /// them
     #[arg(long, value_name = "N", default_value_t = DISTANCE_SPLITS)]
     splits: u64,
     #[command(flatten)]

@@ -17,7 +17,8 @@ use std::ffi::OsString;
 /// Columns lie in rows: along a row the first of the other two axes ascends, from row to row the second.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
+    /// standard input
     file: OsString,
     /// The axis of the columns
     #[arg(long, value_enum)]
@@ -25,8 +26,8 @@ pub struct Arguments {
     /// Where the columns are looked at from: `above` are higher coordinates
     #[arg(long, value_enum, default_value_t = From::Above)]
     from: From,
-    /// Which cells count: those proven to be solid (the solid reaches at least that far), or those that may be
-    /// (it reaches no farther)
+    /// Which cells count: those proven to be solid (the solid reaches at least that far), or those that may
+    /// be (it reaches no farther)
     #[arg(long, value_enum, default_value_t = On::Upper)]
     on: On,
     /// Where to write; `-` is standard output
@@ -35,8 +36,8 @@ pub struct Arguments {
     /// Write doubles, 8 bytes each, little-endian, instead of lines with commas
     #[arg(long)]
     raw: bool,
-    /// Level of the cells, 1 to 20: there are 2^N times 2^N columns. Without it: as deep as the solid is, or 9 for a
-    /// mesh or scene
+    /// Level of the cells, 1 to 20: there are 2^N times 2^N columns. Without it: as deep as the solid is, or
+    /// 9 for a mesh or scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
     #[command(flatten)]

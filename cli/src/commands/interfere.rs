@@ -24,15 +24,18 @@ use std::ffi::OsString;
 /// Says whether two solids have inner points in common: `disjoint` and `overlapping` are proven, `undecided`
 /// comes with the reason: the depth or the number of splits does not decide it, the cells of a file do not
 /// prove enough, or both solids go on outside of the bounds. Solids that touch are disjoint, and their
-/// clearance is 0. Of scenes and of solids that keep surfaces this is proven also where the surfaces on which they touch are one.
+/// clearance is 0. Of scenes and of solids that keep surfaces this is proven also where the surfaces on which
+/// they touch are one.
 ///
 /// The volume that the solids have in common and the clearance, the least distance between them, are
-/// intervals that hold the true ones. The clearance of two closed meshes is found by their triangles, to rounding. Of other solids
-/// an upper bound of the clearance needs cells that are proven to be inside. What is not known is null in JSON.
+/// intervals that hold the true ones. The clearance of two closed meshes is found by their triangles, to
+/// rounding. Of other solids an upper bound of the clearance needs cells that are proven to be inside. What
+/// is not known is null in JSON.
 #[derive(Args)]
 #[command(mut_arg("place", |place| place.visible_alias("place-b")))]
 pub struct Arguments {
-    /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    /// First solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-`
+    /// for standard input
     #[arg(value_name = "A")]
     a: OsString,
     /// Second solid, mesh or scene; --translate, --rotate, --scale and --place move it
@@ -44,7 +47,8 @@ pub struct Arguments {
     /// Lower corner and edge length of the cube to look at. Without it: the cube around both
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
-    /// Cells to split at most, for each of the three answers. Without it: 100000, or as many as --seconds allow
+    /// Cells to split at most, for each of the three answers. Without it: 100000, or as many as --seconds
+    /// allow
     #[arg(long, value_name = "N")]
     splits: Option<u64>,
     /// Seconds after which it ends with what is known by then. The result then depends on the machine
@@ -56,15 +60,16 @@ pub struct Arguments {
     cells: bool,
     #[command(flatten)]
     taking: Taking,
-    /// Ask for the verdict alone, of B under each of the matrices in a file: a line for each as --place takes it, after the other moves.
-    /// With --gap-at-least, say of each place whether the solids are that far apart
+    /// Ask for the verdict alone, of B under each of the matrices in a file: a line for each as --place takes
+    /// it, after the other moves. With --gap-at-least, say of each place whether the solids are that far
+    /// apart
     #[arg(long, value_name = "FILE", conflicts_with = "seconds")]
     poses: Option<std::path::PathBuf>,
     /// With --poses, tell the clearance in each place, too, and a point of each solid that are as near
     #[arg(long, requires = "poses", conflicts_with = "gap_at_least")]
     clearance: bool,
-    /// Say no more than whether no two points of them are nearer than that, in units of the model, and print two points if some are.
-    /// The exit code is 0 if that is proven, and 1 if not
+    /// Say no more than whether no two points of them are nearer than that, in units of the model, and print
+    /// two points if some are. The exit code is 0 if that is proven, and 1 if not
     #[arg(long, value_name = "D", conflicts_with = "seconds", allow_hyphen_values = true)]
     gap_at_least: Option<f64>,
     /// Print one JSON object
@@ -320,7 +325,8 @@ struct Answers {
     is_spent: bool,
 }
 
-/// How well a clearance is to be known: where surfaces are known, as well as one likes; else as cells tell it.
+/// How well a clearance is to be known: where surfaces are known, as well as one likes; else as cells tell
+/// it.
 fn tolerance(is_exact: bool, frame: &Frame) -> f64 {
     if is_exact { 1e-9 * frame.edge() } else { 4.0 * frame.cell_size() }
 }

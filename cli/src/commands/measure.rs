@@ -26,21 +26,23 @@ use leafless::{
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Measures a solid of density 1, or of --density, without making an octree of it: the cells of which most is in doubt are split first,
-/// until the volume is known well enough. All numbers are intervals that hold the true ones.
+/// Measures a solid of density 1, or of --density, without making an octree of it: the cells of which most is
+/// in doubt are split first, until the volume is known well enough. All numbers are intervals that hold the
+/// true ones.
 ///
 /// A solid from a file (.lfl) knows no more about its undecided cells, so its own bounds are told, as well as
 /// it was made; a mesh or a scene is split as deep as it takes.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
+    /// standard input
     file: OsString,
     /// How wide the interval of the volume may be, relative to its middle; 0 goes on to the depth. Without
     /// it: 0.01, or 0 if --splits is given; much less costs little where surfaces are those of half-spaces
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// How wide it may be otherwise, in cubic units. Without it: a billionth of the cube that is looked at, or 0 if
-    /// --tolerance or --splits is given
+    /// How wide it may be otherwise, in cubic units. Without it: a billionth of the cube that is looked at,
+    /// or 0 if --tolerance or --splits is given
     #[arg(long, value_name = "A", value_parser = tolerance, allow_hyphen_values = true)]
     absolute: Option<f64>,
     /// Cells to split at most. Without it: 67108864, a minute or so
@@ -49,8 +51,9 @@ pub struct Arguments {
     /// Seconds after which it ends with what is known by then. The result then depends on the machine
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     seconds: Option<f64>,
-    /// Mass of a cubic unit, which makes the volume a mass and the inertia that of this mass; or with a unit, g/cm3, kg/dm3, kg/m3
-    /// or lb/in3, if the unit of the model is known or told by --unit: --unit mm --density 7.85g/cm3 tells grams
+    /// Mass of a cubic unit, which makes the volume a mass and the inertia that of this mass; or with a unit,
+    /// g/cm3, kg/dm3, kg/m3 or lb/in3, if the unit of the model is known or told by --unit: --unit mm
+    /// --density 7.85g/cm3 tells grams
     #[arg(long, value_name = "D", value_parser = density, allow_hyphen_values = true)]
     density: Option<Density>,
     /// Deepest level to split to, 1 to 20. Without it: as deep as the solid is, or 20 for a mesh or scene
@@ -148,7 +151,8 @@ struct Report {
     max: Option<Bounds<[f64; 3]>>,
     /// Of the boundary; absent (null) if nothing is known of it.
     area: Option<Volume>,
-    /// How far the boundary may lie beside the mesh whose area this is, along an axis: what vertices were moved by, and what was stated.
+    /// How far the boundary may lie beside the mesh whose area this is, along an axis: what vertices were
+    /// moved by, and what was stated.
     area_displacement: f64,
     area_measured: &'static str,
     area_splits: u64,
@@ -162,8 +166,8 @@ struct Report {
     origin: [f64; 3],
     edge: f64,
     clipped: bool,
-    /// Whether all is known up to rounding, without splitting cells, as of a closed mesh whose triangles do not
-    /// intersect; absent (null) for what is no mesh.
+    /// Whether all is known up to rounding, without splitting cells, as of a closed mesh whose triangles do
+    /// not intersect; absent (null) for what is no mesh.
     exact: Option<bool>,
     /// Why not.
     inexact_reason: Option<String>,
@@ -312,7 +316,8 @@ impl Found {
     }
 }
 
-/// A mesh whose hair cracks were closed as if it had never had any, and one with a deviation as if it had none.
+/// A mesh whose hair cracks were closed as if it had never had any, and one with a deviation as if it had
+/// none.
 fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<AsItIs>, Failure> {
     if mesh.displacement() == 0.0 {
         return Ok(None);
@@ -322,8 +327,8 @@ fn as_sewn(input: &Input, mesh: &TriangleMesh, fill: FillRule) -> Result<Option<
     Ok(Some(AsItIs { solid, is_stated: mesh.deviation() > 0.0 }))
 }
 
-/// What is left to move, and the frame to look at. A solid from a file is moved as a solid: cells of any size tell of it what its own
-/// ones tell.
+/// What is left to move, and the frame to look at. A solid from a file is moved as a solid: cells of any size
+/// tell of it what its own ones tell.
 fn place(arguments: &Arguments, input: &Input, source: &Source) -> Result<(Affine, Frame), Failure> {
     let (bounds, depth) = (arguments.bounds.as_ref(), arguments.depth);
     let (Source::Octree(octree), Some(map)) = (source, arguments.taking.placing.map()) else {

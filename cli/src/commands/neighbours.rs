@@ -11,12 +11,13 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Reads cells from standard input, one a line: the level, and the cell's x, y and z among those of its level, counted
-/// from 0. Empty lines and lines that begin with # are skipped.
+/// Reads cells from standard input, one a line: the level, and the cell's x, y and z among those of its
+/// level, counted from 0. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints for each cell a line for each neighbour: the steps along x, y and z that lead to it, its tag (empty, full,
-/// partial or branch, which means split), its level, and its x, y and z. The neighbour is as large as the cell, or
-/// the larger one that is not split. There is none beyond the universe. An empty line ends the answer.
+/// Prints for each cell a line for each neighbour: the steps along x, y and z that lead to it, its tag
+/// (empty, full, partial or branch, which means split), its level, and its x, y and z. The neighbour is as
+/// large as the cell, or the larger one that is not split. There is none beyond the universe. An empty line
+/// ends the answer.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl)

@@ -1,5 +1,5 @@
-//! `leafless interfere --poses`: one solid under many placements. With `--clearance` it tells how far the solids are apart in each,
-//! with `--gap-at-least` whether that is far enough.
+//! `leafless interfere --poses`: one solid under many placements. With `--clearance` it tells how far the
+//! solids are apart in each, with `--gap-at-least` whether that is far enough.
 
 use crate::failure::{Failure, Of};
 use crate::progress::watched;

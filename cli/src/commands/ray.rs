@@ -15,13 +15,14 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Reads rays from standard input, one a line: the x, y and z of a point in the solid's units, and of a direction
-/// of any length, separated by blanks, tabs or commas. Empty lines and lines that begin with # are skipped.
+/// Reads rays from standard input, one a line: the x, y and z of a point in the solid's units, and of a
+/// direction of any length, separated by blanks, tabs or commas. Empty lines and lines that begin with # are
+/// skipped.
 ///
 /// Prints a line for each ray: `miss`, or two numbers between which the first hit lies, in lengths of the
-/// direction, and the outward normal there, 0 0 0 if the ray starts in the cell that stops it. Before the first
-/// number the ray is proven to be outside, at the second to be inside; that is `inf` if it is nowhere proven to be.
-/// Answers come as soon as lines are there, so that another program can ask and wait.
+/// direction, and the outward normal there, 0 0 0 if the ray starts in the cell that stops it. Before the
+/// first number the ray is proven to be outside, at the second to be inside; that is `inf` if it is nowhere
+/// proven to be. Answers come as soon as lines are there, so that another program can ask and wait.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage)
@@ -29,8 +30,8 @@ pub struct Arguments {
     /// What stops a ray
     #[arg(long, value_enum, default_value_t = On::Upper)]
     on: On,
-    /// Level to which cells that a ray meets are split, 1 to 20. Without it: as deep as the solid is, or 20 for a
-    /// mesh or scene
+    /// Level to which cells that a ray meets are split, 1 to 20. Without it: as deep as the solid is, or 20
+    /// for a mesh or scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// Cells to split at most for a ray; a ray along a surface would take a million. Rays along what is left
@@ -39,8 +40,9 @@ pub struct Arguments {
     splits: u64,
     #[command(flatten)]
     looking: Looking,
-    /// Print a line of JSON for each ray: an object, or `null` for a miss. `surface` is the number of the triangle that a
-    /// mesh is met in, counted from 0; `null` over a hole, for what does not answer rays itself, and for a ray that starts within
+    /// Print a line of JSON for each ray: an object, or `null` for a miss. `surface` is the number of the
+    /// triangle that a mesh is met in, counted from 0; `null` over a hole, for what does not answer rays
+    /// itself, and for a ray that starts within
     #[arg(long)]
     json: bool,
 }

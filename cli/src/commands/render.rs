@@ -20,37 +20,40 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::time::Instant;
 
-/// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model, or shows one on the terminal.
+/// Makes a picture (PNG) of a solid, a mesh, a scene, a volume or a tri-dexel model, or shows one on the
+/// terminal.
 ///
-/// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A mesh, a scene, a
-/// volume, or a solid from a file whose cells keep surfaces is shown itself, without an octree. A tri-dexel model that stores
-/// materials is shown by its cells, in the colours of the channel `material`.
+/// A solid from a file is shown as its cells make its surface likely to be; with --faces, as its cells are. A
+/// mesh, a scene, a volume, or a solid from a file whose cells keep surfaces is shown itself, without an
+/// octree. A tri-dexel model that stores materials is shown by its cells, in the colours of the channel
+/// `material`.
 ///
-/// What --clip and --clip-box cut away is not shown, and the camera fits what is left. What is cut open shows its inside in
-/// orange; so does a mesh, if it is closed, unless --edges all asks for its triangles.
+/// What --clip and --clip-box cut away is not shown, and the camera fits what is left. What is cut open shows
+/// its inside in orange; so does a mesh, if it is closed, unless --edges all asks for its triangles.
 ///
-/// A slice is seen along its plane's normal, with its scale and the extents of the whole solid along x, y and z beside it.
+/// A slice is seen along its plane's normal, with its scale and the extents of the whole solid along x, y and
+/// z beside it.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
-    /// standard input
+    /// Solid or tri-dexel model (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD,
+    /// MetaImage), or `-` for standard input
     #[arg(value_name = "FILE")]
     input: OsString,
     /// File to write, which is a PNG, or `-` for standard output; it is written whole or not at all
     #[arg(short, long, value_name = "OUT", required_unless_present = "show")]
     output: Option<OsString>,
-    /// Show the picture on the terminal, smaller if it does not fit. Without a protocol, the best that the terminal
-    /// understands; with one, also where standard output is no terminal: then as it is, or in half blocks for 80x24 cells
-    /// or COLUMNS x LINES
+    /// Show the picture on the terminal, smaller if it does not fit. Without a protocol, the best that the
+    /// terminal understands; with one, also where standard output is no terminal: then as it is, or in half
+    /// blocks for 80x24 cells or COLUMNS x LINES
     #[arg(long, value_enum, value_name = "PROTOCOL", num_args = 0..=1, require_equals = true,
           default_missing_value = "auto", conflicts_with = "json")]
     show: Option<Protocol>,
     /// Width and height in pixels [default: 1024x768; only shown: what fits the terminal]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
-    /// From where to look, in degrees: 0,0 is from the front (−y) with z upward, a positive azimuth from further right, a
-    /// positive elevation from further above
-    /// [default: 30,25; of a slice its plane from in front]
+    /// From where to look, in degrees: 0,0 is from the front (−y) with z upward, a positive azimuth from
+    /// further right, a positive elevation from further above [default: 30,25; of a slice its plane from in
+    /// front]
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = numbers::<2>, allow_hyphen_values = true,
           verbatim_doc_comment, conflicts_with = "eye")]
     from: Option<[f64; 2]>,
@@ -81,8 +84,8 @@ pub struct Arguments {
     /// Channel of the solid whose values are shown. Without it: the only one, if there is one
     #[arg(long, value_name = "NAME")]
     channel: Option<String>,
-    /// Level of the cells that a mesh, a scene, a volume, or a solid from a file whose cells keep surfaces is split to for a slice, a
-    /// volume or --faces, 1 to 20
+    /// Level of the cells that a mesh, a scene, a volume, or a solid from a file whose cells keep surfaces is
+    /// split to for a slice, a volume or --faces, 1 to 20
     #[arg(long, value_name = "N", default_value_t = DEPTH, value_parser = clap::value_parser!(u8).range(1..=MAX_DEPTH as i64))]
     depth: u8,
     /// Colour of what is seen where nothing is, as in #ffffff, or `none`

@@ -11,11 +11,11 @@ use leafless::attribute::ChannelRef;
 use leafless::{Membership, OctreeRef};
 use std::ffi::OsString;
 
-/// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs or commas.
-/// Empty lines and lines that begin with # are skipped.
+/// Reads points from standard input, one a line: x, y and z in the solid's units, separated by blanks, tabs
+/// or commas. Empty lines and lines that begin with # are skipped.
 ///
-/// Prints a line for each point: the numbers of the channel's value there, separated by blanks; `none` where there is no
-/// value, and where the point lies outside of the solid. Answers come as soon as lines are there.
+/// Prints a line for each point: the numbers of the channel's value there, separated by blanks; `none` where
+/// there is no value, and where the point lies outside of the solid. Answers come as soon as lines are there.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid with channels (.lfl)

@@ -15,11 +15,11 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Write;
 
-/// Tells the least, the greatest and the mean value of a channel in a solid, and the integral: of a density, the mass.
-/// With --materials, volume, centroid and inertia of the part of the solid that has each value.
+/// Tells the least, the greatest and the mean value of a channel in a solid, and the integral: of a density,
+/// the mass. With --materials, volume, centroid and inertia of the part of the solid that has each value.
 ///
-/// Volumes, integrals and means are intervals that hold the true ones, as far as the cells of the solid and of the
-/// channel tell it: FULL cells bound them on one side, FULL and PARTIAL cells on the other.
+/// Volumes, integrals and means are intervals that hold the true ones, as far as the cells of the solid and
+/// of the channel tell it: FULL cells bound them on one side, FULL and PARTIAL cells on the other.
 #[derive(Args)]
 pub struct Arguments {
     /// Solid with channels (.lfl)

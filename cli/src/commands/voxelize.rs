@@ -27,16 +27,17 @@ use std::time::Instant;
 /// them may stay undecided; a warning says so. Bodies may overlap. Vertices that differ by no more than
 /// single precision can tell are joined, and it is reported how many.
 ///
-/// With --surfaces a tri-dexel model is taken, too, if it stores normals: its surface is reconstructed from the ends and normals of its
-/// intervals (as by `leafless mesh --method dual`), and the octree keeps that. What is certified is then certified of the
-/// reconstructed surface. Nothing is proven of the part that the model was sampled from.
+/// With --surfaces a tri-dexel model is taken, too, if it stores normals: its surface is reconstructed from
+/// the ends and normals of its intervals (as by `leafless mesh --method dual`), and the octree keeps that.
+/// What is certified is then certified of the reconstructed surface. Nothing is proven of the part that the
+/// model was sampled from.
 ///
 /// The file records the input's name, length and checksum, the rule, and the unit if it is known. Equal input
 /// gives equal bytes, for any number of threads.
 #[derive(Args)]
 pub struct Arguments {
-    /// Mesh (STL, OBJ, PLY, OFF or 3MF), volume (NRRD, MetaImage) or, with --surfaces, tri-dexel model (.lfl), or `-` for standard
-    /// input
+    /// Mesh (STL, OBJ, PLY, OFF or 3MF), volume (NRRD, MetaImage) or, with --surfaces, tri-dexel model
+    /// (.lfl), or `-` for standard input
     #[arg(value_name = "MESH")]
     input: OsString,
     /// File to write, or `-` for standard output, whose summary then goes to standard error; it is written
@@ -44,8 +45,8 @@ pub struct Arguments {
     #[arg(short, long, value_name = "OUT.lfl")]
     output: OsString,
     /// Levels of the octree, 1 to 20: each halves the cells, and the error, and makes the file some four
-    /// times as long. With --surfaces and --like it may be left out, and so may it for a volume: then its voxels are the finest
-    /// cells
+    /// times as long. With --surfaces and --like it may be left out, and so may it for a volume: then its
+    /// voxels are the finest cells
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=leafless::lattice::MAX_DEPTH as i64))]
     depth: Option<u8>,
     /// What becomes of the finest cells that the surface passes through
@@ -59,9 +60,9 @@ pub struct Arguments {
     placing: Placing,
     /// Lower corner and edge length of the cube to cut into cells, in the units of the mesh once it is
     /// converted and moved. Solids can be combined if they were given the same bounds and depth. What sticks
-    /// out is cut off, and reported. Without it: a cube around the mesh whose edge and cells are powers of two,
-    /// so that faces at round numbers lie between cells; if the mesh's bounds are no round numbers, the cube
-    /// around its middle, its edge 33/32 of its longest extent
+    /// out is cut off, and reported. Without it: a cube around the mesh whose edge and cells are powers of
+    /// two, so that faces at round numbers lie between cells; if the mesh's bounds are no round numbers, the
+    /// cube around its middle, its edge 33/32 of its longest extent
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     #[command(flatten)]

@@ -22,23 +22,23 @@ use serde::Serialize;
 use std::ffi::OsString;
 use std::path::Path;
 
-/// Writes the voxels of a solid as records, sorted by linear octree code: inside voxels, boundary voxels, and others
-/// that are asked for.
+/// Writes the voxels of a solid as records, sorted by linear octree code: inside voxels, boundary voxels, and
+/// others that are asked for.
 ///
-/// In the text form (.csv) a record is a line: its kind, its level, its code (an octal digit a level of the lattice,
-/// of which as many count as the level says), its minimum corner and its edge. The binary form (.npz, for NumPy) has
-/// the arrays `codes`, `levels`, `kinds` (0 outside, 1 inside, 2 boundary, 3 refined), `corners`, `origin`, `edge`,
-/// `depth`, `exterior`, `proof`, `boundary`, `seal`, with values `values`, and with triangles `triangle_offsets` and
-/// `triangles`.
+/// In the text form (.csv) a record is a line: its kind, its level, its code (an octal digit a level of the
+/// lattice, of which as many count as the level says), its minimum corner and its edge. The binary form
+/// (.npz, for NumPy) has the arrays `codes`, `levels`, `kinds` (0 outside, 1 inside, 2 boundary, 3 refined),
+/// `corners`, `origin`, `edge`, `depth`, `exterior`, `proof`, `boundary`, `seal`, with values `values`, and
+/// with triangles `triangle_offsets` and `triangles`.
 ///
-/// What --import makes proves what the records do: inside voxels the inside, and outside voxels and what no record speaks
-/// of the outside. Boundary voxels that count as inside or outside take that back, but for those of a solid in which all
-/// cells are decided, which are inside. Records that were changed since they were written, which `seal` tells, prove
-/// nothing.
+/// What --import makes proves what the records do: inside voxels the inside, and outside voxels and what no
+/// record speaks of the outside. Boundary voxels that count as inside or outside take that back, but for
+/// those of a solid in which all cells are decided, which are inside. Records that were changed since they
+/// were written, which `seal` tells, prove nothing.
 #[derive(Args)]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard
-    /// input; with --import records (.npz)
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
+    /// standard input; with --import records (.npz)
     file: OsString,
     /// Where to write: the extension .npz or .csv tells the form; with --import a solid (.lfl)
     #[arg(short, long, value_name = "OUTPUT")]
@@ -63,12 +63,13 @@ pub struct Arguments {
     /// How much the solid's attribute may change in an inside voxel that is longer than --fine
     #[arg(long, value_name = "NUMBER", requires = "fine")]
     tolerance: Option<f64>,
-    /// Compare the values at the eight corners of a voxel, as published, instead of proving that they change by no more
-    /// than the tolerance: their standard deviation must be no more than it. Details between the corners are missed
+    /// Compare the values at the eight corners of a voxel, as published, instead of proving that they change
+    /// by no more than the tolerance: their standard deviation must be no more than it. Details between the
+    /// corners are missed
     #[arg(long, requires = "tolerance")]
     corners: bool,
-    /// Channel of the solid that inside voxels follow, and whose values are listed. Without it: the only one, if there is
-    /// one
+    /// Channel of the solid that inside voxels follow, and whose values are listed. Without it: the only one,
+    /// if there is one
     #[arg(long, value_name = "NAME", conflicts_with = "import")]
     channel: Option<String>,
     /// Level of boundary voxels. Without it: the solid's finest cells

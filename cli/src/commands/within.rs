@@ -16,17 +16,17 @@ use leafless::{Affine, AnySolid, Control, Csg, Error, Frame, Interval, Octree};
 use serde::Serialize;
 use std::ffi::OsString;
 
-/// Counts the finest cells of a solid that lie in a ball, a box or another solid, and bounds the volume that both have in
-/// common. No octree of it is made.
+/// Counts the finest cells of a solid that lie in a ball, a box or another solid, and bounds the volume that
+/// both have in common. No octree of it is made.
 ///
-/// Both are told as what is certain and what is possible. A cell that the region cuts may lie in it; so the counts hold
-/// whether a cell counts that lies in the region as a whole, whose centre does, or that only meets it. Cells of a solid
-/// from a file (.lfl) are taken as they are, FULL or PARTIAL.
+/// Both are told as what is certain and what is possible. A cell that the region cuts may lie in it; so the
+/// counts hold whether a cell counts that lies in the region as a whole, whose centre does, or that only
+/// meets it. Cells of a solid from a file (.lfl) are taken as they are, FULL or PARTIAL.
 #[derive(Args)]
 #[command(group = clap::ArgGroup::new("region").required(true))]
 pub struct Arguments {
-    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for standard input;
-    /// --translate, --rotate, --scale and --place move it, and not the region
+    /// Solid (.lfl), mesh (STL, OBJ, PLY, OFF, 3MF), scene (.csg) or volume (NRRD, MetaImage), or `-` for
+    /// standard input; --translate, --rotate, --scale and --place move it, and not the region
     file: OsString,
     /// The region is a ball: its centre and its radius
     #[arg(long, group = "region", value_name = "X,Y,Z,R", value_parser = ball, allow_hyphen_values = true)]
@@ -46,8 +46,8 @@ pub struct Arguments {
     /// Cells to split at most, of both, for each of the two answers; what is not split is not certain
     #[arg(long, default_value_t = SPLITS, value_name = "N")]
     splits: u64,
-    /// Take the cells of a region from a file (.lfl) for the region itself, whatever they prove of what they were made
-    /// from; and those of the solid, with --depth
+    /// Take the cells of a region from a file (.lfl) for the region itself, whatever they prove of what they
+    /// were made from; and those of the solid, with --depth
     #[arg(long)]
     cells: bool,
     #[command(flatten)]

@@ -138,8 +138,8 @@ enum Operands {
     Dexels(Vec<TriDexel>),
 }
 
-/// Reads all operands, of which there is one at least. What is proven of the result is proven only if the operands are
-/// what their makers wrote.
+/// Reads all operands, of which there is one at least. What is proven of the result is proven only if the
+/// operands are what their makers wrote.
 fn operands(files: &[(Input, Placing)], combining: &Combining) -> Result<Operands, Failure> {
     let read = |(input, placing): &(Input, Placing)| Shape::among_others(input, combining.taking, placing);
     let shapes = files.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;

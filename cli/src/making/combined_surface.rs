@@ -19,7 +19,8 @@ use std::time::Instant;
 /// The depth if none is asked for.
 const DEPTH: u8 = 8;
 
-/// Combines meshes, scenes and volumes as they are, and writes the surface, with vertices where edges of cells cross it.
+/// Combines meshes, scenes and volumes as they are, and writes the surface, with vertices where edges of
+/// cells cross it.
 pub fn make(
     combining: &Combining,
     files: &[(Input, Placing)],

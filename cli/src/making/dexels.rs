@@ -103,8 +103,8 @@ fn frame(job: &Job, source: &Source) -> Result<Frame, Failure> {
     }
 }
 
-/// The rule by which cells are decided. Those of an octree have no centres that could be asked where they are undecided, as are
-/// cells that are cut further than the lattice goes.
+/// The rule by which cells are decided. Those of an octree have no centres that could be asked where they are
+/// undecided, as are cells that are cut further than the lattice goes.
 fn decided(rule: Rule, input: &Input, source: &Source, frame: &Frame) -> Rule {
     let is_open = match source {
         Source::Octree(octree) if source.is_of_cells() => {

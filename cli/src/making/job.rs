@@ -61,7 +61,8 @@ pub struct Timings {
     pub total: f64,
 }
 
-/// The rule that an octree's file names. What is certified of a source that proves less proves no more than that.
+/// The rule that an octree's file names. What is certified of a source that proves less proves no more than
+/// that.
 pub fn proven_rule(rule: Rule, octree: &Octree) -> Rule {
     let proof = octree.proof();
     match (rule, proof.full, proof.empty) {

@@ -1,4 +1,5 @@
-//! Pictures of layouts: the copies of each item in a colour of its own, obstacles in grey, and the edges of a box around the container.
+//! Pictures of layouts: the copies of each item in a colour of its own, obstacles in grey, and the edges of a
+//! box around the container.
 
 use leafless::exchange::write_png;
 use leafless::layout::{Layout, Placed};
@@ -13,7 +14,8 @@ const FIELD_OF_VIEW: f64 = 30.0;
 /// Most triangles of all copies together, which take some ten gigabytes.
 const MOST: usize = 50_000_000;
 
-/// Colours that are told apart by nearly everybody (Okabe & Ito 2008), one for each item; the eighth item has the first one again.
+/// Colours that are told apart by nearly everybody (Okabe & Ito 2008), one for each item; the eighth item has
+/// the first one again.
 const COLOURS: [[u8; 4]; 7] = [
     [86, 180, 233, 255],
     [230, 159, 0, 255],

@@ -10,7 +10,8 @@ use std::ffi::OsString;
 /// The solid whose frame is taken.
 #[derive(Args)]
 pub struct Like {
-    /// Take the cube of another solid (.lfl), and its levels unless --depth is given, so that both can be combined
+    /// Take the cube of another solid (.lfl), and its levels unless --depth is given, so that both can be
+    /// combined
     #[arg(long, value_name = "FILE.lfl", conflicts_with = "bounds")]
     like: Option<OsString>,
 }

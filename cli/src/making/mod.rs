@@ -1,7 +1,7 @@
 //! What is made of sources: octrees, tri-dexel models, surfaces, pictures.
 //!
-//! A subcommand says in a `job` what it wants; each file here makes one kind of result of it. Nothing here knows the
-//! arguments of a subcommand, so that several can ask for the same.
+//! A subcommand says in a `job` what it wants; each file here makes one kind of result of it. Nothing here
+//! knows the arguments of a subcommand, so that several can ask for the same.
 
 pub mod askew;
 pub mod bearing;

@@ -29,7 +29,8 @@ struct Report {
     output: String,
     rule: &'static str,
     fill: &'static str,
-    /// The thickness of layers that stand for the surface in the cells that keep it; absent (null) if none do.
+    /// The thickness of layers that stand for the surface in the cells that keep it; absent (null) if none
+    /// do.
     surfaces: Option<f64>,
     format: &'static str,
     /// Absent (null) where nobody knows it.

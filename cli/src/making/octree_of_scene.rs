@@ -44,8 +44,8 @@ struct Report {
     touch: String,
     /// The thickness of layers that are not split; absent (null) if all are.
     adaptive: Option<f64>,
-    /// The thickness of layers that stand for surfaces in the cells that keep them: 0 if exact surfaces alone are kept, absent (null)
-    /// if none are.
+    /// The thickness of layers that stand for surfaces in the cells that keep them: 0 if exact surfaces alone
+    /// are kept, absent (null) if none are.
     surfaces: Option<f64>,
     timings: Timings,
     /// Cells that were split; null if there are meshes or octrees in the scene, which work in bulk.

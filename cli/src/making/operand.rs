@@ -16,7 +16,8 @@ use leafless::{Affine, Frame, Octree, Rule, SurfaceOptions, build, build_extende
 /// The depth of the common frame if no operand has its own, and none is asked for.
 const DEPTH: u8 = 10;
 
-/// How thick layers of a mesh's surface are where another operand keeps surfaces, as a part of the mesh's longest side.
+/// How thick layers of a mesh's surface are where another operand keeps surfaces, as a part of the mesh's
+/// longest side.
 const LAYERS: f64 = 1e-4;
 
 /// What is wanted of the frame: a cube, and levels of cells.
@@ -30,7 +31,8 @@ pub struct Common {
 }
 
 impl Common {
-    /// The frame of the first stored solid, or else of the voxels if the first operand is a volume; or else a cube around all.
+    /// The frame of the first stored solid, or else of the voxels if the first operand is a volume; or else a
+    /// cube around all.
     pub fn new(
         files: &[(Input, Placing)],
         shapes: &[Shape],

@@ -99,8 +99,8 @@ pub fn warn_of_units(inputs: &[Input], places: &[Place<'_>]) {
     }
 }
 
-/// What the operands' files say that holds of the result: name and unit, if it is the same in all; and by which
-/// rule cells were resolved, if they say it: the common one, or `mixed`.
+/// What the operands' files say that holds of the result: name and unit, if it is the same in all; and by
+/// which rule cells were resolved, if they say it: the common one, or `mixed`.
 pub fn facts(places: &[Place<'_>]) -> Result<Metadata, Failure> {
     let mut metadata = Metadata::common(places.iter().map(|place| place.metadata)).of("metadata")?;
     let rules: Option<Vec<&str>> = places.iter().map(|place| place.metadata.get("rule")).collect();

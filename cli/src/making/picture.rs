@@ -34,9 +34,10 @@ pub struct Looks {
     /// What to show
     #[arg(long, value_enum, default_value_t = View::Surface)]
     pub view: View,
-    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0. One looks at it against its normal a,b,c: at
-    /// 0,0,1,d from above, at 0,-1,0,d from the front, at 1,0,0,d from the right. +z is upward; where the plane is level, +x is
-    /// to the right. It is never mirrored. Without --plane: the one through the middle that is seen best of those along the axes
+    /// Plane of the slice: the points x, y, z with a x + b y + c z + d = 0. One looks at it against its
+    /// normal a,b,c: at 0,0,1,d from above, at 0,-1,0,d from the front, at 1,0,0,d from the right. +z is
+    /// upward; where the plane is level, +x is to the right. It is never mirrored. Without --plane: the one
+    /// through the middle that is seen best of those along the axes
     #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
     pub plane: Option<[f64; 4]>,
     /// Colours of values: viridis, cividis, inferno, magma, plasma or grey
@@ -48,14 +49,15 @@ pub struct Looks {
     /// Opacity of a volume as thick as the solid's longest side, 0 to 1
     #[arg(long, value_name = "ALPHA", default_value_t = 0.95, value_parser = share)]
     opacity: f64,
-    /// Show voxels as published: of an edge of k finest voxels as k layers, wherever a line of sight crosses them
+    /// Show voxels as published: of an edge of k finest voxels as k layers, wherever a line of sight crosses
+    /// them
     #[arg(long)]
     published: bool,
     /// Draw edges: those at which faces meet at more than 30 degrees, or of a mesh those of all its triangles
     #[arg(long, value_enum, value_name = "WHICH", num_args = 0..=1, default_missing_value = "features")]
     edges: Option<Edges>,
-    /// Show a slice without cells: what of the plane is inside. The surface of what is no octree of cells is then drawn as a
-    /// line, of cells as small as a pixel
+    /// Show a slice without cells: what of the plane is inside. The surface of what is no octree of cells is
+    /// then drawn as a line, of cells as small as a pixel
     #[arg(long)]
     no_cells: bool,
     /// What becomes of the undecided cells of an octree whose cells keep no surfaces
@@ -169,8 +171,8 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// What the view shows of a file; what has no cells of its own is split to `depth` where it needs them. What is cut open is a
-    /// solid, if it bounds one, so that its inside is seen.
+    /// What the view shows of a file; what has no cells of its own is split to `depth` where it needs them.
+    /// What is cut open is a solid, if it bounds one, so that its inside is seen.
     pub fn of(
         shape: Shape,
         input: &Input,
@@ -274,8 +276,8 @@ impl Subject {
         Ok(found.corners.map(|[min, max]| [0, 1, 2].map(|axis| [min[axis], max[axis]])))
     }
 
-    /// Points that whoever sees sees all of it that clip planes leave: corners of coarse cells around it, those of the universe if
-    /// it is empty.
+    /// Points that whoever sees sees all of it that clip planes leave: corners of coarse cells around it,
+    /// those of the universe if it is empty.
     pub fn points(&self, planes: &Planes, control: &Control<'_>) -> Result<Vec<[f64; 3]>, Error> {
         let coarse = |octree: &Octree| {
             let frame = *octree.frame();
@@ -398,8 +400,8 @@ fn extent_text([low, high]: [Interval; 2]) -> String {
     if is_sure { short(0.5 * length.lower + 0.5 * length.upper) } else { length.to_string() }
 }
 
-/// Where the legend of a picture of this size will lie, and the scale of a slice that is seen along its normal; `None` if there
-/// is none.
+/// Where the legend of a picture of this size will lie, and the scale of a slice that is seen along its
+/// normal; `None` if there is none.
 pub fn legend_boxes(
     looks: &Looks,
     subject: &Subject,
@@ -638,7 +640,8 @@ pub fn facing([a, b, c]: [f64; 3]) -> [f64; 2] {
     [azimuth, c.atan2(level).to_degrees()]
 }
 
-/// Cells of a slice that is shown without them: as small as a pixel, but no more to an axis than 2 to the power of this.
+/// Cells of a slice that is shown without them: as small as a pixel, but no more to an axis than 2 to the
+/// power of this.
 const FINEST: u8 = 14;
 
 fn slice(

@@ -91,17 +91,18 @@ impl Wanted {
 pub enum Method {
     /// Marching cubes: between samples of one distance
     Mc,
-    /// Surface nets: the same samples, with a vertex in each cube between them. Smoother; of a mesh, a scene or a volume an octree is
-    /// made first
+    /// Surface nets: the same samples, with a vertex in each cube between them. Smoother; of a mesh, a scene
+    /// or a volume an octree is made first
     Nets,
-    /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene or a volume
-    /// one is made first
+    /// Dual contouring, which keeps edges and corners: of a tri-dexel model with normals. Of a mesh, a scene
+    /// or a volume one is made first
     Dual,
-    /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces as they are, with sharp edges, and
-    /// curved ones in chords (--tolerance). Of a closed mesh its triangles, merged. Few triangles
+    /// The surfaces themselves, of a scene and of a solid whose cells keep surfaces: plane faces as they are,
+    /// with sharp edges, and curved ones in chords (--tolerance). Of a closed mesh its triangles, merged. Few
+    /// triangles
     Faces,
-    /// Adaptive dual contouring: few triangles where the surface is flat, about as near as --tolerance says, with sharp edges. Of
-    /// whatever has a shape
+    /// Adaptive dual contouring: few triangles where the surface is flat, about as near as --tolerance says,
+    /// with sharp edges. Of whatever has a shape
     Adaptive,
     /// Simple marching cubes: all vertices are samples, all normals have one of 13 directions
     Smc,
@@ -180,7 +181,8 @@ pub fn make(job: &Job, taking: &Taking, wanted: &Wanted) -> Result<(), Failure> 
     let bearing = bearing.transpose()?;
     bearing.as_ref().map(|bearing| bearing.called(format)).transpose()?;
     let certain = match &shape {
-        // Vertices that are samples lie beside the surface; those of the other methods lie on it, or between samples.
+        // Vertices that are samples lie beside the surface; those of the other methods lie on it, or between
+        // samples.
         Shape::Source(source) if method.moves_to_samples() => certain_volume(source).of(input)?,
         _ => None,
     };
@@ -262,7 +264,8 @@ pub fn usual_surface(input: &Input, threads: usize) -> Result<TriangleMesh, Fail
     Ok(surface_of(shape, &job, &wanted, &mut method)?.mesh)
 }
 
-/// The mesh with fewer triangles. How far it is from the solid is known if it was known before, or if the mesh is the solid.
+/// The mesh with fewer triangles. How far it is from the solid is known if it was known before, or if the
+/// mesh is the solid.
 fn simplified(mesh: TriangleMesh, is_solid: bool, most: f64, job: &Job) -> Result<TriangleMesh, Failure> {
     let input = &job.input;
     let is_known = is_solid || mesh.deviation() > 0.0;
@@ -412,7 +415,8 @@ fn format(named: Option<MeshFormat>, path: Option<&Path>) -> Result<MeshFormat, 
     })
 }
 
-/// What is certain of the volume of a solid: of a closed mesh its own, to a hundredth, and of an octree what its cells prove.
+/// What is certain of the volume of a solid: of a closed mesh its own, to a hundredth, and of an octree what
+/// its cells prove.
 fn certain_volume(source: &Source) -> Result<Option<Interval>, Error> {
     match source {
         Source::Octree(octree) if octree.proof().is_certified() && !octree.view().is_clipped() => {
@@ -459,7 +463,8 @@ fn of_dexels(
     }
 }
 
-/// Whether the surface follows rays: by dual contouring, and of octrees whose cells keep surfaces, whose lattice is their own.
+/// Whether the surface follows rays: by dual contouring, and of octrees whose cells keep surfaces, whose
+/// lattice is their own.
 fn asks_rays(source: &Source, wanted: &Wanted, method: Method) -> bool {
     let keeps_surfaces = matches!(source, Source::Octree(_)) && !source.is_of_cells();
     method == Method::Dual || keeps_surfaces && wanted.is_crossed(method)
@@ -503,7 +508,8 @@ fn by_rays_of(
     }
 }
 
-/// The surface within a tolerance, and the method that made it: where none is named, another one makes what the first cannot.
+/// The surface within a tolerance, and the method that made it: where none is named, another one makes what
+/// the first cannot.
 fn to_tolerance(
     source: Source,
     job: &Job,
@@ -562,8 +568,8 @@ fn to_tolerance(
     Ok((mesh.of(input)?, Method::Mc, None, None))
 }
 
-/// The surface of an octree whose cells keep surfaces in layers, or no surface in many of them: by rays if points can be decided, else that of
-/// its cells.
+/// The surface of an octree whose cells keep surfaces in layers, or no surface in many of them: by rays if
+/// points can be decided, else that of its cells.
 fn of_layers(
     solid: &AnySolid,
     frame: &Frame,
@@ -643,7 +649,8 @@ fn warn_of_pairs(input: &Input, pairs: u64) {
     }
 }
 
-/// The surface in cells that end where one vertex will do. Nothing if the solid does not end in the cube, and the method is not named.
+/// The surface in cells that end where one vertex will do. Nothing if the solid does not end in the cube, and
+/// the method is not named.
 fn by_contour(
     solid: &AnySolid,
     frame: &Frame,
@@ -815,7 +822,8 @@ struct Report {
     euler: i64,
     area: f64,
     volume: f64,
-    /// No point of the surface is further from the solid's boundary, and none of the boundary from the surface, if that is proven.
+    /// No point of the surface is further from the solid's boundary, and none of the boundary from the
+    /// surface, if that is proven.
     #[serde(skip_serializing_if = "Option::is_none")]
     deviation: Option<f64>,
     #[serde(flatten)]

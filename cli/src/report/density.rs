@@ -7,7 +7,8 @@ use leafless::exchange::LengthUnit;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Density {
     number: f64,
-    /// The kilograms and the metres of its unit, if it has one: the mass in grams, and the edge of the volume in micrometres.
+    /// The kilograms and the metres of its unit, if it has one: the mass in grams, and the edge of the volume
+    /// in micrometres.
     unit: Option<(f64, f64)>,
 }
 

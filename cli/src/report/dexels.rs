@@ -95,10 +95,11 @@ impl Info {
         self.directions.iter().filter_map(|direction| direction.odd_rays).sum()
     }
 
-    /// What the direction estimates whose rays cross the solid most often: of equal ones the first. 0 without any.
+    /// What the direction estimates whose rays cross the solid most often: of equal ones the first. 0 without
+    /// any.
     ///
-    /// Each direction is exact along its rays, and samples across them. It is off where the surface runs along the rays, by about a
-    /// cell of it; the more rays cross the solid, the less of the surface does.
+    /// Each direction is exact along its rays, and samples across them. It is off where the surface runs
+    /// along the rays, by about a cell of it; the more rays cross the solid, the less of the surface does.
     pub fn best_volume(&self) -> f64 {
         self.best().map_or(0.0, |direction| direction.volume)
     }

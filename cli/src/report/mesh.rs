@@ -119,8 +119,8 @@ impl Defect {
     }
 }
 
-/// The volume that a mesh encloses by a fill rule, to a ten thousandth, or what is known of it after a moment: `leafless measure` has
-/// more patience.
+/// The volume that a mesh encloses by a fill rule, to a ten thousandth, or what is known of it after a
+/// moment: `leafless measure` has more patience.
 fn volume_by(rule: FillRule, mesh: &TriangleMesh) -> Result<Interval, Error> {
     const TOLERANCE: f64 = 1e-4;
     const SPLITS: u64 = 1 << 14;
@@ -150,7 +150,8 @@ pub struct Info {
     closed: bool,
     /// Objects of a 3MF that are no solids.
     skipped: u64,
-    /// How far the true boundary may lie from the mesh, as the file says; absent (null) if it does not. It is not believed.
+    /// How far the true boundary may lie from the mesh, as the file says; absent (null) if it does not. It is
+    /// not believed.
     told_deviation: Option<f64>,
     /// The same as the user stated it; 0 if nothing was stated.
     deviation: f64,

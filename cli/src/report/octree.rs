@@ -59,8 +59,8 @@ pub struct Info {
 }
 
 impl Info {
-    /// Of a tree whose file has so many bytes. O(depth) for a tree from a file; of one whose cells keep surfaces O(n), and as long as
-    /// its volume takes.
+    /// Of a tree whose file has so many bytes. O(depth) for a tree from a file; of one whose cells keep
+    /// surfaces O(n), and as long as its volume takes.
     pub fn new(octree: &Octree, bytes: u64) -> Info {
         let (view, frame, statistics) = (octree.view(), octree.frame(), octree.statistics());
         let nodes = statistics.nodes();

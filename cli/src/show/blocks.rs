@@ -12,7 +12,8 @@ pub enum Palette {
     Indexed,
 }
 
-/// The image as lines of characters. Where a pixel is less than half opaque, the terminal's own background is left.
+/// The image as lines of characters. Where a pixel is less than half opaque, the terminal's own background is
+/// left.
 pub fn text(image: &Image, palette: Palette) -> String {
     let mut text = String::new();
     let row = |y: usize| image.pixels.get(y * image.width..(y + 1) * image.width);

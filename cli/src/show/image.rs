@@ -3,8 +3,8 @@
 use leafless::render::{Light, Picture, Tones};
 use std::borrow::Cow;
 
-/// A picture without depths: red, green, blue (sRGB) and opacity a pixel, row by row from the upper left corner. Colours are
-/// not multiplied by the opacity.
+/// A picture without depths: red, green, blue (sRGB) and opacity a pixel, row by row from the upper left
+/// corner. Colours are not multiplied by the opacity.
 pub struct Image<'a> {
     pub width: usize,
     pub height: usize,
@@ -18,7 +18,8 @@ impl<'a> From<&'a Picture> for Image<'a> {
     }
 }
 
-/// The largest size of the same shape, up to a rounding, that fits into the area; a size that fits is returned as it is.
+/// The largest size of the same shape, up to a rounding, that fits into the area; a size that fits is
+/// returned as it is.
 pub fn fitted(size: [usize; 2], area: [usize; 2]) -> [usize; 2] {
     if size[0] <= area[0] && size[1] <= area[1] {
         return size;
@@ -28,8 +29,8 @@ pub fn fitted(size: [usize; 2], area: [usize; 2]) -> [usize; 2] {
 }
 
 impl Image<'_> {
-    /// The image in a size that is nowhere larger: each pixel is the mean of what it covers, in linear light, by area and
-    /// opacity.
+    /// The image in a size that is nowhere larger: each pixel is the mean of what it covers, in linear light,
+    /// by area and opacity.
     pub fn shrunk(self, [width, height]: [usize; 2]) -> Self {
         if [width, height] == [self.width, self.height] {
             return self;

@@ -52,8 +52,8 @@ const FREE_ROWS: usize = 3;
 const LARGEST: [usize; 2] = [1600, 1200];
 
 impl Screen {
-    /// The terminal of standard output. Only if a protocol is named, standard output may be something else: a pipe, or a file
-    /// that is shown later.
+    /// The terminal of standard output. Only if a protocol is named, standard output may be something else: a
+    /// pipe, or a file that is shown later.
     pub fn of(wanted: Protocol) -> Result<Screen, Failure> {
         let is_terminal = std::io::stdout().is_terminal();
         if wanted == Protocol::Auto {
@@ -132,7 +132,8 @@ impl Screen {
                 blocks::text(&image, palette)
             }
         };
-        // Half of a sequence would make the terminal wait for the other one: this ends every sequence, and colours.
+        // Half of a sequence would make the terminal wait for the other one: this ends every sequence, and
+        // colours.
         signals::write_whole(text.as_bytes(), b"\x1b\\\x1b[0m\n", sink::print)
     }
 }

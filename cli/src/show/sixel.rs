@@ -1,4 +1,5 @@
-//! Pictures as sixels: columns of six pixels in the colours of a palette, for terminals in the line of the VT340.
+//! Pictures as sixels: columns of six pixels in the colours of a palette, for terminals in the line of the
+//! VT340.
 
 use crate::show::image::Image;
 use color_quant::NeuQuant;
@@ -9,7 +10,8 @@ use std::fmt::Write;
 pub const FEWEST: usize = 16;
 pub const MOST: usize = 256;
 
-/// The image in at most so many colours. Pixels that are less than half opaque are left as the terminal has them.
+/// The image in at most so many colours. Pixels that are less than half opaque are left as the terminal has
+/// them.
 pub fn text(image: &Image, colours: usize) -> String {
     let pixels: Vec<Option<[u8; 3]>> = image.pixels.iter().map(percent).collect();
     let palette = Palette::of(&pixels, colours.clamp(FEWEST, MOST));

@@ -28,8 +28,8 @@ pub struct Answer {
     pub pixels: Option<[usize; 2]>,
 }
 
-/// Whether pictures pass through a program that knows only some protocols, while the variables of the environment may tell of
-/// the terminal outside of it.
+/// Whether pictures pass through a program that knows only some protocols, while the variables of the
+/// environment may tell of the terminal outside of it.
 pub fn is_multiplexed() -> bool {
     let term = env::var("TERM").unwrap_or_default();
     env::var_os("TMUX").is_some() || ["screen", "tmux"].iter().any(|name| term.starts_with(name))
@@ -86,8 +86,8 @@ mod unix {
     use std::io::{Read, Write};
     use std::time::{Duration, Instant};
 
-    /// Asks for kitty's protocol, the size in pixels, the colours and the size of sixels; at last what every terminal
-    /// answers, what it is. Whatever an old terminal shows of it is wiped away.
+    /// Asks for kitty's protocol, the size in pixels, the colours and the size of sixels; at last what every
+    /// terminal answers, what it is. Whatever an old terminal shows of it is wiped away.
     const QUESTION: &[u8] =
         b"\x1b7\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\\x1b[14t\x1b[?1;1;0S\x1b[?2;1;0S\x1b[c\x1b8\x1b[K";
 
@@ -119,8 +119,8 @@ mod unix {
         let name = ttyname(std::io::stdout(), Vec::new()).ok()?;
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
         let terminal = File::from(open(&name, flags, Mode::empty()).ok()?);
-        // In the background, whoever changes the mode is stopped. (There is no group if the terminal is not the one that
-        // controls this process: then nobody is.)
+        // In the background, whoever changes the mode is stopped. (There is no group if the terminal is not
+        // the one that controls this process: then nobody is.)
         if tcgetpgrp(&terminal).is_ok_and(|group| group != getpgrp()) {
             return None;
         }
@@ -128,11 +128,13 @@ mod unix {
         let mut other = mode.clone();
         // Answers come without a line's end, and are not to be seen.
         other.local_modes.remove(LocalModes::ICANON | LocalModes::ECHO);
-        // Reading ends after a tenth of a second without anything. (Not all systems can wait for terminals by `poll`.)
+        // Reading ends after a tenth of a second without anything. (Not all systems can wait for terminals by
+        // `poll`.)
         other.special_codes[SpecialCodeIndex::VMIN] = 0;
         other.special_codes[SpecialCodeIndex::VTIME] = 1;
         let mut out = terminal.try_clone().ok()?;
-        // The mode comes back also when a signal ends the program meanwhile. If that fails the terminal is gone.
+        // The mode comes back also when a signal ends the program meanwhile. If that fails the terminal is
+        // gone.
         let again = terminal.try_clone().ok()?;
         let undone = move || {
             let _ = tcsetattr(&again, OptionalActions::Now, &mode);

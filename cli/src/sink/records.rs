@@ -39,9 +39,9 @@ fn proof_numbers(view: &VoxelRecordsRef<'_>) -> [f64; 3] {
     [f64::from(u8::from(proof.full)), f64::from(u8::from(proof.empty)), proof.displacement()]
 }
 
-/// A fingerprint of the records, but for their values, and of what is said of them: arrays are easily changed, and what
-/// was proven of other records is not proven of these. (It guards against mistakes. Whoever wants to can make one, as
-/// anybody can write a solid that says that it is proven.)
+/// A fingerprint of the records, but for their values, and of what is said of them: arrays are easily
+/// changed, and what was proven of other records is not proven of these. (It guards against mistakes. Whoever
+/// wants to can make one, as anybody can write a solid that says that it is proven.)
 fn seal(view: &VoxelRecordsRef<'_>) -> Vec<u8> {
     let frame = view.frame();
     let all = Fingerprinter::new("voxel records")
@@ -55,8 +55,8 @@ fn seal(view: &VoxelRecordsRef<'_>) -> Vec<u8> {
     all.finish().to_string().into_bytes()
 }
 
-/// Reads what [`npz`] writes. Nothing is proven unless the seal says that the records are as they were written. What
-/// is missing beside them is not known.
+/// Reads what [`npz`] writes. Nothing is proven unless the seal says that the records are as they were
+/// written. What is missing beside them is not known.
 pub fn records(bytes: &[u8]) -> Result<VoxelRecords, String> {
     let mut arrays = Reader::new(bytes).map_err(|error| format!("is no NPZ: {error}"))?;
     let text = |error: std::io::Error| error.to_string();

@@ -16,13 +16,15 @@ use std::borrow::Cow;
 pub struct Losses {
     /// The farthest that a vertex is moved along an axis.
     pub rounding: f64,
-    /// Triangles that were taken away, because rounding puts two of their corners at one place, with the surface left closed.
+    /// Triangles that were taken away, because rounding puts two of their corners at one place, with the
+    /// surface left closed.
     #[serde(skip_serializing_if = "is_zero")]
     collapsed: u64,
     /// Triangles that became lines, and were joined to their neighbours.
     #[serde(skip_serializing_if = "is_zero")]
     flipped: u64,
-    /// Vertices that were moved to places next to their nearest ones, so that triangles have an area and do not intersect.
+    /// Vertices that were moved to places next to their nearest ones, so that triangles have an area and do
+    /// not intersect.
     #[serde(skip_serializing_if = "is_zero")]
     moved: u64,
     /// Vertices that are put where others are.
@@ -102,12 +104,12 @@ pub struct Kept<'a> {
     pub losses: Losses,
 }
 
-/// What is to be written of a mesh, what is read back from the file, and what was lost. For an STL, what rounding breaks is mended
-/// first. Warns of lost triangles.
+/// What is to be written of a mesh, what is read back from the file, and what was lost. For an STL, what
+/// rounding breaks is mended first. Warns of lost triangles.
 ///
-/// Refuses a file of which a reader gets another kind of surface, unless it is wanted all the same: one that is open or
-/// has edges at which more than two triangles meet, has more or fewer components, or encloses nothing, where the mesh is
-/// not so.
+/// Refuses a file of which a reader gets another kind of surface, unless it is wanted all the same: one that
+/// is open or has edges at which more than two triangles meet, has more or fewer components, or encloses
+/// nothing, where the mesh is not so.
 pub fn kept<'a>(
     mesh: &'a TriangleMesh,
     format: MeshFormat,

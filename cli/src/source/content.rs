@@ -19,8 +19,8 @@ pub enum Content {
 }
 
 impl Content {
-    /// What the bytes of a file are. The content decides where it tells, then the extension of the file's name;
-    /// `told` is what the user calls it. What is called a solid is taken for nothing else: a damaged
+    /// What the bytes of a file are. The content decides where it tells, then the extension of the file's
+    /// name; `told` is what the user calls it. What is called a solid is taken for nothing else: a damaged
     /// one must not pass for some mesh.
     pub fn of(input: &Input, bytes: &[u8], told: Option<Content>) -> Result<Content, Failure> {
         let extension = input.path().and_then(|path| path.extension()?.to_str()).unwrap_or_default();

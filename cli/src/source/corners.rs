@@ -13,7 +13,8 @@ pub struct Corners {
     displacement: f64,
     /// Whether nothing lies beyond: an open mesh may enclose more.
     is_closed: bool,
-    /// Whether the solid reaches them unless triangles intersect: bodies that are inside out may be nothing by the rule.
+    /// Whether the solid reaches them unless triangles intersect: bodies that are inside out may be nothing
+    /// by the rule.
     is_reached: bool,
 }
 

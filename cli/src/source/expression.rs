@@ -69,11 +69,12 @@ impl Expressions {
     }
 }
 
-/// The expression with functions of two numbers between these, as in `((a)min(b))`. The parser of expressions takes them so in each
-/// other, and not as they are written.
+/// The expression with functions of two numbers between these, as in `((a)min(b))`. The parser of expressions
+/// takes them so in each other, and not as they are written.
 fn infix(text: &str) -> Result<String, &'static str> {
     const FUNCTIONS: [&str; 2] = ["min", "max"];
-    // Of each parenthesis that is open its function, if it has two arguments, and whether the first one is complete.
+    // Of each parenthesis that is open its function, if it has two arguments, and whether the first one is
+    // complete.
     let mut open: Vec<(Option<&str>, bool)> = Vec::new();
     let (mut written, mut rest) = (String::with_capacity(2 * text.len()), text);
     while let Some(c) = rest.chars().next() {
@@ -146,7 +147,8 @@ impl Attribute for Expressions {
     }
 }
 
-/// All values that an expression may have: its own rounded results, too. Unknown where it need not be defined.
+/// All values that an expression may have: its own rounded results, too. Unknown where it need not be
+/// defined.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Range {
     lower: f64,

@@ -57,8 +57,8 @@ impl Stored {
         file::from_bytes(bytes).of(input).map(Stored::Octree)
     }
 
-    /// The solid in a file, and the file's length. A regular file is mapped and, unless `verified` is asked for, hardly
-    /// read.
+    /// The solid in a file, and the file's length. A regular file is mapped and, unless `verified` is asked
+    /// for, hardly read.
     pub fn read(input: &Input, verified: bool) -> Result<(Stored, u64), Failure> {
         if let Some(path) = input.path().filter(|path| path.is_file()) {
             match file::probe(path) {

@@ -12,8 +12,9 @@ pub fn range(samples: &Samples<'_>) -> Option<[f64; 2]> {
     (range[0] <= range[1]).then_some(range)
 }
 
-/// The sample from which on a volume is inside, so that both sides are as much alike in themselves as they can be: by Otsu's method,
-/// the threshold with the greatest variance between both. `None` where all samples are equal.
+/// The sample from which on a volume is inside, so that both sides are as much alike in themselves as they
+/// can be: by Otsu's method, the threshold with the greatest variance between both. `None` where all samples
+/// are equal.
 pub fn best_threshold(samples: &Samples<'_>) -> Option<f64> {
     let [least, greatest] = range(samples).filter(|[least, greatest]| least < greatest)?;
     let is_whole = matches!(samples, Samples::U8(_) | Samples::U16(_) | Samples::I16(_) | Samples::Bits(_));

@@ -52,8 +52,8 @@ impl Input {
         }
     }
 
-    /// All bytes, if they are no more than memory allows. A regular file says beforehand how long it is; a pipe or a
-    /// device may go on for ever.
+    /// All bytes, if they are no more than memory allows. A regular file says beforehand how long it is; a
+    /// pipe or a device may go on for ever.
     pub fn read(&self) -> Result<Vec<u8>, Failure> {
         let refusal = |length: String, most: u64| {
             let most = memory::told(most);

@@ -28,13 +28,13 @@ pub struct Reading {
     /// Unit to convert the mesh to
     #[arg(long = "to-unit", value_name = "UNIT", value_parser = unit)]
     to: Option<LengthUnit>,
-    /// Which points count as inside a mesh. Without it: positive for 3MF, as that format demands, and nonzero for
-    /// all others
+    /// Which points count as inside a mesh. Without it: positive for 3MF, as that format demands, and nonzero
+    /// for all others
     #[arg(long, value_enum)]
     fill: Option<FillName>,
-    /// The true boundary lies within this distance of a mesh, such as the deflection of a tessellation: what is proven is
-    /// then proven of the true solid, and what is nearer to the triangles is undecided. In units of the mesh after
-    /// --to-unit, before it is moved or scaled. The mesh must be closed
+    /// The true boundary lies within this distance of a mesh, such as the deflection of a tessellation: what
+    /// is proven is then proven of the true solid, and what is nearer to the triangles is undecided. In units
+    /// of the mesh after --to-unit, before it is moved or scaled. The mesh must be closed
     #[arg(long, value_name = "D", value_parser = tolerance)]
     deviation: Option<f64>,
     #[command(flatten)]
@@ -135,8 +135,8 @@ impl Reading {
         self.format.or_else(|| MeshFormat::detect(bytes, extension))
     }
 
-    /// The mesh in these bytes of a file, hair cracks closed, in its place, and the rule by which points count as inside. A mesh that
-    /// is open is refused where the rule needs a closed one.
+    /// The mesh in these bytes of a file, hair cracks closed, in its place, and the rule by which points
+    /// count as inside. A mesh that is open is refused where the rule needs a closed one.
     pub fn mesh(
         &self,
         input: &Input,

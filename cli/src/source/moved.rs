@@ -20,7 +20,8 @@ use leafless::{
 /// Where a moved solid is made.
 #[derive(Clone, Copy)]
 pub enum Onto<'a> {
-    /// The image of its own frame if that is a cube, else a cube around its image, with cells that are no larger.
+    /// The image of its own frame if that is a cube, else a cube around its image, with cells that are no
+    /// larger.
     Image,
     /// This frame.
     Frame(&'a Frame),

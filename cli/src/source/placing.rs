@@ -161,7 +161,8 @@ pub fn after(outer: &Affine, inner: &Affine) -> Result<Affine, Error> {
     }))
 }
 
-/// The map with these rows, whose entries are computed: one that is too small for a map is what rounding leaves of zero.
+/// The map with these rows, whose entries are computed: one that is too small for a map is what rounding
+/// leaves of zero.
 fn tidied(rows: [[f64; 4]; 3]) -> Result<Affine, Error> {
     let least = 2f64.powi(-64);
     Affine::new(rows.map(|row| row.map(|c| if c.abs() < least { 0.0 } else { c })))
@@ -264,7 +265,8 @@ pub fn matrix(text: &str) -> Result<Affine, String> {
     told(Affine::new([row(0), row(1), row(2)]))
 }
 
-/// The placements in a file: a line for each, as --place takes it. Empty lines and lines that begin with # are skipped.
+/// The placements in a file: a line for each, as --place takes it. Empty lines and lines that begin with #
+/// are skipped.
 pub fn from_file(path: &Path, first: &Affine) -> Result<Vec<Affine>, Failure> {
     let input = Input::Path(path.into());
     let of_file = |problem: String| Failure::of(&input, problem);

@@ -45,7 +45,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Reads a file of any kind; of one that holds no solid yet, a fingerprint, too. Files of solids are verified.
+    /// Reads a file of any kind; of one that holds no solid yet, a fingerprint, too. Files of solids are
+    /// verified.
     pub fn read(input: &Input, taking: &Taking) -> Result<(Shape, Option<String>), Failure> {
         let (shape, fingerprint) = Shape::before_moving(input, taking)?;
         Ok((shape.moved(input, &taking.placing)?, fingerprint))
@@ -153,14 +154,14 @@ impl Source {
         }
     }
 
-    /// The octree of a solid from a file that is no more than its cells. An octree whose cells keep surfaces is asked as scenes and
-    /// meshes are: its own cells are large, and say little.
+    /// The octree of a solid from a file that is no more than its cells. An octree whose cells keep surfaces
+    /// is asked as scenes and meshes are: its own cells are large, and say little.
     pub fn is_of_cells(&self) -> bool {
         matches!(self, Source::Octree(octree) if octree.view().cuts().is_none())
     }
 
-    /// Whether the surfaces may be known exactly under a placement, on a frame: those of a scene, and those that the cells of an octree
-    /// keep where it lies.
+    /// Whether the surfaces may be known exactly under a placement, on a frame: those of a scene, and those
+    /// that the cells of an octree keep where it lies.
     pub fn has_exact_surfaces(&self, placement: &Affine, frame: &Frame) -> bool {
         match self {
             Source::Octree(octree) => {
@@ -192,7 +193,8 @@ impl Source {
         }
     }
 
-    /// The frame to ask it on: a solid's own, or one around the mesh or scene, which can be split to any depth.
+    /// The frame to ask it on: a solid's own, or one around the mesh or scene, which can be split to any
+    /// depth.
     pub fn frame(&self, input: &Input, depth: Option<u8>) -> Result<Frame, Failure> {
         match (self, depth) {
             (Source::Octree(octree), None) => Ok(*octree.frame()),
@@ -226,8 +228,8 @@ impl Source {
         }
     }
 
-    /// The same where the user need not say how deep: what has no cells of its own, or whose cells keep surfaces, is then split to
-    /// `deepest`.
+    /// The same where the user need not say how deep: what has no cells of its own, or whose cells keep
+    /// surfaces, is then split to `deepest`.
     pub fn frame_to(
         &self,
         input: &Input,
@@ -282,7 +284,8 @@ impl Source {
     }
 }
 
-/// The cells of a solid on a frame. If it is an octree of the same cube, its channels come along, and surfaces that its cells keep decide.
+/// The cells of a solid on a frame. If it is an octree of the same cube, its channels come along, and
+/// surfaces that its cells keep decide.
 pub fn cells_of<S: Solid>(
     solid: &S,
     octree: Option<&Octree>,

@@ -72,7 +72,8 @@ pub struct Copies {
 }
 
 impl Copies {
-    /// What is meant by a name: `part.stl*30` are thirty copies. A file that is called so is one. Their density is 1.
+    /// What is meant by a name: `part.stl*30` are thirty copies. A file that is called so is one. Their
+    /// density is 1.
     pub fn of(name: &OsStr) -> Result<Copies, Failure> {
         let density = Density::of_number(1.0);
         let counted = || {

@@ -12,7 +12,8 @@ use leafless::{Affine, Frame, Octree, Proof};
 /// How a solid that is asked is read, and looked at.
 #[derive(Args)]
 pub struct Looking {
-    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around it
+    /// Lower corner and edge length of the cube to look at, for a mesh or scene. Without it: the cube around
+    /// it
     #[arg(long, value_name = "X0,Y0,Z0,EDGE", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Option<Frame>,
     /// Take the cells of a solid from a file (.lfl) for the solid itself, whatever they prove of what they
@@ -27,14 +28,14 @@ pub struct Looking {
 }
 
 impl Looking {
-    /// Reads a solid. `depth` is the one that the user gave; without it a mesh, a scene, or an octree whose cells keep surfaces is
-    /// split to `deepest`.
+    /// Reads a solid. `depth` is the one that the user gave; without it a mesh, a scene, or an octree whose
+    /// cells keep surfaces is split to `deepest`.
     pub fn target(&self, input: &Input, depth: Option<u8>, deepest: u8) -> Result<Target, Failure> {
         Ok(self.target_and_proof(input, depth, deepest)?.0)
     }
 
-    /// The same, and what the cells of a file prove of what they were made from, whatever they are taken for: what is
-    /// written of them proves no more.
+    /// The same, and what the cells of a file prove of what they were made from, whatever they are taken for:
+    /// what is written of them proves no more.
     pub fn target_and_proof(
         &self,
         input: &Input,

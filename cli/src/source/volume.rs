@@ -19,12 +19,13 @@ use leafless::{Affine, AnySolid, Control, Error, Frame, Volume};
 #[derive(Clone, Default, Args)]
 #[command(next_help_heading = "Volumes (NRRD, MetaImage, raw)")]
 pub struct Sampling {
-    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of the
-    /// samples' type, 0 for floating point numbers; if all samples lie on one side of that, the number that parts their
-    /// histogram best (by Otsu's method), which is told
+    /// Least sample of a volume (NRRD, MetaImage, raw) that is inside. Without it: the middle of the range of
+    /// the samples' type, 0 for floating point numbers; if all samples lie on one side of that, the number
+    /// that parts their histogram best (by Otsu's method), which is told
     #[arg(long, value_name = "T", value_parser = threshold, allow_hyphen_values = true)]
     threshold: Option<f64>,
-    /// Read the file as a raw volume, which has no header: an array of so many samples along x, y and z, x fastest
+    /// Read the file as a raw volume, which has no header: an array of so many samples along x, y and z, x
+    /// fastest
     #[arg(long, value_name = "NX,NY,NZ", value_parser = extents)]
     extents: Option<[u32; 3]>,
     /// Type of the samples of a raw volume. Without it: u8

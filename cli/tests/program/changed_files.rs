@@ -1,6 +1,6 @@
-//! Files changed by somebody who knows what a file is, mostly with good checksums, through every command of the program:
-//! each run ends by itself with code 0, 1 or 2 and says in one line what is wrong. What is made of a file that `verify`
-//! calls good is good.
+//! Files changed by somebody who knows what a file is, mostly with good checksums, through every command of
+//! the program: each run ends by itself with code 0, 1 or 2 and says in one line what is wrong. What is made
+//! of a file that `verify` calls good is good.
 
 #[path = "../../../fuzz/bodies/layout.rs"]
 #[allow(dead_code)]

@@ -1,6 +1,6 @@
-//! Command lines that nobody thought of: options of each subcommand in any number and order, with values that fit, that
-//! nearly fit, and that do not, on good files, damaged ones and none. Each run ends by itself with code 0, 1 or 2, says in
-//! one line what is wrong, and leaves no temporary file.
+//! Command lines that nobody thought of: options of each subcommand in any number and order, with values that
+//! fit, that nearly fit, and that do not, on good files, damaged ones and none. Each run ends by itself with
+//! code 0, 1 or 2, says in one line what is wrong, and leaves no temporary file.
 
 use crate::place::{Place, Run, block, stl};
 use std::collections::BTreeMap;

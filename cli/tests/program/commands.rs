@@ -69,7 +69,8 @@ pub const COMMANDS: [&str; 53] = [
     "layout F F*2 -o out.json --rounds 1 --cells 8 --tests 20 --splits 2000",
 ];
 
-/// Runs the program under a limit of addresses, with twice what it is allowed: what it takes for threads counts, too.
+/// Runs the program under a limit of addresses, with twice what it is allowed: what it takes for threads
+/// counts, too.
 pub fn run(place: &Place, allowed: &str, line: &str, input: &[u8]) -> Run {
     let words: Vec<&str> = line.split_whitespace().collect();
     let mut command = if cfg!(target_os = "linux") {

@@ -20,8 +20,8 @@ fn json(place: &Place, line: &str) -> Value {
 
 const BOUNDS: &str = "--bounds 0,0,0,8";
 
-/// `cube.stl`, the cube [1.1, 3.3]³, `bar.stl`, the box [2.2, 6.2] × [1.7, 2.7] × [0.6, 2.6], and models of both of 64
-/// cells to an axis.
+/// `cube.stl`, the cube [1.1, 3.3]³, `bar.stl`, the box [2.2, 6.2] × [1.7, 2.7] × [0.6, 2.6], and models of
+/// both of 64 cells to an axis.
 fn models() -> Place {
     let place = Place::new();
     place.write("cube.stl", stl(&block([1.1f32; 3].map(f64::from), [3.3f32; 3].map(f64::from))));
@@ -381,7 +381,8 @@ fn dual_contouring_of_meshes_and_scenes() {
     let report = json(&place, "mesh ball.csg -o out.ply --method dual --depth 6 --bounds -4,-4,-4,8");
     assert_eq!((&report["closed"], &report["euler"]), (&true.into(), &2.into()));
     for [x, y, z] in mesh(&place, "out.ply").vertices() {
-        // The ball falls below its tangent planes by r²/4 within r of where they touch it; a cube of edge 1/8 is not wider.
+        // The ball falls below its tangent planes by r²/4 within r of where they touch it; a cube of edge 1/8
+        // is not wider.
         assert!(((x * x + y * y + z * z).sqrt() - 2.0).abs() < 3.0 / 64.0 / 4.0);
     }
     place.run(&format!("voxelize cube.stl -o octree.lfl --depth 5 {BOUNDS}")).good();

@@ -49,7 +49,8 @@ fn files_and_doubles() {
     place.run("heights none.lfl --axis x").bad(1, &["none.lfl"]);
 }
 
-/// Of a ball, the proven and the possible height enclose the true one; a solid's file is asked on coarser cells, too.
+/// Of a ball, the proven and the possible height enclose the true one; a solid's file is asked on coarser
+/// cells, too.
 #[test]
 fn meshes_and_scenes() {
     let place = solids();

@@ -1,5 +1,5 @@
-//! Small inputs do not take everything: every command ends soon, within the memory that it is given, or refuses at once
-//! and says what it would take.
+//! Small inputs do not take everything: every command ends soon, within the memory that it is given, or
+//! refuses at once and says what it would take.
 
 use crate::commands::{COMMANDS, attempt, run, vectors};
 use crate::place;
@@ -118,7 +118,8 @@ fn trees(place: &Place) -> Vec<PathBuf> {
     paths
 }
 
-/// Files in turn, on as many threads as there are processors: of each one command in so many, another one for each file.
+/// Files in turn, on as many threads as there are processors: of each one command in so many, another one for
+/// each file.
 fn in_turn(paths: &[PathBuf], allowed: &str, every: usize) {
     let next = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {

@@ -1,5 +1,5 @@
-//! What somebody means who tries the program for the first time: defaults that do it, messages that say what to do, and answers
-//! that agree with each other.
+//! What somebody means who tries the program for the first time: defaults that do it, messages that say what
+//! to do, and answers that agree with each other.
 
 use crate::models::model;
 use crate::place::{self, Place, block, meshes, solids, stl};
@@ -428,7 +428,8 @@ fn timeless(text: &str) -> String {
     text.lines().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The page of the first day says what the program says. With `LEAFLESS_BLESS=1` the program writes its answers there.
+/// The page of the first day says what the program says. With `LEAFLESS_BLESS=1` the program writes its
+/// answers there.
 #[test]
 fn the_page_of_the_first_day_is_true() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/first-day.md");

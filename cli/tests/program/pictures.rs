@@ -30,8 +30,8 @@ fn pixels(bytes: &[u8]) -> (u32, u32, Vec<[f64; 3]>) {
     (info.width, info.height, colours.collect())
 }
 
-/// Compares a picture with the one of the documentation: sizes are equal, and the root mean square of the differences is at
-/// most one part in 255.
+/// Compares a picture with the one of the documentation: sizes are equal, and the root mean square of the
+/// differences is at most one part in 255.
 fn check(name: &str, bytes: &[u8]) {
     let path = folder().join(name);
     if std::env::var_os("LEAFLESS_BLESS").is_some() {
@@ -101,7 +101,8 @@ fn a_plate_with_a_bore() {
     }
 }
 
-/// A plate with twenty bores by its cells, and by the cells of which some keep surfaces; and what the documentation says of both.
+/// A plate with twenty bores by its cells, and by the cells of which some keep surfaces; and what the
+/// documentation says of both.
 #[test]
 fn a_plate_with_twenty_bores() {
     let place = Place::new();
@@ -142,7 +143,8 @@ fn a_plate_with_twenty_bores() {
     }
 }
 
-/// The layout of the documentation: scenes and commands are those of the page, and what the page says is what is told.
+/// The layout of the documentation: scenes and commands are those of the page, and what the page says is what
+/// is told.
 #[test]
 fn parts_in_a_box() {
     let place = Place::new();

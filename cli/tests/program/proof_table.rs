@@ -1,8 +1,9 @@
-//! What the files that the program writes say is proven: one table of all subcommands that make a solid of another.
+//! What the files that the program writes say is proven: one table of all subcommands that make a solid of
+//! another.
 //!
-//! A ball by each of the four rules goes in. Each way says which bits come out, and what they speak of; where FULL or
-//! EMPTY is claimed, the cells are held against that, point by point and exactly. Subcommands that are neither in the
-//! table nor in the list of those that write no solid fail the test.
+//! A ball by each of the four rules goes in. Each way says which bits come out, and what they speak of; where
+//! FULL or EMPTY is claimed, the cells are held against that, point by point and exactly. Subcommands that
+//! are neither in the table nor in the list of those that write no solid fail the test.
 
 use crate::place::Place;
 use leafless::{Octree, Tag, file};
@@ -77,8 +78,8 @@ const NOTHING: [&str; 4] = ["00", "00", "00", "00"];
 const IF_BOTH: [&str; 4] = ["11", "00", "00", "00"];
 const ITSELF: [&str; 4] = ["11", "11", "11", "11"];
 
-/// Command lines from `in.lfl` to `out.lfl`, what the result speaks of, and FULL and EMPTY for each rule of [`RULES`],
-/// `1` if it is proven. `RULE` is the rule that goes in, `FRAME` the cube.
+/// Command lines from `in.lfl` to `out.lfl`, what the result speaks of, and FULL and EMPTY for each rule of
+/// [`RULES`], `1` if it is proven. `RULE` is the rule that goes in, `FRAME` the cube.
 const WAYS: &[(&[&str], Truth, [&str; 4])] = &[
     (&["csg ball.csg -o out.lfl FRAME --rule RULE"], ball, SAME),
     (&["csg ball.csg -o out.lfl FRAME --adaptive 0.1"], ball, ITSELF),
@@ -309,7 +310,8 @@ fn changed(bytes: &[u8], change: impl Fn(&str, Vec<u8>) -> Option<Vec<u8>>) -> V
     out.finish().unwrap().into_inner()
 }
 
-/// Arrays are easily changed by any program that knows NumPy. What was proven of others is not proven of them.
+/// Arrays are easily changed by any program that knows NumPy. What was proven of others is not proven of
+/// them.
 #[test]
 fn changed_records_prove_nothing() {
     let place = given("certified");

@@ -363,7 +363,8 @@ mod terminal {
         errors: String,
     }
 
-    /// Runs the program on a terminal of 100 × 30 cells of 8 × 16 pixels, which answers so when it is asked what it is.
+    /// Runs the program on a terminal of 100 × 30 cells of 8 × 16 pixels, which answers so when it is asked
+    /// what it is.
     fn session(place: &Place, line: &str, environment: &[(&str, &str)], answer: &str) -> Session {
         let mut master = File::from(openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap());
         grantpt(&master).unwrap();
@@ -376,7 +377,8 @@ mod terminal {
         assert!(before.local_modes.contains(LocalModes::ECHO | LocalModes::ICANON));
         let mut command = command(place, line, environment);
         if !answer.is_empty() {
-            // The program waits longer for terminals far away: this one may be slow where there is much else to do.
+            // The program waits longer for terminals far away: this one may be slow where there is much else
+            // to do.
             command.env("SSH_TTY", "/dev/pts/0");
         }
         // (A progress bar would come in between.)

@@ -1,4 +1,5 @@
-//! Signals and limits of the system: the program ends wherever it waits, by the signal that came, and leaves nothing behind.
+//! Signals and limits of the system: the program ends wherever it waits, by the signal that came, and leaves
+//! nothing behind.
 #![cfg(unix)]
 
 use crate::place::{Place, Run, solids};
@@ -44,8 +45,8 @@ impl Drop for Running {
     }
 }
 
-/// Starts the program where signals do what they do by default, but for one that is ignored. (A shell may ignore some for
-/// what it runs in the background, such as the tests.)
+/// Starts the program where signals do what they do by default, but for one that is ignored. (A shell may
+/// ignore some for what it runs in the background, such as the tests.)
 fn start(mut command: Command, ignored: Option<Signal>) -> Running {
     // SAFETY: between fork and exec only `sigaction` is called, which may be called there.
     unsafe {
@@ -82,8 +83,8 @@ fn place() -> Place {
     place
 }
 
-/// Runs a command line that waits for ever, and ends it by each signal. What it waits for, if not for standard input or
-/// output, is a pipe of this name; a reader that does not read may have it open.
+/// Runs a command line that waits for ever, and ends it by each signal. What it waits for, if not for
+/// standard input or output, is a pipe of this name; a reader that does not read may have it open.
 fn ends_by_signals(line: &str, pipe: Option<&str>, is_read: bool) {
     let place = place();
     pipe.into_iter().for_each(|name| make_pipe(&place, name));

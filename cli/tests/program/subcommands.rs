@@ -401,7 +401,8 @@ fn adaptive_octrees_of_scenes_are_coarse() {
     assert!(place.run(line).good().json()["splits"].is_null());
 }
 
-/// A solid whose cells keep surfaces is asked, shown and meshed as its scene is, and gives cells of any level.
+/// A solid whose cells keep surfaces is asked, shown and meshed as its scene is, and gives cells of any
+/// level.
 #[test]
 fn octrees_that_keep_surfaces_are_taken_as_solids() {
     let place = Place::new();
@@ -457,7 +458,8 @@ fn octrees_that_keep_surfaces_are_taken_as_solids() {
     assert!(first[2] <= 4.0 && first[3] >= 4.0 && first[3] - first[2] < 1e-3, "{first:?}");
 }
 
-/// Undecided cells keep the surfaces that cross them: a small file, which knows the volume and the points as the scene does.
+/// Undecided cells keep the surfaces that cross them: a small file, which knows the volume and the points as
+/// the scene does.
 #[test]
 fn octrees_of_scenes_keep_their_surfaces() {
     let place = Place::new();
@@ -1081,8 +1083,8 @@ fn measure_tells_what_is_proven() {
     let clipped = place.run("measure cube.stl --bounds 2,2,2,2 --json").good().json();
     assert_eq!((&clipped["exact"], &clipped["clipped"]), (&false.into(), &true.into()));
 
-    // One whose triangles intersect, here because each is there twice, is measured as well as is asked for, and no
-    // better.
+    // One whose triangles intersect, here because each is there twice, is measured as well as is asked for,
+    // and no better.
     let cube = place.bytes("cube.stl");
     let (head, facets) = cube.split_at(84);
     let count = 2 * u32::from_le_bytes(head[80..].try_into().unwrap());
@@ -1238,7 +1240,8 @@ fn booleans_are_those_of_the_library() {
     );
 }
 
-/// A plate, a bore and a pin of the bore's own radius, whose cells keep surfaces: what comes of them is as sharp.
+/// A plate, a bore and a pin of the bore's own radius, whose cells keep surfaces: what comes of them is as
+/// sharp.
 #[test]
 fn set_operations_keep_surfaces() {
     let place = Place::new();
@@ -1272,7 +1275,8 @@ fn set_operations_keep_surfaces() {
     place.run("complement other.lfl -o other.lfl").good();
     let [own, other] = ["part.lfl", "other.lfl"].map(|name| file::open(place.path(name)).unwrap());
     assert!(own == other && own.view().cuts().unwrap().given_up == 0);
-    // The pin touches the bore all around, and shares nothing with the part; of the scenes that is proven likewise.
+    // The pin touches the bore all around, and shares nothing with the part; of the scenes that is proven
+    // likewise.
     let told = place.run("intersection part.lfl pin.lfl -o common.lfl").good();
     assert!(told.text().contains("volume 0, 0 nodes"), "{told:?}");
     let bored = moved(10.0, -1.0, "cylinder(h = 12, r = 4, $fn = 0);");

@@ -474,8 +474,8 @@ fn solids_from_files_are_meshed_at_coarser_levels() {
     place.run("mesh cube.lfl -o no.ply --depth 6").bad(2, &["--depth 6", "cube.lfl", "5"]);
 }
 
-/// A plate with a bore: few triangles, sharp edges, and within the tolerance by proof, from a scene and from a solid that keeps its
-/// surfaces.
+/// A plate with a bore: few triangles, sharp edges, and within the tolerance by proof, from a scene and from
+/// a solid that keeps its surfaces.
 #[test]
 fn faces_of_a_plate_with_a_bore() {
     let place = solids();
@@ -536,7 +536,8 @@ fn faces_of_a_plate_with_a_bore() {
     place.run("mesh plate.csg -o out.ply --method faces --tolerance 0").bad(1, &["tolerance"]);
 }
 
-/// Where nobody says how, the method is the one that knows most of the shape, and the report says which it was.
+/// Where nobody says how, the method is the one that knows most of the shape, and the report says which it
+/// was.
 #[test]
 fn what_is_known_of_the_shape_decides() {
     let place = solids();

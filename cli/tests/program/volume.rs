@@ -3,7 +3,8 @@
 use crate::place::Place;
 use serde_json::Value;
 
-/// Samples of a ball of radius 6 around (8, 7, 6) in a grid of 16 × 14 × 12 voxels with edge 1: 200 inside, 10 outside.
+/// Samples of a ball of radius 6 around (8, 7, 6) in a grid of 16 × 14 × 12 voxels with edge 1: 200 inside,
+/// 10 outside.
 fn samples() -> Vec<u8> {
     let mut samples = vec![];
     for z in 0..12 {
@@ -121,7 +122,8 @@ fn volumes_answer_like_solids() {
     assert_eq!(json(&place, "info ball.mhd --json")["extents"], serde_json::json!([16, 14, 12]));
 }
 
-/// The same samples without a header, as bytes and as big-endian numbers of 16 bits behind a header of five bytes.
+/// The same samples without a header, as bytes and as big-endian numbers of 16 bits behind a header of five
+/// bytes.
 #[test]
 fn raw_volumes() {
     let place = place();

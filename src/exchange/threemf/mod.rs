@@ -1,4 +1,5 @@
-//! 3MF packages: the core specification 1.x and its draft 0.93, and the production extension's parts of models.
+//! 3MF packages: the core specification 1.x and its draft 0.93, and the production extension's parts of
+//! models.
 //!
 //! **The way in.** A package is a ZIP archive (stored or DEFLATE). `_rels/.rels` must lead to one 3D model,
 //! and `[Content_Types].xml` must be there and not call it something else. Components and items of the build
@@ -10,16 +11,17 @@
 //! turns the triangles round, so that a volume keeps its sign. Objects of all types but `model` (`support`,
 //! `solidsupport`, `surface`, and `other`, which a build should not reach, but slicers put their modifiers
 //! there) are left out, and counted; the type of an object of components has no meaning. Objects that the
-//! build does not reach are not built. Textures and triangle sets are ignored, all metadata but the deviation that this library writes, and so are extensions that the model does not require. The fill rule of 3MF is `FillRule::Positive` for each
-//! object, and the union of the objects: the mesh as a whole differs from that only where an object that is
-//! inside out overlaps another one.
+//! build does not reach are not built. Textures and triangle sets are ignored, all metadata but the deviation
+//! that this library writes, and so are extensions that the model does not require. The fill rule of 3MF is
+//! `FillRule::Positive` for each object, and the union of the objects: the mesh as a whole differs from that
+//! only where an object that is inside out overlaps another one.
 //!
 //! **Properties.** Base materials and colour groups become attributes of the mesh: `colour` and `material`. A
-//! triangle has the properties that it refers to, or else those of its object, wherever the object is placed. A
-//! group is one of the part in which it is referred to. Base materials are not mixed: that of the first corner
-//! counts. Groups of other kinds (textures, composites, multiproperties) are not read. Of what is not there, or
-//! is no colour, a triangle has nothing, and the caller is told how many there are. If several objects are
-//! built, `object` tells which one a triangle belongs to.
+//! triangle has the properties that it refers to, or else those of its object, wherever the object is placed.
+//! A group is one of the part in which it is referred to. Base materials are not mixed: that of the first
+//! corner counts. Groups of other kinds (textures, composites, multiproperties) are not read. Of what is not
+//! there, or is no colour, a triangle has nothing, and the caller is told how many there are. If several
+//! objects are built, `object` tells which one a triangle belongs to.
 //!
 //! **The draft 0.93** has a namespace of its own. Its relationship and content types, its objects, components
 //! and items are those of 1.0; its colours, materials and textures are ignored like others. The caller is
@@ -31,8 +33,8 @@
 //! models that require an extension other than production, materials and triangle sets; document type
 //! declarations, other encodings, attributes that stand twice in an element of any part; objects that are
 //! referred to before they are defined (which makes circles impossible) or defined twice, meshes that only
-//! stand for something finer (`lowres`, `obfuscated`), models without a build, indices of vertices that do not
-//! exist, numbers that are not finite.
+//! stand for something finer (`lowres`, `obfuscated`), models without a build, indices of vertices that do
+//! not exist, numbers that are not finite.
 //!
 //! **Memory.** Decompressed, the parts that are read may together be 64 times as long as the file and 16 MiB;
 //! what is read of them takes at most twenty times their length (of meshes three times). Instances may come

@@ -1,7 +1,8 @@
 //! Properties of a package: base materials and colour groups, and which of them triangles refer to.
 //!
-//! A triangle names a group and a member for each corner, or has those of its object. Nothing here is an error:
-//! what cannot be read, or is not there, is counted, and the mesh is read as if there were no properties.
+//! A triangle names a group and a member for each corner, or has those of its object. Nothing here is an
+//! error: what cannot be read, or is not there, is counted, and the mesh is read as if there were no
+//! properties.
 
 use alloc::borrow::Cow;
 use alloc::string::String;
@@ -17,7 +18,8 @@ use crate::mesh::MeshAttribute;
 
 /// In the place of a group or member: there is none.
 const ABSENT: u32 = u32::MAX;
-/// In the place of a group or member: something that is no number. No group has it, and no group so many members.
+/// In the place of a group or member: something that is no number. No group has it, and no group so many
+/// members.
 const WRONG: u32 = u32::MAX - 1;
 
 /// The groups of all parts, and the references of all triangles.

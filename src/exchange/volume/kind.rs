@@ -65,8 +65,8 @@ impl SampleKind {
         }
     }
 
-    /// The middle of the type's range, which is where a threshold lies if nobody says where: ½ of bits, 127½ of
-    /// bytes, −½ of whole numbers with a sign; 0 of single and double precision.
+    /// The middle of the type's range, which is where a threshold lies if nobody says where: ½ of bits, 127½
+    /// of bytes, −½ of whole numbers with a sign; 0 of single and double precision.
     pub const fn half_range(self) -> f64 {
         match self {
             SampleKind::Bit => 0.5,

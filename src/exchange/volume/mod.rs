@@ -102,8 +102,8 @@ pub struct VolumeFile {
 
 impl VolumeFile {
     /// The solid of the voxels that are inside, where the file says that they lie: a [`Volume`], moved by
-    /// [`AnySolid::placed`] if its axes are not x, y and z. Without a band, a voxel is inside if its sample is
-    /// not below the middle of the type's range ([`SampleKind::half_range`]). The samples are shared.
+    /// [`AnySolid::placed`] if its axes are not x, y and z. Without a band, a voxel is inside if its sample
+    /// is not below the middle of the type's range ([`SampleKind::half_range`]). The samples are shared.
     ///
     /// # Errors
     /// As [`Volume::new`].

@@ -177,8 +177,8 @@ fn list<T>(
     if found.len() as u64 == count { Ok(found) } else { Err(line.error(expected).into()) }
 }
 
-/// Refuses axes of several numbers that belong together, such as colours: an axis of more than one sample must be one
-/// of space, of time, or of nobody knows what.
+/// Refuses axes of several numbers that belong together, such as colours: an axis of more than one sample
+/// must be one of space, of time, or of nobody knows what.
 fn kinds(line: &Line<'_>, extents: &[u32; 3], chosen: [usize; 3], count: u64) -> Result<(), Error> {
     let all = list(line, count, "a kind of the format for each axis", is_domain)?;
     for (&extent, &axis) in extents.iter().zip(&chosen) {

@@ -13,15 +13,16 @@ use std::path::{Component, Path, PathBuf};
 /// below it.
 ///
 /// The header's folder is the one that the path names. Where the header itself is a link, the folder in which
-/// the header really lies counts too, and the data file is looked for there if there is none in the first. All
-/// links are followed before anything is judged: the real path of the data file must lie in one of these
-/// folders, so that a header from a stranger can name no other file. Folders above the header may be links.
-/// A link that somebody makes at the very moment of reading is noticed, unless it is gone again at once; whoever
-/// can do that in the header's folder could copy or hard-link the file there as well.
+/// the header really lies counts too, and the data file is looked for there if there is none in the first.
+/// All links are followed before anything is judged: the real path of the data file must lie in one of these
+/// folders, so that a header from a stranger can name no other file. Folders above the header may be links. A
+/// link that somebody makes at the very moment of reading is noticed, unless it is gone again at once;
+/// whoever can do that in the header's folder could copy or hard-link the file there as well.
 ///
 /// # Errors
 /// As [`read_volume`], and [`Error::Io`], both as the cause of an [`Error::File`] with the path;
-/// [`VolumeFileError::Unsupported`] for samples outside of the header's folder, or in what is no regular file.
+/// [`VolumeFileError::Unsupported`] for samples outside of the header's folder, or in what is no regular
+/// file.
 pub fn open_volume(path: impl AsRef<Path>) -> Result<VolumeFile, Error> {
     let path = path.as_ref();
     let bytes = read_whole(path).map_err(|error| error.of_file(path))?;
@@ -66,8 +67,8 @@ fn folders(header: &Path) -> Result<Vec<Folder>, Error> {
     Ok(folders)
 }
 
-/// The data file as it is named and its real path, in the first folder that has it; `None` if that is outside of
-/// the folders.
+/// The data file as it is named and its real path, in the first folder that has it; `None` if that is outside
+/// of the folders.
 ///
 /// # Errors
 /// Why the data file cannot be found, with the path at which it was looked for first.

@@ -61,8 +61,8 @@ impl Axes {
         Ok((grid, Some(placement)))
     }
 
-    /// Whether the directions lie in one plane, up to the rounding of decimal numbers: then their box has less than 2^-40
-    /// of the volume that it would have if they were square to each other.
+    /// Whether the directions lie in one plane, up to the rounding of decimal numbers: then their box has
+    /// less than 2^-40 of the volume that it would have if they were square to each other.
     fn is_flat(&self, spacing: [f64; 3]) -> bool {
         let [a, b, c] = axes(|axis| self.steps[axis].map(|x| x / spacing[axis]));
         let cross = axes(|i| {

@@ -51,8 +51,9 @@ fn bytes_of<T: Copy, const N: usize>(values: &[T], of: impl Fn(T) -> [u8; N]) ->
 }
 
 /// A NRRD file, version 4, with the grid as `space directions` and `space origin`. The origin is the first
-/// sample's place, corner + spacing / 2, rounded to a double from which [`read_volume`](super::read_volume) finds the
-/// same corner. Where there is none, near a power of two, a grid that is read again lies half a last place beside. O(n).
+/// sample's place, corner + spacing / 2, rounded to a double from which [`read_volume`](super::read_volume)
+/// finds the same corner. Where there is none, near a power of two, a grid that is read again lies half a
+/// last place beside. O(n).
 ///
 /// # Errors
 /// As [`write_raw_volume`].

@@ -23,19 +23,20 @@ pub struct WrittenForm<'a> {
     pub degenerate: u64,
 }
 
-/// The mesh that a reader gets back from the file that [`write_mesh`](super::write_mesh) makes, and what is lost on the
-/// way.
+/// The mesh that a reader gets back from the file that [`write_mesh`](super::write_mesh) makes, and what is
+/// lost on the way.
 ///
-/// PLY, OBJ, OFF and 3MF keep every bit of the coordinates, and nothing is lost. STL has 32-bit coordinates: vertices
-/// move, vertices that meet are one vertex for a reader, and triangles of which two corners meet are dropped. A closed
-/// mesh stays closed, but it may be flat, pinched, or have no triangle at all: a cube of edge 3 around x = 10⁹ becomes a
-/// square. Its [`report`](TriangleMesh::report) tells, and
-/// [`TriangleMesh::in_single_precision`] mends what can be mended before. An STL has no vertices that no triangle uses, and has the others in
-/// the order in which triangles first use them. What is kept of [attributes](TriangleMesh::attributes) stands at
-/// [`write_mesh`](super::write_mesh); those of the mesh that is told are none, or all.
+/// PLY, OBJ, OFF and 3MF keep every bit of the coordinates, and nothing is lost. STL has 32-bit coordinates:
+/// vertices move, vertices that meet are one vertex for a reader, and triangles of which two corners meet are
+/// dropped. A closed mesh stays closed, but it may be flat, pinched, or have no triangle at all: a cube of
+/// edge 3 around x = 10⁹ becomes a square. Its [`report`](TriangleMesh::report) tells, and
+/// [`TriangleMesh::in_single_precision`] mends what can be mended before. An STL has no vertices that no
+/// triangle uses, and has the others in the order in which triangles first use them. What is kept of
+/// [attributes](TriangleMesh::attributes) stands at [`write_mesh`](super::write_mesh); those of the mesh that
+/// is told are none, or all.
 ///
-/// O(n) time; O(1) memory where nothing is lost, else that of a second mesh, and for an STL as text also that of the
-/// file.
+/// O(n) time; O(1) memory where nothing is lost, else that of a second mesh, and for an STL as text also that
+/// of the file.
 ///
 /// # Errors
 /// As [`write_mesh`](super::write_mesh).

@@ -1,8 +1,8 @@
 //! Mesh files of all formats, written.
 //!
-//! Whatever is written here comes back through this library's readers: text has the shortest decimal numbers that are
-//! read as the same doubles, binary PLY has the doubles themselves. STL alone has 32-bit coordinates; [`written_form`]
-//! tells what becomes of a mesh.
+//! Whatever is written here comes back through this library's readers: text has the shortest decimal numbers
+//! that are read as the same doubles, binary PLY has the doubles themselves. STL alone has 32-bit
+//! coordinates; [`written_form`] tells what becomes of a mesh.
 
 mod attributes;
 mod form;
@@ -39,14 +39,14 @@ use alloc::vec::Vec;
 pub struct WriteOptions {
     /// STL and PLY as text, which is several times as long. OBJ and OFF always are text.
     pub text: bool,
-    /// The unit of the coordinates, which only a 3MF tells; `None` stands for its default, the millimetre. Nothing is
-    /// converted.
+    /// The unit of the coordinates, which only a 3MF tells; `None` stands for its default, the millimetre.
+    /// Nothing is converted.
     pub unit: Option<LengthUnit>,
     /// PLY and OBJ with the normals at vertices ([`TriangleMesh::vertex_normals`]). Other formats have none.
     pub normals: bool,
-    /// How far the true boundary may lie from the mesh ([`TriangleMesh::deviation`]), in model units: told by a comment of a PLY,
-    /// an OBJ or an OFF, and by metadata of a 3MF. An STL has no place for it. [`MeshFile::deviation`](super::MeshFile::deviation)
-    /// reads it.
+    /// How far the true boundary may lie from the mesh ([`TriangleMesh::deviation`]), in model units: told by
+    /// a comment of a PLY, an OBJ or an OFF, and by metadata of a 3MF. An STL has no place for it.
+    /// [`MeshFile::deviation`](super::MeshFile::deviation) reads it.
     pub deviation: Option<f64>,
 }
 
@@ -60,26 +60,29 @@ pub struct WriteOptions {
 /// | OFF | vertices and triangles |
 /// | 3MF | (feature `threemf`) a package of the core specification: one object, which is the build's one item, in the given unit; base materials and colours |
 ///
-/// Coordinates are kept exactly by all but STL, which may lose vertices and triangles and flatten what is small and far
-/// away: [`written_form`] tells.
+/// Coordinates are kept exactly by all but STL, which may lose vertices and triangles and flatten what is
+/// small and far away: [`written_form`] tells.
 ///
 /// **Attributes.** What a format has a place for is written, and read back by the readers of this library:
 ///
-/// - Of `colour` and `face_colour` (three or four numbers from 0 to 255, which are rounded) a PLY has colours of faces, and of
-///   vertices if `colour` is one of corners: at a vertex that of the first corner there. What has no colour is black with an
-///   alpha of 0. A 3MF has colours of triangles or corners, of `face_colour` only if there is no `colour`.
-/// - Of `material` with its names an OBJ has `usemtl`, and no file of materials; a 3MF has base materials, of which each needs a
-///   colour: that of the first triangle of it, or grey. Materials are written, and not colours, where a 3MF would have both.
-/// - All other attributes of triangles whose names are one word of ASCII are properties of the faces of a PLY, with comments in the
-///   header that announce them to the reader.
+/// - Of `colour` and `face_colour` (three or four numbers from 0 to 255, which are rounded) a PLY has colours
+///   of faces, and of vertices if `colour` is one of corners: at a vertex that of the first corner there.
+///   What has no colour is black with an alpha of 0. A 3MF has colours of triangles or corners, of
+///   `face_colour` only if there is no `colour`.
+/// - Of `material` with its names an OBJ has `usemtl`, and no file of materials; a 3MF has base materials, of
+///   which each needs a colour: that of the first triangle of it, or grey. Materials are written, and not
+///   colours, where a 3MF would have both.
+/// - All other attributes of triangles whose names are one word of ASCII are properties of the faces of a
+///   PLY, with comments in the header that announce them to the reader.
 ///
-/// Vertices and triangles keep their order. A 3MF leaves out triangles that have a vertex twice, which it must not have.
+/// Vertices and triangles keep their order. A 3MF leaves out triangles that have a vertex twice, which it
+/// must not have.
 ///
 /// O(n) time and memory.
 ///
 /// # Errors
-/// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, for an OBJ without vertices, and for a deviation that
-/// [`TriangleMesh::with_deviation`] refuses;
+/// [`Error::Argument`] for an STL of coordinates beyond the range of `f32`, for an OBJ without vertices, and
+/// for a deviation that [`TriangleMesh::with_deviation`] refuses;
 /// [`MeshFileError::Unsupported`](crate::error::MeshFileError::Unsupported) for a 3MF without the feature;
 /// [`Error::OutOfMemory`]. (Compressing a 3MF takes some 300 KiB that cannot be refused.)
 ///

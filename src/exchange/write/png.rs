@@ -5,11 +5,12 @@ use crate::render::Picture;
 use alloc::vec::Vec;
 use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
 
-/// Writes the colours of a picture as a PNG file: red, green and blue in sRGB, and opacity if any pixel is not opaque. The
-/// same picture makes the same bytes.
+/// Writes the colours of a picture as a PNG file: red, green and blue in sRGB, and opacity if any pixel is
+/// not opaque. The same picture makes the same bytes.
 ///
 /// # Errors
-/// [`Error::OutOfMemory`]. (The encoder's own memory, some hundred kilobytes and a copy of the picture, cannot be refused.)
+/// [`Error::OutOfMemory`]. (The encoder's own memory, some hundred kilobytes and a copy of the picture,
+/// cannot be refused.)
 ///
 /// ```
 /// use leafless::{Control, exchange, render::{Camera, Lens, Shot, render}};

@@ -1,8 +1,9 @@
 //! Polygons, written as such.
 //!
-//! The formats have no holes. A face with holes is triangulated, and the triangles are put together again: a polygon begins as a
-//! triangle and takes neighbours across its edges, each with a corner that is new to it, as long as there are any. So it stays a
-//! disc without corners that meet, and all corners of the face stay corners.
+//! The formats have no holes. A face with holes is triangulated, and the triangles are put together again: a
+//! polygon begins as a triangle and takes neighbours across its edges, each with a corner that is new to it,
+//! as long as there are any. So it stays a disc without corners that meet, and all corners of the face stay
+//! corners.
 
 use super::attributes::line_of;
 use super::lines::{Lines, Point};
@@ -16,19 +17,20 @@ use crate::mesh::{Polyhedron, PolyhedronArrays};
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// The file of a polyhedron, in which its faces are polygons: an OBJ or an OFF. A face with holes, which these formats do not have, is
-/// cut into a few polygons without; all other faces are as they are given. No vertex is added, and vertices keep their order.
+/// The file of a polyhedron, in which its faces are polygons: an OBJ or an OFF. A face with holes, which
+/// these formats do not have, is cut into a few polygons without; all other faces are as they are given. No
+/// vertex is added, and vertices keep their order.
 ///
 /// The faces are checked as [`Polyhedron::new`] does, so that [`read_obj`](crate::exchange::read_obj) and
-/// [`read_off`](crate::exchange::read_off) get a closed mesh of the same solids back. Of the options the deviation counts. Needs the
-/// feature `std`.
+/// [`read_off`](crate::exchange::read_off) get a closed mesh of the same solids back. Of the options the
+/// deviation counts. Needs the feature `std`.
 ///
 /// O(n log n) expected.
 ///
 /// # Errors
 /// [`Error::Argument`] for other formats, and for a deviation that
-/// [`TriangleMesh::with_deviation`](crate::TriangleMesh::with_deviation) refuses; what [`Polyhedron::new`] refuses;
-/// [`Error::OutOfMemory`].
+/// [`TriangleMesh::with_deviation`](crate::TriangleMesh::with_deviation) refuses; what [`Polyhedron::new`]
+/// refuses; [`Error::OutOfMemory`].
 ///
 /// ```
 /// use leafless::exchange::{MeshFormat, WriteOptions, read_obj, write_polygons};
@@ -55,8 +57,8 @@ pub fn write_polygons(
     write_grouped_polygons(arrays, &[], format, options)
 }
 
-/// As [`write_polygons`], in groups of an OBJ: the faces from a number on, up to those of the next group, belong to all groups whose
-/// names, between blanks, are told. The numbers ascend. An OFF has no groups.
+/// As [`write_polygons`], in groups of an OBJ: the faces from a number on, up to those of the next group,
+/// belong to all groups whose names, between blanks, are told. The numbers ascend. An OFF has no groups.
 ///
 /// # Errors
 /// As [`write_polygons`].

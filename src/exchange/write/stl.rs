@@ -14,8 +14,8 @@ const TITLE: &[u8] = b"binary STL written by leafless";
 /// Writes a binary STL file.
 ///
 /// Coordinates are rounded to `f32`. Vertices stay common to their triangles, so a closed mesh stays closed,
-/// also where rounding makes a triangle degenerate, which readers drop; but what is smaller than the rounding is lost,
-/// up to the whole solid. [`written_form`](super::written_form) tells, and
+/// also where rounding makes a triangle degenerate, which readers drop; but what is smaller than the rounding
+/// is lost, up to the whole solid. [`written_form`](super::written_form) tells, and
 /// [`TriangleMesh::in_single_precision`] mends it before. Without area the normal is (0, 0, 0).
 ///
 /// O(t), 84 + 50 t bytes.

@@ -30,18 +30,20 @@ const RELATIONSHIPS: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" \
     Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
 
-/// The 3MF of several meshes, each of which is built in any number of places: an object with its name for each of `objects`, and an item of
-/// the build with its transform for each of `items`, which are a number of an object and where it stands. A name may be empty.
+/// The 3MF of several meshes, each of which is built in any number of places: an object with its name for
+/// each of `objects`, and an item of the build with its transform for each of `items`, which are a number of
+/// an object and where it stands. A name may be empty.
 ///
-/// Objects are stored once, however often they stand somewhere. [`read_mesh`](crate::exchange::read_mesh) makes one mesh of all that is built. An object
-/// without triangles, which a 3MF must not have, is left out with its items. Of `options` the unit and the deviation count; for
-/// colours and materials see [`write_mesh`](crate::exchange::write_mesh).
+/// Objects are stored once, however often they stand somewhere. [`read_mesh`](crate::exchange::read_mesh)
+/// makes one mesh of all that is built. An object without triangles, which a 3MF must not have, is left out
+/// with its items. Of `options` the unit and the deviation count; for colours and materials see
+/// [`write_mesh`](crate::exchange::write_mesh).
 ///
 /// O(n) time and memory.
 ///
 /// # Errors
-/// [`Error::Argument`] if an item has the number of no object, if there are more than 2^30 objects, and for a deviation that
-/// [`TriangleMesh::with_deviation`] refuses; [`Error::OutOfMemory`].
+/// [`Error::Argument`] if an item has the number of no object, if there are more than 2^30 objects, and for a
+/// deviation that [`TriangleMesh::with_deviation`] refuses; [`Error::OutOfMemory`].
 ///
 /// ```
 /// use leafless::exchange::{read_mesh, write_placed_meshes};

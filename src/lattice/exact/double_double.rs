@@ -1,7 +1,7 @@
 //! Numbers of two doubles: about 106 bits.
 //!
-//! (Dekker 1971; Hida, Li and Bailey 2001.) The last of them are rounded, so that nothing is decided by such numbers alone;
-//! they make errors so small that exact arithmetic is hardly ever needed.
+//! (Dekker 1971; Hida, Li and Bailey 2001.) The last of them are rounded, so that nothing is decided by such
+//! numbers alone; they make errors so small that exact arithmetic is hardly ever needed.
 
 use super::{sqrt, two_product, two_sum};
 use core::ops::{Add, Mul, Neg, Sub};

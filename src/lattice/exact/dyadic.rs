@@ -14,8 +14,8 @@ pub(crate) struct Dyadic {
     exponent: i64,
 }
 
-/// Doubles whose sum is an exact number, in memory of fixed size: that a surface cannot be stored is another failure than that
-/// memory is refused.
+/// Doubles whose sum is an exact number, in memory of fixed size: that a surface cannot be stored is another
+/// failure than that memory is refused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Terms {
     doubles: [f64; 8],
@@ -132,8 +132,9 @@ impl Dyadic {
         if self.sign() < 0 { -magnitude } else { magnitude }
     }
 
-    /// Doubles whose sum is exactly this, the largest first, each at most 2^-53 of the one before; none for zero. `None` if
-    /// there are more than `most`, which is 8 or less, or the number reaches beyond the doubles.
+    /// Doubles whose sum is exactly this, the largest first, each at most 2^-53 of the one before; none for
+    /// zero. `None` if there are more than `most`, which is 8 or less, or the number reaches beyond the
+    /// doubles.
     pub(crate) fn expansion(&self, most: usize) -> Option<Terms> {
         let mut terms = Terms { doubles: [0.0; 8], count: 0 };
         let mut rest = self.clone();
@@ -158,8 +159,9 @@ impl Dyadic {
         terms.iter().fold(Dyadic::zero(), |sum, &term| &sum + &Dyadic::new(term))
     }
 
-    /// Divides numbers by what they have in common, so that they are integers without a common factor, of which the first that
-    /// is not zero is positive; whether that changed the signs. Numbers are proportional just if the same comes of them.
+    /// Divides numbers by what they have in common, so that they are integers without a common factor, of
+    /// which the first that is not zero is positive; whether that changed the signs. Numbers are proportional
+    /// just if the same comes of them.
     pub(crate) fn make_primitive(numbers: &mut [Dyadic]) -> bool {
         let grain = numbers.iter().filter_map(Dyadic::grain).min().unwrap_or(0);
         let whole = |number: &Dyadic| &number.mantissa << (number.exponent - grain).max(0) as u64;

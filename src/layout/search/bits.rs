@@ -98,8 +98,9 @@ impl Bits {
         Ok(())
     }
 
-    /// Cells turned: cell `p` of the result is the one at `order` and `flip` of this, axis by axis: the coordinate along axis i is the one
-    /// along axis `order[i]` of this, counted from the other end if `flip[i]`.
+    /// Cells turned: cell `p` of the result is the one at `order` and `flip` of this, axis by axis: the
+    /// coordinate along axis i is the one along axis `order[i]` of this, counted from the other end if
+    /// `flip[i]`.
     pub(super) fn turned(&self, order: [usize; 3], flip: [bool; 3]) -> Result<Bits, Error> {
         let mut turned = Bits::new(order.map(|axis| self.size[axis]))?;
         for z in 0..self.size[2] {
@@ -119,7 +120,8 @@ impl Bits {
         Ok(turned)
     }
 
-    /// Cells `factor` times as large that hold some of these, which begin `beyond` the lower corner of the first.
+    /// Cells `factor` times as large that hold some of these, which begin `beyond` the lower corner of the
+    /// first.
     pub(super) fn coarser(&self, factor: usize, beyond: [usize; 3]) -> Result<Bits, Error> {
         let mut coarse = Bits::new(axes(|k| (self.size[k] + beyond[k]).div_ceil(factor)))?;
         for z in 0..self.size[2] {
@@ -135,8 +137,8 @@ impl Bits {
         Ok(coarse)
     }
 
-    /// All cells that are nearer than `distance` cells to one of these, in a box that is larger by `pad` at every end, which is to be no
-    /// less than the distance.
+    /// All cells that are nearer than `distance` cells to one of these, in a box that is larger by `pad` at
+    /// every end, which is to be no less than the distance.
     pub(super) fn grown(&self, distance: f64, pad: usize) -> Result<Bits, Error> {
         let mut grown = Bits::new(self.size.map(|size| size + 2 * pad))?;
         let reach = pad as isize;
@@ -170,8 +172,9 @@ impl Bits {
         Ok(grown)
     }
 
-    /// All cells that are nearer than any `distance`, in cells, to one of these, and some that are a little further away: with larger cells,
-    /// of how many of these each is along an axis, and how many of these lie below the first of these.
+    /// All cells that are nearer than any `distance`, in cells, to one of these, and some that are a little
+    /// further away: with larger cells, of how many of these each is along an axis, and how many of these lie
+    /// below the first of these.
     pub(super) fn grown_far(&self, distance: f64) -> Result<(Bits, usize, usize), Error> {
         let scale = scale_for(distance);
         let reach = distance / scale as f64;
@@ -180,11 +183,13 @@ impl Bits {
     }
 }
 
-/// How many cells at the most a distance is long by which cells are grown. With longer ones larger cells are grown: what that adds is
-/// no more than a sixth of the distance, and the work does not rise with the square of it.
+/// How many cells at the most a distance is long by which cells are grown. With longer ones larger cells are
+/// grown: what that adds is no more than a sixth of the distance, and the work does not rise with the square
+/// of it.
 pub(super) const REACH: f64 = 12.0;
 
-/// How many cells along each axis are taken together, so that a distance of `reach` cells is no longer than [`REACH`] of these.
+/// How many cells along each axis are taken together, so that a distance of `reach` cells is no longer than
+/// [`REACH`] of these.
 pub(super) fn scale_for(reach: f64) -> usize {
     let mut scale = 1;
     while reach > REACH * scale as f64 {

@@ -1,7 +1,7 @@
 //! Places for boxes, among boxes.
 //!
-//! The free space of a box with boxes in it is the union of the largest free boxes. Whatever is placed goes to the lower corner of one of
-//! these, and divides those that it meets (Lai & Chan 1997).
+//! The free space of a box with boxes in it is the union of the largest free boxes. Whatever is placed goes
+//! to the lower corner of one of these, and divides those that it meets (Lai & Chan 1997).
 
 use crate::error::Error;
 use crate::lattice::{Bounds, axes};

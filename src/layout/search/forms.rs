@@ -19,8 +19,8 @@ pub(super) struct Form {
     pub(super) map: Affine,
     pub(super) shape: Shape,
     pub(super) halo: Halo,
-    /// What it takes from others: all cells that are too near to it, how many of the search each of them is large, and how many of the search
-    /// lie below its own along each axis.
+    /// What it takes from others: all cells that are too near to it, how many of the search each of them is
+    /// large, and how many of the search lie below its own along each axis.
     pub(super) taken: Bits,
     pub(super) scale: usize,
     pub(super) below: usize,

@@ -121,7 +121,8 @@ impl Lattice {
         Ok(space)
     }
 
-    /// The cells that a solid takes from others, how many of the search each of them is large, and where the first of them is.
+    /// The cells that a solid takes from others, how many of the search each of them is large, and where the
+    /// first of them is.
     fn taken(
         &self,
         solid: &AnySolid,

@@ -1,8 +1,9 @@
 //! Placing what is not placed yet.
 //!
-//! Items go first as boxes, where boxes alone tell: that takes no split. Then they go as cells, of which all count that are not proven
-//! empty; the places of a layer at which a shape meets nothing that is taken are found together. Each place that is taken is proven by
-//! the solids themselves. At last items settle, and what goes into the room that comes of it is added.
+//! Items go first as boxes, where boxes alone tell: that takes no split. Then they go as cells, of which all
+//! count that are not proven empty; the places of a layer at which a shape meets nothing that is taken are
+//! found together. Each place that is taken is proven by the solids themselves. At last items settle, and
+//! what goes into the room that comes of it is added.
 //!
 //! | question | file |
 //! |---|---|
@@ -42,7 +43,8 @@ pub enum Objective {
     Height,
     /// As much volume as possible.
     Density,
-    /// As many items as possible, with the centre of gravity of all that are placed near to a point (model units).
+    /// As many items as possible, with the centre of gravity of all that are placed near to a point (model
+    /// units).
     Balance([f64; 3]),
 }
 
@@ -75,8 +77,8 @@ pub struct SearchOptions {
     pub cells: u32,
     /// Places that are looked at by the solids themselves; `None`: no limit.
     pub max_tests: Option<u64>,
-    /// All items can be taken out along this direction, one after another, the last that was placed first: none of the others, and no
-    /// obstacle, is in the way of a straight move. (The container may be.)
+    /// All items can be taken out along this direction, one after another, the last that was placed first:
+    /// none of the others, and no obstacle, is in the way of a straight move. (The container may be.)
     pub free_along: Option<Direction>,
 }
 
@@ -117,7 +119,8 @@ pub struct SearchReport {
     pub rounds: u64,
     /// Places that were looked at by the solids themselves.
     pub tests: u64,
-    /// Cells that were split for that. (Cells of items and of the container that were made to search by are not counted.)
+    /// Cells that were split for that. (Cells of items and of the container that were made to search by are
+    /// not counted.)
     pub splits: u64,
     /// Why it ended.
     pub end: SearchEnd,
@@ -126,19 +129,21 @@ pub struct SearchReport {
 impl Layout {
     /// Places copies of items that are not placed yet, and leaves those where they are that are.
     ///
-    /// Each is proven to lie in the container, to overlap with nothing, and to be as far from everything as it should be: by boxes, by the
-    /// triangles of meshes, or by splits of the solids. What could not be proven is not placed. The layout that is kept is the best of all
-    /// rounds by what the options are after. A cancel ends the search, and keeps what was best by then; so does a budget.
+    /// Each is proven to lie in the container, to overlap with nothing, and to be as far from everything as
+    /// it should be: by boxes, by the triangles of meshes, or by splits of the solids. What could not be
+    /// proven is not placed. The layout that is kept is the best of all rounds by what the options are after.
+    /// A cancel ends the search, and keeps what was best by then; so does a budget.
     ///
-    /// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes for a hundred cells along the
-    /// container, a hundred times as much for five hundred. `control.max_bytes` limits that of the items. A step takes O(r n² / 64)
-    /// for n cells along the container, an item of r runs of cells, and each layer that is looked at, which are n a form and round and one
-    /// more a step.
+    /// Memory is that of the items' cells in all orientations, and of the container's cells: some megabytes
+    /// for a hundred cells along the container, a hundred times as much for five hundred. `control.max_bytes`
+    /// limits that of the items. A step takes O(r n² / 64) for n cells along the container, an item of r runs
+    /// of cells, and each layer that is looked at, which are n a form and round and one more a step.
     ///
     /// # Errors
-    /// [`Error::Argument`] if `rounds` is 0, `cells` is not 0 and not between 4 and 512, an axis is not 0, 1 or 2, or
-    /// a coordinate is not a number; [`Error::TooLarge`] and [`Error::Limit`] if the cells of items take more than
-    /// `control.max_bytes`; what the solids refuse; [`Error::OutOfMemory`]. Then the layout is as it was.
+    /// [`Error::Argument`] if `rounds` is 0, `cells` is not 0 and not between 4 and 512, an axis is not 0, 1
+    /// or 2, or a coordinate is not a number; [`Error::TooLarge`] and [`Error::Limit`] if the cells of items
+    /// take more than `control.max_bytes`; what the solids refuse; [`Error::OutOfMemory`]. Then the layout is
+    /// as it was.
     pub fn search(&mut self, options: &SearchOptions, control: &Control<'_>) -> Result<SearchReport, Error> {
         let refuse = |name, problem| Err(Error::Argument { name, problem });
         if options.rounds == 0 {

@@ -23,7 +23,8 @@ pub(super) struct Plan {
     pub(super) lean: f64,
     /// How much contact with others counts: all around, as much as so many of its mean sides in height.
     pub(super) grip: f64,
-    /// Whether items go where the centre of gravity wants them, and not down: where there is hardly room, not all go there.
+    /// Whether items go where the centre of gravity wants them, and not down: where there is hardly room, not
+    /// all go there.
     pub(super) is_for_balance: bool,
     /// Which way items go within a layer.
     pub(super) way: Way,
@@ -41,7 +42,8 @@ pub(super) enum Way {
 }
 
 impl Plan {
-    /// The plan of a round: `left` says how many copies of each item are to be placed, `figures` how large each is.
+    /// The plan of a round: `left` says how many copies of each item are to be placed, `figures` how large
+    /// each is.
     pub(super) fn new(left: &[u32], figures: &[Figure], round: u64, seed: u64) -> Result<Plan, Error> {
         const LEANS: [f64; 4] = [1.0, 0.5, 0.75, 0.25];
         const GRIPS: [f64; 4] = [2.0, 4.0, 0.5, 1.0];
@@ -74,7 +76,8 @@ impl Plan {
         })
     }
 
-    /// The rank of a place: the least comes first. `left` is what is left beside the item where it is tightest.
+    /// The rank of a place: the least comes first. `left` is what is left beside the item where it is
+    /// tightest.
     pub(super) fn rank(&self, at: [f64; 3], size: [f64; 3], left: f64) -> [f64; 4] {
         let [x, y, z] = at;
         let high = z + self.lean * size[2];

@@ -106,7 +106,8 @@ impl Rooms {
     }
 }
 
-/// The box within another one all points of which are no nearer than a margin to its faces; `None` if there is none.
+/// The box within another one all points of which are no nearer than a margin to its faces; `None` if there
+/// is none.
 fn narrower(bounds: &Bounds, margin: f64) -> Option<Bounds> {
     // (Where the margin is rounded it is so outward, seen from the faces.)
     let low = wider(&Bounds { min: bounds.min, max: bounds.min }, margin).max;

@@ -35,7 +35,8 @@ struct Place {
 type Refused = (usize, usize, [usize; 3]);
 
 impl Round<'_> {
-    /// Places items beside what is placed in a layout, each with its proof, and leaves them there. `space` is what is taken.
+    /// Places items beside what is placed in a layout, each with its proof, and leaves them there. `space` is
+    /// what is taken.
     pub(super) fn run(
         &self,
         layout: &mut Layout,
@@ -73,7 +74,8 @@ impl Round<'_> {
                 }
                 let number = layout.place(item, &placement)?;
                 let offset = place.at.map(|at| at as isize - form.below as isize);
-                // What comes later must get out, too: nothing goes to where what is there would be in its way.
+                // What comes later must get out, too: nothing goes to where what is there would be in its
+                // way.
                 space.take(&form.taken, form.scale, offset, self.options.free_along.map(Direction::back))?;
                 masses.add(layout, self.figures, &layout.placed[number]);
                 break;

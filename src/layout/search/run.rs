@@ -219,7 +219,8 @@ impl<'s, 'c> Search<'s, 'c> {
                 progress((round + 1) as f64 / shares);
             }
         }
-        // (What settles may not get out any more along the way it came; and where the middle should be, nothing is to move.)
+        // (What settles may not get out any more along the way it came; and where the middle should be,
+        // nothing is to move.)
         if options.free_along.is_some() || matches!(options.objective, Objective::Balance(_)) {
             return Ok(SearchEnd::Rounds);
         }

@@ -13,7 +13,8 @@ const HALVINGS: u32 = 5;
 /// Passes over everything that is placed.
 const PASSES: usize = 1;
 
-/// Moves everything that is placed from number `first` on down along z, y and x, the lowest first; `step` is the first step (model units).
+/// Moves everything that is placed from number `first` on down along z, y and x, the lowest first; `step` is
+/// the first step (model units).
 pub(super) fn settle(
     layout: &mut Layout,
     first: usize,
@@ -34,7 +35,8 @@ pub(super) fn settle(
     Ok(())
 }
 
-/// Moves one down along an axis: by steps that grow as long as they succeed, and are halved where they do not.
+/// Moves one down along an axis: by steps that grow as long as they succeed, and are halved where they do
+/// not.
 fn lower(
     layout: &mut Layout,
     number: usize,

@@ -1,10 +1,11 @@
 //! Where shapes of cells go among cells that are taken.
 //!
-//! A shape is a list of runs along x. Where a run of length 2^k meets a taken cell is known of all places at once, if each bit has been
-//! joined with those up to 2^k − 1 cells further on; any other run is two of these that overlap. So 64 places take two shifts a run, and
-//! the places of one layer are told by the runs of the shape, with nothing that is transformed or rounded. (Fourier transforms tell all
-//! places of all layers: Cui, Rong, Chen & Matusik 2023. The lowest layer with a place takes less, and cells that are taken later never
-//! free one, so that no layer is looked at again.)
+//! A shape is a list of runs along x. Where a run of length 2^k meets a taken cell is known of all places at
+//! once, if each bit has been joined with those up to 2^k − 1 cells further on; any other run is two of these
+//! that overlap. So 64 places take two shifts a run, and the places of one layer are told by the runs of the
+//! shape, with nothing that is transformed or rounded. (Fourier transforms tell all places of all layers:
+//! Cui, Rong, Chen & Matusik 2023. The lowest layer with a place takes less, and cells that are taken later
+//! never free one, so that no layer is looked at again.)
 
 use super::bits::{Bits, Run};
 use crate::error::Error;
@@ -139,8 +140,8 @@ impl Space {
         }
     }
 
-    /// Takes cells that lie at an offset, each as large as `scale` of the space along each axis; and, if `shade` is an axis and a sense, all
-    /// that lie from them on that way.
+    /// Takes cells that lie at an offset, each as large as `scale` of the space along each axis; and, if
+    /// `shade` is an axis and a sense, all that lie from them on that way.
     pub(super) fn take(
         &mut self,
         cells: &Bits,
@@ -183,7 +184,8 @@ impl Space {
         Ok(())
     }
 
-    /// The places in layer `z` where a shape does not go, which fits into the space. `false` if it goes nowhere.
+    /// The places in layer `z` where a shape does not go, which fits into the space. `false` if it goes
+    /// nowhere.
     pub(super) fn layer(&self, shape: &Shape, z: usize, layer: &mut Layer) -> Result<bool, Error> {
         let rows = self.size[1] - shape.size[1] + 1;
         let words = self.words;

@@ -16,11 +16,13 @@ pub(super) struct Voxels {
     pub(super) origin: [f64; 3],
 }
 
-/// How far the first cell begins below the solid, as a part of a cell: so that no two solids in neighbouring cells touch.
+/// How far the first cell begins below the solid, as a part of a cell: so that no two solids in neighbouring
+/// cells touch.
 const BELOW: f64 = 1.0 / 64.0;
 
 impl Voxels {
-    /// Those with the edge `cell` of a solid in a box. Their corners are multiples of `cell` beyond `from`, if there is one.
+    /// Those with the edge `cell` of a solid in a box. Their corners are multiples of `cell` beyond `from`,
+    /// if there is one.
     pub(super) fn of(
         solid: &AnySolid,
         bounds: &Bounds,
@@ -91,7 +93,8 @@ pub(super) fn outside(
     Ok(outside)
 }
 
-/// The cells of a frame that a solid may have points in, and those that are proven to lie in it: in the box of `outer`.
+/// The cells of a frame that a solid may have points in, and those that are proven to lie in it: in the box
+/// of `outer`.
 fn on_frame(
     solid: &AnySolid,
     frame: &Frame,

@@ -92,7 +92,8 @@ impl ChannelRef<'_> {
         Ok(())
     }
 
-    /// What is counted on each level: nodes, cells that have a value (`full`), cells that start one (`partial`).
+    /// What is counted on each level: nodes, cells that have a value (`full`), cells that start one
+    /// (`partial`).
     pub(crate) fn count_levels(&self) -> Vec<LevelCounts> {
         let tree = &self.tree;
         let mut counts = vec![LevelCounts::default(); tree.frame.depth() as usize + 1];

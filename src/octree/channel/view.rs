@@ -25,8 +25,8 @@ use yoke::Yokeable;
 /// region of equal values costs one value, however many cells it has, and a channel with one value everywhere
 /// has no element at all.
 ///
-/// Eight equal siblings are one cell, and a cell starts a value only if that differs from the value before. So
-/// the same values in the same cells have one representation.
+/// Eight equal siblings are one cell, and a cell starts a value only if that differs from the value before.
+/// So the same values in the same cells have one representation.
 #[derive(Debug, Clone, Copy, Yokeable)]
 pub struct ChannelRef<'a> {
     pub(crate) tree: OctreeRef<'a>,

@@ -1,8 +1,9 @@
 //! The one place where channels come into being.
 //!
 //! As with octrees, elements are handed over depth first, each after its children, and every level has an
-//! output array of its own. Which cells start a value is known inside an element at once, and between elements
-//! only when the levels are joined: until then the first cell with a value of every element starts one.
+//! output array of its own. Which cells start a value is known inside an element at once, and between
+//! elements only when the levels are joined: until then the first cell with a value of every element starts
+//! one.
 
 use super::owned::{Channel, ChannelArrays};
 use super::value::{Bits, ValueType};

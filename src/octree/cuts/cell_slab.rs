@@ -4,16 +4,17 @@ use crate::lattice::{Cell, axes};
 use bytemuck::{Pod, Zeroable};
 use core::ops::RangeInclusive;
 
-/// A slab that was made for one cell, whose planes lie a whole number of steps from the cell's centre. It has a meaning of its own
-/// outside of the cell, too, but nothing is known there of the surface that it stands for.
+/// A slab that was made for one cell, whose planes lie a whole number of steps from the cell's centre. It has
+/// a meaning of its own outside of the cell, too, but nothing is known there of the surface that it stands
+/// for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct CellSlab {
-    /// The cell, in bits 0 to 60: a one, and behind it the octants from the universe down, three bits each. In bits 61 and 62 which
-    /// of the cell's slabs it is.
+    /// The cell, in bits 0 to 60: a one, and behind it the octants from the universe down, three bits each.
+    /// In bits 61 and 62 which of the cell's slabs it is.
     pub home: u64,
-    /// From the lowest bit on: two components of the normal, 16 bits each; the inner offset, 19; the width, 4; the step, 6; the axis
-    /// of the greatest component, 2; whether that is negative.
+    /// From the lowest bit on: two components of the normal, 16 bits each; the inner offset, 19; the width,
+    /// 4; the step, 6; the axis of the greatest component, 2; whether that is negative.
     pub planes: u64,
 }
 
@@ -25,7 +26,8 @@ pub(crate) struct Steps {
     pub is_negative: bool,
     /// The components along the next two axes, in units of 2^-15.
     pub others: [i16; 2],
-    /// How far the inner plane lies from the cell's centre, in steps: n · (p − centre) of its points, where n is the normal.
+    /// How far the inner plane lies from the cell's centre, in steps: n · (p − centre) of its points, where n
+    /// is the normal.
     pub offset: i32,
     /// From there to the outer plane, in steps.
     pub width: u8,
@@ -128,7 +130,8 @@ impl CellSlab {
             && Steps::STEPS.contains(&steps.step)
     }
 
-    /// Its numbers in units of the universe: the normal, and the offsets of the inner and the outer plane. They are exact.
+    /// Its numbers in units of the universe: the normal, and the offsets of the inner and the outer plane.
+    /// They are exact.
     pub(crate) fn numbers(self) -> [f64; 5] {
         let steps = self.steps();
         let [x, y, z] = steps.normal();

@@ -1,6 +1,8 @@
-//! On which side of a surface points lie, found in place: in doubles with bounds on their errors, without memory of its own.
+//! On which side of a surface points lie, found in place: in doubles with bounds on their errors, without
+//! memory of its own.
 //!
-//! What is next to a surface stays open; [exact signs](crate::solid) are for those who put the tree on a frame.
+//! What is next to a surface stays open; [exact signs](crate::solid) are for those who put the tree on a
+//! frame.
 
 use super::surfaces::{MOST_MAPS, Numbers, SurfaceKind, SurfacesRef};
 use crate::lattice::exact::sqrt;
@@ -19,7 +21,8 @@ pub(crate) struct Figure<'a> {
 /// A surface along a line from `at` to `at` + `direction`.
 #[derive(Clone, Copy)]
 pub(crate) enum FigureLine<'a> {
-    /// Of a polynomial of degree two: the coefficients of 1, t and t², in which all that is rounded is bounded.
+    /// Of a polynomial of degree two: the coefficients of 1, t and t², in which all that is rounded is
+    /// bounded.
     Polynomial { figure: Figure<'a>, coefficients: [Ball; 3] },
     /// Of another function: the line in the space of the figure.
     Other { figure: Figure<'a>, at: [Ball; 3], direction: [Ball; 3] },
@@ -105,7 +108,8 @@ impl<'a> Figure<'a> {
         (at, vectors)
     }
 
-    /// The side of all points of the box `centre` ± `radius` (model units); `None` if it is not known, or not one.
+    /// The side of all points of the box `centre` ± `radius` (model units); `None` if it is not known, or not
+    /// one.
     #[inline]
     pub(crate) fn side(&self, centre: [Ball; 3], radius: [f64; 3]) -> Option<bool> {
         let (at, reach) = if self.is_placed {
@@ -282,8 +286,8 @@ pub(crate) enum Division {
     Nowhere,
 }
 
-/// Least distance from a crossing at which a line is divided. It is above the rounding errors of times from 0 to 1, and of
-/// [`FigureLine::side`] on the pieces.
+/// Least distance from a crossing at which a line is divided. It is above the rounding errors of times from 0
+/// to 1, and of [`FigureLine::side`] on the pieces.
 const BESIDE: f64 = 1.0 / (1u64 << 44) as f64;
 
 impl FigureLine<'_> {
@@ -294,8 +298,8 @@ impl FigureLine<'_> {
         c.plus(b.plus(a.times(t)).times(t))
     }
 
-    /// The side of all points of a quadric by those of the ends. If the ends lie on one side, all points do where the parabola bends
-    /// away from zero, where it does not turn, and where it has no root.
+    /// The side of all points of a quadric by those of the ends. If the ends lie on one side, all points do
+    /// where the parabola bends away from zero, where it does not turn, and where it has no root.
     fn side_by_ends(&self, low: f64, high: f64) -> Option<bool> {
         let FigureLine::Polynomial { figure, coefficients } = self else { return None };
         if figure.kind != SurfaceKind::Quadric {
@@ -351,7 +355,8 @@ impl FigureLine<'_> {
     }
 }
 
-/// About where c + b t + a t² is zero; where it turns if it has no root; what is not finite if there is nothing.
+/// About where c + b t + a t² is zero; where it turns if it has no root; what is not finite if there is
+/// nothing.
 fn crossings([c, b, a]: [f64; 3]) -> [f64; 2] {
     if a == 0.0 {
         return [-c / b, f64::INFINITY];

@@ -4,8 +4,8 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Numbers of surfaces, one after the other, in a stream of bits: each takes as many as the greatest may need, from the lowest bit of
-/// a byte on. The bits of the last byte that are left are zero.
+/// Numbers of surfaces, one after the other, in a stream of bits: each takes as many as the greatest may
+/// need, from the lowest bit of a byte on. The bits of the last byte that are left are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ids<'a> {
     pub bytes: &'a [u8],

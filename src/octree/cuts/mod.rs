@@ -1,15 +1,17 @@
 //! Cuts: what a PARTIAL cell keeps of the surfaces that cross it.
 //!
-//! An octree with cuts is an *extended octree* (Carlbom, Chakravarty and Vanderschel 1985, *polytrees*; Brunet and Navazo, *Solid
-//! representation and operation using extended octrees*, ACM Transactions on Graphics 9 (2), 1990), here with curved surfaces and
-//! exact signs. The planes of the tree stay what they are without the cuts.
+//! An octree with cuts is an *extended octree* (Carlbom, Chakravarty and Vanderschel 1985, *polytrees*;
+//! Brunet and Navazo, *Solid representation and operation using extended octrees*, ACM Transactions on
+//! Graphics 9 (2), 1990), here with curved surfaces and exact signs. The planes of the tree stay what they
+//! are without the cuts.
 //!
 //! - `cell_slab`: slabs that were made for one cell, in whole numbers.
 //! - `figure`: on which side of a surface points lie, by arithmetic in doubles.
 //! - `ids`: the numbers of surfaces.
 //! - `moments`: the moments of the solid.
 //! - `read`: what cuts say, for others.
-//! - `record`: one byte for each PARTIAL cell: a truth table of up to three surfaces, nothing, or a split into eight records.
+//! - `record`: one byte for each PARTIAL cell: a truth table of up to three surfaces, nothing, or a split
+//!   into eight records.
 //! - `surfaces`: the table of surfaces, in numbers that are exact.
 //! - `writer`: how cuts are gathered and put in order.
 
@@ -58,13 +60,14 @@ pub(crate) struct Block {
 /// The cuts of an octree in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cuts {
-    /// One byte for each record. The first belong to the PARTIAL cells of the planes, in their order; groups of eight follow, one
-    /// for each split, in the order of the splits.
+    /// One byte for each record. The first belong to the PARTIAL cells of the planes, in their order; groups
+    /// of eight follow, one for each split, in the order of the splits.
     pub heads: Vec<u8>,
     /// Surfaces of the records, one after the other.
     pub ids: OwnedIds,
     pub blocks: Vec<Block>,
-    /// For each element and brick the records before its own; one more is the number of records of the planes.
+    /// For each element and brick the records before its own; one more is the number of records of the
+    /// planes.
     pub first: Vec<u32>,
     pub surfaces: Surfaces,
     /// Of the solid, if they were known. (What changes the solid makes new cuts.)
@@ -127,7 +130,8 @@ impl CutsRef<'_> {
 /// What the PARTIAL cells of an extended octree keep.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct CutCounts {
-    /// Cells of which it is known which function of surfaces the solid is. Cells count that are parts of cells of the planes.
+    /// Cells of which it is known which function of surfaces the solid is. Cells count that are parts of
+    /// cells of the planes.
     pub cells: u64,
     /// Cells of which nothing is known.
     pub given_up: u64,
@@ -144,8 +148,8 @@ pub struct CutCounts {
 pub(crate) enum CellCut {
     /// Nothing.
     None,
-    /// The solid is a function of the signs of up to three surfaces: bit m of the table is its value where the surfaces are
-    /// positive whose bits are set in m.
+    /// The solid is a function of the signs of up to three surfaces: bit m of the table is its value where
+    /// the surfaces are positive whose bits are set in m.
     Table { ids: CellIds, table: u8 },
     /// What is known of the children: the first of eight records.
     Split(usize),
@@ -160,8 +164,8 @@ impl CutsRef<'_> {
     /// The record of the universe, if that is one PARTIAL cell.
     pub(crate) const ROOT: usize = 0;
 
-    /// The record of the PARTIAL cell `c` of an element, whose cells are `planes`; of an octant that is PARTIAL as a whole the
-    /// octant's. A wild number where the cuts are damaged.
+    /// The record of the PARTIAL cell `c` of an element, whose cells are `planes`; of an octant that is
+    /// PARTIAL as a whole the octant's. A wild number where the cuts are damaged.
     pub(crate) fn record(&self, element: usize, planes: Planes, c: u32) -> usize {
         let first = self.first.get(element).map_or(usize::MAX, |&first| first as usize);
         first.saturating_add(rank(planes, c) as usize)

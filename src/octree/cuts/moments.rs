@@ -3,8 +3,8 @@
 use crate::lattice::{Interval, VolumeMoments};
 use bytemuck::{Pod, Zeroable};
 
-/// The moments of the solid that an extended octree was made from, which knew them without being split: the point, and both ends of
-/// the volume, of the three first and of the six second moments.
+/// The moments of the solid that an extended octree was made from, which knew them without being split: the
+/// point, and both ends of the volume, of the three first and of the six second moments.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct StoredMoments {

@@ -16,8 +16,9 @@ impl CellFunction {
         &self.ids
     }
 
-    /// The truth table: bit m is set if points lie in the solid that are on the positive side of those surfaces i for which bit i
-    /// of m is set, and on the negative side of the others. Bits of m beyond the surfaces do not matter.
+    /// The truth table: bit m is set if points lie in the solid that are on the positive side of those
+    /// surfaces i for which bit i of m is set, and on the negative side of the others. Bits of m beyond the
+    /// surfaces do not matter.
     pub fn table(&self) -> u8 {
         self.table
     }
@@ -54,15 +55,16 @@ impl<'a> StoredSurface<'a> {
         if i < self.numbers() { self.numbers.get(i) } else { &[] }
     }
 
-    /// The maps that place the figure, the rows of `[M | t]` each, in the order in which they are applied. (A slab that was made for one
-    /// cell is given in units of the universe, and placed by the map from there to model space.)
+    /// The maps that place the figure, the rows of `[M | t]` each, in the order in which they are applied. (A
+    /// slab that was made for one cell is given in units of the universe, and placed by the map from there to
+    /// model space.)
     pub fn placements(&self) -> impl Iterator<Item = [[f64; 4]; 3]> + use<'a> {
         let universe = self.surfaces.cell_slab(self.id).map(|_| self.surfaces.universe.rows());
         self.surfaces.placements(self.id).copied().chain(universe)
     }
 
-    /// Of a slab that can be told from others: the fingerprint of what it was made from, and its number there. Numbers from 2^63 on are
-    /// those of slabs that were made for one cell.
+    /// Of a slab that can be told from others: the fingerprint of what it was made from, and its number
+    /// there. Numbers from 2^63 on are those of slabs that were made for one cell.
     pub fn origin(&self) -> Option<([u64; 2], u64)> {
         self.surfaces.identity(self.id)
     }

@@ -1,9 +1,9 @@
 //! One byte for each PARTIAL cell.
 
-/// What a record says in one byte: the truth table of three surfaces, whether there are three or not. A table that does not
-/// depend on the last of them is one of two surfaces, or of one. So the table tells how many there are; those that depend on
-/// none have a meaning of their own: nothing is known, or the cell is split. (Tables that depend on a surface, and not on one
-/// before it, are not used.)
+/// What a record says in one byte: the truth table of three surfaces, whether there are three or not. A table
+/// that does not depend on the last of them is one of two surfaces, or of one. So the table tells how many
+/// there are; those that depend on none have a meaning of their own: nothing is known, or the cell is split.
+/// (Tables that depend on a surface, and not on one before it, are not used.)
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Head(pub(crate) u8);
 
@@ -57,7 +57,8 @@ impl Head {
         Head::COUNTS[usize::from(self.0)] != Head::INVALID
     }
 
-    /// The values of a table where the side of one of its surfaces is known; no longer a table of any surface if all are the same.
+    /// The values of a table where the side of one of its surfaces is known; no longer a table of any surface
+    /// if all are the same.
     pub(crate) fn on_side(table: u8, surface: usize, is_positive: bool) -> u8 {
         let (holds, shift) = (Head::HOLDS[surface], 1 << surface);
         if is_positive {

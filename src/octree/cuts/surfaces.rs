@@ -1,4 +1,5 @@
-//! The table of surfaces: each is the boundary of the points where a function is positive, given in numbers that are exact.
+//! The table of surfaces: each is the boundary of the points where a function is positive, given in numbers
+//! that are exact.
 
 use super::cell_slab::CellSlab;
 use crate::error::{Damage, Error};
@@ -22,8 +23,9 @@ pub enum SurfaceKind {
     Powers = 2,
     /// A torus: R, q, s and t of q − (√((s x)² + (s y)²) − R)² − (s z + t)².
     Torus = 3,
-    /// A plane with a width: its normal, and the two offsets between which the boundary lies (the first is that of the inner side,
-    /// which counts as positive). Which of all slabs it is tells [`StoredSurface::origin`](super::StoredSurface::origin).
+    /// A plane with a width: its normal, and the two offsets between which the boundary lies (the first is
+    /// that of the inner side, which counts as positive). Which of all slabs it is tells
+    /// [`StoredSurface::origin`](super::StoredSurface::origin).
     Slab = 4,
 }
 
@@ -53,10 +55,12 @@ impl SurfaceKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct SurfaceRecord {
-    /// A [`SurfaceKind`] in the lowest byte; of a slab above it the place of its origin, plus one, or 0 if it has none.
+    /// A [`SurfaceKind`] in the lowest byte; of a slab above it the place of its origin, plus one, or 0 if it
+    /// has none.
     pub kind: u32,
-    /// Of how many doubles each number is the sum, three bits a number, from the lowest on. A slab that has an origin may have one more
-    /// number, a word of 64 bits: which of the slabs of its origin it is. Without that it is the one of the record's own place.
+    /// Of how many doubles each number is the sum, three bits a number, from the lowest on. A slab that has
+    /// an origin may have one more number, a word of 64 bits: which of the slabs of its origin it is. Without
+    /// that it is the one of the record's own place.
     pub terms: u32,
     /// Its first double.
     pub first: u32,
@@ -221,8 +225,8 @@ impl SurfaceWriter {
     /// A surface, whose placements are those maps in the order in which they are applied, last one first.
     ///
     /// # Errors
-    /// [`Error::Limit`] if a number is the sum of more than seven doubles, if there are more than 64 maps, or too many doubles or
-    /// origins; [`Error::OutOfMemory`].
+    /// [`Error::Limit`] if a number is the sum of more than seven doubles, if there are more than 64 maps, or
+    /// too many doubles or origins; [`Error::OutOfMemory`].
     pub(crate) fn put<'n>(
         &mut self,
         kind: SurfaceKind,
@@ -275,7 +279,8 @@ impl SurfaceWriter {
         memory::push(&mut self.all.records, record)
     }
 
-    /// A slab of a cell; those of one origin follow each other, and all surfaces of other kinds stand before them.
+    /// A slab of a cell; those of one origin follow each other, and all surfaces of other kinds stand before
+    /// them.
     pub(crate) fn put_cell_slab(&mut self, slab: CellSlab, origin: Origin) -> Result<(), Error> {
         memory::push(&mut self.all.slabs, slab)?;
         let end = self.all.slabs.len() as u64;
@@ -373,8 +378,9 @@ impl<'a> SurfacesRef<'a> {
         Some((*self.origins.get(origin as usize)?, word.map_or(id as u64, |word| word.to_bits())))
     }
 
-    /// Compares a surface with another one, of the same table or not: the number of words that they take; the kind, of how many doubles
-    /// each number is the sum, the doubles, and the maps; and, of slabs, which they are.
+    /// Compares a surface with another one, of the same table or not: the number of words that they take; the
+    /// kind, of how many doubles each number is the sum, the doubles, and the maps; and, of slabs, which they
+    /// are.
     pub(crate) fn order(&self, id: usize, others: &SurfacesRef<'_>, other: usize) -> Ordering {
         let [own, theirs] = [(self, id), (others, other)].map(|(table, id)| {
             let (kind, numbers) =
@@ -398,8 +404,8 @@ impl<'a> SurfacesRef<'a> {
         count.cmp(&others_count).then_with(|| words.cmp(others))
     }
 
-    /// The maps that the surface of a record is placed by, in the order in which they are applied; at most one more than is legal. (Slabs
-    /// of cells are in units of the universe.)
+    /// The maps that the surface of a record is placed by, in the order in which they are applied; at most
+    /// one more than is legal. (Slabs of cells are in units of the universe.)
     pub(crate) fn placements(&self, id: usize) -> impl Iterator<Item = &'a [[f64; 4]; 3]> + Clone + use<'a> {
         let placements = self.placements;
         let mut next = self.records.get(id).map_or(0, |record| u64::from(record.placement));
@@ -413,7 +419,8 @@ impl<'a> SurfacesRef<'a> {
         .take(MOST_MAPS + 1)
     }
 
-    /// Checks that the groups take in all slabs of cells one after the other, and that no two have one origin. O(n log n).
+    /// Checks that the groups take in all slabs of cells one after the other, and that no two have one
+    /// origin. O(n log n).
     pub(crate) fn check_groups(&self) -> Result<(), Error> {
         let slabs = self.slabs.len() as u64;
         let wrong =
@@ -438,8 +445,8 @@ impl<'a> SurfacesRef<'a> {
         }
     }
 
-    /// Checks that all is there, in the order of first use, and that every surface is one of an octree that is so deep; not the groups of
-    /// slabs of cells. O(n).
+    /// Checks that all is there, in the order of first use, and that every surface is one of an octree that
+    /// is so deep; not the groups of slabs of cells. O(n).
     pub(crate) fn check(&self, depth: u8) -> Result<(), Damage> {
         let (mut doubles, mut placements, mut origins) = (0, 0, 0);
         for (id, record) in self.records.iter().enumerate() {
@@ -505,8 +512,8 @@ struct Figure<'a> {
 }
 
 impl<'a> Figure<'a> {
-    /// `None` if the doubles of a number are not as an exact number is written: none of them zero, each at most 2^-53 of the one
-    /// before.
+    /// `None` if the doubles of a number are not as an exact number is written: none of them zero, each at
+    /// most 2^-53 of the one before.
     fn new(kind: SurfaceKind, numbers: &'a Numbers<'a>) -> Option<Figure<'a>> {
         let mut own = [&[][..]; 10];
         for (i, to) in own.iter_mut().enumerate().take(kind.numbers() as usize) {

@@ -56,7 +56,8 @@ struct Records {
     ids: Vec<u32>,
 }
 
-/// Cuts of one level of elements: first the records of its cells, then those of their parts, then those of the parts of these.
+/// Cuts of one level of elements: first the records of its cells, then those of their parts, then those of
+/// the parts of these.
 #[derive(Default)]
 struct Level {
     generations: Vec<Records>,
@@ -98,7 +99,8 @@ pub(crate) struct CutWriter {
     levels: Vec<Level>,
 }
 
-/// What the surfaces of copied records are called: for each its number so far, and whether it is negated there.
+/// What the surfaces of copied records are called: for each its number so far, and whether it is negated
+/// there.
 pub(crate) type Names<'n> = &'n [(u32, bool)];
 
 impl CutWriter {
@@ -120,8 +122,8 @@ impl CutWriter {
         Ok(count as usize)
     }
 
-    /// Copies the records of the elements `run`, which follow each other on level `e`, or (`flip`) those of the complement;
-    /// returns how many bytes they take.
+    /// Copies the records of the elements `run`, which follow each other on level `e`, or (`flip`) those of
+    /// the complement; returns how many bytes they take.
     pub(crate) fn copy(
         &mut self,
         e: usize,
@@ -168,8 +170,8 @@ impl CutWriter {
         Ok(all)
     }
 
-    /// Takes over what a sibling wrote, which comes after all that this one wrote so far; ids from `first` on become greater by
-    /// `more`.
+    /// Takes over what a sibling wrote, which comes after all that this one wrote so far; ids from `first` on
+    /// become greater by `more`.
     pub(crate) fn append(&mut self, other: CutWriter, first: u32, more: u32) -> Result<(), Error> {
         for (level, mut theirs) in self.levels.iter_mut().zip(other.levels) {
             level.counts.try_reserve(theirs.counts.len())?;
@@ -186,10 +188,11 @@ impl CutWriter {
         Ok(())
     }
 
-    /// Puts all in order: records, and what is counted before them. With the numbers so far of those surfaces that are used: first
-    /// those that `group` gives no origin, and then slabs of cells, origin by origin; within these the order is that of their first
-    /// use, and of those that a record is the first to use, the `order` that is given of their numbers. The table of surfaces is left
-    /// empty. Nothing comes of a tree without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL cell.
+    /// Puts all in order: records, and what is counted before them. With the numbers so far of those surfaces
+    /// that are used: first those that `group` gives no origin, and then slabs of cells, origin by origin;
+    /// within these the order is that of their first use, and of those that a record is the first to use, the
+    /// `order` that is given of their numbers. The table of surfaces is left empty. Nothing comes of a tree
+    /// without PARTIAL cells. `root` is the cut of a universe that is one PARTIAL cell.
     ///
     /// # Errors
     /// [`Error::Limit`] if there are 2^32 records or ids, and [`Error::OutOfMemory`].
@@ -374,7 +377,8 @@ impl<G: Fn(u32) -> Option<Origin>> Renaming<G> {
     }
 }
 
-/// The table of the same surfaces in another order: the i-th is now the one that was at the i-th place of `order`.
+/// The table of the same surfaces in another order: the i-th is now the one that was at the i-th place of
+/// `order`.
 fn permuted(table: u8, order: impl ExactSizeIterator<Item = usize> + Clone) -> u8 {
     let count = order.len();
     (0..8u8).fold(0, |all, m| {

@@ -30,14 +30,15 @@ use once_cell::race::OnceBox;
 /// Which surfaces an extended octree keeps.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct SurfaceOptions {
-    /// Where nothing exact is known of a surface (a mesh, a host program's function), two parallel planes may stand for it, a layer, that
-    /// are at most this far apart (model units). `None`: only exact surfaces are kept.
+    /// Where nothing exact is known of a surface (a mesh, a host program's function), two parallel planes may
+    /// stand for it, a layer, that are at most this far apart (model units). `None`: only exact surfaces are
+    /// kept.
     pub tolerance: Option<f64>,
 }
 
 impl SurfaceOptions {
-    /// The frame to build on: around the bounds of a shape, with finest cells no longer than the tolerance. Without a tolerance it
-    /// has the greatest depth, because cells with exact surfaces end at any size.
+    /// The frame to build on: around the bounds of a shape, with finest cells no longer than the tolerance.
+    /// Without a tolerance it has the greatest depth, because cells with exact surfaces end at any size.
     ///
     /// # Errors
     /// As [`Frame::to_tolerance`].
@@ -54,40 +55,46 @@ impl SurfaceOptions {
     }
 }
 
-/// Builds the *extended octree* of `solid`: a certified octree whose PARTIAL cells keep the surfaces that cross them, up to three,
-/// and the function of their signs that the solid is.
+/// Builds the *extended octree* of `solid`: a certified octree whose PARTIAL cells keep the surfaces that
+/// cross them, up to three, and the function of their signs that the solid is.
 ///
-/// A cell ends as soon as three surfaces are left in it, at any size. So the tree is small, and as exact as the solid: put on any
-/// frame of its universe, it splits below its own cells, and answers measures, points, rays and distances as the solid would. What
-/// is still crossed by more surfaces at the frame's depth is PARTIAL, and nothing is known of it.
+/// A cell ends as soon as three surfaces are left in it, at any size. So the tree is small, and as exact as
+/// the solid: put on any frame of its universe, it splits below its own cells, and answers measures, points,
+/// rays and distances as the solid would. What is still crossed by more surfaces at the frame's depth is
+/// PARTIAL, and nothing is known of it.
 ///
-/// A cell that had to be split may turn out to need no more than three surfaces: bounds over smaller cells are closer, and one of
-/// the surfaces in doubt does not reach it after all. So eight cells that are done become one, from the finest up, by this rule: none
-/// of them is given up, all their exact surfaces together are at most three, and one function of these has the value of each cell
-/// for all combinations of signs that are possible in that cell. Combinations that are possible in none of the eight have the value
-/// of the nearest that is. Cells with layers of their own stay apart, because each stands for a surface of its own.
+/// A cell that had to be split may turn out to need no more than three surfaces: bounds over smaller cells
+/// are closer, and one of the surfaces in doubt does not reach it after all. So eight cells that are done
+/// become one, from the finest up, by this rule: none of them is given up, all their exact surfaces together
+/// are at most three, and one function of these has the value of each cell for all combinations of signs that
+/// are possible in that cell. Combinations that are possible in none of the eight have the value of the
+/// nearest that is. Cells with layers of their own stay apart, because each stands for a surface of its own.
 ///
-/// With a tolerance, meshes take part by the planes of their facets: those that lie in one plane to rounding share one layer, with
-/// the width that this takes, in all cells that it crosses, and where more planes meet, facets that face about the same side share a
-/// layer of their cell, at most as thick as the tolerance. The table of the layers' sides is that of the fill rule, and proven: what is
-/// thinner than a layer is undecided within it, and no point is that is further than twice the tolerance from the surface, unless its
-/// cell was given up.
+/// With a tolerance, meshes take part by the planes of their facets: those that lie in one plane to rounding
+/// share one layer, with the width that this takes, in all cells that it crosses, and where more planes meet,
+/// facets that face about the same side share a layer of their cell, at most as thick as the tolerance. The
+/// table of the layers' sides is that of the fill rule, and proven: what is thinner than a layer is undecided
+/// within it, and no point is that is further than twice the tolerance from the surface, unless its cell was
+/// given up.
 ///
-/// A solid whose answers are dear, such as a function of a host program, is asked level by level about many cells at once.
+/// A solid whose answers are dear, such as a function of a host program, is asked level by level about many
+/// cells at once.
 ///
-/// The half-spaces of expressions are kept exactly, under any placements, and those of extended octrees within them. The result is
-/// the same bit for bit for any number of threads. Time and memory are linear in the cells that are visited.
+/// The half-spaces of expressions are kept exactly, under any placements, and those of extended octrees
+/// within them. The result is the same bit for bit for any number of threads. Time and memory are linear in
+/// the cells that are visited.
 ///
-/// Whatever takes a [`Solid`] takes the surfaces into account, and so do points, rays and boxes in place. Set operations of stored
-/// octrees keep the surfaces. What means cells sees the cells alone, which are those of a certified octree. [`Octree`] has the
-/// table.
+/// Whatever takes a [`Solid`] takes the surfaces into account, and so do points, rays and boxes in place. Set
+/// operations of stored octrees keep the surfaces. What means cells sees the cells alone, which are those of
+/// a certified octree. [`Octree`] has the table.
 ///
-/// The method is that of Brunet and Navazo, *Solid representation and operation using extended octrees*, ACM Transactions on
-/// Graphics 9 (2), 1990, for curved surfaces and with exact signs.
+/// The method is that of Brunet and Navazo, *Solid representation and operation using extended octrees*, ACM
+/// Transactions on Graphics 9 (2), 1990, for curved surfaces and with exact signs.
 ///
 /// # Errors
-/// As [`build`](crate::build); [`Error::Argument`] if the tolerance is not a positive number; [`Error::Limit`] if an exact number
-/// of a surface is the sum of more than seven doubles, or a surface lies under more than 64 placements.
+/// As [`build`](crate::build); [`Error::Argument`] if the tolerance is not a positive number;
+/// [`Error::Limit`] if an exact number of a surface is the sum of more than seven doubles, or a surface lies
+/// under more than 64 placements.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, build_extended, measure, SurfaceOptions};
@@ -109,8 +116,9 @@ pub fn build_extended<S: Solid>(
     build_cells(solid, frame, options, None, control)
 }
 
-/// Builds the cells of a [`Shard`] of what [`build_extended`] makes: of all others nothing is known. [`join`](crate::op::join) makes of
-/// the top and of the shards of all cells that it leaves open the octree that [`build_extended`] makes, byte for byte.
+/// Builds the cells of a [`Shard`] of what [`build_extended`] makes: of all others nothing is known.
+/// [`join`](crate::op::join) makes of the top and of the shards of all cells that it leaves open the octree
+/// that [`build_extended`] makes, byte for byte.
 ///
 /// # Errors
 /// As [`build_extended`]; [`Error::Argument`] if the frame does not have the shard's cells.
@@ -198,7 +206,8 @@ fn build_cells<S: Solid>(
         };
         let mut cuts = cuts.finish((tag == Tag::Partial).then_some(cut), by_size, group)?;
         if let Some((cuts, used)) = &mut cuts {
-            // Slabs have numbers that any shard of the tree gives them: their place in the solid's list, or one of their cell's.
+            // Slabs have numbers that any shard of the tree gives them: their place in the solid's list, or
+            // one of their cell's.
             for &id in &*used {
                 let Some(layer) = (id as usize).checked_sub(exact) else { continue };
                 // (A slab that another build made for a cell, and that has no origin, has none here.)
@@ -224,9 +233,9 @@ fn build_cells<S: Solid>(
     })
 }
 
-/// The tree without cuts that says what a tree with cuts does, to `depth`: for whatever means cells. Cells are decided by the
-/// surfaces that the tree keeps, and what is undecided at the depth is resolved by `rule`. Metadata and channels are those of `tree`.
-/// Of a tree without cuts it is the same tree, cut at the depth.
+/// The tree without cuts that says what a tree with cuts does, to `depth`: for whatever means cells. Cells
+/// are decided by the surfaces that the tree keeps, and what is undecided at the depth is resolved by `rule`.
+/// Metadata and channels are those of `tree`. Of a tree without cuts it is the same tree, cut at the depth.
 ///
 /// # Errors
 /// As [`build`](crate::build); [`Error::Argument`] if `depth` is not 1 to 20.
@@ -256,10 +265,11 @@ struct Extended<'a, C> {
     tolerance: Option<f64>,
     /// The same, if the solid has a list of layers.
     layers: Option<f64>,
-    /// For each surface of the solid's list its number among those that differ, and whether it stands there negated.
+    /// For each surface of the solid's list its number among those that differ, and whether it stands there
+    /// negated.
     names: &'a [Option<(u32, bool)>],
-    /// The exact surfaces that differ, on the universe. Numbers from there on are those of the solid's layers, and then of those of
-    /// cells.
+    /// The exact surfaces that differ, on the universe. Numbers from there on are those of the solid's
+    /// layers, and then of those of cells.
     placed: &'a [Placed],
     /// The solid's layers, and where they lie on the universe, once somebody has asked.
     shared: &'a [PlacedHalfSpace],
@@ -408,8 +418,8 @@ impl<C: Classifier> Extended<'_, C> {
         Ok((fate, wants_slabs))
     }
 
-    /// Puts the slabs that a cell has alone in whole numbers, where those are about as close. (A cell may have got more of them than its
-    /// function needs; a home tells three apart.)
+    /// Puts the slabs that a cell has alone in whole numbers, where those are about as close. (A cell may
+    /// have got more of them than its function needs; a home tells three apart.)
     fn quantise(&self, cell: Cell, own: &mut [PlacedHalfSpace]) {
         let tolerance = self.tolerance.unwrap_or(0.0);
         for (index, slab) in (0u8..).zip(own) {
@@ -521,7 +531,8 @@ impl<C: Classifier> Extended<'_, C> {
         done
     }
 
-    /// What becomes of all cells below one, to a last level, asked level by level: the children of cells that are split.
+    /// What becomes of all cells below one, to a last level, asked level by level: the children of cells that
+    /// are split.
     fn asked(
         &self,
         cell: Cell,

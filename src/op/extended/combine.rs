@@ -1,8 +1,9 @@
 //! The set algebra of stored trees of which one at least keeps surfaces.
 //!
-//! All operands are walked at once. A cell that all but one of them decide is copied from that one: whole subtrees as runs of
-//! their arrays, with their cuts. Where several operands end with functions of surfaces, these become one function, and the cell
-//! ends as soon as that takes no more than three surfaces. Elsewhere the cell is split.
+//! All operands are walked at once. A cell that all but one of them decide is copied from that one: whole
+//! subtrees as runs of their arrays, with their cuts. Where several operands end with functions of surfaces,
+//! these become one function, and the cell ends as soon as that takes no more than three surfaces. Elsewhere
+//! the cell is split.
 
 use super::element::{Family, Fate, Output, Source, element};
 use super::function::{Done, Function, Known};
@@ -120,7 +121,8 @@ pub(in crate::op) fn combine_cells(
 enum Side {
     /// Nothing is known.
     Unknown,
-    /// A function of surfaces, of the operand's complement if that is meant; whether it is that of a larger cell.
+    /// A function of surfaces, of the operand's complement if that is meant; whether it is that of a larger
+    /// cell.
     Function { ids: [u32; 3], table: u8, is_wide: bool },
     /// The first of eight records.
     Records(usize),
@@ -305,7 +307,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// What becomes of a cell of which these operands know something without deciding it, and all others know nothing.
+    /// What becomes of a cell of which these operands know something without deciding it, and all others know
+    /// nothing.
     fn known(&self, cell: Cell, open: Vec<(u32, Side)>) -> Fate<Part> {
         let function = open.iter().find_map(|(_, side)| match *side {
             Side::Function { ids, table, .. } => Some(Cut::Table { ids, table }),

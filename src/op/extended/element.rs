@@ -92,7 +92,8 @@ enum Octant<T> {
     Eight([T; 8]),
 }
 
-/// Writes the element of level `e` of a cell that is split; returns the cell's tag, and its cut if that is PARTIAL.
+/// Writes the element of level `e` of a cell that is split; returns the cell's tag, and its cut if that is
+/// PARTIAL.
 pub(super) fn element<'j, S: Source<'j>>(
     source: &S,
     e: usize,

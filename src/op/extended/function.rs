@@ -50,7 +50,8 @@ impl Function {
         Function { count, table: Table::widened(table), ..own }
     }
 
-    /// A function of surfaces with these numbers, some of which may be the same: `table` is that of six that differ.
+    /// A function of surfaces with these numbers, some of which may be the same: `table` is that of six that
+    /// differ.
     pub(super) fn of_numbers(ids: &[u32], table: Table) -> Function {
         let (mut own, mut places) = (Function::constant(false), [0; MOST]);
         for (place, &id) in places.iter_mut().zip(ids) {
@@ -110,7 +111,8 @@ impl Function {
         Function { table: self.table.spread(&places[..self.count]), ..own }
     }
 
-    /// The function on the combinations that are possible in a cell, of as few surfaces as that takes, in their order.
+    /// The function on the combinations that are possible in a cell, of as few surfaces as that takes, in
+    /// their order.
     pub(super) fn simplified(&self, cell: Cell, surfaces: &impl Known) -> Result<Function, Error> {
         let own = self.ordered(surfaces);
         let possible = own.possible(cell, surfaces)?;
@@ -162,8 +164,8 @@ impl Function {
         Ok(children.map(|child| child.reduced(Table::FULL)))
     }
 
-    /// The function of a cell whose eight children are done, if one of up to three surfaces has the value of each child for all
-    /// combinations of signs that are possible there.
+    /// The function of a cell whose eight children are done, if one of up to three surfaces has the value of
+    /// each child for all combinations of signs that are possible there.
     pub(super) fn joined<'d>(
         cell: Cell,
         children: impl Iterator<Item = &'d Done> + Clone,
@@ -189,7 +191,8 @@ impl Function {
             return Ok(None);
         }
         let all = all.ordered(surfaces);
-        // What is possible in a child: bounds of pairs tell more than signs, and exact signs tell what bounds do not.
+        // What is possible in a child: bounds of pairs tell more than signs, and exact signs tell what bounds
+        // do not.
         let at = Octants::of(cell);
         let mut sides = [Sides { inside: 0, outside: 0 }; MOST_KEPT];
         for (sides, &id) in sides.iter_mut().zip(all.ids()) {

@@ -18,13 +18,14 @@ use once_cell::race::OnceBox;
 /// Where a surface is stored: in the table of which tree, and its number there.
 type Place = (u32, u32);
 
-/// The surfaces of several trees, numbered through. What is asked of few of them is found out when it is asked for, because an
-/// operation on a large tree touches few of its surfaces.
+/// The surfaces of several trees, numbered through. What is asked of few of them is found out when it is
+/// asked for, because an operation on a large tree touches few of its surfaces.
 pub(super) struct JointSurfaces<'a> {
     frame: Frame,
     tables: Vec<SurfacesRef<'a>>,
     places: Vec<Place>,
-    /// In which of the tables each was met last: what a table has twice stays two, because functions are of surfaces that differ.
+    /// In which of the tables each was met last: what a table has twice stays two, because functions are of
+    /// surfaces that differ.
     last: Vec<u32>,
     placed: Vec<OnceBox<Placed>>,
     /// What the surfaces of each table are called.
@@ -36,7 +37,8 @@ impl<'a> JointSurfaces<'a> {
     /// O(surfaces).
     ///
     /// # Errors
-    /// [`Damage::Surface`]; [`Error::Limit`] if the exact map of placements is too long; [`Error::OutOfMemory`].
+    /// [`Damage::Surface`]; [`Error::Limit`] if the exact map of placements is too long;
+    /// [`Error::OutOfMemory`].
     pub(super) fn new(frame: &Frame, tables: Vec<SurfacesRef<'a>>) -> Result<JointSurfaces<'a>, Error> {
         let mut own = JointSurfaces {
             frame: *frame,
@@ -93,7 +95,8 @@ impl<'a> JointSurfaces<'a> {
                     _ => self.read(before)?.same(&self.read(place)?)?,
                 };
                 if let Some(turned) = turned {
-                    // Of records that tell of one surface the smaller is kept, as long as nobody has seen the other.
+                    // Of records that tell of one surface the smaller is kept, as long as nobody has seen the
+                    // other.
                     if order.is_gt() && !turned {
                         self.places[id as usize] = place;
                     }

@@ -64,8 +64,8 @@ pub struct LazyOctree<S: Solid> {
 pub enum Refinement {
     /// Every cell of the zone is decided, as fine as was asked for, or one that splitting does not help.
     Done,
-    /// A limit was reached first. A resumed octree may say so although all that is left are cells that splitting
-    /// does not help: it forgot which those are.
+    /// A limit was reached first. A resumed octree may say so although all that is left are cells that
+    /// splitting does not help: it forgot which those are.
     Spent,
 }
 

@@ -1,7 +1,7 @@
 //! A ball that lies in both of two solids that overlap.
 //!
-//! It begins around a cell that lies in both. Its centre then moves to where the nearest points outside of one of the solids are
-//! further away. Lengths are in finest cells.
+//! It begins around a cell that lies in both. Its centre then moves to where the nearest points outside of
+//! one of the solids are further away. Lengths are in finest cells.
 
 use super::nodes::Nodes;
 use super::piece::{self, Bodies, Content, Piece};
@@ -21,7 +21,8 @@ const CELLS: u64 = 1 << 12;
 /// Centres at most.
 const CENTRES: u32 = 256;
 
-/// The centre of a ball that is proven to lie in both, and its radius in model units; `None` if no common cell is found.
+/// The centre of a ball that is proven to lie in both, and its radius in model units; `None` if no common
+/// cell is found.
 pub(super) fn common_ball<A: Classifier, B: Classifier>(
     search: &mut Search<'_, A, B>,
     job: &Job<'_>,
@@ -120,8 +121,8 @@ fn around<A: Classifier, B: Classifier>(
     Ok(own.min(other))
 }
 
-/// The radius of a ball around a point that is proven to lie in a solid; more than `most` is not asked for, and no more than `left` cells
-/// are looked at.
+/// The radius of a ball around a point that is proven to lie in a solid; more than `most` is not asked for,
+/// and no more than `left` cells are looked at.
 fn free<C: Classifier>(
     nodes: &mut Nodes<'_, C>,
     centre: [f64; 3],

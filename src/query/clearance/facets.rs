@@ -1,7 +1,8 @@
 //! The distance of solids whose boundaries are known to consist of triangles.
 //!
-//! The boundaries are compared triangle by triangle, along the trees of both meshes. Where they have no point in common, each connected part
-//! of one boundary lies inside of the other solid or outside of it as a whole: one point of it tells.
+//! The boundaries are compared triangle by triangle, along the trees of both meshes. Where they have no point
+//! in common, each connected part of one boundary lies inside of the other solid or outside of it as a whole:
+//! one point of it tells.
 
 use super::search::Goal;
 use crate::control::{Control, Job};
@@ -18,8 +19,8 @@ use alloc::vec::Vec;
 /// Pairs of nodes are looked at that much more often than cells are split.
 const STEPS: u64 = 64;
 
-/// Triangles that lie in a closed solid and have its whole boundary among them. Those within the solid do no harm: of solids that are apart
-/// they are further away.
+/// Triangles that lie in a closed solid and have its whole boundary among them. Those within the solid do no
+/// harm: of solids that are apart they are further away.
 pub(super) struct Boundary {
     facets: BoundaryFacets,
     /// Points of the boundary lie no further from the triangles.
@@ -30,7 +31,8 @@ pub(super) struct Boundary {
 }
 
 impl Boundary {
-    /// That of a solid in the universe, if it is one. O(t), and what the solid does at the first such question.
+    /// That of a solid in the universe, if it is one. O(t), and what the solid does at the first such
+    /// question.
     pub(super) fn of<C: Classifier>(solid: &C, control: &Control<'_>) -> Result<Option<Boundary>, Error> {
         if solid.exterior() != Tag::Empty {
             return Ok(None);
@@ -188,8 +190,8 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         [p, self.placement.map_or(q, |placement| placement.apply(q))]
     }
 
-    /// Unit vectors that lead out of the solids at their nearest points: across the triangle if the point lies inside of it, and towards
-    /// the other point on edges and corners.
+    /// Unit vectors that lead out of the solids at their nearest points: across the triangle if the point
+    /// lies inside of it, and towards the other point on edges and corners.
     fn normals(&self, near: &NearTriangles) -> [Option<[f64; 3]>; 2] {
         [0, 1].map(|k| {
             let outward = if k == 0 { near.way } else { near.way.map(|c| -c) };
@@ -233,7 +235,8 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
         self.reach_into(a, 0, &of_other, gap)
     }
 
-    /// A point of each part of the first boundary, as the second solid sees it before it is moved, and the other way round.
+    /// A point of each part of the first boundary, as the second solid sees it before it is moved, and the
+    /// other way round.
     fn probes(&self) -> Result<Option<[Probes; 2]>, Error> {
         let [own, other] = self.boundaries;
         let Some(placement) = self.placement else {
@@ -274,7 +277,8 @@ impl<A: Classifier, B: Classifier> Pair<'_, A, B> {
             Some(placement) => placement.lengthened(probes.off),
             None => probes.off,
         };
-        // The point that is meant and the one that is asked lie on the same side of a boundary that is further away.
+        // The point that is meant and the one that is asked lie on the same side of a boundary that is
+        // further away.
         let is_sure = |point: &[f64; 3]| {
             if off == 0.0 || off < gap {
                 return true;

@@ -31,18 +31,20 @@ pub struct Clearance {
     /// bound is infinite as long as no point of one of them is proven, and the lower one too
     /// if one of them is proven to be empty. The lower bound is 0 if `clipped`.
     pub distance: Interval,
-    /// A point of the first solid and one of the second (model units) that are no further apart than the upper bound, but for the
-    /// rounding of their coordinates to doubles; of a mesh with a [`displacement`](crate::TriangleMesh::displacement) it is one of the
-    /// mesh. Of solids that are proven to overlap with a `depth`, the same point twice. They are
-    /// known whenever the upper bound is finite.
+    /// A point of the first solid and one of the second (model units) that are no further apart than the
+    /// upper bound, but for the rounding of their coordinates to doubles; of a mesh with a
+    /// [`displacement`](crate::TriangleMesh::displacement) it is one of the mesh. Of solids that are proven
+    /// to overlap with a `depth`, the same point twice. They are known whenever the upper bound is finite.
     pub points: Option<[[f64; 3]; 2]>,
-    /// For each of the points, a unit vector that leads out of the solid there, if the point lies next to a surface whose direction
-    /// is known: normal to it, but for rounding and for the surface's curvature within the cell.
+    /// For each of the points, a unit vector that leads out of the solid there, if the point lies next to a
+    /// surface whose direction is known: normal to it, but for rounding and for the surface's curvature
+    /// within the cell.
     pub normals: [Option<[f64; 3]>; 2],
-    /// Cells of the first and of the second solid that hold these points; of the frame's depth if the points are those of triangles.
+    /// Cells of the first and of the second solid that hold these points; of the frame's depth if the points
+    /// are those of triangles.
     pub nearest: Option<[Cell; 2]>,
-    /// Of solids that overlap: the radius (model units) of a ball that is proven to lie in both. The largest such ball is at least as
-    /// large. 0 if none was found; solids that touch have none.
+    /// Of solids that overlap: the radius (model units) of a ball that is proven to lie in both. The largest
+    /// such ball is at least as large. 0 if none was found; solids that touch have none.
     pub depth: f64,
     /// Why the search ended.
     pub stop_reason: StopReason,
@@ -62,8 +64,8 @@ pub enum GapVerdict {
     Yes = 0,
     /// Proven: two points are nearer. They are among the evidence.
     No = 1,
-    /// Not decided at the frame's depth, or before the splits were spent; or a solid goes on outside of the universe, where it may
-    /// come nearer.
+    /// Not decided at the frame's depth, or before the splits were spent; or a solid goes on outside of the
+    /// universe, where it may come nearer.
     Undecided = 2,
 }
 
@@ -80,31 +82,35 @@ pub struct Gap {
 /// megabytes at the most.
 pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 
-/// The least distance between `a` and `b`, with a point of each that are as near; a solid under a placement is moved first (see
-/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`.
+/// The least distance between `a` and `b`, with a point of each that are as near; a solid under a placement
+/// is moved first (see [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of
+/// `frame`.
 ///
 /// The search ends, and the result's `stop_reason` says why:
 /// - `Tolerance`: the interval is no wider than `tolerance` (model units).
 /// - `Exhausted`: the cells of the frame's depth cannot raise the lower bound, and the interval is no wider
-///   than twice their diagonal, which is what cells can tell of most solids; or no pair of cells is left; or a
-///   solid may go on outside of the universe, which keeps the lower bound at 0.
+///   than twice their diagonal, which is what cells can tell of most solids; or no pair of cells is left; or
+///   a solid may go on outside of the universe, which keeps the lower bound at 0.
 /// - `Budget`: `control.max_splits` steps were taken, or [`CLEARANCE_SPLITS`] if that is `None`. A step looks
-///   at the children of one cell. A cell whose children are looked at again, next to another cell, counts once
-///   more. Or what is remembered of a solid comes near to `control.max_bytes`.
+///   at the children of one cell. A cell whose children are looked at again, next to another cell, counts
+///   once more. Or what is remembered of a solid comes near to `control.max_bytes`.
 ///
-/// Where the boundaries of both solids are known to consist of triangles ([`WholeQuestion::Walls`](crate::solid::WholeQuestion::Walls)),
-/// as those of closed meshes in the universe are, the triangles are compared, and no cells: the distance is known to rounding, some
-/// 10^-13 of the meshes' sizes and of their distance. Bodies of a mesh may overlap, unless the rule is
-/// [`FillRule::Positive`](crate::FillRule::Positive), triangles lie on each other, or vertices were moved. A step is then 64 pairs of
-/// boxes around triangles. It takes O(t) to get ready, some ten to a hundred microseconds to find the nearest place of two parts, and
-/// O(t) where surfaces run alongside each other. Only how deep solids overlap is found by cells.
+/// Where the boundaries of both solids are known to consist of triangles
+/// ([`WholeQuestion::Walls`](crate::solid::WholeQuestion::Walls)), as those of closed meshes in the universe
+/// are, the triangles are compared, and no cells: the distance is known to rounding, some 10^-13 of the
+/// meshes' sizes and of their distance. Bodies of a mesh may overlap, unless the rule is
+/// [`FillRule::Positive`](crate::FillRule::Positive), triangles lie on each other, or vertices were moved. A
+/// step is then 64 pairs of boxes around triangles. It takes O(t) to get ready, some ten to a hundred
+/// microseconds to find the nearest place of two parts, and O(t) where surfaces run alongside each other.
+/// Only how deep solids overlap is found by cells.
 ///
-/// Where both solids know the slabs of cells ([`Enclosure`](crate::solid::Enclosure)), each level makes the interval about four times as
-/// narrow, and plane faces are known at once. Where they know the surfaces too ([`OpenSurfaces`](crate::solid::OpenSurfaces)), as
-/// expressions and extended octrees do, balls and cylinders are known at once: a pin in a bore with the same play all around takes some
-/// hundred splits. Without slabs a level makes the interval half as wide. Then the upper bound is finite once the search has met a FULL
-/// cell of each solid, and the work grows with the area where the distance is about the least one, measured in cells as large as the
-/// tolerance.
+/// Where both solids know the slabs of cells ([`Enclosure`](crate::solid::Enclosure)), each level makes the
+/// interval about four times as narrow, and plane faces are known at once. Where they know the surfaces too
+/// ([`OpenSurfaces`](crate::solid::OpenSurfaces)), as expressions and extended octrees do, balls and
+/// cylinders are known at once: a pin in a bore with the same play all around takes some hundred splits.
+/// Without slabs a level makes the interval half as wide. Then the upper bound is finite once the search has
+/// met a FULL cell of each solid, and the work grows with the area where the distance is about the least one,
+/// measured in cells as large as the tolerance.
 ///
 /// The search looks for points of both solids first, with
 /// up to half of the budget. With nothing else left to do, it spends all of the budget on that.
@@ -141,11 +147,11 @@ pub fn clearance<A: Solid, B: Solid>(
     Ok(found)
 }
 
-/// As [`clearance`] of `a` and `b` under each of the `placements`, in their order; the first of both is
-/// known on `frame`, the second on its `own` frame, and both are prepared once. The same for any number of
-/// threads; `control.max_splits` concerns each placement. Meshes whose triangles tell the distance are moved exactly, and get ready
-/// once. Expressions are moved exactly ([`Motion::Exact`]), octrees that keep their surfaces with these, as [`Transform`] moves them, and
-/// all others by their cells.
+/// As [`clearance`] of `a` and `b` under each of the `placements`, in their order; the first of both is known
+/// on `frame`, the second on its `own` frame, and both are prepared once. The same for any number of threads;
+/// `control.max_splits` concerns each placement. Meshes whose triangles tell the distance are moved exactly,
+/// and get ready once. Expressions are moved exactly ([`Motion::Exact`]), octrees that keep their surfaces
+/// with these, as [`Transform`] moves them, and all others by their cells.
 ///
 /// # Errors
 /// As [`clearance`].
@@ -172,16 +178,17 @@ pub fn clearance_at<A: Solid, B: Solid>(
     at_each((a, b), own, placements, frame, Goal::width(tolerance), control)
 }
 
-/// Whether no point of `a` is nearer than `least` (model units) to one of `b`. The search ends as soon as that is proven or disproven,
-/// which takes less than to find out the distance: where the solids are much further apart, or much nearer, a few cells tell. What is
-/// looked at is the universe of `frame`.
+/// Whether no point of `a` is nearer than `least` (model units) to one of `b`. The search ends as soon as
+/// that is proven or disproven, which takes less than to find out the distance: where the solids are much
+/// further apart, or much nearer, a few cells tell. What is looked at is the universe of `frame`.
 ///
-/// The budget is that of [`clearance`], and so are memory and threads. If the distance is `least` to the last digit, nothing may be
-/// proven within the budget.
+/// The budget is that of [`clearance`], and so are memory and threads. If the distance is `least` to the last
+/// digit, nothing may be proven within the budget.
 ///
 /// # Errors
-/// [`Error::Argument`] if `least` is not between 2^-256 and 2^256 (whether solids overlap, [`interference`](crate::interference)
-/// tells); what the solids refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if `least` is not between 2^-256 and 2^256 (whether solids overlap,
+/// [`interference`](crate::interference) tells); what the solids refuse; [`Error::OutOfMemory`], and
+/// [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::{GapVerdict, gap_at_least}};
@@ -210,7 +217,8 @@ pub fn gap_at_least<A: Solid, B: Solid>(
     Ok(Gap::new(evidence, least))
 }
 
-/// As [`gap_at_least`] of `a` and `b` under each of the `placements`, which are taken as [`clearance_at`] takes them.
+/// As [`gap_at_least`] of `a` and `b` under each of the `placements`, which are taken as [`clearance_at`]
+/// takes them.
 ///
 /// # Errors
 /// As [`gap_at_least`].
@@ -298,7 +306,8 @@ impl<'m, B: Solid> Moved<'m, B> {
         Ok(Moved { solid, own, classifier, bounds, keeps_surfaces, is_clipped: true, asks_depth: true })
     }
 
-    /// How far it is from `a` in some place; `boundaries` are those of both solids, if both consist of triangles.
+    /// How far it is from `a` in some place; `boundaries` are those of both solids, if both consist of
+    /// triangles.
     fn apart_from<A: Classifier>(
         &self,
         a: &A,
@@ -333,8 +342,8 @@ impl<'m, B: Solid> Moved<'m, B> {
     }
 }
 
-/// The boundaries of two solids, if both consist of triangles. What is no mesh tells so at once, and is asked first: `is_mesh` says whether
-/// the second is one.
+/// The boundaries of two solids, if both consist of triangles. What is no mesh tells so at once, and is asked
+/// first: `is_mesh` says whether the second is one.
 fn boundaries<A: Classifier, B: Classifier>(
     (a, b): (&A, &B),
     is_mesh: bool,
@@ -364,7 +373,8 @@ fn both_apart<A: Classifier, B: Classifier>(
     }
 }
 
-/// What is known by triangles; of solids that overlap, how deep they do is found by the cells of `on_frame`, if that is asked for.
+/// What is known by triangles; of solids that overlap, how deep they do is found by the cells of `on_frame`,
+/// if that is asked for.
 fn apart_by_facets<A: Classifier, B: Classifier, C: Classifier>(
     pair: &Pair<'_, A, B>,
     on_frame: (&A, &C),

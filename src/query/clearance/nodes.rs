@@ -115,7 +115,8 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         {
             let cell = *cell;
             let children = self.subject.split(cell, part)?;
-            // A FULL child lies on the same side of balls and cylinders as all that the solid has in the cell.
+            // A FULL child lies on the same side of balls and cylinders as all that the solid has in the
+            // cell.
             let rings = self.lore(node).map_or([None; 2], |lore| lore.rings);
             let mut inherited = NONE;
             let has_full = children.iter().any(|child| matches!(child, Verdict::Full));
@@ -148,8 +149,9 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         Ok(octants)
     }
 
-    /// The node of a cell, as fine as that of `near`, that holds a point: of several, the one next to the middle of `near`. Its way
-    /// is split where it is not yet, as long as there are splits `left`. Nothing if the cell is EMPTY.
+    /// The node of a cell, as fine as that of `near`, that holds a point: of several, the one next to the
+    /// middle of `near`. Its way is split where it is not yet, as long as there are splits `left`. Nothing if
+    /// the cell is EMPTY.
     pub(super) fn at(
         &mut self,
         point: [f64; 3],
@@ -248,11 +250,13 @@ impl<'s, C: Classifier> Nodes<'s, C> {
         self.lore(node).is_some_and(|lore| lore.rings.iter().flatten().any(|ring| ring.is_near))
     }
 
-    /// How far the solid may be from what is known of it in a cell, in finest cells, but for rounding: what splitting the cell may tell.
+    /// How far the solid may be from what is known of it in a cell, in finest cells, but for rounding: what
+    /// splitting the cell may tell.
     pub(super) fn doubt(&self, node: usize) -> f64 {
         let Piece { half, content, rings, .. } = self.piece(node);
         let open = self.lore(node).and_then(|lore| lore.open);
-        // (Where a plane cuts a ball, neither alone tells where the nearest point is; a cylinder ends somewhere.)
+        // (Where a plane cuts a ball, neither alone tells where the nearest point is; a cylinder ends
+        // somewhere.)
         let is_ball = open.is_some_and(|open| open.indices().len() == 1)
             && rings.iter().flatten().any(|ring| ring.is_near && ring.round.axis.is_none());
         match content {
@@ -315,8 +319,8 @@ impl<'s, C: Classifier> Nodes<'s, C> {
     /// The first FULL cell that turns up, for `budget` splits at the most; what was split does not cost any.
     ///
     /// The largest open cell and one of the smallest are split by turns: large FULL cells are found by going
-    /// through the coarse levels, which a thin wall has none on, and thin walls by going down, where a solid's
-    /// sharp edge would hold the search up.
+    /// through the coarse levels, which a thin wall has none on, and thin walls by going down, where a
+    /// solid's sharp edge would hold the search up.
     pub(super) fn find_full(&mut self, budget: &mut u64, job: &Job<'_>) -> Result<Option<usize>, Error> {
         let mut open: Vec<Vec<usize>> = memory::filled(MAX_DEPTH as usize + 1, Vec::new())?;
         if !self.is_empty() {
@@ -371,8 +375,9 @@ fn form<'f>(
     Ok(place.as_ref().and_then(Option::as_ref))
 }
 
-/// The function of a cell on those signs that its surfaces may have there together, and the slabs of that if it is of fewer surfaces.
-/// (A bore that goes on beyond a block has an end in the same cell as the block has, and nothing of the solid lies there.)
+/// The function of a cell on those signs that its surfaces may have there together, and the slabs of that if
+/// it is of fewer surfaces. (A bore that goes on beyond a block has an end in the same cell as the block has,
+/// and nothing of the solid lies there.)
 fn simplified(
     placed: &mut Option<Vec<Placed>>,
     surfaces: &[PlacedHalfSpace],

@@ -1,13 +1,14 @@
 //! What of a solid lies in a cell, and how far two such pieces are apart.
 //!
-//! Lengths are in finest cells. A piece lies in the convex bodies that the outer ends of its slabs cut off the cell, and holds those of
-//! the inner ends. Plain doubles find the nearest points of two bodies. The direction between these then proves a lower bound: for any
-//! direction n, the distance is at least the least n · x of the one piece less the greatest of the other, divided by the length of n
-//! (weak duality). A direction that is off by an angle costs the square of the angle. The nearest points of the inner bodies, if they
-//! are proven to lie there, are an upper bound.
+//! Lengths are in finest cells. A piece lies in the convex bodies that the outer ends of its slabs cut off
+//! the cell, and holds those of the inner ends. Plain doubles find the nearest points of two bodies. The
+//! direction between these then proves a lower bound: for any direction n, the distance is at least the least
+//! n · x of the one piece less the greatest of the other, divided by the length of n (weak duality). A
+//! direction that is off by an angle costs the square of the angle. The nearest points of the inner bodies,
+//! if they are proven to lie there, are an upper bound.
 //!
-//! A piece may also lie on one side of a ball or a cylinder. Of two such pieces the bound is exact where the surfaces run alongside
-//! each other, as a shaft and its bore do: cells of any size tell it.
+//! A piece may also lie on one side of a ball or a cylinder. Of two such pieces the bound is exact where the
+//! surfaces run alongside each other, as a shaft and its bore do: cells of any size tell it.
 
 use super::simplex::{Near, dot, minus, nearest, plus};
 use crate::cut::reach;
@@ -186,7 +187,8 @@ impl Body {
         self.corners.map(|corner| plus(from, piece.half, corner))
     }
 
-    /// Proven: no point of the body lies further along a direction, from the centre of the cell in half edges.
+    /// Proven: no point of the body lies further along a direction, from the centre of the cell in half
+    /// edges.
     fn reach(&self, direction: [f64; 3]) -> Interval {
         match &self.slabs {
             Some(known) => {
@@ -304,8 +306,8 @@ impl Piece<'_> {
         matches!(self.content, Content::Slabs(_)) || self.rings.iter().any(Option::is_some)
     }
 
-    /// Proven: no point of the piece lies further along a direction, from the centre of the cell in finest cells. −∞ if there is
-    /// no point.
+    /// Proven: no point of the piece lies further along a direction, from the centre of the cell in finest
+    /// cells. −∞ if there is no point.
     fn reach(&self, body: &Body, direction: [f64; 3]) -> f64 {
         let own = body.reach(direction).times(Interval::exactly(self.half)).upper;
         let towards = exact(direction);
@@ -335,8 +337,8 @@ impl Piece<'_> {
     }
 }
 
-/// Proven: no two points of the pieces are nearer, as the round surface tells on the far side of which one of them lies around the
-/// other.
+/// Proven: no two points of the pieces are nearer, as the round surface tells on the far side of which one of
+/// them lies around the other.
 pub(super) fn lower_around(a: &Piece<'_>, b: &Piece<'_>) -> f64 {
     let around = |inner: &Piece<'_>, outer: &Piece<'_>| {
         outer.far_rounds().fold(0.0, |most: f64, round| {
@@ -346,7 +348,8 @@ pub(super) fn lower_around(a: &Piece<'_>, b: &Piece<'_>) -> f64 {
     around(a, b).max(around(b, a))
 }
 
-/// Proven: no two points of the pieces are nearer; ∞ if one of the pieces is empty. What is no more than `least` is not proven.
+/// Proven: no two points of the pieces are nearer; ∞ if one of the pieces is empty. What is no more than
+/// `least` is not proven.
 pub(super) fn lower(a: (&Piece<'_>, &Bodies), b: (&Piece<'_>, &Bodies), known: f64) -> f64 {
     let mut least = f64::INFINITY;
     for own in a.1.iter() {
@@ -427,8 +430,8 @@ fn lower_of([a, b]: [&Piece<'_>; 2], [own, other]: [&Body; 2], known: f64) -> f6
     best
 }
 
-/// Points that are proven to be limits of points of the pieces, as near to each other as a search by doubles finds some, and how far
-/// they are apart.
+/// Points that are proven to be limits of points of the pieces, as near to each other as a search by doubles
+/// finds some, and how far they are apart.
 pub(super) fn upper(a: &Piece<'_>, b: &Piece<'_>) -> Option<(Interval, [Place; 2])> {
     let (of_a, of_b) = (Bodies::inner(a), Bodies::inner(b));
     let mut best: Option<(Interval, [Place; 2])> = None;
@@ -455,7 +458,8 @@ pub(super) fn upper(a: &Piece<'_>, b: &Piece<'_>) -> Option<(Interval, [Place; 2
     best
 }
 
-/// A point next to a given one (in finest cells from the universe's corner) that is proven to lie in two bodies.
+/// A point next to a given one (in finest cells from the universe's corner) that is proven to lie in two
+/// bodies.
 fn common(bodies: [(&Piece<'_>, &Body); 2], point: [f64; 3]) -> Option<Place> {
     // So short that differences to centres are exact.
     const STEPS: f64 = (1u64 << 20) as f64;
@@ -468,7 +472,8 @@ fn common(bodies: [(&Piece<'_>, &Body); 2], point: [f64; 3]) -> Option<Place> {
     bodies.iter().all(lies_in).then(|| exact(point))
 }
 
-/// A point near `point`, from the cell's centre in finest cells, that is proven to be a limit of points of a body.
+/// A point near `point`, from the cell's centre in finest cells, that is proven to be a limit of points of a
+/// body.
 fn proven(body: &Body, piece: &Piece<'_>, point: [f64; 3], towards: [f64; 3]) -> Option<Place> {
     let own = point.map(|c| (c / piece.half).clamp(-1.0, 1.0));
     let own = match &body.slabs {

@@ -1,7 +1,9 @@
-//! Points of two solids that are nearer to each other than those that slabs tell, where the surfaces themselves are known.
+//! Points of two solids that are nearer to each other than those that slabs tell, where the surfaces
+//! themselves are known.
 //!
-//! Points move along straight lines to where these leave a solid, in plain doubles. The points where they end are then proven to lie in
-//! the solids, by intervals of the surfaces' functions. Lengths are in finest cells.
+//! Points move along straight lines to where these leave a solid, in plain doubles. The points where they end
+//! are then proven to lie in the solids, by intervals of the surfaces' functions. Lengths are in finest
+//! cells.
 
 use super::piece::{Place, between};
 use super::simplex::{dot, minus, plus};
@@ -26,7 +28,8 @@ const ROUNDS: usize = 6;
 /// Halvings of a line.
 const HALVINGS: usize = 52;
 
-/// How far a point is moved inward at first, and at most how often it is moved eight times as far, until it is proven to be inside.
+/// How far a point is moved inward at first, and at most how often it is moved eight times as far, until it
+/// is proven to be inside.
 const INWARD: f64 = 1.0 / (1u64 << 50) as f64;
 const TIMES: usize = 10;
 
@@ -211,9 +214,10 @@ fn moved(
     (distance.upper < least).then_some((distance, places))
 }
 
-/// Points of the two surfaces next to two points whose distance is stationary, by Newton's method: the way between them is normal to
-/// both surfaces. Of surfaces that run alongside each other, as a pin and its bore, points near to the given ones are found: a little is
-/// added to the system's diagonal, which would be singular. `None` if it is singular nevertheless.
+/// Points of the two surfaces next to two points whose distance is stationary, by Newton's method: the way
+/// between them is normal to both surfaces. Of surfaces that run alongside each other, as a pin and its bore,
+/// points near to the given ones are found: a little is added to the system's diagonal, which would be
+/// singular. `None` if it is singular nevertheless.
 fn stationary([a, b]: [&Side<'_>; 2], [p, q]: [[f64; 3]; 2]) -> Option<[[f64; 3]; 2]> {
     const STEPS: usize = 8;
     const ADDED: f64 = 1e-10;

@@ -22,16 +22,17 @@ pub(crate) struct Ready {
 /// What two solids are asked.
 #[derive(Clone, Copy)]
 pub(crate) enum Asked {
-    /// Whether they are at least so far apart (model units), as [`gap_at_least`](crate::query::gap_at_least) finds it.
+    /// Whether they are at least so far apart (model units), as [`gap_at_least`](crate::query::gap_at_least)
+    /// finds it.
     AtLeast(f64),
-    /// How far they are apart, within an interval no wider than `tolerance`, unless that is `below` at least (model units), as
-    /// [`clearance`](crate::clearance) finds it.
+    /// How far they are apart, within an interval no wider than `tolerance`, unless that is `below` at least
+    /// (model units), as [`clearance`](crate::clearance) finds it.
     Distance { tolerance: f64, below: f64 },
 }
 
 impl Ready {
-    /// Others are looked at in the universe of `frame`, which should hold those that may be near. O(t) of a mesh with t triangles, and
-    /// what the solid takes to be put on frames.
+    /// Others are looked at in the universe of `frame`, which should hold those that may be near. O(t) of a
+    /// mesh with t triangles, and what the solid takes to be put on frames.
     pub(crate) fn new(
         solid: &AnySolid,
         bounds: &Bounds,

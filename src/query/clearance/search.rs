@@ -4,11 +4,13 @@
 //! The group whose nearest companion is least far away comes first, which raises the lower bound. The larger
 //! of its cells are split, each cell of either solid once only however many others it is compared with.
 //!
-//! Cells that are cut are as far apart as what the solids have in them, which `piece` bounds by slabs, to second order.
+//! Cells that are cut are as far apart as what the solids have in them, which `piece` bounds by slabs, to
+//! second order.
 //!
-//! Two FULL cells bound the distance from above, and so do points that slabs prove. They are looked for where the lower bound is: now
-//! and then the search *plunges* from the first group to small cells that are near. Where that finds nothing, any FULL
-//! cell of either solid will do. Where the surfaces are known, `polish` moves the points to them.
+//! Two FULL cells bound the distance from above, and so do points that slabs prove. They are looked for where
+//! the lower bound is: now and then the search *plunges* from the first group to small cells that are near.
+//! Where that finds nothing, any FULL cell of either solid will do. Where the surfaces are known, `polish`
+//! moves the points to them.
 //!
 //! A pair that is further apart than the upper bound less the tolerance does not matter to the lower bound,
 //! since the search ends once all others are looked into. Such companions are put off, so that groups stay
@@ -31,8 +33,9 @@ use crate::walk::Queue;
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
-/// How far a cell of the second solid is from one of the first: the least distance and the greatest, in finest cells, as the bits
-/// of doubles that are not negative, which have the order of their bits; and the node.
+/// How far a cell of the second solid is from one of the first: the least distance and the greatest, in
+/// finest cells, as the bits of doubles that are not negative, which have the order of their bits; and the
+/// node.
 type Companion = (u64, u64, usize);
 
 /// A cell of the first solid with those of the second that may be nearest to it.
@@ -43,11 +46,13 @@ struct Group {
     nearest: Companion,
     /// The companion whose greatest distance is the least.
     closest: Companion,
-    /// Of the companions whose least distance is about the least: the one whose greatest distance is the least.
+    /// Of the companions whose least distance is about the least: the one whose greatest distance is the
+    /// least.
     likeliest: Companion,
 }
 
-/// A distance without its last digits. (Bounds that are inherited, and such that are proven once more, differ in those.)
+/// A distance without its last digits. (Bounds that are inherited, and such that are proven once more, differ
+/// in those.)
 fn about(least: u64) -> u64 {
     least >> 20
 }
@@ -93,7 +98,8 @@ const ALIKE: f64 = 4.0;
 /// Pairs of cells in which points are moved to the surfaces, one after the other.
 const CELLS_ON: usize = 4;
 
-/// Plunges in vain, one after the other, that end a search in which slabs cannot raise the lower bound any more.
+/// Plunges in vain, one after the other, that end a search in which slabs cannot raise the lower bound any
+/// more.
 const IN_VAIN: u32 = 6;
 
 /// Points or cells of both solids.
@@ -139,7 +145,8 @@ pub(super) struct Search<'s, A: Classifier, B: Classifier> {
     /// Whether small cells that are near come first.
     plunging: bool,
     bounds: Bounds,
-    /// The nearest points that were met since the last plunge began, and the distance of those that were last moved to the surfaces.
+    /// The nearest points that were met since the last plunge began, and the distance of those that were last
+    /// moved to the surfaces.
     candidate: Option<Reached>,
     polished: f64,
     wanted: Goal,
@@ -188,7 +195,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         })
     }
 
-    /// Searches until as much is known as is asked for, the budget is spent, or the cells have no more to tell.
+    /// Searches until as much is known as is asked for, the budget is spent, or the cells have no more to
+    /// tell.
     pub(super) fn run(&mut self, job: &Job<'_>) -> Result<Found, Error> {
         if !self.a.is_empty() && !self.b.is_empty() {
             self.meet(0, [0], 0.0)?;
@@ -263,7 +271,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         self.bounds.reached.map_or(f64::INFINITY, |reached| reached.upper)
     }
 
-    /// From the first group to small cells that are near, until the upper bound falls; as far as slabs lower it further, they do.
+    /// From the first group to small cells that are near, until the upper bound falls; as far as slabs lower
+    /// it further, they do.
     fn plunge(&mut self, steps: u64, job: &Job<'_>) -> Result<(), Error> {
         let Some(group) = self.open.pop() else { return Ok(()) };
         let (before, least) = (self.reached(), group.least().min(self.bounds.settled));
@@ -305,7 +314,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
             let (least, greatest, _) = group.nearest;
             [least, greatest, 0]
         } else if self.has_lore() {
-            // The finest cells first: what slabs say of the least distance is a better guide than the greatest.
+            // The finest cells first: what slabs say of the least distance is a better guide than the
+            // greatest.
             let (least, greatest, b) = group.likeliest;
             let levels = self.a.cell(group.node).level + self.b.cell(b).level;
             [u64::from(u8::MAX - levels), about(least), greatest]
@@ -342,8 +352,9 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(false)
     }
 
-    /// Whether of two cells the first is to be split: for a lower bound that of which less is known, and among equals the larger one, so
-    /// that neither is split without need. (Points are found in small cells of both.)
+    /// Whether of two cells the first is to be split: for a lower bound that of which less is known, and
+    /// among equals the larger one, so that neither is split without need. (Points are found in small cells
+    /// of both.)
     fn is_first_due(&self, a: usize, b: usize) -> bool {
         // (What is round is bounded by its core, next to which the doubt in a cell says little.)
         let are_alike = self.plunging || self.a.is_round(a) && self.b.is_round(b);
@@ -399,8 +410,9 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         (root(least), root(greatest).upper)
     }
 
-    /// Takes in a cell of the first solid with companions, all of which are parts of cells that are proven to be as far apart as
-    /// `known`. Those that do not matter to the lower bound are put off in a group of their own.
+    /// Takes in a cell of the first solid with companions, all of which are parts of cells that are proven to
+    /// be as far apart as `known`. Those that do not matter to the lower bound are put off in a group of
+    /// their own.
     fn meet(&mut self, a: usize, nodes: impl IntoIterator<Item = usize>, known: f64) -> Result<(), Error> {
         let (full, can_be_split) = (self.a.is_full(a), self.a.can_be_split(a));
         let mut groups: [Option<Group>; 2] = [None, None];
@@ -521,7 +533,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         }
         self.bounds.reached = Some(found);
         let Goal::Width { tolerance, .. } = self.wanted else { return };
-        // The first distance that is known well enough; what floating point says is off by little at the most.
+        // The first distance that is known well enough; what floating point says is off by little at the
+        // most.
         let about = found.upper - tolerance / self.a.subject.classifier.frame().cell_size();
         let mut goal = if about > 0.0 { about } else { 0.0 };
         let grain = found.upper.next_up() - found.upper;

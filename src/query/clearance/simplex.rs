@@ -1,7 +1,8 @@
-//! The nearest points of two convex bodies that are given by their vertices, in plain doubles: nothing here is proven.
+//! The nearest points of two convex bodies that are given by their vertices, in plain doubles: nothing here
+//! is proven.
 //!
-//! The method is that of Gilbert, Johnson and Keerthi (1988). A simplex of differences of vertices moves towards the origin; which of
-//! its faces is nearest is found by looking at all of them.
+//! The method is that of Gilbert, Johnson and Keerthi (1988). A simplex of differences of vertices moves
+//! towards the origin; which of its faces is nearest is found by looking at all of them.
 
 /// Differences of vertices at most, before the search gives up with what it has.
 const TURNS: usize = 40;
@@ -96,7 +97,8 @@ pub(super) fn nearest(a: &[[f64; 3]], b: &[[f64; 3]], towards: [f64; 3]) -> Near
     Near { points, way }
 }
 
-/// The nearest point to the origin of a simplex: its weights, and how many corners are left, which are moved to the front.
+/// The nearest point to the origin of a simplex: its weights, and how many corners are left, which are moved
+/// to the front.
 fn reduced(simplex: &mut [Corner; 4], count: usize) -> ([f64; 4], [f64; 3], usize) {
     let mut best = (f64::INFINITY, [0.0; 4], [0.0; 3], 1u32);
     for set in 1u32..1 << count {
@@ -121,7 +123,8 @@ fn reduced(simplex: &mut [Corner; 4], count: usize) -> ([f64; 4], [f64; 3], usiz
     (weights, way, left)
 }
 
-/// The weights of the point nearest to the origin of the flat through some corners; `None` if it lies outside of these.
+/// The weights of the point nearest to the origin of the flat through some corners; `None` if it lies outside
+/// of these.
 fn weights(corners: &[[f64; 3]; 4], size: usize) -> Option<[f64; 4]> {
     let [p, q, r, s] = *corners;
     let found = match size {

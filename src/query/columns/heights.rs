@@ -16,8 +16,8 @@ pub enum Side {
     Below = 1,
 }
 
-/// How far the solid cells of columns reach, seen from one side: the upper faces of the highest cells, or the lower
-/// faces of the lowest ones.
+/// How far the solid cells of columns reach, seen from one side: the upper faces of the highest cells, or the
+/// lower faces of the lowest ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heights {
     frame: Frame,
@@ -59,10 +59,10 @@ impl Heights {
         self.side
     }
 
-    /// How far the solid reaches in the column with this [place](Columns::index), in model units: the greatest
-    /// coordinate of its points along the axis, or the least one from below, lies in this interval. The end that
-    /// needs a proof is infinite if no cell of the column is FULL. `None` if the column is proven empty, or is
-    /// none of these.
+    /// How far the solid reaches in the column with this [place](Columns::index), in model units: the
+    /// greatest coordinate of its points along the axis, or the least one from below, lies in this interval.
+    /// The end that needs a proof is infinite if no cell of the column is FULL. `None` if the column is
+    /// proven empty, or is none of these.
     pub fn height(&self, index: usize) -> Option<Interval> {
         let axis = self.columns.axis;
         let possible = self.frame.plane(axis, self.upper_plane(index)?);
@@ -77,8 +77,8 @@ impl Heights {
         })
     }
 
-    /// The lattice plane, 0 to 2^depth, in which the first FULL cell of a column ends towards the side; `None` if
-    /// there is none.
+    /// The lattice plane, 0 to 2^depth, in which the first FULL cell of a column ends towards the side;
+    /// `None` if there is none.
     pub fn full_plane(&self, index: usize) -> Option<u32> {
         self.full.get(index).copied().filter(|&plane| plane != NONE)
     }

@@ -1,6 +1,7 @@
 //! Columns of finest cells along an axis: which cells of each are solid, and how high these reach.
 //!
-//! Each column stands for all lines along the axis within it, such as the ray through the centres of its cells.
+//! Each column stands for all lines along the axis within it, such as the ray through the centres of its
+//! cells.
 
 mod heights;
 mod octree;
@@ -32,8 +33,8 @@ impl Columns {
         Columns::within(axis, [0; 2], [frame.cells(); 2])
     }
 
-    /// The columns along `axis` whose cells have coordinates from `first` to before `end` on the other two axes, in
-    /// the order x, y, z.
+    /// The columns along `axis` whose cells have coordinates from `first` to before `end` on the other two
+    /// axes, in the order x, y, z.
     ///
     /// # Errors
     /// [`Error::Argument`] if `axis` is greater than 2, or `first` lies beyond `end`.
@@ -68,8 +69,8 @@ impl Columns {
         width as u64 * height as u64
     }
 
-    /// The place of a column in results, by the coordinates of its cells on the other two axes; `None` if it is
-    /// none of these. The first of the axes varies fastest.
+    /// The place of a column in results, by the coordinates of its cells on the other two axes; `None` if it
+    /// is none of these. The first of the axes varies fastest.
     pub fn index(&self, at: [u32; 2]) -> Option<usize> {
         let inside = (0..2).all(|i| (self.first[i]..self.end[i]).contains(&at[i]));
         inside.then(|| self.place([0, 1].map(|i| at[i] - self.first[i])))
@@ -121,8 +122,8 @@ impl Shadow {
     }
 }
 
-/// What a walk makes of the cells that are not EMPTY and not split. The cells of each column come in ascending
-/// order, or in descending order if the walk says so.
+/// What a walk makes of the cells that are not EMPTY and not split. The cells of each column come in
+/// ascending order, or in descending order if the walk says so.
 trait Visitor {
     fn meet(&mut self, is_full: bool, shadow: &Shadow) -> Result<(), Error>;
 

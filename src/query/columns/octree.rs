@@ -10,9 +10,9 @@ use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Tag};
 
 impl OctreeRef<'_> {
-    /// Which of the octree's cells in these columns are solid, whatever they prove of the solid that the tree was
-    /// made from. O(cells in the columns + columns · cells along each), counting cells as they are stored; whatever
-    /// the bytes, no element is read twice. One thread.
+    /// Which of the octree's cells in these columns are solid, whatever they prove of the solid that the tree
+    /// was made from. O(cells in the columns + columns · cells along each), counting cells as they are
+    /// stored; whatever the bytes, no element is read twice. One thread.
     ///
     /// # Errors
     /// [`Error::Argument`] if the columns reach beyond the universe; [`Error::OutOfMemory`].
@@ -34,8 +34,8 @@ impl OctreeRef<'_> {
         ColumnCells::gathered(columns, count, &[lists])
     }
 
-    /// How far the octree's solid cells reach in these columns, whatever they prove of the solid that the tree was
-    /// made from. Costs as [`columns`](Self::columns).
+    /// How far the octree's solid cells reach in these columns, whatever they prove of the solid that the
+    /// tree was made from. Costs as [`columns`](Self::columns).
     ///
     /// # Errors
     /// As [`columns`](Self::columns).
@@ -71,8 +71,8 @@ impl<V: Visitor> Walk<'_, '_, '_, V> {
         }
     }
 
-    /// The part of element `index` of level `e` that lies in the columns; `low` is its lowest finest cell. The
-    /// recursion is as deep as the tree has element levels, ten at the most.
+    /// The part of element `index` of level `e` that lies in the columns; `low` is its lowest finest cell.
+    /// The recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, low: [u32; 3]) -> Result<(), Error> {
         let (levels, cells) = (self.tree.levels(), self.tree.frame().cells());
         let shift = 2 * (levels - 1 - e);

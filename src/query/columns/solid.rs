@@ -12,13 +12,13 @@ use crate::walk::Proven;
 use crate::walk::split_one;
 use alloc::vec::Vec;
 
-/// Which cells of `frame` in these columns are solid: `full` are proven to be, and what is not in `upper` is proven
-/// not to be. Splits all PARTIAL cells in the columns down to the frame's depth. The answer is the same for any
-/// number of threads.
+/// Which cells of `frame` in these columns are solid: `full` are proven to be, and what is not in `upper` is
+/// proven not to be. Splits all PARTIAL cells in the columns down to the frame's depth. The answer is the
+/// same for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if the columns reach beyond the universe; what the solid refuses; [`Error::Limit`] if the
-/// result takes more than `control.max_bytes`; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if the columns reach beyond the universe; what the solid refuses; [`Error::Limit`] if
+/// the result takes more than `control.max_bytes`; [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::{Columns, columns}};
@@ -43,8 +43,8 @@ pub fn columns<S: Solid>(
     ColumnCells::gathered(columns, count, &lists)
 }
 
-/// How far a solid reaches in these columns, as far as cells of `frame` tell. A PARTIAL cell is split unless a FULL
-/// one hides it in each of its columns. The answer is the same for any number of threads.
+/// How far a solid reaches in these columns, as far as cells of `frame` tell. A PARTIAL cell is split unless
+/// a FULL one hides it in each of its columns. The answer is the same for any number of threads.
 ///
 /// # Errors
 /// As [`columns`].
@@ -102,8 +102,8 @@ fn blocks(columns: &Columns) -> Result<(u32, Vec<Columns>), Error> {
     Ok((edge, blocks))
 }
 
-/// Walks through each block, of which a visitor of its own is made from its columns and their count. A column takes
-/// so many `bytes`. Octants are met in the order k ^ `mirror`.
+/// Walks through each block, of which a visitor of its own is made from its columns and their count. A column
+/// takes so many `bytes`. Octants are met in the order k ^ `mirror`.
 fn in_blocks<S: Solid, V: Visitor + Send>(
     solid: &S,
     frame: &Frame,
@@ -169,8 +169,9 @@ impl Descent<'_> {
         }))
     }
 
-    /// Adds the cells in the columns that are not EMPTY to `front`, in the order of the walk: those of an edge, and
-    /// greater ones that are not split. The recursion is as deep as the frame, 20 levels at the most.
+    /// Adds the cells in the columns that are not EMPTY to `front`, in the order of the walk: those of an
+    /// edge, and greater ones that are not split. The recursion is as deep as the frame, 20 levels at the
+    /// most.
     fn gather<W: Worker>(
         &self,
         worker: &mut W,
@@ -193,7 +194,8 @@ impl Descent<'_> {
         }
     }
 
-    /// Shows a cell in the columns, or what it is split into, to a visitor. The recursion is as deep as the frame.
+    /// Shows a cell in the columns, or what it is split into, to a visitor. The recursion is as deep as the
+    /// frame.
     fn walk<W: Worker>(
         &self,
         worker: &mut W,

@@ -5,12 +5,12 @@ use crate::error::Damage;
 use crate::octree::links::Windows;
 use crate::octree::{OctreeRef, Planes, Tag};
 
-/// FULL and PARTIAL finest cells below element `index` of level `e`. In level order they are one range of entries for
-/// each level. `windows`, which have admitted the element, pass what is read.
+/// FULL and PARTIAL finest cells below element `index` of level `e`. In level order they are one range of
+/// entries for each level. `windows`, which have admitted the element, pass what is read.
 ///
 /// # Errors
-/// If the entries of a level do not belong to the branches of the one above. (So more cells than there are below the
-/// element are never counted.)
+/// If the entries of a level do not belong to the branches of the one above. (So more cells than there are
+/// below the element are never counted.)
 pub(super) fn count(
     tree: &OctreeRef<'_>,
     e: usize,

@@ -8,8 +8,8 @@ use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
 
 impl OctreeRef<'_> {
-    /// The finest cells from `min` to before `max` that are surely solid, and those that are possibly solid: FULL ones,
-    /// and FULL and PARTIAL ones. Whatever the bytes, no element is read twice.
+    /// The finest cells from `min` to before `max` that are surely solid, and those that are possibly solid:
+    /// FULL ones, and FULL and PARTIAL ones. Whatever the bytes, no element is read twice.
     ///
     /// # Errors
     /// [`Error::Argument`] if min > max on an axis, or `max` lies outside of the universe.
@@ -26,10 +26,11 @@ impl OctreeRef<'_> {
         Ok(count(self, Window { first: min, last: max.map(|end| end - 1) }))
     }
 
-    /// The volume that the solid has in common with the box `[min, max]` (model units, min ≤ max), in cubic model units,
-    /// as the octree's cells tell it: FULL ones bound it from below, FULL and PARTIAL ones from above. The faces of the
-    /// box may lie anywhere; cells that they cut count with the part in the box, rounded outward. What lies outside of
-    /// the universe does not count. Whatever the bytes, no element is read more than 27 times.
+    /// The volume that the solid has in common with the box `[min, max]` (model units, min ≤ max), in cubic
+    /// model units, as the octree's cells tell it: FULL ones bound it from below, FULL and PARTIAL ones from
+    /// above. The faces of the box may lie anywhere; cells that they cut count with the part in the box,
+    /// rounded outward. What lies outside of the universe does not count. Whatever the bytes, no element is
+    /// read more than 27 times.
     ///
     /// (For regions of other shapes: [`volume_in`](OctreeRef::volume_in).)
     ///
@@ -149,8 +150,8 @@ impl Count<'_, '_> {
         }
     }
 
-    /// Counts in the part of element `index` of level `e` that lies in the window; `origin` is its lowest finest cell.
-    /// The recursion is as deep as the tree has element levels, ten at the most.
+    /// Counts in the part of element `index` of level `e` that lies in the window; `origin` is its lowest
+    /// finest cell. The recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, origin: [u32; 3]) {
         let levels = self.tree.levels();
         let shift = 2 * (levels - 1 - e) as u32;

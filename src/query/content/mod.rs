@@ -18,9 +18,9 @@ use walk::{Counted, walk};
 
 /// How many finest cells of a solid lie in a region, between bounds.
 ///
-/// A cell where the region is FULL lies in it, one where it is EMPTY does not, and one where it is PARTIAL may. So the
-/// bounds hold however "in" is understood: whether a cell counts that lies in the region as a whole, whose centre does,
-/// or that has any volume in common with it.
+/// A cell where the region is FULL lies in it, one where it is EMPTY does not, and one where it is PARTIAL
+/// may. So the bounds hold however "in" is understood: whether a cell counts that lies in the region as a
+/// whole, whose centre does, or that has any volume in common with it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct CellsIn {
     /// FULL cells of the solid that are proven to lie in the region.
@@ -33,14 +33,14 @@ pub struct CellsIn {
     pub upper_most: u64,
 }
 
-/// How many finest cells of `frame` lie in a solid and in a region, which is a ball ([`Csg::ball`](crate::Csg::ball)) or
-/// any other solid. What is not proven of either counts as PARTIAL, and what lies outside of the universe does not
-/// count.
+/// How many finest cells of `frame` lie in a solid and in a region, which is a ball
+/// ([`Csg::ball`](crate::Csg::ball)) or any other solid. What is not proven of either counts as PARTIAL, and
+/// what lies outside of the universe does not count.
 ///
-/// No octree is made. A cell is split only where neither is EMPTY and one is undecided, so the time is about that of
-/// splitting the region's boundary inside of the solid and the solid's boundary inside of the region, down to the frame's
-/// depth; the memory is O(depth). Once `control.max_splits` cells of both are split, the others count as undecided. One
-/// thread.
+/// No octree is made. A cell is split only where neither is EMPTY and one is undecided, so the time is about
+/// that of splitting the region's boundary inside of the solid and the solid's boundary inside of the region,
+/// down to the frame's depth; the memory is O(depth). Once `control.max_splits` cells of both are split, the
+/// others count as undecided. One thread.
 ///
 /// # Errors
 /// What solid and region refuse; [`Error::OutOfMemory`], and [`Error::Cancelled`].
@@ -62,12 +62,14 @@ pub fn cells_in<S: Solid, R: Solid>(
     Ok(content(solid, region, frame, Sums::of_cells(), control)?.cells())
 }
 
-/// The volume that a solid and a region have in common inside of the universe of `frame`, in cubic model units: an
-/// interval that contains the truth. The region is a ball ([`Csg::ball`](crate::Csg::ball)) or any other solid.
+/// The volume that a solid and a region have in common inside of the universe of `frame`, in cubic model
+/// units: an interval that contains the truth. The region is a ball ([`Csg::ball`](crate::Csg::ball)) or any
+/// other solid.
 ///
-/// Cells are split as [`cells_in`] does. In a cell of the finest level the volume is known as well as solid and region
-/// know it there, by their moments or enclosures, and lies between nothing and the cell's where they know nothing. (To
-/// split until a volume is known to a tolerance, [`measure`](crate::measure) the intersection.)
+/// Cells are split as [`cells_in`] does. In a cell of the finest level the volume is known as well as solid
+/// and region know it there, by their moments or enclosures, and lies between nothing and the cell's where
+/// they know nothing. (To split until a volume is known to a tolerance, [`measure`](crate::measure) the
+/// intersection.)
 ///
 /// # Errors
 /// As [`cells_in`].
@@ -105,14 +107,14 @@ fn in_region<S: Counted, R: Solid>(
 }
 
 impl OctreeRef<'_> {
-    /// How many finest cells of the octree lie in a region, which is a ball ([`Csg::ball`](crate::Csg::ball)) or any other
-    /// solid: the FULL ones, and the FULL and PARTIAL ones. The octree's cells are taken as they are, whatever they
-    /// prove; what is not proven of the region counts as PARTIAL.
+    /// How many finest cells of the octree lie in a region, which is a ball ([`Csg::ball`](crate::Csg::ball))
+    /// or any other solid: the FULL ones, and the FULL and PARTIAL ones. The octree's cells are taken as they
+    /// are, whatever they prove; what is not proven of the region counts as PARTIAL.
     ///
-    /// Where the region is FULL, whole subtrees are counted, 64 cells at a time; where it is EMPTY, nothing is read; and
-    /// where it is undecided and the octree is not EMPTY, it is split, down to the octree's depth. The memory is
-    /// O(depth). Once `control.max_splits` cells of both are split, the others count as undecided. One thread. Whatever
-    /// the bytes, no element is read twice, and damage reads as PARTIAL.
+    /// Where the region is FULL, whole subtrees are counted, 64 cells at a time; where it is EMPTY, nothing
+    /// is read; and where it is undecided and the octree is not EMPTY, it is split, down to the octree's
+    /// depth. The memory is O(depth). Once `control.max_splits` cells of both are split, the others count as
+    /// undecided. One thread. Whatever the bytes, no element is read twice, and damage reads as PARTIAL.
     ///
     /// # Errors
     /// What the region refuses; [`Error::OutOfMemory`], and [`Error::Cancelled`].
@@ -131,13 +133,14 @@ impl OctreeRef<'_> {
         Ok(self.content_in(region, Sums::of_cells(), control)?.cells())
     }
 
-    /// The volume that the solid and a region have in common, in cubic model units, as the octree's cells tell it: FULL
-    /// ones bound it from below, FULL and PARTIAL ones from above. The region is a ball
-    /// ([`Csg::ball`](crate::Csg::ball)) or any other solid; what lies outside of the universe does not count.
+    /// The volume that the solid and a region have in common, in cubic model units, as the octree's cells
+    /// tell it: FULL ones bound it from below, FULL and PARTIAL ones from above. The region is a ball
+    /// ([`Csg::ball`](crate::Csg::ball)) or any other solid; what lies outside of the universe does not
+    /// count.
     ///
-    /// In a finest cell that the region cuts, its volume is known as well as the region knows it there: that of a ball to
-    /// the third order. Time, memory and hostile bytes are as for [`cells_in`](OctreeRef::cells_in), with one or two
-    /// microseconds more for each cell that is cut.
+    /// In a finest cell that the region cuts, its volume is known as well as the region knows it there: that
+    /// of a ball to the third order. Time, memory and hostile bytes are as for
+    /// [`cells_in`](OctreeRef::cells_in), with one or two microseconds more for each cell that is cut.
     ///
     /// # Errors
     /// As [`cells_in`](OctreeRef::cells_in).

@@ -11,8 +11,8 @@ use crate::octree::{OctreeRef, Planes, Tag};
 use crate::solid::{FreeParts, OneByOne, Question, Verdict, Worker, split_twice};
 use alloc::vec::Vec;
 
-/// An octree as it is, whatever its cells prove. Each cell may be split once, depth first and in Morton order: so the
-/// links need not be checked before, which would take time in proportion to the whole tree.
+/// An octree as it is, whatever its cells prove. Each cell may be split once, depth first and in Morton
+/// order: so the links need not be checked before, which would take time in proportion to the whole tree.
 pub(super) struct Once<'t, 'a> {
     tree: &'t OctreeRef<'a>,
     windows: Windows,

@@ -6,7 +6,8 @@ use crate::lattice::{CellMoments, Frame, Interval};
 use crate::octree::Tag;
 use crate::solid::Enclosure;
 
-/// A finest cell's volume in the units in which volumes are added up: at most 2^60 cells, so sums are below 2^100.
+/// A finest cell's volume in the units in which volumes are added up: at most 2^60 cells, so sums are below
+/// 2^100.
 const CELL: i128 = 1 << BITS;
 const BITS: u32 = 40;
 

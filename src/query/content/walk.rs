@@ -13,8 +13,8 @@ use alloc::vec::Vec;
 
 /// A worker that may know how many cells there are below a cut one.
 pub(super) trait Counted: Worker {
-    /// FULL and PARTIAL finest cells below a cell of so many, if that is known without splitting it. The cell is not
-    /// split after that.
+    /// FULL and PARTIAL finest cells below a cell of so many, if that is known without splitting it. The cell
+    /// is not split after that.
     fn below(&mut self, cells: u64, part: &Self::Part) -> Option<[u64; 2]>;
 }
 
@@ -235,8 +235,8 @@ fn grandchildren<W: Worker>(
     }
 }
 
-/// What a block says of cell `c`. `next` is the first part of the block that was not met before, which is none of an
-/// earlier cell.
+/// What a block says of cell `c`. `next` is the first part of the block that was not met before, which is
+/// none of an earlier cell.
 fn verdict<P: Clone>(planes: Planes, c: u8, parts: &[(u8, P)], next: &mut usize) -> Verdict<P> {
     match planes.tag(c.into()) {
         Tag::Empty => Verdict::Empty,

@@ -1,9 +1,10 @@
 //! The boundary of a solid by its cells.
 //!
-//! The cells whose polygons would tell least are split first, until all of them tell enough. Then the boundary is made up of the
-//! polygons in PARTIAL cells, of the walls between what lies in the solid and what lies outside, and of what is left in PARTIAL cells
-//! of which nothing is known. That has the middle of the cell for a place, which is known to be near to the boundary if something of
-//! the closed cell lies in the solid and something outside.
+//! The cells whose polygons would tell least are split first, until all of them tell enough. Then the
+//! boundary is made up of the polygons in PARTIAL cells, of the walls between what lies in the solid and what
+//! lies outside, and of what is left in PARTIAL cells of which nothing is known. That has the middle of the
+//! cell for a place, which is known to be near to the boundary if something of the closed cell lies in the
+//! solid and something outside.
 
 use super::polygon::Polygon;
 use super::slabs::{Region, Slabs};
@@ -26,7 +27,8 @@ use core::cmp::Reverse;
 enum Known {
     Empty,
     Full,
-    /// PARTIAL: the boundary may be anywhere in it. Whether something of the closed cell surely lies in the solid, and outside.
+    /// PARTIAL: the boundary may be anywhere in it. Whether something of the closed cell surely lies in the
+    /// solid, and outside.
     Open([bool; 2]),
     /// PARTIAL, and its slabs are known: a place in the list.
     Slabs(u32),
@@ -115,7 +117,8 @@ impl Cells {
                 let slabs = subject.worker.enclosure(cell, &part)?.as_ref().and_then(Slabs::new);
                 let whole = sqrt(3.0) * half;
                 let radius = slabs.as_ref().map_or(whole, |slabs| (slabs.radius() * half).min(whole));
-                // Where the boundary runs along a wall, cells whose slabs are some times thinner tell on which side.
+                // Where the boundary runs along a wall, cells whose slabs are some times thinner tell on
+                // which side.
                 const THINNER: f64 = 64.0;
                 let is_met = slabs.as_ref().is_none_or(Slabs::is_met);
                 let doubt = if is_met { radius } else { (THINNER * radius).min(whole) };
@@ -126,7 +129,8 @@ impl Cells {
                         Known::Slabs(self.slabs.len() as u32 - 1)
                     }
                     None if is_finest => {
-                        // A centre in the solid, or on its boundary, is a limit of the solid's points; others likewise.
+                        // A centre in the solid, or on its boundary, is a limit of the solid's points; others
+                        // likewise.
                         let inside = subject.worker.sample(cell, &part)?;
                         Known::Open([inside == Some(true), inside == Some(false)])
                     }
@@ -142,7 +146,8 @@ impl Cells {
         memory::push(&mut self.nodes, (cell, known))
     }
 
-    /// Regions of a cell that surely lie in the solid, or outside of it. `None`: the space outside of the universe.
+    /// Regions of a cell that surely lie in the solid, or outside of it. `None`: the space outside of the
+    /// universe.
     fn regions(&self, node: Option<usize>, exterior: Tag, solid: bool) -> ([Region; 3], usize) {
         let all = |is_there: bool| ([Region::ALL; 3], usize::from(is_there));
         match node.map(|node| self.nodes[node].1) {
@@ -162,7 +167,8 @@ impl Cells {
         cores: &mut Layers,
         job: &Job<'_>,
     ) -> Result<(), Error> {
-        // Two cells, or one and the space outside, that have a wall in common across an axis: the lower one first.
+        // Two cells, or one and the space outside, that have a wall in common across an axis: the lower one
+        // first.
         let mut walls: Vec<([Option<usize>; 2], usize)> = Vec::new();
         for axis in 0..3 {
             memory::push(&mut walls, ([None, Some(0)], axis))?;
@@ -295,7 +301,8 @@ impl Cells {
     }
 }
 
-/// The coordinates of a cell, times the first number, plus the others, are those of a cell that is no smaller.
+/// The coordinates of a cell, times the first number, plus the others, are those of a cell that is no
+/// smaller.
 fn seen_from(cell: Cell, other: Cell) -> (f64, [f64; 3]) {
     let scale = 1i64 << (cell.level - other.level);
     let middle = |cell: Cell, axis: usize| 2 * i64::from(cell.at[axis]) + 1;
@@ -358,7 +365,8 @@ impl Layers {
             }
         }
         if !is_any {
-            // All of it is hardly longer than rounding makes, or a line: triangles with three different corners, next to it.
+            // All of it is hardly longer than rounding makes, or a line: triangles with three different
+            // corners, next to it.
             layer.radius = layer.radius.max(radius + self.rounding);
             let mut beside = place(first);
             for axis in 0..2 {

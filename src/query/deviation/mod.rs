@@ -38,22 +38,24 @@ pub struct Deviation {
     pub b_to_a: OneWay,
     /// Why the search ended: that of both directions which says least.
     pub stop_reason: StopReason,
-    /// Cells that were split, of the first solid and of the second; 0 of a solid whose boundary is known to consist of triangles.
+    /// Cells that were split, of the first solid and of the second; 0 of a solid whose boundary is known to
+    /// consist of triangles.
     pub splits: [u64; 2],
     /// How often pieces of the first boundary were cut, and pieces of the second.
     pub cuts: [u64; 2],
     /// What of the first and of the second solid is proven: what is not counts as undecided.
     pub proofs: [Proof; 2],
-    /// Whether the first solid and the second may go on outside of the universe. What is there is not looked at: the points of a
-    /// boundary are those in the universe, and the distances are those from all of the other one.
+    /// Whether the first solid and the second may go on outside of the universe. What is there is not looked
+    /// at: the points of a boundary are those in the universe, and the distances are those from all of the
+    /// other one.
     pub clipped: [bool; 2],
 }
 
 /// How far points of one boundary are from another one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OneWay {
-    /// The greatest distance of a point of the one boundary from the nearest point of the other, in model units. 0 if the first solid
-    /// has no boundary; infinite if the second has none and the first has.
+    /// The greatest distance of a point of the one boundary from the nearest point of the other, in model
+    /// units. 0 if the first solid has no boundary; infinite if the second has none and the first has.
     pub distance: Interval,
     /// Where the lower bound is found, if it is greater than 0.
     pub at: Option<Witness>,
@@ -66,7 +68,8 @@ pub struct Witness {
     pub point: [f64; 3],
     /// The first boundary is that near to the point, or nearer: 0 if the point is a vertex of a mesh.
     pub apart: f64,
-    /// The point next to the second boundary that is nearest to it, but for what is not known of that boundary.
+    /// The point next to the second boundary that is nearest to it, but for what is not known of that
+    /// boundary.
     pub nearest: [f64; 3],
 }
 
@@ -89,8 +92,8 @@ impl Deviation {
         Interval::between(one.lower.max(other.lower), one.upper.max(other.upper))
     }
 
-    /// Whether the boundaries are within a distance (model units) of each other. Of two solids that end in the universe, a distance of
-    /// 0 asks whether they have the same boundary.
+    /// Whether the boundaries are within a distance (model units) of each other. Of two solids that end in
+    /// the universe, a distance of 0 asks whether they have the same boundary.
     pub fn within(&self, distance: f64) -> Within {
         let known = self.distance();
         if known.upper <= distance {
@@ -103,7 +106,8 @@ impl Deviation {
     }
 }
 
-/// Cells of a solid that [`deviation`] splits if `control.max_splits` sets no other limit; and a 64th of the cuts of pieces.
+/// Cells of a solid that [`deviation`] splits if `control.max_splits` sets no other limit; and a 64th of the
+/// cuts of pieces.
 pub const DEVIATION_SPLITS: u64 = 1 << 18;
 
 /// How exactly a limit is looked at, as a part of it.
@@ -120,32 +124,36 @@ const CELLS: f64 = 12.0;
 /// Pieces are cut that much more often than cells are split.
 const CUTS: u64 = 64;
 
-/// How far the boundaries of `a` and `b` are from each other, in both directions (the Hausdorff distance is the greater one); a solid
-/// under a placement is moved first (see [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`.
+/// How far the boundaries of `a` and `b` are from each other, in both directions (the Hausdorff distance is
+/// the greater one); a solid under a placement is moved first (see
+/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`.
 ///
-/// The boundary of a closed mesh whose triangles do not intersect is known exactly; triangles within the solid, as those of a body
-/// inside of another one, are none of it. Triangles that intersect others are cut into pieces, which are known exactly up to a twelfth of
-/// `tolerance` (model units) from where they meet. (Where triangles lie on each other, or 524 288 pieces are too few, cells are asked.)
-/// Of any other solid, cells of `frame` are split until the slabs of each tell where the
-/// boundary lies to a twelfth of `tolerance`, and faces between FULL and EMPTY cells are known exactly; what is not
-/// decided widens the intervals. Both boundaries are then pieces of planes, and the answer is found to rounding (some 10^-12 of the
-/// coordinates) by cutting these.
+/// The boundary of a closed mesh whose triangles do not intersect is known exactly; triangles within the
+/// solid, as those of a body inside of another one, are none of it. Triangles that intersect others are cut
+/// into pieces, which are known exactly up to a twelfth of `tolerance` (model units) from where they meet.
+/// (Where triangles lie on each other, or 524 288 pieces are too few, cells are asked.) Of any other solid,
+/// cells of `frame` are split until the slabs of each tell where the boundary lies to a twelfth of
+/// `tolerance`, and faces between FULL and EMPTY cells are known exactly; what is not decided widens the
+/// intervals. Both boundaries are then pieces of planes, and the answer is found to rounding (some 10^-12 of
+/// the coordinates) by cutting these.
 ///
 /// The result's `stop_reason` says:
 /// - `Tolerance`: both intervals are no wider than `tolerance`. Two solids that are proven and have
 ///   the same [fingerprint](Solid::fingerprint) have the distance 0.
-/// - `Exhausted`: neither cells nor pieces have more to tell. The cells of a solid without slabs tell about four times the diagonal
-///   of a finest cell.
-/// - `Budget`: `control.max_splits` cells of a solid were split, or [`DEVIATION_SPLITS`] if that is `None`, or 64 times as many
-///   pieces cut; or what is remembered comes near to `control.max_bytes`. The largest doubt is dealt with first.
+/// - `Exhausted`: neither cells nor pieces have more to tell. The cells of a solid without slabs tell about
+///   four times the diagonal of a finest cell.
+/// - `Budget`: `control.max_splits` cells of a solid were split, or [`DEVIATION_SPLITS`] if that is `None`,
+///   or 64 times as many pieces cut; or what is remembered comes near to `control.max_bytes`. The largest
+///   doubt is dealt with first.
 ///
-/// O(n log n) for meshes of n triangles whose surfaces lie close to each other, some microseconds a triangle. Memory is linear in the
-/// triangles, and in the cells: of a curved surface with the area s and the greatest curvature c there are about c · s / `tolerance`.
-/// The same for any number of threads, which share the pieces; one thread splits cells.
+/// O(n log n) for meshes of n triangles whose surfaces lie close to each other, some microseconds a triangle.
+/// Memory is linear in the triangles, and in the cells: of a curved surface with the area s and the greatest
+/// curvature c there are about c · s / `tolerance`. The same for any number of threads, which share the
+/// pieces; one thread splits cells.
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse; [`Error::OutOfMemory`], and
-/// [`Error::Cancelled`].
+/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;
+/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, deviation, query::Within};
@@ -211,9 +219,10 @@ pub fn deviation<A: Solid, B: Solid>(
     Ok(found)
 }
 
-/// How far the triangles of two meshes are from each other at the most, in both directions, found no more exactly than `limit` asks, and
-/// the triangles of the second mesh next to which it is not proven to be within the limit (model units; in no order, some more than
-/// once). Unlike [`deviation`] of closed meshes it looks at all triangles, whatever they enclose.
+/// How far the triangles of two meshes are from each other at the most, in both directions, found no more
+/// exactly than `limit` asks, and the triangles of the second mesh next to which it is not proven to be
+/// within the limit (model units; in no order, some more than once). Unlike [`deviation`] of closed meshes it
+/// looks at all triangles, whatever they enclose.
 #[cfg(feature = "std")]
 pub(crate) fn meshes_apart(
     a: &TriangleMesh,

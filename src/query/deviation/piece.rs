@@ -6,8 +6,8 @@ use crate::lattice::axes;
 /// Corners of a piece at the most.
 pub(super) const MOST: usize = 8;
 
-/// Pieces that were cut more often are not cut any more. Each cut rounds, by less than 2^-49 of the largest coordinate, and a piece
-/// is cut three times at once at the most.
+/// Pieces that were cut more often are not cut any more. Each cut rounds, by less than 2^-49 of the largest
+/// coordinate, and a piece is cut three times at once at the most.
 pub(super) const GENERATIONS: u8 = 60;
 
 /// A corner with what is known of its distance, if somebody has asked.
@@ -92,8 +92,9 @@ impl Piece {
         most
     }
 
-    /// The parts where a function is negative, and where it is positive, which has these values at the corners and is about linear.
-    /// Nothing if one of them would be the whole piece, or they would not be convex.
+    /// The parts where a function is negative, and where it is positive, which has these values at the
+    /// corners and is about linear. Nothing if one of them would be the whole piece, or they would not be
+    /// convex.
     pub(super) fn cut(&self, value: impl Fn(&Corner) -> f64) -> Option<[Piece; 2]> {
         let (corners, count) = (self.corners(), self.count as usize);
         let mut values = [0.0; MOST];
@@ -155,8 +156,8 @@ impl Piece {
         parts
     }
 
-    /// The parts that lie beyond the edges of a triangle, seen along its normal, and the one that lies within them, if that is not
-    /// all. `facet` is the triangle. Nothing if no part lies within.
+    /// The parts that lie beyond the edges of a triangle, seen along its normal, and the one that lies within
+    /// them, if that is not all. `facet` is the triangle. Nothing if no part lies within.
     pub(super) fn seen_through(
         &self,
         [a, b, c]: [[f64; 3]; 3],

@@ -19,8 +19,8 @@ pub(crate) struct Reference(Option<Surface>);
 /// The greatest distance is known to this part of what is allowed.
 const SHARE: f64 = 1.0 / 16.0;
 
-/// Pieces are cut that often at the most, for each triangle, to tell the greatest distance more exactly than was asked for, and triangles of
-/// both surfaces for which that is done.
+/// Pieces are cut that often at the most, for each triangle, to tell the greatest distance more exactly than
+/// was asked for, and triangles of both surfaces for which that is done.
 const CUTS: u64 = 4;
 const MANY: usize = 1 << 15;
 
@@ -35,15 +35,17 @@ pub(crate) struct Remade<'c> {
 
 /// What a comparison tells.
 pub(crate) struct Comparison {
-    /// No point of the triangles that were looked at is further from the boundary than that, and none of the boundary next to them from the
-    /// mesh (model units). That is proven; infinite if nothing is known.
+    /// No point of the triangles that were looked at is further from the boundary than that, and none of the
+    /// boundary next to them from the mesh (model units). That is proven; infinite if nothing is known.
     pub(crate) most: f64,
-    /// Triangles of the mesh where one of both is proven to be further from the other than was allowed, or nearly so.
+    /// Triangles of the mesh where one of both is proven to be further from the other than was allowed, or
+    /// nearly so.
     pub(crate) beyond: Vec<u32>,
 }
 
 impl Reference {
-    /// Where the boundary is not known exactly, up to `budget` cells are split until it is known to `tolerance` (model units).
+    /// Where the boundary is not known exactly, up to `budget` cells are split until it is known to
+    /// `tolerance` (model units).
     pub(crate) fn new<C: Classifier>(
         solid: &C,
         tolerance: f64,
@@ -56,7 +58,8 @@ impl Reference {
         super::surface(solid, tolerance, budget, job).map(|surface| Reference(Some(surface)))
     }
 
-    /// Compares a mesh with the boundary, no more exactly than it takes to tell where they are further apart than `allowed` (model units).
+    /// Compares a mesh with the boundary, no more exactly than it takes to tell where they are further apart
+    /// than `allowed` (model units).
     pub(crate) fn beyond(
         &self,
         compared: &Remade<'_>,
@@ -95,8 +98,9 @@ impl Reference {
         Ok(found)
     }
 
-    /// No point of a mesh is further from the boundary than that, and none of the boundary from the mesh (model units): to a sixteenth of
-    /// `allowed`, if that is found out soon. Infinite if nothing is known, and where there are so many triangles that it takes long.
+    /// No point of a mesh is further from the boundary than that, and none of the boundary from the mesh
+    /// (model units): to a sixteenth of `allowed`, if that is found out soon. Infinite if nothing is known,
+    /// and where there are so many triangles that it takes long.
     pub(crate) fn apart(
         &self,
         mesh: &Arc<TriangleMesh>,

@@ -1,13 +1,14 @@
 //! The search for the point of one surface that is farthest from another one.
 //!
-//! The distance from a convex set is a convex function, so that over a convex piece it is greatest at a corner. Hence no point of a
-//! piece is further from a surface than the farthest of its corners is from a single facet of that; the best such facet gives the
-//! upper bound. The distances of corners that lie on the first surface are lower bounds. Pieces whose upper bound is too great are
-//! cut: along the edges of a facet, seen along its normal, where it is near; where two facets are about equally far away; and now and
-//! then in the middle, so that pieces become small whatever happens.
+//! The distance from a convex set is a convex function, so that over a convex piece it is greatest at a
+//! corner. Hence no point of a piece is further from a surface than the farthest of its corners is from a
+//! single facet of that; the best such facet gives the upper bound. The distances of corners that lie on the
+//! first surface are lower bounds. Pieces whose upper bound is too great are cut: along the edges of a facet,
+//! seen along its normal, where it is near; where two facets are about equally far away; and now and then in
+//! the middle, so that pieces become small whatever happens.
 //!
-//! Pieces with the greatest upper bounds come first, some of them at once, and each of them goes on by itself for a while. What comes
-//! out does not depend on the threads.
+//! Pieces with the greatest upper bounds come first, some of them at once, and each of them goes on by itself
+//! for a while. What comes out does not depend on the threads.
 
 use super::piece::{Corner, GENERATIONS, MOST, Piece};
 use super::surface::{Facet, Near, Seen};
@@ -135,8 +136,9 @@ impl Search<'_> {
         Ok((OneWay { distance, at: self.witness(&best) }, cuts, stop_reason))
     }
 
-    /// How far the wanted triangles of the first surface are from the second one at the most, found no more exactly than `limit` and
-    /// the tolerance ask, and those that are not proven to be within both together after so many cuts each.
+    /// How far the wanted triangles of the first surface are from the second one at the most, found no more
+    /// exactly than `limit` and the tolerance ask, and those that are not proven to be within both together
+    /// after so many cuts each.
     #[cfg(feature = "std")]
     pub(super) fn beyond(
         &self,
@@ -245,7 +247,8 @@ impl Search<'_> {
         Piece::triangle(corners, from.radius)
     }
 
-    /// Looks at all triangles; those that matter are put into the queue. The greatest upper bound of the others.
+    /// Looks at all triangles; those that matter are put into the queue. The greatest upper bound of the
+    /// others.
     fn triangles(
         &self,
         parallel: bool,

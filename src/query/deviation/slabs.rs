@@ -1,7 +1,7 @@
 //! The boundary of a solid in a cell of which the enclosure is known, as polygons.
 //!
-//! All of it is in the cell's own coordinates, from its centre in half edges. The slabs of a union are looked at as those of the
-//! complement, which has the same boundary.
+//! All of it is in the cell's own coordinates, from its centre in half edges. The slabs of a union are looked
+//! at as those of the complement, which has the same boundary.
 
 use super::piece::dot;
 use super::polygon::Polygon;
@@ -27,8 +27,8 @@ impl Region {
         self.count += 1;
     }
 
-    /// Leaves of a polygon in another cell's coordinates what surely lies in the region: those coordinates times `ratio`, plus `from`,
-    /// are the region's.
+    /// Leaves of a polygon in another cell's coordinates what surely lies in the region: those coordinates
+    /// times `ratio`, plus `from`, are the region's.
     pub(super) fn clip(&self, polygon: &mut Polygon, ratio: f64, from: [f64; 3]) {
         for &(normal, offset) in &self.halves[..self.count] {
             let range: f64 = normal.iter().map(|c| c.abs()).sum();
@@ -46,7 +46,8 @@ pub(super) struct Slabs {
     is_hollow: bool,
     /// Whether nothing lies behind all of them.
     is_void: bool,
-    /// Walls of the cell all of which is the wall of a FULL cell, and of an EMPTY one, as bits: 2 · axis, and one more for the upper.
+    /// Walls of the cell all of which is the wall of a FULL cell, and of an EMPTY one, as bits: 2 · axis, and
+    /// one more for the upper.
     walls: [u8; 2],
 }
 
@@ -96,15 +97,17 @@ impl Slabs {
         self.walls[usize::from(!is_full)] |= 1 << (2 * axis + usize::from(is_upper));
     }
 
-    /// Whether polygons tell where the boundary is, and not only where it may be: one slab has both its sides in the cell.
+    /// Whether polygons tell where the boundary is, and not only where it may be: one slab has both its sides
+    /// in the cell.
     pub(super) fn is_met(&self) -> bool {
         let slab = &self.slabs[0];
         let is_away = self.is_void || self.count != 1 || cut::corners(slab).next().is_none();
         is_away || self.whole(slab).is_some_and(|(_, radius)| radius < 1.0)
     }
 
-    /// The plane in the middle of a slab that is alone, with a distance within which the boundary is from each of its points, if it
-    /// surely is. The way from a point of the slab to what lies in the solid, or to what lies outside, meets the boundary.
+    /// The plane in the middle of a slab that is alone, with a distance within which the boundary is from
+    /// each of its points, if it surely is. The way from a point of the slab to what lies in the solid, or to
+    /// what lies outside, meets the boundary.
     fn whole(&self, slab: &Slab) -> Option<(Polygon, f64)> {
         let polygon = Polygon::of_plane(slab.normal, 0.5 * slab.inner + 0.5 * slab.outer, 1.0);
         // (Where rounding makes a difference there is no polygon.)
@@ -125,12 +128,13 @@ impl Slabs {
         (radius < f64::INFINITY).then_some((polygon, radius))
     }
 
-    /// Polygons with the radius of each. If `all`, all of the boundary in the cell is that near to one of them; else all of each is
-    /// that near to the boundary.
+    /// Polygons with the radius of each. If `all`, all of the boundary in the cell is that near to one of
+    /// them; else all of each is that near to the boundary.
     ///
-    /// Each point of a slab that lies in front of no other one is within half the width of the plane in the middle, of a point that is
-    /// that much beyond the others and the walls at the most. From a point of that plane that is that much behind the others and
-    /// within the walls, the ways to both sides of its slab lead into the solid and out of it.
+    /// Each point of a slab that lies in front of no other one is within half the width of the plane in the
+    /// middle, of a point that is that much beyond the others and the walls at the most. From a point of that
+    /// plane that is that much behind the others and within the walls, the ways to both sides of its slab
+    /// lead into the solid and out of it.
     pub(super) fn polygons(&self, all: bool) -> impl Iterator<Item = (Polygon, f64)> + '_ {
         let count = if self.is_void { 0 } else { self.count as usize };
         (0..count).map(move |k| {
@@ -148,7 +152,8 @@ impl Slabs {
         })
     }
 
-    /// One more polygon, all of which is near to the boundary, if the others may leave much of a slab out that is near to a wall.
+    /// One more polygon, all of which is near to the boundary, if the others may leave much of a slab out
+    /// that is near to a wall.
     pub(super) fn beside_walls(&self) -> Option<(Polygon, f64)> {
         let is_alone = self.count == 1 && !self.is_void;
         is_alone.then(|| self.whole(&self.slabs[0])).flatten()

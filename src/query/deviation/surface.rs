@@ -24,7 +24,8 @@ pub(super) struct Layer {
 pub(super) struct Surface {
     /// Each point of the boundary is within the radius of a layer of one of its triangles.
     pub(super) covers: Vec<Layer>,
-    /// Each point of these triangles is within the radius of the layer of a point of the boundary. `None`: the covers are so, too.
+    /// Each point of these triangles is within the radius of the layer of a point of the boundary. `None`:
+    /// the covers are so, too.
     pub(super) cores: Option<Vec<Layer>>,
     /// The universe, if the boundary may go on outside of it.
     pub(super) clipped: Option<Frame>,

@@ -1,8 +1,8 @@
 //! How far are points from a solid?
 //!
-//! A solid S lies between two sets of cells: the FULL ones, and those that are FULL or PARTIAL. The distance from the
-//! second bounds the distance from S from below, that from the first bounds it from above. The space outside of the
-//! universe counts as one more cell, with the exterior's tag.
+//! A solid S lies between two sets of cells: the FULL ones, and those that are FULL or PARTIAL. The distance
+//! from the second bounds the distance from S from below, that from the first bounds it from above. The space
+//! outside of the universe counts as one more cell, with the exterior's tag.
 
 mod field;
 mod nearest;
@@ -37,7 +37,8 @@ impl DistanceTo {
         Interval::between(lower, f64::INFINITY)
     }
 
-    /// The answer, by one or two searches: `search(hollow)` is the distance from the solid, or from its complement.
+    /// The answer, by one or two searches: `search(hollow)` is the distance from the solid, or from its
+    /// complement.
     fn ask(self, mut search: impl FnMut(bool) -> Result<Interval, Error>) -> Result<Interval, Error> {
         match self {
             DistanceTo::Solid => search(false),

@@ -15,25 +15,26 @@ use core::cmp::Ordering;
 pub struct NearCell {
     /// The cell and its tag.
     pub found: TaggedCell,
-    /// The cell's nearest point, in model units: each coordinate is the given point's own, or a rounded one of the
-    /// cell's faces.
+    /// The cell's nearest point, in model units: each coordinate is the given point's own, or a rounded one
+    /// of the cell's faces.
     pub point: [f64; 3],
     /// The distance of the closed cell from the given point, rounded outward.
     pub distance: Interval,
 }
 
 impl OctreeRef<'_> {
-    /// The `count` cells nearest to `point` (model units) whose tag is among `tags`, the nearest first; of equally near
-    /// ones the first in Morton order. There are fewer if the tree has no more. A cell is closed, as large as the
-    /// octree has it, and no BRANCH. The point may lie outside of the universe.
+    /// The `count` cells nearest to `point` (model units) whose tag is among `tags`, the nearest first; of
+    /// equally near ones the first in Morton order. There are fewer if the tree has no more. A cell is
+    /// closed, as large as the octree has it, and no BRANCH. The point may lie outside of the universe.
     ///
-    /// With `count` 1 and the tag FULL this is the nearest cell that is proven solid, with EMPTY and PARTIAL the nearest
-    /// one that is not.
+    /// With `count` 1 and the tag FULL this is the nearest cell that is proven solid, with EMPTY and PARTIAL
+    /// the nearest one that is not.
     ///
-    /// Cells are compared by their exact distance from a point next to the given one, no further than 2^-56 of the
-    /// universe's edge or, far outside, 2^-57 of the distance.
+    /// Cells are compared by their exact distance from a point next to the given one, no further than 2^-56
+    /// of the universe's edge or, far outside, 2^-57 of the distance.
     ///
-    /// O(count · log count) beside the cells that are looked at; whatever the bytes, these are no more than the tree has.
+    /// O(count · log count) beside the cells that are looked at; whatever the bytes, these are no more than
+    /// the tree has.
     ///
     /// # Errors
     /// [`Error::Argument`] if a coordinate is not a finite number; [`Error::OutOfMemory`].

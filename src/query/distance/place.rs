@@ -1,4 +1,5 @@
-//! A point on a lattice so fine that hardly any doubles lie between its planes: distances to cells are integers there.
+//! A point on a lattice so fine that hardly any doubles lie between its planes: distances to cells are
+//! integers there.
 
 use crate::lattice::axes;
 use crate::lattice::exact::{floor, two_diff, two_product};
@@ -68,7 +69,8 @@ impl<'f> Place<'f> {
         self.bits - u32::from(level)
     }
 
-    /// The squares of the distances along each axis from four cells of `level` in a row; the first is `first`.
+    /// The squares of the distances along each axis from four cells of `level` in a row; the first is
+    /// `first`.
     pub(super) fn squares(&self, level: u8, first: [u32; 3]) -> [[Square; 4]; 3] {
         let shift = self.shift(level);
         axes(|axis| {
@@ -110,8 +112,8 @@ impl<'f> Place<'f> {
         distance.plus(Interval::between(-self.error, self.error)).not_negative()
     }
 
-    /// The point of a closed cell that is nearest to `point`, next to which this place is: its coordinates are those of
-    /// the point, or rounded ones of the cell's faces.
+    /// The point of a closed cell that is nearest to `point`, next to which this place is: its coordinates
+    /// are those of the point, or rounded ones of the cell's faces.
     pub(super) fn nearest_in(&self, cell: Cell, point: [f64; 3]) -> [f64; 3] {
         let (lower, upper) = Cube { frame: self.frame, cell }.planes();
         axes(|axis| {

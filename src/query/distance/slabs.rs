@@ -1,8 +1,8 @@
 //! How far a point is from a solid in a cell of which the enclosure is known.
 //!
-//! All of it is in the cell's own coordinates, from its centre in half edges. For any direction d, no point x of the
-//! solid has d · x > reach; so a point p is no nearer than (d · p − reach) / |d|. A direction near that of the nearest
-//! point gives a bound that is off by the square of the angle between them.
+//! All of it is in the cell's own coordinates, from its centre in half edges. For any direction d, no point x
+//! of the solid has d · x > reach; so a point p is no nearer than (d · p − reach) / |d|. A direction near
+//! that of the nearest point gives a bound that is off by the square of the angle between them.
 
 use crate::cut::reach;
 use crate::lattice::Interval;
@@ -24,7 +24,8 @@ pub(super) fn lower(enclosure: &Enclosure, point: &Seen) -> f64 {
     }
 }
 
-/// Proven: a point of the closed solid in the cell, and a distance that it is not further away. `None` if no point of it is found.
+/// Proven: a point of the closed solid in the cell, and a distance that it is not further away. `None` if no
+/// point of it is found.
 pub(super) fn upper(enclosure: &Enclosure, point: &Seen) -> Option<(f64, [f64; 3])> {
     match enclosure.join {
         SlabJoin::All => upper_of_all(enclosure, point),
@@ -103,8 +104,8 @@ fn upper_of_all(enclosure: &Enclosure, point: &Seen) -> Option<(f64, [f64; 3])> 
     Some((length(&axes(|axis| point[axis].minus(Interval::exactly(found[axis])))).upper, found))
 }
 
-/// A point of the cell near `point` that lies, to rounding, a little inside of all slabs, if some turns of projections
-/// find one.
+/// A point of the cell near `point` that lies, to rounding, a little inside of all slabs, if some turns of
+/// projections find one.
 fn pulled(enclosure: &Enclosure, point: [f64; 3]) -> [f64; 3] {
     const TURNS: usize = 16;
     /// How far inside, as a share of the normal's range.

@@ -22,26 +22,28 @@ use core::cmp::Reverse;
 /// What is known of a point's distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointDistance {
-    /// The distance, in model units. `upper` is ∞ as long as nothing is proven to be there, and so is `lower` if it is
-    /// proven that nothing is.
+    /// The distance, in model units. `upper` is ∞ as long as nothing is proven to be there, and so is `lower`
+    /// if it is proven that nothing is.
     pub distance: Interval,
     /// Why the search ended.
     pub stop_reason: StopReason,
     /// How many times a cell was split.
     pub splits: u64,
-    /// The nearest point of the boundary, if one is known: whenever a solid answers distances itself, and of others if the upper bound is
-    /// finite, unless the point that was asked for may lie on the side of the boundary from which no distance is measured.
+    /// The nearest point of the boundary, if one is known: whenever a solid answers distances itself, and of
+    /// others if the upper bound is finite, unless the point that was asked for may lie on the side of the
+    /// boundary from which no distance is measured.
     pub nearest: Option<NearPoint>,
 }
 
 /// A point of a solid's boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearPoint {
-    /// The point (model units), but for rounding: the nearest, or one whose distance lies in the interval as well. If the interval
-    /// of a distance from the boundary holds 0, it may lie within the solid, next to the boundary.
+    /// The point (model units), but for rounding: the nearest, or one whose distance lies in the interval as
+    /// well. If the interval of a distance from the boundary holds 0, it may lie within the solid, next to
+    /// the boundary.
     pub point: [f64; 3],
-    /// The number of its surface: of a mesh, the triangle's. Of several on which the point lies, one that bounds the solid next to
-    /// it, if one is found.
+    /// The number of its surface: of a mesh, the triangle's. Of several on which the point lies, one that
+    /// bounds the solid next to it, if one is found.
     pub surface: Option<u32>,
 }
 
@@ -64,39 +66,43 @@ impl PointDistance {
     }
 }
 
-/// Cells that [`distances`] splits for a point if `control.max_splits` sets no other limit: a tenth of a second or so.
+/// Cells that [`distances`] splits for a point if `control.max_splits` sets no other limit: a tenth of a
+/// second or so.
 pub const DISTANCE_SPLITS: u64 = 1 << 16;
 
-/// The distances of points (model units) from a solid, its complement or its boundary, one answer a point. Points may
-/// lie outside of the universe; what is known of the solid there is its [`exterior`](Classifier::exterior). A point with
-/// a coordinate that is not a finite number gets the interval `[0, ∞]`, or all numbers for [`DistanceTo::Boundary`].
+/// The distances of points (model units) from a solid, its complement or its boundary, one answer a point.
+/// Points may lie outside of the universe; what is known of the solid there is its
+/// [`exterior`](Classifier::exterior). A point with a coordinate that is not a finite number gets the
+/// interval `[0, ∞]`, or all numbers for [`DistanceTo::Boundary`].
 ///
-/// The cells of `frame` that may be nearest are split first. The search for a point ends, and `stop_reason` says why:
+/// The cells of `frame` that may be nearest are split first. The search for a point ends, and `stop_reason`
+/// says why:
 /// - `Tolerance`: the interval is no wider than `tolerance` (model units), or both ends are ∞.
-/// - `Exhausted`: no cell is left whose split would help, or of a solid without slabs, the nearest undecided cell cannot
-///   be split, and the interval is no wider than twice the diagonal of the frame's finest cells.
-/// - `Budget`: `control.max_splits` cells were split, or [`DISTANCE_SPLITS`] if that is `None`; or what is remembered comes
-///   near to `control.max_bytes`.
+/// - `Exhausted`: no cell is left whose split would help, or of a solid without slabs, the nearest undecided
+///   cell cannot be split, and the interval is no wider than twice the diagonal of the frame's finest cells.
+/// - `Budget`: `control.max_splits` cells were split, or [`DISTANCE_SPLITS`] if that is `None`; or what is
+///   remembered comes near to `control.max_bytes`.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), these bound how near it comes: each
-/// level then makes the interval about four times as narrow, and a plane face is known at once. Without slabs a level
-/// makes it half as wide. A point of the boundary that is as near as the upper bound says comes with the answer
-/// ([`PointDistance::nearest`]).
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), these bound how near
+/// it comes: each level then makes the interval about four times as narrow, and a plane face is known at
+/// once. Without slabs a level makes it half as wide. A point of the boundary that is as near as the upper
+/// bound says comes with the answer ([`PointDistance::nearest`]).
 ///
-/// A closed mesh in the universe answers each point from a tree over its triangles, in microseconds and to the rounding of
-/// doubles (some 10^-12 of the distance and of the triangle), and tells the nearest point and its triangle. The first question
-/// makes the tree, and finds out which triangles bound the solid ([`MeshSolid`](crate::MeshSolid)). Where the nearest triangle
-/// intersects another one, the interval is up to 2^-31 of the mesh's extent wide; where it then lies within the solid or outside of
-/// it, cells are asked. A mesh with holes answers in the same way where its winding number is surely not one half in the ball
-/// that its triangles leave free; of other points, as a rule those next to a hole, cells are asked.
+/// A closed mesh in the universe answers each point from a tree over its triangles, in microseconds and to
+/// the rounding of doubles (some 10^-12 of the distance and of the triangle), and tells the nearest point and
+/// its triangle. The first question makes the tree, and finds out which triangles bound the solid
+/// ([`MeshSolid`](crate::MeshSolid)). Where the nearest triangle intersects another one, the interval is up
+/// to 2^-31 of the mesh's extent wide; where it then lies within the solid or outside of it, cells are asked.
+/// A mesh with holes answers in the same way where its winding number is surely not one half in the ball that
+/// its triangles leave free; of other points, as a rule those next to a hole, cells are asked.
 ///
-/// A point takes some dozen splits a level as a rule. It takes more the more of the surface is about as near: a ball's
-/// centre has no better bounds than cells as large as the budget allows. The answers are the same for any number of
-/// threads.
+/// A point takes some dozen splits a level as a rule. It takes more the more of the surface is about as near:
+/// a ball's centre has no better bounds than cells as large as the budget allows. The answers are the same
+/// for any number of threads.
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses; [`Error::OutOfMemory`], and
-/// [`Error::Cancelled`].
+/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses;
+/// [`Error::OutOfMemory`], and [`Error::Cancelled`].
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, query::{DistanceTo, distances}};
@@ -211,8 +217,8 @@ fn distance<W: Worker>(
     Ok(PointDistance { distance, stop_reason, splits: budget - left, nearest })
 }
 
-/// The least distance of what may lie in a cell (the bits of a double that is not negative), the cell's height above the
-/// deepest level, the order of meeting.
+/// The least distance of what may lie in a cell (the bits of a double that is not negative), the cell's
+/// height above the deepest level, the order of meeting.
 type Key = Reverse<(u64, u8, u64)>;
 
 struct Search<'a, W: Worker> {
@@ -223,7 +229,8 @@ struct Search<'a, W: Worker> {
     /// Whether the complement is sought.
     hollow: bool,
     tolerance: f64,
-    /// The least distance of what is proven to be there, and a point that is as near, unless that lies beyond the universe.
+    /// The least distance of what is proven to be there, and a point that is as near, unless that lies beyond
+    /// the universe.
     upper: f64,
     nearest: Option<[f64; 3]>,
     /// The least distance of what may be there, in cells that are not split any more.
@@ -325,8 +332,8 @@ impl<W: Worker> Search<'_, W> {
         Ok(())
     }
 
-    /// From which distance on the solid in a PARTIAL cell begins, as its slabs tell: ∞ if there is none of it; and a distance in which,
-    /// with a point at which, some of it is proven to be.
+    /// From which distance on the solid in a PARTIAL cell begins, as its slabs tell: ∞ if there is none of
+    /// it; and a distance in which, with a point at which, some of it is proven to be.
     fn by_slabs(&mut self, cell: Cell, part: &W::Part) -> Result<(f64, Option<Found>), Error> {
         let Some(enclosure) = self.worker.enclosure(cell, part)? else { return Ok((0.0, None)) };
         self.has_slabs = true;

@@ -26,7 +26,8 @@ impl Least {
     }
 }
 
-/// Of a set of cells those that have none of it before them, as seen from the point: one of them is the nearest.
+/// Of a set of cells those that have none of it before them, as seen from the point: one of them is the
+/// nearest.
 fn exposed(cells: u64, sides: [Option<bool>; 3]) -> u64 {
     (0..3).fold(cells, |exposed, axis| match sides[axis] {
         Some(above) => exposed & !morton::shifted(cells, axis, !above),
@@ -58,7 +59,8 @@ impl Visitor for Least {
     }
 }
 
-/// The squares of the distances from cells that are not proven outside, and from those that are proven inside.
+/// The squares of the distances from cells that are not proven outside, and from those that are proven
+/// inside.
 pub(super) fn least(tree: &OctreeRef<'_>, place: &Place<'_>, hollow: bool) -> Result<[Square; 2], Error> {
     let mut least = Least { hollow, outer: NOWHERE, inner: NOWHERE };
     match least.tag(tree.exterior) {
@@ -74,16 +76,18 @@ pub(super) fn least(tree: &OctreeRef<'_>, place: &Place<'_>, hollow: bool) -> Re
 const CHUNK: usize = 1 << 8;
 
 impl OctreeRef<'_> {
-    /// The distance of a point (model units) from the solid, its complement or its boundary, as the octree's cells and
-    /// its exterior tell it, whatever they prove of the solid that the tree was made from. The point may lie outside of
-    /// the universe. The interval is `[0, ∞]`, or all numbers for [`DistanceTo::Boundary`], if a coordinate is not a
-    /// finite number. `upper` is ∞ if there is no FULL cell, and so is `lower` if there is no PARTIAL cell either.
+    /// The distance of a point (model units) from the solid, its complement or its boundary, as the octree's
+    /// cells and its exterior tell it, whatever they prove of the solid that the tree was made from. The
+    /// point may lie outside of the universe. The interval is `[0, ∞]`, or all numbers for
+    /// [`DistanceTo::Boundary`], if a coordinate is not a finite number. `upper` is ∞ if there is no FULL
+    /// cell, and so is `lower` if there is no PARTIAL cell either.
     ///
-    /// Rounding adds about 2^-56 of the universe's edge to the interval's width; of a point further than four edges
-    /// away, 2^-57 of its distance. A point 2^37 edges away or more at depth 20 is treated as one that is nearer, and
-    /// the interval contains both.
+    /// Rounding adds about 2^-56 of the universe's edge to the interval's width; of a point further than four
+    /// edges away, 2^-57 of its distance. A point 2^37 edges away or more at depth 20 is treated as one that
+    /// is nearer, and the interval contains both.
     ///
-    /// Some dozen elements are read as a rule; whatever the bytes, no more than the tree has for each of two searches.
+    /// Some dozen elements are read as a rule; whatever the bytes, no more than the tree has for each of two
+    /// searches.
     ///
     /// # Errors
     /// None at present: the search allocates nothing.
@@ -106,8 +110,8 @@ impl OctreeRef<'_> {
         })
     }
 
-    /// The distances of many points, `answers[i]` for `points[i]`: the same as [`distance`](Self::distance), on the
-    /// threads of `control`.
+    /// The distances of many points, `answers[i]` for `points[i]`: the same as [`distance`](Self::distance),
+    /// on the threads of `control`.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length; [`Error::OutOfMemory`], and [`Error::Cancelled`].

@@ -10,9 +10,9 @@ use crate::octree::{Planes, Tag};
 
 /// What a search makes of the cells that it meets.
 pub(super) trait Visitor {
-    /// Those of an element's `real` cells, none of which is a branch, that are worth a look. `sides` tells on which side of the
-    /// element the point lies along each axis, if on one: above it or not. `None` if the cells are to be shown as the
-    /// octree has them, octants of one tag as one cell.
+    /// Those of an element's `real` cells, none of which is a branch, that are worth a look. `sides` tells on
+    /// which side of the element the point lies along each axis, if on one: above it or not. `None` if the
+    /// cells are to be shown as the octree has them, octants of one tag as one cell.
     fn chosen(&self, planes: Planes, real: u64, sides: [Option<bool>; 3]) -> Option<u64>;
 
     /// Whether a cell at this distance matters, be it a leaf of `tag` or a BRANCH with leaves of any tags.
@@ -24,8 +24,8 @@ pub(super) trait Visitor {
 
 /// Shows the leaves of a tree to a visitor, near ones first as a rule.
 ///
-/// In a sound tree no element is met twice. Over damaged bytes, as many are met as the tree has; the cells of all
-/// others then read as PARTIAL.
+/// In a sound tree no element is met twice. Over damaged bytes, as many are met as the tree has; the cells of
+/// all others then read as PARTIAL.
 pub(super) fn walk(tree: &OctreeRef<'_>, place: &Place<'_>, visitor: &mut impl Visitor) -> Result<(), Error> {
     let left = tree.planes.len() + tree.bricks.len();
     let mut walk = Walk { tree, place, visitor, left };
@@ -48,8 +48,8 @@ impl<V: Visitor> Walk<'_, '_, V> {
         if self.visitor.wants(square, cell, tag) { self.visitor.meet(square, cell, tag) } else { Ok(()) }
     }
 
-    /// Shows the leaves in element `index` of level `e`, whose own cell is at `at` on its level. The recursion is as
-    /// deep as the tree has element levels, ten at the most.
+    /// Shows the leaves in element `index` of level `e`, whose own cell is at `at` on its level. The
+    /// recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, at: [u32; 3]) -> Result<(), Error> {
         let level = self.tree.cell_level(e);
         let first = at.map(|a| 4 * a);
@@ -74,7 +74,8 @@ impl<V: Visitor> Walk<'_, '_, V> {
         if let Some(chosen) = chosen {
             singles &= chosen;
         } else if level > 1 {
-            // Octants of one tag are cells. (The universe is cut, whatever damaged bytes say of its children.)
+            // Octants of one tag are cells. (The universe is cut, whatever damaged bytes say of its
+            // children.)
             for (octants, tag) in planes.octants().into_iter().zip([Tag::Empty, Tag::Full, Tag::Partial]) {
                 let mut octants = octants & singles;
                 while octants != 0 {

@@ -37,7 +37,8 @@ pub enum Overlap {
 pub struct Ball {
     /// The centre (model units).
     pub centre: [f64; 3],
-    /// The radius (model units), which is positive; 0 if rounding takes all of it, so that the ball is a point that is rounded.
+    /// The radius (model units), which is positive; 0 if rounding takes all of it, so that the ball is a
+    /// point that is rounded.
     pub radius: f64,
 }
 
@@ -64,13 +65,14 @@ impl Ball {
 pub struct Interference {
     /// Whether they overlap.
     pub verdict: Overlap,
-    /// A cell of the frame with points of both, if the proof of an overlap found one, as it does unless stored octrees were asked for
-    /// under placements.
+    /// A cell of the frame with points of both, if the proof of an overlap found one, as it does unless
+    /// stored octrees were asked for under placements.
     pub witness: Option<Cell>,
-    /// If they are proven to overlap, a ball, all of which is proven to lie in both: in that cell, if there is one. It is not the largest
-    /// one.
+    /// If they are proven to overlap, a ball, all of which is proven to lie in both: in that cell, if there
+    /// is one. It is not the largest one.
     pub ball: Option<Ball>,
-    /// The volume of what they have in common, in cubic model units; the upper bound is infinite if `clipped`.
+    /// The volume of what they have in common, in cubic model units; the upper bound is infinite if
+    /// `clipped`.
     pub volume: Interval,
     /// Cells that were split, of the first solid and of the second.
     pub splits: [u64; 2],
@@ -78,26 +80,28 @@ pub struct Interference {
     pub level: u8,
     /// What of the first and of the second solid is proven: what is not counts as undecided.
     pub proofs: [Proof; 2],
-    /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint. (If one
-    /// of them lies inside, all that they have in common does.)
+    /// Whether both solids may go on outside of the universe. Then they are not proven to be disjoint. (If
+    /// one of them lies inside, all that they have in common does.)
     pub clipped: bool,
 }
 
 /// Whether `a` and `b` overlap; a solid under a placement is moved first (see
-/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`. Once an overlap is
-/// proven its volume is measured until the interval is no wider than `tolerance` (cubic model units); infinity ends the
-/// work with the proof.
+/// [`AnySolid::placed`](crate::AnySolid::placed)). What is looked at is the universe of `frame`. Once an
+/// overlap is proven its volume is measured until the interval is no wider than `tolerance` (cubic model
+/// units); infinity ends the work with the proof.
 ///
-/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces), cells are asked for the
-/// function of both: a plane, a quadric or another surface that bounds both, however both were placed, is one, and solids that touch in
-/// it from opposite sides are `Disjoint` by proof. So are solids on two planes or quadrics that touch: of any two, exact numbers tell
-/// whether a point lies inside of both. Where a solid is known between two planes (a mesh, a host's function), solids in
-/// contact stay `Undecided` within that width.
+/// Where both solids are made of surfaces (expressions of half-spaces, and octrees that keep their surfaces),
+/// cells are asked for the function of both: a plane, a quadric or another surface that bounds both, however
+/// both were placed, is one, and solids that touch in it from opposite sides are `Disjoint` by proof. So are
+/// solids on two planes or quadrics that touch: of any two, exact numbers tell whether a point lies inside of
+/// both. Where a solid is known between two planes (a mesh, a host's function), solids in contact stay
+/// `Undecided` within that width.
 ///
-/// The work ends at the frame's depth, or once `control.max_splits` cells of both are split or what is remembered of
-/// them comes near to `control.max_bytes`, with what is known by then. Memory is linear in the cells that are not
-/// decided. The search takes one thread, but for a host program's shape, which is asked about several cells at once; the measurement
-/// takes as many as `control` allows. The result is the same for any number of them.
+/// The work ends at the frame's depth, or once `control.max_splits` cells of both are split or what is
+/// remembered of them comes near to `control.max_bytes`, with what is known by then. Memory is linear in the
+/// cells that are not decided. The search takes one thread, but for a host program's shape, which is asked
+/// about several cells at once; the measurement takes as many as `control` allows. The result is the same for
+/// any number of them.
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solids refuse;
@@ -168,23 +172,24 @@ fn of_classifiers<A: Classifier, B: Classifier>(
 }
 
 /// As [`interference`] of `a` with `b` under each of the `placements`, in their order; the first of both is
-/// known on `frame`, the second on its `own` frame, and both are prepared once. An expression of half-spaces is moved itself
-/// ([`Motion::Exact`]), so that contacts are decided. The same for any number of threads; `control.max_splits` concerns each
-/// placement.
+/// known on `frame`, the second on its `own` frame, and both are prepared once. An expression of half-spaces
+/// is moved itself ([`Motion::Exact`]), so that contacts are decided. The same for any number of threads;
+/// `control.max_splits` concerns each placement.
 ///
 /// # Stored octrees
-/// Two [`Octree`](crate::Octree)s, or views of them, also behind [`AnySolid`](crate::AnySolid), are not searched by cells of
-/// `frame`: both trees descend in pairs of cells, as boxes that the placement turns. Nothing blurs, and a pair of solids that
-/// overlap by less than a cell is found out, too; [`Interference::ball`] is the proof. `splits` counts cells of both trees. The
-/// trees must be certified and without surfaces, cut an eighth of their universes, end inside of these, and be known on just the
-/// frames that are given.
-/// Any affine placement will do. Where a finite `tolerance` asks for the volume of an overlap, the search by cells follows.
+/// Two [`Octree`](crate::Octree)s, or views of them, also behind [`AnySolid`](crate::AnySolid), are not
+/// searched by cells of `frame`: both trees descend in pairs of cells, as boxes that the placement turns.
+/// Nothing blurs, and a pair of solids that overlap by less than a cell is found out, too;
+/// [`Interference::ball`] is the proof. `splits` counts cells of both trees. The trees must be certified and
+/// without surfaces, cut an eighth of their universes, end inside of these, and be known on just the frames
+/// that are given. Any affine placement will do. Where a finite `tolerance` asks for the volume of an
+/// overlap, the search by cells follows.
 ///
-/// Where that does not decide, an octree that keeps its surfaces is moved with these, as [`Transform`] moves it: contacts are decided as
-/// [`interference`] decides them.
+/// Where that does not decide, an octree that keeps its surfaces is moved with these, as [`Transform`] moves
+/// it: contacts are decided as [`interference`] decides them.
 ///
-/// A placement takes a few microseconds, and more where the solids nearly touch: the work grows with the area where the gap is as
-/// narrow as a cell, measured in such cells.
+/// A placement takes a few microseconds, and more where the solids nearly touch: the work grows with the area
+/// where the gap is as narrow as a cell, measured in such cells.
 ///
 /// ```
 /// use leafless::query::{Overlap, interference_at};
@@ -271,7 +276,8 @@ pub fn interference_at<A: Solid, B: Solid>(
     })
 }
 
-/// Whether oriented boxes told all that is asked for. Cells on planes of the lattice tell more of contacts along these.
+/// Whether oriented boxes told all that is asked for. Cells on planes of the lattice tell more of contacts
+/// along these.
 fn is_enough(known: &Interference, placement: &Affine, tolerance: f64) -> bool {
     let is_certain = known.verdict != Overlap::Undecided || !placement.is_monomial();
     is_certain && known.volume.width() <= tolerance

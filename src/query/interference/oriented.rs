@@ -1,12 +1,13 @@
 //! Two stored octrees under a placement: both trees descend in pairs of cells, as oriented boxes.
 //!
-//! A pair of cells is dropped as soon as an axis separates them. Fifteen axes are tried: the normals of the faces of
-//! both boxes, and the products of an edge of one with an edge of the other. A larger cell is split first, and its
-//! eight children are tried against the other cell at once. Two FULL cells that no axis separates overlap, and a ball
-//! in both is the proof ([`super::pose`] does the arithmetic).
+//! A pair of cells is dropped as soon as an axis separates them. Fifteen axes are tried: the normals of the
+//! faces of both boxes, and the products of an edge of one with an edge of the other. A larger cell is split
+//! first, and its eight children are tried against the other cell at once. Two FULL cells that no axis
+//! separates overlap, and a ball in both is the proof ([`super::pose`] does the arithmetic).
 //!
-//! The pair that overlaps most deeply comes first. So a collision is found after few pairs, and its cost does not grow
-//! with the resolution. If nothing overlaps, the order does not matter: all pairs have to be separated.
+//! The pair that overlaps most deeply comes first. So a collision is found after few pairs, and its cost does
+//! not grow with the resolution. If nothing overlaps, the order does not matter: all pairs have to be
+//! separated.
 
 use super::pose::{Extent, Place, Pose, least_volume};
 use super::{Ball, Interference, Overlap};
@@ -31,7 +32,8 @@ pub(super) struct Stored<'t> {
     most: f64,
 }
 
-/// The tree of a solid that is nothing but a stored octree, proven in all its cells, and ends inside of the universe.
+/// The tree of a solid that is nothing but a stored octree, proven in all its cells, and ends inside of the
+/// universe.
 pub(super) fn stored<'w, C: Classifier>(
     classifier: &C,
     worker: &'w mut C::Worker,

@@ -1,17 +1,18 @@
 //! Cells of one lattice against cells of another one under an affine map: separating axes, and balls in both.
 //!
-//! A cell of the second lattice is a parallelepiped on the first one: a box that is turned, if the map is rigid. What
-//! depends on the map alone is computed once a pose: fifteen axes, the radius that a cell of either lattice has along
-//! each of them, and the steps that the centre makes from a cell to its children.
+//! A cell of the second lattice is a parallelepiped on the first one: a box that is turned, if the map is
+//! rigid. What depends on the map alone is computed once a pose: fifteen axes, the radius that a cell of
+//! either lattice has along each of them, and the steps that the centre makes from a cell to its children.
 //!
 //! # Rounding
 //!
-//! Any axis at all proves that two convex bodies are apart, if their shadows on it are. So the fifteen axes need not be
-//! accurate, and the doubles that they are count as exact. What is rounded are the map and the sums: `slack` bounds
-//! that per axis, and the bound is added to the radii.
+//! Any axis at all proves that two convex bodies are apart, if their shadows on it are. So the fifteen axes
+//! need not be accurate, and the doubles that they are count as exact. What is rounded are the map and the
+//! sums: `slack` bounds that per axis, and the bound is added to the radii.
 //!
-//! Eight children are tried in single precision. Where a centre lies near the limit, it is about as large as the
-//! radii, and so its rounding is relative to these: all of it is less than 2^-22 of them, and 2^-20 are added.
+//! Eight children are tried in single precision. Where a centre lies near the limit, it is about as large as
+//! the radii, and so its rounding is relative to these: all of it is less than 2^-22 of them, and 2^-20 are
+//! added.
 
 use super::Ball;
 use crate::lattice::exact::{product_down, product_up, sqrt};
@@ -94,8 +95,8 @@ pub(super) struct Pose {
     shares: [[[f64; LANES]; 3]; 2],
     /// What is added to radii for rounding.
     slack: [f64; LANES],
-    /// How the difference of the centres changes along the axes from a cell of each lattice to its eight children, for half an
-    /// edge of 1 of a child.
+    /// How the difference of the centres changes along the axes from a cell of each lattice to its eight
+    /// children, for half an edge of 1 of a child.
     steps: [[f32x8; AXES]; 2],
     /// From a distance along the normal of a face to one in finest cells.
     units: [f32; FACES],
@@ -111,7 +112,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A vector along `v` whose longest coordinate is about 1. Of one that has no direction none separates anything.
+/// A vector along `v` whose longest coordinate is about 1. Of one that has no direction none separates
+/// anything.
 fn direction(v: [f64; 3]) -> [f64; 3] {
     let largest = v.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
     if largest > 0.0 && largest < f64::INFINITY { v.map(|c| c / largest) } else { [1.0, 0.0, 0.0] }
@@ -215,8 +217,8 @@ impl Pose {
         a.edge() >= b.edge() * self.longest
     }
 
-    /// Which of the children `some` of a cell, of the first lattice or of the second, no axis separates from a box of the other
-    /// lattice, and how deeply each overlaps as a share of the edges.
+    /// Which of the children `some` of a cell, of the first lattice or of the second, no axis separates from
+    /// a box of the other lattice, and how deeply each overlaps as a share of the edges.
     #[inline(always)]
     pub(super) fn overlapping(&self, cell: &Place, of_a: bool, other: &Extent, some: u8) -> (u8, [f32; 8]) {
         let half = 0.25 * cell.edge();
@@ -271,8 +273,8 @@ impl Pose {
         })
     }
 
-    /// A ball in two cells, the second one placed, and a cell of the frame in both, if one is found. Nothing if the cells touch, or
-    /// overlap so little that rounding might be all of it.
+    /// A ball in two cells, the second one placed, and a cell of the frame in both, if one is found. Nothing
+    /// if the cells touch, or overlap so little that rounding might be all of it.
     pub(super) fn ball(&self, a: &Place, b: &Place) -> Option<(Ball, Option<Cell>)> {
         let (back, scale) = (self.placement.inverse_linear(), self.frame.cell_size() / self.own.cell_size());
         let two = Two {
@@ -286,7 +288,8 @@ impl Pose {
         two.ball()
     }
 
-    /// At most the volume that two solids have in common that take up so many finest cells each, in cubic model units.
+    /// At most the volume that two solids have in common that take up so many finest cells each, in cubic
+    /// model units.
     pub(super) fn most(&self, a: f64, b: f64) -> f64 {
         product_up(a, self.volumes[0]).min(product_up(b, self.volumes[1]))
     }
@@ -324,8 +327,8 @@ impl Two<'_> {
         (radius > 0.0).then(|| (Ball { centre: at, radius }, self.cell(inside)))
     }
 
-    /// How large a ball around a point lies in both cells, in finest cells of the first lattice; not positive, or no number, if none
-    /// does.
+    /// How large a ball around a point lies in both cells, in finest cells of the first lattice; not
+    /// positive, or no number, if none does.
     fn radius(&self, point: &[f64; 3]) -> f64 {
         let own = (0..3).map(|i| self.half - point[i].abs()).fold(f64::INFINITY, f64::min);
         (0..3).fold(own, |least, k| least.min((self.other - self.reach(k, point)) / norm(self.inverse[k])))

@@ -1,9 +1,9 @@
 //! The search for an overlap.
 //!
-//! Both solids are asked about the cells of one frame ([`Joint`]). A cell where one of them is EMPTY, or where what is known of both
-//! excludes each other, is done; a cell where both are FULL proves an overlap, and so does a ball in a cell on the inner sides of all
-//! slabs. Of any other cell the sides that are cut are split: so a cell of either is split once at the most, and only where the other
-//! one is.
+//! Both solids are asked about the cells of one frame ([`Joint`]). A cell where one of them is EMPTY, or
+//! where what is known of both excludes each other, is done; a cell where both are FULL proves an overlap,
+//! and so does a ball in a cell on the inner sides of all slabs. Of any other cell the sides that are cut are
+//! split: so a cell of either is split once at the most, and only where the other one is.
 //!
 //! Which cell comes first does not matter to a proof that nothing overlaps, which needs them all. A proof of
 //! overlap needs a single one, so the search begins where it is likely: a cut cell with FULL siblings lies
@@ -88,7 +88,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         self.both.worker.likes_many()
     }
 
-    /// Searches until an overlap is proven, none is possible, or the budget is spent. `threads` ask a host program.
+    /// Searches until an overlap is proven, none is possible, or the budget is spent. `threads` ask a host
+    /// program.
     pub(super) fn run(mut self, clipped: bool, threads: usize, job: &Job<'_>) -> Result<Found, Error> {
         job.check()?;
         let root = self.both.worker.root()?;
@@ -226,8 +227,8 @@ impl<'s, A: Classifier, B: Classifier> Search<'s, A, B> {
         Ok(())
     }
 
-    /// Gives back memory that only parts hold which are not in use. `false` if those in use take too much of what is
-    /// allowed.
+    /// Gives back memory that only parts hold which are not in use. `false` if those in use take too much of
+    /// what is allowed.
     fn tidy(&mut self) -> Result<bool, Error> {
         let both = &mut self.both;
         let is_full = both.takes(2);

@@ -18,7 +18,8 @@ use core::ops::AddAssign;
 pub struct SurfaceArea {
     /// In square model units. It contains the truth; its upper end is infinite where nothing is known.
     pub area: Interval,
-    /// Whether the solid may go on outside of the universe, or does: then the area is that of the boundary inside.
+    /// Whether the solid may go on outside of the universe, or does: then the area is that of the boundary
+    /// inside.
     pub clipped: bool,
     /// Why it ended.
     pub stop_reason: StopReason,
@@ -34,22 +35,23 @@ pub const AREA_SPLITS: u64 = 1 << 23;
 /// How many frames are tried.
 const FRAMES: u8 = 8;
 
-/// The area of the boundary of `solid` in the universe of `frame`, as [`measure`](crate::measure) finds the volume: to a
-/// `tolerance` (a number is relative to the middle of the interval), with at most `max_splits` of `control`
-/// ([`AREA_SPLITS`] if there is none), and with the same result for any number of threads.
+/// The area of the boundary of `solid` in the universe of `frame`, as [`measure`](crate::measure) finds the
+/// volume: to a `tolerance` (a number is relative to the middle of the interval), with at most `max_splits`
+/// of `control` ([`AREA_SPLITS`] if there is none), and with the same result for any number of threads.
 ///
-/// With N splits the width goes down with 1/N on curved surfaces and where plane ones meet. A mesh that is closed and
-/// whose triangles do not intersect is not split.
+/// With N splits the width goes down with 1/N on curved surfaces and where plane ones meet. A mesh that is
+/// closed and whose triangles do not intersect is not split.
 ///
-/// What lies between two cells belongs to neither of them. If the boundary has pieces in planes of the lattice, the area
-/// of a solid that ends inside of the universe is found on another lattice, whose planes are elsewhere. Three solids stay on
-/// their own lattice: an extended octree ([`build_extended`](crate::build_extended)), an octree without PARTIAL cells, and an
-/// expression that is clipped. Their cells count the pieces that lie in faces between cells, where the solid differs on the two
-/// sides. An extended octree so has the area of its source, as sharp after as many splits. A cell that keeps slabs has no upper
-/// bound, and neither has a cell that is given up.
+/// What lies between two cells belongs to neither of them. If the boundary has pieces in planes of the
+/// lattice, the area of a solid that ends inside of the universe is found on another lattice, whose planes
+/// are elsewhere. Three solids stay on their own lattice: an extended octree
+/// ([`build_extended`](crate::build_extended)), an octree without PARTIAL cells, and an expression that is
+/// clipped. Their cells count the pieces that lie in faces between cells, where the solid differs on the two
+/// sides. An extended octree so has the area of its source, as sharp after as many splits. A cell that keeps
+/// slabs has no upper bound, and neither has a cell that is given up.
 ///
-/// Nothing is known of an octree with PARTIAL cells that keep no surfaces, of a host program's functions, and of a clipped mesh
-/// with faces in planes of the lattice.
+/// Nothing is known of an octree with PARTIAL cells that keep no surfaces, of a host program's functions, and
+/// of a clipped mesh with faces in planes of the lattice.
 ///
 /// # Errors
 /// As [`measure`](crate::measure).

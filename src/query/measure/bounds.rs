@@ -1,9 +1,10 @@
 //! What the moments of two sets prove of a solid that lies between them.
 //!
-//! The solid S contains the FULL cells and the parts of PARTIAL ones that are known to be inside, F. It lies in A, which
-//! is F and what is open: PARTIAL cells, or the parts of them that are not decided. All its
-//! volume integrals of one sign are therefore bounded by those of F and of A, and so is more. (Where F and A are no sets
-//! but moments, their matrices are as those of such sets in the order of Loewner, which is all that is used.)
+//! The solid S contains the FULL cells and the parts of PARTIAL ones that are known to be inside, F. It lies
+//! in A, which is F and what is open: PARTIAL cells, or the parts of them that are not decided. All its
+//! volume integrals of one sign are therefore bounded by those of F and of A, and so is more. (Where F and A
+//! are no sets but moments, their matrices are as those of such sets in the order of Loewner, which is all
+//! that is used.)
 //!
 //! - The matrix ∫ x xᵀ of second moments about a point grows with the set in the order of Loewner: the
 //!   difference for two nested sets is the matrix of what lies between, which is positive semidefinite. So
@@ -206,8 +207,8 @@ fn nearest(a: i128, b: i128) -> i128 {
     (2 * a + b) / (2 * b)
 }
 
-/// A number that the centroid's coordinate does not exceed, from moments of F and of what is open along the axis;
-/// the volume of F is positive.
+/// A number that the centroid's coordinate does not exceed, from moments of F and of what is open along the
+/// axis; the volume of F is positive.
 fn farthest(
     full_volume: Interval,
     full_first: Interval,

@@ -1,16 +1,19 @@
 //! A solid whose cells know what of the boundary lies in their faces.
 //!
-//! A piece of the boundary that lies in a plane of the lattice is in no open cell. It is where the solids on both sides of a face
-//! differ. So a cell goes with its neighbour below along each axis: it counts the pieces that lie in its three lower faces, and
-//! those in upper faces that lie in the universe's hull. Pieces of the hull count if what is outside is decided.
+//! A piece of the boundary that lies in a plane of the lattice is in no open cell. It is where the solids on
+//! both sides of a face differ. So a cell goes with its neighbour below along each axis: it counts the pieces
+//! that lie in its three lower faces, and those in upper faces that lie in the universe's hull. Pieces of the
+//! hull count if what is outside is decided.
 //!
 //! Faces that hold nothing are not looked at again, nor are parts of them:
-//! - Between the children of a cell no piece can be, if no surface of the cell holds a piece of a plane of the lattice. So what is
-//!   below a cut cell is asked as it would be without faces.
-//! - Between two cells that are cut there is none if the functions of their surfaces are the same. (But a surface may vanish on the
-//!   face, and be positive on one side and negative on the other: then its signs there have nothing to do with each other.)
+//! - Between the children of a cell no piece can be, if no surface of the cell holds a piece of a plane of
+//!   the lattice. So what is below a cut cell is asked as it would be without faces.
+//! - Between two cells that are cut there is none if the functions of their surfaces are the same. (But a
+//!   surface may vanish on the face, and be positive on one side and negative on the other: then its signs
+//!   there have nothing to do with each other.)
 //!
-//! Between a cell that is cut and one that is decided, the piece is the section of the former with the face, or the rest of the face.
+//! Between a cell that is cut and one that is decided, the piece is the section of the former with the face,
+//! or the rest of the face.
 
 use crate::control::Control;
 use crate::cut::Section;
@@ -44,8 +47,8 @@ impl<C: Classifier> WithFaces<C> {
     /// `None` if the solid is not made of surfaces that are known.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`]; [`Error::Cancelled`] by `control`; [`Error::Limit`] if the exact map of a surface's placements is
-    /// too long.
+    /// [`Error::OutOfMemory`]; [`Error::Cancelled`] by `control`; [`Error::Limit`] if the exact map of a
+    /// surface's placements is too long.
     pub(super) fn new(inner: C, control: &Control<'_>) -> Result<Option<WithFaces<C>>, Error> {
         let Some(surfaces) = inner.surfaces(control)? else { return Ok(None) };
         let mut holds = Vec::new();
@@ -165,7 +168,8 @@ impl<W: Worker> WithFacesWorker<W> {
                 && self.outside.iter().all(|outside| is_same(outside) || !touches_upper_hull(cell))
         };
         let is_unknown = |verdict: &Verdict<W::Part>| matches!(verdict, Verdict::Undecided);
-        // No upper bound is known of what a neighbour like that has in common with the cell, nor of the neighbour itself.
+        // No upper bound is known of what a neighbour like that has in common with the cell, nor of the
+        // neighbour itself.
         if is_unknown(&own) || below.iter().flatten().any(is_unknown) {
             Verdict::Undecided
         } else if is(Tag::Empty) {
@@ -184,7 +188,8 @@ impl<W: Worker> WithFacesWorker<W> {
         }
     }
 
-    /// The area of the boundary in a face of a cell, beyond which is a neighbour (in squares of the cell's half edge).
+    /// The area of the boundary in a face of a cell, beyond which is a neighbour (in squares of the cell's
+    /// half edge).
     fn area_of_face(
         &mut self,
         axis: usize,
@@ -198,8 +203,8 @@ impl<W: Worker> WithFacesWorker<W> {
         };
         let a = self.section(axis, near, cell, own)?;
         let b = self.section(axis, far, neighbour, other)?;
-        // Of two sets of which only the areas are known, the difference has at least that of the areas; it has at most all that is
-        // in either, and at most all that is missing in either.
+        // Of two sets of which only the areas are known, the difference has at least that of the areas; it
+        // has at most all that is in either, and at most all that is missing in either.
         let (sum, apart) = (a.plus(b), a.minus(b));
         let rest = Interval::exactly(8.0).minus(sum);
         let least = apart.lower.max(-apart.upper).max(0.0);

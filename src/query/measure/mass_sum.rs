@@ -14,9 +14,10 @@ use crate::walk::Proven;
 
 /// What is known of the volume and the moments of a solid in some cells of its frame.
 ///
-/// Sums are in fixed point: they are the same in any order, and taking off what was added leaves what there was. So the measures of
-/// a solid can be taken cell by cell, on several machines, and added up. What is measured of all cells of one level is what
-/// [`measure`](crate::measure) finds, as long as the splits are the same: of octrees without surfaces always, with a tolerance of 0.
+/// Sums are in fixed point: they are the same in any order, and taking off what was added leaves what there
+/// was. So the measures of a solid can be taken cell by cell, on several machines, and added up. What is
+/// measured of all cells of one level is what [`measure`](crate::measure) finds, as long as the splits are
+/// the same: of octrees without surfaces always, with a tolerance of 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MassSum {
     frame: Frame,
@@ -28,8 +29,8 @@ pub struct MassSum {
     splits: u64,
 }
 
-/// Measures the part of `solid` in one cell of `frame`, as [`measure`](crate::measure) does the whole: the tolerance concerns the
-/// volume in the cell. A solid that knows its moments is split all the same.
+/// Measures the part of `solid` in one cell of `frame`, as [`measure`](crate::measure) does the whole: the
+/// tolerance concerns the volume in the cell. A solid that knows its moments is split all the same.
 ///
 /// # Errors
 /// As [`measure`](crate::measure); [`Error::Argument`] if the frame does not have the cell.
@@ -115,7 +116,8 @@ impl MassSum {
     /// The sum with that of other cells.
     ///
     /// # Errors
-    /// [`Error::FrameMismatch`]; [`Error::Argument`] if it is more than the universe holds: then a cell was added twice.
+    /// [`Error::FrameMismatch`]; [`Error::Argument`] if it is more than the universe holds: then a cell was
+    /// added twice.
     pub fn plus(&self, other: &MassSum) -> Result<MassSum, Error> {
         self.with(
             other,
@@ -123,7 +125,8 @@ impl MassSum {
         )
     }
 
-    /// The sum without that of some of its cells: [`plus`](Self::plus) the other way round. What is proven stays, and so do splits.
+    /// The sum without that of some of its cells: [`plus`](Self::plus) the other way round. What is proven
+    /// stays, and so do splits.
     ///
     /// # Errors
     /// [`Error::FrameMismatch`]; [`Error::Argument`] if that leaves less than nothing.
@@ -173,7 +176,8 @@ impl MassSum {
         })
     }
 
-    /// The sum as bytes, for another process that adds it up. Their meaning is that of one version of the library.
+    /// The sum as bytes, for another process that adds it up. Their meaning is that of one version of the
+    /// library.
     pub fn to_bytes(&self) -> [u8; MassSum::BYTES] {
         let flags = self.proof.bits() | u8::from(self.clipped) << 2 | (self.stop_reason as u8) << 3;
         let frame = self.frame;
@@ -245,7 +249,8 @@ impl MassSum {
     /// Volume, centroid and inertia.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the cells of depth 20 of the frame are too small to have coordinates of their own.
+    /// [`Error::Argument`] if the cells of depth 20 of the frame are too small to have coordinates of their
+    /// own.
     pub fn properties(&self) -> Result<MassProperties, Error> {
         let known = Known { frame: self.frame.with_depth(MAX_DEPTH)?, found: self.found };
         Ok(MassProperties {

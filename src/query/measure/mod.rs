@@ -55,8 +55,8 @@ pub struct MassProperties {
     /// Whether the solid may go on outside of the universe, or does: the measures then are those of the part
     /// inside.
     pub clipped: bool,
-    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is closed and
-    /// whose triangles do not intersect.
+    /// Whether the solid was not split because it knows its own moments, up to rounding: a mesh does that is
+    /// closed and whose triangles do not intersect.
     pub exact: bool,
     /// Why it ended.
     pub stop_reason: StopReason,
@@ -126,30 +126,31 @@ impl From<f64> for Tolerance {
 /// Splits after which a measurement ends if `max_splits` does not say otherwise: a minute or so.
 pub const MEASURE_SPLITS: u64 = 1 << 26;
 
-/// Measures `solid` in the universe of `frame`, without building a tree: the cells of which most is in doubt are
-/// split first, until the width of the volume's interval is within `tolerance` (a number is relative to the
-/// middle of the interval), `max_splits` of `control` ([`MEASURE_SPLITS`] if there is none) are spent, or nothing is
-/// left to split at the frame's depth. With a tolerance of 0 only the latter two end it, or that nothing is in
-/// doubt.
+/// Measures `solid` in the universe of `frame`, without building a tree: the cells of which most is in doubt
+/// are split first, until the width of the volume's interval is within `tolerance` (a number is relative to
+/// the middle of the interval), `max_splits` of `control` ([`MEASURE_SPLITS`] if there is none) are spent, or
+/// nothing is left to split at the frame's depth. With a tolerance of 0 only the latter two end it, or that
+/// nothing is in doubt.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), the cell contributes what the slabs
-/// cut off, and only the rest is in doubt; where it knows the moments ([`Question::Moments`](crate::solid::Question::Moments)), nothing
-/// is but their error. With N splits the width goes down with N^-1.5 where one curved half-space cuts a cell, with 1/N at
-/// other curved surfaces, with 1/N² at plane ones, and with N^-½ for solids that know no slabs.
+/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), the cell contributes
+/// what the slabs cut off, and only the rest is in doubt; where it knows the moments
+/// ([`Question::Moments`](crate::solid::Question::Moments)), nothing is but their error. With N splits the
+/// width goes down with N^-1.5 where one curved half-space cuts a cell, with 1/N at other curved surfaces,
+/// with 1/N² at plane ones, and with N^-½ for solids that know no slabs.
 ///
-/// A solid that knows its moments is not split, if it lies in the universe: a mesh that is closed and whose triangles
-/// do not intersect ([`TriangleMesh::moments`](crate::TriangleMesh::moments)). It is known up to rounding, whatever
-/// the tolerance.
+/// A solid that knows its moments is not split, if it lies in the universe: a mesh that is closed and whose
+/// triangles do not intersect ([`TriangleMesh::moments`](crate::TriangleMesh::moments)). It is known up to
+/// rounding, whatever the tolerance.
 ///
 /// The result depends on the solid, the frame, the tolerance and `max_splits` only: it is the same bit for
 /// bit for any number of threads. Work goes in passes, and under a budget the last whole pass counts. Time is
-/// linear in the splits; memory is that of some ten thousand parts at the most, since from a number of undecided
-/// cells on the levels below are walked through again and again, each time deeper, and not kept; with a `max_bytes` of `control` from
-/// fewer cells on. Other limits are not heeded.
+/// linear in the splits; memory is that of some ten thousand parts at the most, since from a number of
+/// undecided cells on the levels below are walked through again and again, each time deeper, and not kept;
+/// with a `max_bytes` of `control` from fewer cells on. Other limits are not heeded.
 ///
-/// Of what is in doubt any part may belong to the solid, and the intervals contain what comes of each choice. Volume and
-/// the diagonals of the tensors cannot be told better from the cells; products of inertia and the centroid are bounded by
-/// means of the second moments of what is in doubt (Loewner's order; Scarf 1958).
+/// Of what is in doubt any part may belong to the solid, and the intervals contain what comes of each choice.
+/// Volume and the diagonals of the tensors cannot be told better from the cells; products of inertia and the
+/// centroid are bounded by means of the second moments of what is in doubt (Loewner's order; Scarf 1958).
 ///
 /// # Errors
 /// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses, as

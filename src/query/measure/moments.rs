@@ -1,7 +1,7 @@
 //! Volume and its first and second moments, in fixed point: sums are the same in any order.
 //!
-//! Whole cells are counted and nothing of theirs is rounded. Of cut cells the moments are rounded, to a 2^44th of the
-//! cell; what they may be off by is counted too.
+//! Whole cells are counted and nothing of theirs is rounded. Of cut cells the moments are rounded, to a
+//! 2^44th of the cell; what they may be off by is counted too.
 
 use crate::cut;
 use crate::lattice::axes;
@@ -16,9 +16,9 @@ pub(super) const BITS: u32 = 16;
 /// The volume of the universe.
 pub(super) const UNIVERSE: i128 = 1 << (3 * MAX_DEPTH as u32 + BITS);
 
-/// Moments of a set, about a point of the lattice of half *grains*, a grain being a 2^20th of the universe's edge.
-/// With lengths in half grains and volumes in grains they are volume, ∫x and 3·∫xy, times 2^[`BITS`], and
-/// integers: below 2^76, 2^97 and 2^120.
+/// Moments of a set, about a point of the lattice of half *grains*, a grain being a 2^20th of the universe's
+/// edge. With lengths in half grains and volumes in grains they are volume, ∫x and 3·∫xy, times 2^[`BITS`],
+/// and integers: below 2^76, 2^97 and 2^120.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Moments {
     pub(super) volume: i128,
@@ -118,8 +118,8 @@ impl LevelSums {
 /// Bits behind the point of what is known of one cut cell, as a share of the cell.
 const SHARE_BITS: u32 = 44;
 
-/// Sums over cut cells of one level. A cell at c (half its own edges) with the shares v of the volume, m of the first
-/// and s of the second moments about its centre adds v, v c, v c c', m, m c' + m' c and s.
+/// Sums over cut cells of one level. A cell at c (half its own edges) with the shares v of the volume, m of
+/// the first and s of the second moments about its centre adds v, v c, v c c', m, m c' + m' c and s.
 #[derive(Clone, Copy, Default)]
 struct CutSums {
     count: u64,

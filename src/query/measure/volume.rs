@@ -43,8 +43,8 @@ pub(super) enum Known {
 pub(super) struct Volume {
     full: Tally,
     open: Tally,
-    /// Of cells that an enclosure cuts: the sets in the solid, and those around it; and of those whose moments are
-    /// known, bounds of them.
+    /// Of cells that an enclosure cuts: the sets in the solid, and those around it; and of those whose
+    /// moments are known, bounds of them.
     low: Tally,
     high: Tally,
 }
@@ -104,13 +104,14 @@ impl Volume {
     }
 }
 
-/// Moments of which the matrices are, in the order of Loewner, below and above that of the solid: this is all that
-/// follows, for what is concluded, from sets between which the solid lies.
+/// Moments of which the matrices are, in the order of Loewner, below and above that of the solid: this is all
+/// that follows, for what is concluded, from sets between which the solid lies.
 ///
-/// The matrix is that of the products of 1, x, y and z, and none of its elements is off by more than the error e. A
-/// diagonal matrix is above all such differences if, for some s, its first element is e (1 + 3 s), and the others are
-/// e (3 + 1/s): its rows then dominate those of the difference, with the weights 1, s, s, s. The smaller s, the less is
-/// the volume in doubt, and the more the second moments about the centre, which count little in a small cell.
+/// The matrix is that of the products of 1, x, y and z, and none of its elements is off by more than the
+/// error e. A diagonal matrix is above all such differences if, for some s, its first element is e (1 + 3 s),
+/// and the others are e (3 + 1/s): its rows then dominate those of the difference, with the weights 1, s, s,
+/// s. The smaller s, the less is the volume in doubt, and the more the second moments about the centre, which
+/// count little in a small cell.
 fn bounds(known: &CellMoments) -> (CubeMoments, CubeMoments) {
     let CellMoments { moments, error } = *known;
     let s = if error < 1.0 / 16.0 { 1.0 / 48.0 } else { 0.5 };

@@ -1,12 +1,13 @@
 //! Splitting those cells of which most is in doubt.
 //!
-//! The *doubt* of an undecided cell is a bound of what the quantity that is measured there may differ by: of a volume
-//! all of the cell, or what its enclosure leaves open. Work goes in passes. Each has a *threshold*, and
-//! splits all cells whose doubt is greater; the next one has a lower threshold. Cells whose doubt is not greater are
-//! *leaves*: they contribute what is known of them.
+//! The *doubt* of an undecided cell is a bound of what the quantity that is measured there may differ by: of
+//! a volume all of the cell, or what its enclosure leaves open. Work goes in passes. Each has a *threshold*,
+//! and splits all cells whose doubt is greater; the next one has a lower threshold. Cells whose doubt is not
+//! greater are *leaves*: they contribute what is known of them.
 //!
-//! At first all open cells are kept with their parts: the *front*. Once it is long, memory matters more than splits,
-//! and it stays as it is: each pass walks depth first through what lies below it and keeps nothing but sums.
+//! At first all open cells are kept with their parts: the *front*. Once it is long, memory matters more than
+//! splits, and it stays as it is: each pass walks depth first through what lies below it and keeps nothing
+//! but sums.
 
 use super::quantity::{Found, Quantity};
 use super::{StopReason, Tolerance};
@@ -263,14 +264,15 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         self.is_close(found.least(), found.doubt())
     }
 
-    /// Whether it is worth looking if the tolerance is met: doubts are bounds, and up to some times too great.
+    /// Whether it is worth looking if the tolerance is met: doubts are bounds, and up to some times too
+    /// great.
     fn may_be_met(&self, settled: &Q::Found, doubts: f64) -> bool {
         let (least, doubt) = (settled.least(), settled.doubt());
         self.is_close(least + 0.5 * Q::UNIVERSE * doubts, doubt + 0.1 * Q::UNIVERSE * doubts)
     }
 
-    /// Whether `doubt` is little enough beside `least`, both in units of what is found. Where no upper bound is known, it is
-    /// not, though the middle is infinite too.
+    /// Whether `doubt` is little enough beside `least`, both in units of what is found. Where no upper bound
+    /// is known, it is not, though the middle is infinite too.
     fn is_close(&self, least: f64, doubt: f64) -> bool {
         doubt <= 0.0
             || doubt < f64::INFINITY && doubt <= self.tolerance.relative * (least + 0.5 * doubt)
@@ -287,8 +289,8 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
     fn next_threshold(&self, found: &Q::Found, threshold: f64, last: Option<(f64, f64)>) -> f64 {
         let (least, open) = (found.least().max(0.0), found.doubt().max(1.0));
         let wanted = (self.tolerance.relative * least).max(self.tolerance.absolute / self.unit());
-        // What is in doubt goes down with a power of the threshold: the third root where cells are in doubt as a
-        // whole, the square root where surfaces are curved, and faster at plane ones.
+        // What is in doubt goes down with a power of the threshold: the third root where cells are in doubt
+        // as a whole, the square root where surfaces are curved, and faster at plane ones.
         let power = match last {
             Some((before, at)) if at > threshold && before > open => {
                 (libm::log(at / threshold) / libm::log(before / open)).clamp(1.0, 3.0)
@@ -321,8 +323,8 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         Ok(total(*settled, front))
     }
 
-    /// Splits the cells of the front whose doubt is greater: what is settled by it, the new front, and the finest
-    /// level.
+    /// Splits the cells of the front whose doubt is greater: what is settled by it, the new front, and the
+    /// finest level.
     fn split(&self, front: &mut [ChunkOf<Q, C>], threshold: f64) -> Result<Step<Q, C>, Error> {
         let (mut settled, mut next, mut level) = (Q::Found::default(), Vec::new(), 0);
         let tasks = front.iter_mut();
@@ -406,9 +408,9 @@ impl<Q: Quantity, C: Classifier> Walk<'_, Q, C> {
         })
     }
 
-    /// Walks through what lies below the front, to cells whose doubt is not greater: the number of splits, and the
-    /// greatest doubt of a cell that can be split. `None`, and nothing changed, if that takes more splits than are
-    /// left.
+    /// Walks through what lies below the front, to cells whose doubt is not greater: the number of splits,
+    /// and the greatest doubt of a cell that can be split. `None`, and nothing changed, if that takes more
+    /// splits than are left.
     fn deepen(
         &self,
         front: &mut [ChunkOf<Q, C>],

@@ -55,8 +55,9 @@ impl OctreeRef<'_> {
     /// Whether the solid contains `point` (model units). A point on the boundary may be answered either
     /// way. At most ⌈depth/2⌉ elements are read; never fails, whatever the bytes.
     ///
-    /// Cuts decide in place, by arithmetic in doubles: the answer may be [`Undecided`](Membership::Undecided) for points that are
-    /// next to a surface, by about 10^-15 of the coordinates. Asked as a [solid](crate::contains), the tree decides these, too.
+    /// Cuts decide in place, by arithmetic in doubles: the answer may be [`Undecided`](Membership::Undecided)
+    /// for points that are next to a surface, by about 10^-15 of the coordinates. Asked as a
+    /// [solid](crate::contains), the tree decides these, too.
     #[inline]
     pub fn contains(&self, point: [f64; 3]) -> Membership {
         if let Some(cuts) = &self.cuts {

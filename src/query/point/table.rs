@@ -12,11 +12,11 @@ use crate::octree::view::OctreeRef;
 use alloc::vec::Vec;
 use yoke::Yokeable;
 
-/// Point queries by way of a table of all cells of one level, where most points are decided: for points anywhere about
-/// twice as fast as [`OctreeRef::contains`].
+/// Point queries by way of a table of all cells of one level, where most points are decided: for points
+/// anywhere about twice as fast as [`OctreeRef::contains`].
 ///
-/// The table takes 4 · 8^level bytes: 1 MiB for level 6, 64 MiB for level 8. It belongs to the process and is no part of
-/// the file.
+/// The table takes 4 · 8^level bytes: 1 MiB for level 6, 64 MiB for level 8. It belongs to the process and is
+/// no part of the file.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Membership, Rule, build, query::PointTable};
@@ -29,7 +29,8 @@ use yoke::Yokeable;
 #[derive(Clone, Yokeable)]
 pub struct PointTable<'a> {
     tree: OctreeRef<'a>,
-    /// Of each cell of the level, z slowest: its tag, and of a BRANCH the element that lies in it, two bits higher.
+    /// Of each cell of the level, z slowest: its tag, and of a BRANCH the element that lies in it, two bits
+    /// higher.
     entries: Vec<u32>,
     /// The level of the cells, and that of the elements in them.
     level: u8,
@@ -40,9 +41,9 @@ pub struct PointTable<'a> {
 const FINEST: u8 = 8;
 
 impl<'a> PointTable<'a> {
-    /// A table of the cells of `level`, or of the next coarser level that the tree's arrays lead to: they hold two
-    /// levels each, the deepest of them that of the finest cells. Levels beyond 8, and beyond the tree's depth, count as
-    /// these. O(8^level).
+    /// A table of the cells of `level`, or of the next coarser level that the tree's arrays lead to: they
+    /// hold two levels each, the deepest of them that of the finest cells. Levels beyond 8, and beyond the
+    /// tree's depth, count as these. O(8^level).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -115,8 +116,8 @@ impl<'a> PointTable<'a> {
         (z as usize) << (2 * self.level) | (y as usize) << self.level | x as usize
     }
 
-    /// Fills in what lies in element `index` of level `e`, whose own cell is `at`. Each entry is written at most once,
-    /// whatever the bytes. The recursion is as deep as the table has element levels.
+    /// Fills in what lies in element `index` of level `e`, whose own cell is `at`. Each entry is written at
+    /// most once, whatever the bytes. The recursion is as deep as the table has element levels.
     fn enter(&mut self, e: usize, index: usize, at: [u32; 3]) {
         let Some(planes) = self.tree.entry(index) else { return };
         let mut cells = if e == 0 { self.tree.root_cells() } else { !0 };

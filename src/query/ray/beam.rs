@@ -1,4 +1,5 @@
-//! Rays that run side by side: the part of their way on which nothing stops them is found once for all of them.
+//! Rays that run side by side: the part of their way on which nothing stops them is found once for all of
+//! them.
 
 use super::course::{Clear, Course};
 use crate::lattice::Frame;
@@ -72,8 +73,8 @@ impl Beam {
         let cells = f64::from(frame.cells());
         let width = |range: &[[f64; 2]; 2]| range[0][1] - range[0][0] + cells * (range[1][1] - range[1][0]);
         let width = width(&ranges[0]).max(width(&ranges[1]));
-        // The half cell that is added on each side is more than rounding errors, which are relative to the greatest
-        // of the numbers.
+        // The half cell that is added on each side is more than rounding errors, which are relative to the
+        // greatest of the numbers.
         let [low, high] = [0, 1].map(|end| {
             let pad = if end == 0 { -0.5 } else { 0.5 };
             ranges.map(|[place, slope]| [place[end] + pad, slope[end]])
@@ -103,8 +104,8 @@ impl Beam {
         }
     }
 
-    /// Which cells of an element the beam may meet between two planes of its axis: the first and the last of them
-    /// along each axis across. The element begins at `corner`, its cells have this edge.
+    /// Which cells of an element the beam may meet between two planes of its axis: the first and the last of
+    /// them along each axis across. The element begins at `corner`, its cells have this edge.
     #[inline(always)]
     fn across(&self, near: f64, far: f64, corner: [u32; 3], edge: f64) -> Option<[[usize; 2]; 2]> {
         let mut range = [[0; 2]; 2];

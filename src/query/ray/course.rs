@@ -6,8 +6,8 @@ use crate::lattice::axes;
 use crate::lattice::morton::SLABS;
 use wide::f64x4;
 
-/// A ray in lattice coordinates, mirrored so that none falls, in doubles with bounds of their errors. The fourth
-/// coordinate fills a register: the ray does not move along it.
+/// A ray in lattice coordinates, mirrored so that none falls, in doubles with bounds of their errors. The
+/// fourth coordinate fills a register: the ray does not move along it.
 #[derive(Clone, Copy)]
 pub(super) struct Course {
     /// Where the ray starts.
@@ -24,8 +24,8 @@ pub(super) struct Course {
     pub(super) mirror: [u32; 4],
 }
 
-/// A bound of all relative rounding errors of a coordinate together, of which each is 2^-53 and none counts more
-/// than twice. They are relative to the universe and the ray's start.
+/// A bound of all relative rounding errors of a coordinate together, of which each is 2^-53 and none counts
+/// more than twice. They are relative to the universe and the ray's start.
 const ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// Adding this leaves the nearest integer in the low bits.
@@ -61,7 +61,8 @@ impl Course {
         course
     }
 
-    /// The cells of an element that a ray may still meet which is in one of them; they have an edge of 2^shift.
+    /// The cells of an element that a ray may still meet which is in one of them; they have an edge of
+    /// 2^shift.
     #[inline(always)]
     pub(super) fn ahead(&self, place: [u32; 4], shift: u32) -> u64 {
         let [x, y, z] = axes(|axis| {
@@ -83,8 +84,8 @@ impl Course {
         (plane as f64 - self.from[axis]) * self.slowness[axis]
     }
 
-    /// The coordinate of the cell in which the ray is at a time with this error, and whether rounding errors cannot
-    /// have changed it.
+    /// The coordinate of the cell in which the ray is at a time with this error, and whether rounding errors
+    /// cannot have changed it.
     #[inline(always)]
     pub(super) fn cell(&self, axis: usize, t: f64, time_error: f64) -> (u32, bool) {
         let error = self.speed[axis] * time_error + self.place_error[axis];
@@ -96,8 +97,8 @@ impl Course {
 
 /// The same for all four coordinates at once.
 impl Course {
-    /// The planes by which the ray leaves a cell with an edge of 2^shift, and when it passes them; the ray is in cell
-    /// `at` of edge 1 there.
+    /// The planes by which the ray leaves a cell with an edge of 2^shift, and when it passes them; the ray is
+    /// in cell `at` of edge 1 there.
     #[inline(always)]
     pub(super) fn leaves(&self, at: [u32; 4], shift: u32) -> (f64x4, f64x4) {
         let far = f64x4::from(at.map(|a| (((a >> shift) + 1) << shift) as i32 as f64));
@@ -177,8 +178,8 @@ impl Course {
         }
     }
 
-    /// How a ray begins that begins `at` a cell `by` a plane, and that nothing stops before the plane `until` of an
-    /// axis: in the cell before that plane if rounding errors cannot change which one it is.
+    /// How a ray begins that begins `at` a cell `by` a plane, and that nothing stops before the plane `until`
+    /// of an axis: in the cell before that plane if rounding errors cannot change which one it is.
     #[inline(always)]
     pub(super) fn skip(
         &self,

@@ -92,8 +92,9 @@ impl<'a> CutLine<'a> {
         }
     }
 
-    /// Where to divide a piece whose table is not decided; `None` if no part of it would be. Next to crossings that are known about, the
-    /// pieces that they leave are decided at once, and halving takes three dozen steps to each.
+    /// Where to divide a piece whose table is not decided; `None` if no part of it would be. Next to
+    /// crossings that are known about, the pieces that they leave are decided at once, and halving takes
+    /// three dozen steps to each.
     fn division(&self, table: u8, low: f64, high: f64) -> Option<f64> {
         let (mut least, mut middle) = (high, None);
         let lines = self.surfaces.iter().enumerate().filter(|&(i, _)| Head::needs(table, i));

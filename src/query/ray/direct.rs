@@ -69,8 +69,8 @@ impl Stops {
         Stops::within(trace, line, [entry.t, exit.t], Some(line.face(&entry))).0
     }
 
-    /// Where it is stopped during a stay between two times, each known as an interval, and whether narrower ones would tell the
-    /// same; `face` is the normal where it begins.
+    /// Where it is stopped during a stay between two times, each known as an interval, and whether narrower
+    /// ones would tell the same; `face` is the normal where it begins.
     fn within(
         trace: &RayTrace,
         line: &Line<'_>,
@@ -132,8 +132,8 @@ impl Stops {
     }
 }
 
-/// When a ray enters and leaves the universe, in intervals that are wider than they need be. Nothing of a ray that misses it, or
-/// that comes near to a face along which it runs.
+/// When a ray enters and leaves the universe, in intervals that are wider than they need be. Nothing of a ray
+/// that misses it, or that comes near to a face along which it runs.
 fn rough_stay(line: &Line<'_>) -> Option<[Interval; 2]> {
     let (frame, ray) = (line.frame, &line.ray);
     let (mut entry, mut exit) = (Interval::exactly(0.0), Interval::exactly(ray.last));

@@ -16,8 +16,8 @@ pub(super) struct March {
 }
 
 impl March {
-    /// Along a ray that nothing stops where it is `clear`: to the first FULL cell, or only to the first that is not EMPTY.
-    /// `None` if rounding errors may change what is met.
+    /// Along a ray that nothing stops where it is `clear`: to the first FULL cell, or only to the first that
+    /// is not EMPTY. `None` if rounding errors may change what is met.
     #[inline(always)]
     pub(super) fn run(
         way: &mut Way<'_, '_>,
@@ -63,7 +63,8 @@ impl March {
                 }
             }
             if tree.root == Tag::Branch {
-                // Nothing on the ray's further way through the octant, or through all of the element, may stop it.
+                // Nothing on the ray's further way through the octant, or through all of the element, may
+                // stop it.
                 let ahead = course.ahead(place, shift);
                 let stops = if march.outer.is_none() { planes.lower | planes.upper } else { planes.lower };
                 let octant = 0xFF << (c & !7);

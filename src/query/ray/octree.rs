@@ -20,9 +20,10 @@ use crate::solid::{Enclosure, OCTANTS, Verdict};
 use core::array;
 
 impl OctreeRef<'_> {
-    /// Where a ray first meets the octree's cells, and the surfaces that PARTIAL cells keep, whatever they prove of the solid that
-    /// the tree was made from; `None` if nothing stops it. What lies outside of the universe does not count. At most 3 · 2^depth cells are
-    /// looked at, about a dozen as a rule, whatever the bytes.
+    /// Where a ray first meets the octree's cells, and the surfaces that PARTIAL cells keep, whatever they
+    /// prove of the solid that the tree was made from; `None` if nothing stops it. What lies outside of the
+    /// universe does not count. At most 3 · 2^depth cells are looked at, about a dozen as a rule, whatever
+    /// the bytes.
     pub fn cast_ray(&self, ray: &Ray, on: Obstacle) -> Option<RayHit> {
         match &self.cuts {
             None => cast_one(self, ray, on),
@@ -30,9 +31,9 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// Casts many rays, `hits[i]` for `rays[i]`; the same answers as [`cast_ray`](Self::cast_ray), faster. One thread.
-    /// Rays that run side by side take the least time if they stand next to each other in the list: 32 at a time share the
-    /// search for the first cells that may stop any of them.
+    /// Casts many rays, `hits[i]` for `rays[i]`; the same answers as [`cast_ray`](Self::cast_ray), faster.
+    /// One thread. Rays that run side by side take the least time if they stand next to each other in the
+    /// list: 32 at a time share the search for the first cells that may stop any of them.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.
@@ -55,8 +56,8 @@ impl OctreeRef<'_> {
         }
     }
 
-    /// Where a ray is in the octree's cells, whatever they prove of the solid that the tree was made from. What
-    /// lies outside of the universe does not count. O(cells along the ray · depth).
+    /// Where a ray is in the octree's cells, whatever they prove of the solid that the tree was made from.
+    /// What lies outside of the universe does not count. O(cells along the ray · depth).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

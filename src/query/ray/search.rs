@@ -121,7 +121,8 @@ impl First {
         Ok(first)
     }
 
-    /// What is known of a ray by the first cells that it enters, each with the lattice plane by which it does.
+    /// What is known of a ray by the first cells that it enters, each with the lattice plane by which it
+    /// does.
     pub(super) fn of(line: &Line<'_>, outer: Option<Met>, inner: Option<Met>) -> First {
         let entry = |(cell, by): Met| {
             let moment = by.map_or(Moment::START, |(axis, plane)| line.passes(axis, plane));
@@ -220,7 +221,8 @@ impl Visitor for First {
     }
 }
 
-/// A normal of length 1, but for rounding; zeros of zeros, which a triangle has that is thinner than rounding.
+/// A normal of length 1, but for rounding; zeros of zeros, which a triangle has that is thinner than
+/// rounding.
 pub(super) fn unit(normal: [f64; 3]) -> [f64; 3] {
     let largest = normal.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
     if largest == 0.0 {
@@ -281,15 +283,16 @@ impl Enclosed {
     }
 }
 
-/// The stay between two times in a cell. One that lasts from the cell's entry begins with it exactly, so that it goes on from the
-/// cell before.
+/// The stay between two times in a cell. One that lasts from the cell's entry begins with it exactly, so that
+/// it goes on from the cell before.
 fn possible_stay(passage: &Passage, from: f64, to: f64) -> Passage {
     let entry = if from <= passage.entry.t.lower { passage.entry } else { Moment::exactly(from) };
     let exit = if to >= passage.exit.t.upper { passage.exit } else { Moment::exactly(to) };
     Passage { entry, exit }
 }
 
-/// The same where the ray is surely in the cell. (Where surfaces agree at a single point only, they do not prove it to be inside.)
+/// The same where the ray is surely in the cell. (Where surfaces agree at a single point only, they do not
+/// prove it to be inside.)
 fn certain_stay(passage: &Passage, from: f64, to: f64) -> Option<Passage> {
     let Passage { entry, exit } = passage;
     let late = if from > entry.t.lower { from.max(entry.t.upper) } else { from };

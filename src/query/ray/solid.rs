@@ -28,15 +28,16 @@ pub enum Sight {
     Undecided = 2,
 }
 
-/// Where rays first meet a solid, as far as cells of `frame` and the slabs of the finest of them tell: one entry a
-/// ray, `None` if nothing stops it. What lies outside of the universe does not count. A ray splits the PARTIAL
-/// cells that it passes up to the first FULL one: O(depth) splits across a surface, up to O(2^depth) along one.
-/// Each ray may split `control.max_splits` cells; cells that were not split count as PARTIAL. The answers are the
-/// same for any number of threads.
+/// Where rays first meet a solid, as far as cells of `frame` and the slabs of the finest of them tell: one
+/// entry a ray, `None` if nothing stops it. What lies outside of the universe does not count. A ray splits
+/// the PARTIAL cells that it passes up to the first FULL one: O(depth) splits across a surface, up to
+/// O(2^depth) along one. Each ray may split `control.max_splits` cells; cells that were not split count as
+/// PARTIAL. The answers are the same for any number of threads.
 ///
-/// A mesh answers each ray from a tree over its triangles, in microseconds and to the rounding of doubles, whatever the frame's depth
-/// is; the first question makes the tree ([`MeshSolid`](crate::MeshSolid)). A mesh with holes also looks at all edges of its holes. It asks
-/// its cells of rays that come very near to such an edge, and of all rays if there are more than 16 384 edges.
+/// A mesh answers each ray from a tree over its triangles, in microseconds and to the rounding of doubles,
+/// whatever the frame's depth is; the first question makes the tree ([`MeshSolid`](crate::MeshSolid)). A mesh
+/// with holes also looks at all edges of its holes. It asks its cells of rays that come very near to such an
+/// edge, and of all rays if there are more than 16 384 edges.
 ///
 /// # Errors
 /// What the solid refuses; [`Error::OutOfMemory`], and [`Error::Cancelled`].
@@ -84,9 +85,9 @@ pub fn cast_rays<S: Solid>(
     Ok(hits)
 }
 
-/// Where a ray is in a solid, as far as cells of `frame` and the slabs of the finest of them tell. What lies outside
-/// of the universe does not count. The ray splits all PARTIAL cells that it passes, `control.max_splits` at the most;
-/// cells that were not split count as PARTIAL. One thread.
+/// Where a ray is in a solid, as far as cells of `frame` and the slabs of the finest of them tell. What lies
+/// outside of the universe does not count. The ray splits all PARTIAL cells that it passes,
+/// `control.max_splits` at the most; cells that were not split count as PARTIAL. One thread.
 ///
 /// # Errors
 /// As [`cast_rays`].
@@ -109,9 +110,9 @@ pub fn ray_spans<S: Solid>(
     spans
 }
 
-/// Whether two points (model units) see each other past a solid, as far as cells of `frame` tell. If the solid may
-/// go on outside of the universe and an end lies there, the answer is not [`Sight::Clear`]. Costs as one ray of
-/// [`cast_rays`].
+/// Whether two points (model units) see each other past a solid, as far as cells of `frame` tell. If the
+/// solid may go on outside of the universe and an end lies there, the answer is not [`Sight::Clear`]. Costs
+/// as one ray of [`cast_rays`].
 ///
 /// # Errors
 /// [`Error::Argument`] as [`Ray::between`]; else as [`cast_rays`].

@@ -1,7 +1,8 @@
 //! The cells of a tree with cuts along a ray, found in doubles whose errors are bounded.
 //!
-//! A [`March`](super::march::March) ends at the first FULL cell, because nothing is known of a PARTIAL one. A trace looks into the
-//! PARTIAL cells on its way. A visitor gets the cells with exact times, and in the order of the exact search.
+//! A [`March`](super::march::March) ends at the first FULL cell, because nothing is known of a PARTIAL one. A
+//! trace looks into the PARTIAL cells on its way. A visitor gets the cells with exact times, and in the order
+//! of the exact search.
 
 use super::course::{Clear, Course, Start};
 use super::cut::CutLine;
@@ -30,8 +31,9 @@ enum Found {
 }
 
 impl Trace<'_, '_, '_> {
-    /// Shows the cells along the ray that are not EMPTY to a visitor, front to back. `false` if rounding errors may change which
-    /// cells the ray meets. The visitor has then seen some cells, and its answer is worth nothing.
+    /// Shows the cells along the ray that are not EMPTY to a visitor, front to back. `false` if rounding
+    /// errors may change which cells the ray meets. The visitor has then seen some cells, and its answer is
+    /// worth nothing.
     #[inline(always)]
     pub(super) fn show(&self, way: &mut Way<'_, '_>, visitor: &mut impl Visitor) -> Result<bool, Error> {
         let Trace { line, course, .. } = *self;
@@ -98,8 +100,8 @@ impl Trace<'_, '_, '_> {
         }
     }
 
-    /// What the cell is that holds a finest one, and the edge of the cell as a power of two. Of EMPTY cells the largest cube counts
-    /// in which nothing may stop the ray any more.
+    /// What the cell is that holds a finest one, and the edge of the cell as a power of two. Of EMPTY cells
+    /// the largest cube counts in which nothing may stop the ray any more.
     #[inline(always)]
     fn cell(&self, way: &mut Way<'_, '_>, place: [u32; 4]) -> (Found, u32) {
         let (tag, shift, c) = way.to(place);

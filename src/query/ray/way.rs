@@ -5,7 +5,8 @@ use crate::octree::links::Step;
 use crate::octree::view::{MAX_ELEMENT_LEVELS, OctreeRef};
 use crate::octree::{Planes, Tag};
 
-/// The elements from the root down to a cell. What a cell has in common with the one before is not looked up again.
+/// The elements from the root down to a cell. What a cell has in common with the one before is not looked up
+/// again.
 pub(super) struct Way<'t, 'a> {
     pub(super) tree: &'t OctreeRef<'a>,
     /// A finest cell in the last element.
@@ -31,7 +32,8 @@ impl<'t, 'a> Way<'t, 'a> {
         self.elements[self.last]
     }
 
-    /// Goes down to the cell that holds a finest one: its tag, its edge as a power of two, and its place in the last element.
+    /// Goes down to the cell that holds a finest one: its tag, its edge as a power of two, and its place in
+    /// the last element.
     #[inline(always)]
     pub(super) fn to(&mut self, place: [u32; 4]) -> (Tag, u32, u32) {
         let tree = self.tree;

@@ -1,5 +1,5 @@
-//! A layer's own coordinates: they begin at the frame's origin, so that a plane between two voxels is the same number for
-//! both.
+//! A layer's own coordinates: they begin at the frame's origin, so that a plane between two voxels is the
+//! same number for both.
 
 use crate::lattice::{Cell, Frame, MAX_DEPTH};
 use crate::render::camera::Camera;
@@ -26,7 +26,8 @@ impl Coordinates {
         (DVec3::from(cell.at.map(|a| (2 * a + 1) as f64 * half)), half)
     }
 
-    /// The corners of a cell, the least and the greatest. Cells that touch have the same numbers where they do.
+    /// The corners of a cell, the least and the greatest. Cells that touch have the same numbers where they
+    /// do.
     #[inline(always)]
     pub fn corners(&self, cell: Cell) -> [DVec3; 2] {
         let edge = self.edges[cell.level as usize];

@@ -7,36 +7,37 @@ use crate::voxel::VoxelRecordsRef;
 /// How voxels of different sizes are put together.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Compositing {
-    /// By the exact length of each line of sight's path through a voxel. Clip planes and opaque surfaces cut paths, and
-    /// translucent surfaces divide them.
+    /// By the exact length of each line of sight's path through a voxel. Clip planes and opaque surfaces cut
+    /// paths, and translucent surfaces divide them.
     #[default]
     Exact,
-    /// As published (Zhu, Tang and Dong 2002): a voxel is a cell of one unit, repeated edge / unit times, wherever its
-    /// projection covers a sample. The transfer function's opacity holds for one repetition, and its length does not count.
-    /// A voxel whose centre is cut away is left out. A voxel lies behind a surface if the line of sight enters the voxel behind
-    /// the surface; else all of the voxel lies before the surface.
+    /// As published (Zhu, Tang and Dong 2002): a voxel is a cell of one unit, repeated edge / unit times,
+    /// wherever its projection covers a sample. The transfer function's opacity holds for one repetition, and
+    /// its length does not count. A voxel whose centre is cut away is left out. A voxel lies behind a surface
+    /// if the line of sight enters the voxel behind the surface; else all of the voxel lies before the
+    /// surface.
     ///
-    /// Let n repetitions of the colour C and the opacity α lie in front of the light D (a colour times its opacity) with the
-    /// opacity β. The light of both is D (1 − α)^n + C (1 − (1 − α)^n), and their opacity is 1 − (1 − β)(1 − α)^n. The number n
-    /// need not be whole.
+    /// Let n repetitions of the colour C and the opacity α lie in front of the light D (a colour times its
+    /// opacity) with the opacity β. The light of both is D (1 − α)^n + C (1 − (1 − α)^n), and their opacity
+    /// is 1 − (1 − β)(1 − α)^n. The number n need not be whole.
     Published {
         /// The edge of a cell that is composited once, in model units: above 0.
         unit: f64,
     },
 }
 
-/// A layer that shows voxel records as a translucent volume. Inside and boundary voxels are seen; outside and refined ones
-/// are not.
+/// A layer that shows voxel records as a translucent volume. Inside and boundary voxels are seen; outside and
+/// refined ones are not.
 ///
-/// The weight of a voxel, 0 to 1, scales its optical depth, as if only that part of it were filled. Inside voxels weigh 1 and
-/// boundary voxels ½ unless [`weights`](Self::weights) are given.
+/// The weight of a voxel, 0 to 1, scales its optical depth, as if only that part of it were filled. Inside
+/// voxels weigh 1 and boundary voxels ½ unless [`weights`](Self::weights) are given.
 ///
-/// The voxels of one layer are seen in their right order from everywhere, also from among them. Of two volume layers, the one
-/// that comes first in the picture is taken to be in front.
+/// The voxels of one layer are seen in their right order from everywhere, also from among them. Of two volume
+/// layers, the one that comes first in the picture is taken to be in front.
 ///
-/// O(pairs of a voxel and a sample that it covers + pairs of a voxel and a tile that it meets · levels). Where less than 10⁻⁷
-/// of the light comes through, nothing farther away is drawn. So each channel, as linear light from 0 to 1, is within 10⁻⁶ of
-/// the truth.
+/// O(pairs of a voxel and a sample that it covers + pairs of a voxel and a tile that it meets · levels).
+/// Where less than 10⁻⁷ of the light comes through, nothing farther away is drawn. So each channel, as linear
+/// light from 0 to 1, is within 10⁻⁶ of the truth.
 ///
 /// ```
 /// use leafless::{
@@ -70,7 +71,8 @@ impl<'a> VolumeLayer<'a> {
         VolumeLayer { records, transfer, weights: None, compositing: Compositing::Exact }
     }
 
-    /// The same layer with a weight, 0 to 1, for each record: the part of the voxel that is solid. O(records).
+    /// The same layer with a weight, 0 to 1, for each record: the part of the voxel that is solid.
+    /// O(records).
     ///
     /// # Errors
     /// [`Error::Argument`] if there are not as many weights as records, or if one is not in [0, 1].

@@ -22,7 +22,8 @@ pub(super) struct LightPath {
     /// The depths between which there is something to see. Where nothing is seen any more the end is −∞.
     start: f64,
     pub end: f64,
-    /// The next translucent surface among all of the tile, its depth (∞ if there is none), and how many have been passed.
+    /// The next translucent surface among all of the tile, its depth (∞ if there is none), and how many have
+    /// been passed.
     fragment: usize,
     next: f64,
     pub passed: u32,
@@ -31,7 +32,8 @@ pub(super) struct LightPath {
     pub through: f64,
 }
 
-/// The paths of a tile's samples, with what other layers have left. A clip cuts the paths off; without one they are whole.
+/// The paths of a tile's samples, with what other layers have left. A clip cuts the paths off; without one
+/// they are whole.
 pub(super) fn light_paths(
     tile: &Tile<'_>,
     clip: Option<&Clip>,
@@ -71,8 +73,8 @@ pub(super) fn light_paths(
     Ok(paths)
 }
 
-/// One over a component of a direction. A line along a plane between voxels belongs to the upper one: it counts as rising, so
-/// slowly that it stays where it is.
+/// One over a component of a direction. A line along a plane between voxels belongs to the upper one: it
+/// counts as rising, so slowly that it stays where it is.
 fn inverse(component: f64) -> f64 {
     const LEAST: f64 = 1e-300;
     1.0 / if component.abs() < LEAST { LEAST } else { component }
@@ -91,8 +93,8 @@ impl LightPath {
         [a.min(b).max_element().max(self.start), a.max(b).min_element()]
     }
 
-    /// Puts a voxel behind what has been seen, by the length of the path in it; surfaces divide that. `depth` is the optical
-    /// depth of a model unit. Tells whether nothing is seen beyond it any more.
+    /// Puts a voxel behind what has been seen, by the length of the path in it; surfaces divide that. `depth`
+    /// is the optical depth of a model unit. Tells whether nothing is seen beyond it any more.
     #[inline(always)]
     pub fn cross(&mut self, [mut from, to]: [f64; 2], colour: DVec3, depth: f64, all: &[Fragment]) -> bool {
         let to = to.min(self.end);
@@ -110,8 +112,8 @@ impl LightPath {
         self.close()
     }
 
-    /// Puts a voxel behind what has been seen, as one thing at the depth where it is entered. Tells whether nothing is seen
-    /// beyond it any more.
+    /// Puts a voxel behind what has been seen, as one thing at the depth where it is entered. Tells whether
+    /// nothing is seen beyond it any more.
     #[inline(always)]
     pub fn enter(&mut self, [from, to]: [f64; 2], colour: DVec3, opacity: f64, all: &[Fragment]) -> bool {
         if from >= to || from >= self.end {

@@ -1,4 +1,5 @@
-//! Voxels and surfaces along lines of sight, against all that a line meets, sorted by depth and put together from behind.
+//! Voxels and surfaces along lines of sight, against all that a line meets, sorted by depth and put together
+//! from behind.
 
 use super::{Compositing, VolumeLayer};
 use crate::control::{Control, Job};

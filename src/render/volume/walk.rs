@@ -1,8 +1,8 @@
 //! The walk through the voxels of a tile, from front to back.
 //!
-//! The records are sorted by code, so that the records of a cell are a range of them. A tile walks through these ranges from
-//! the root on, octant by octant from front to back, and leaves out the cells that lie beside the tile. Each voxel that is left
-//! is put behind what its samples have seen so far.
+//! The records are sorted by code, so that the records of a cell are a range of them. A tile walks through
+//! these ranges from the root on, octant by octant from front to back, and leaves out the cells that lie
+//! beside the tile. Each voxel that is left is put behind what its samples have seen so far.
 
 use super::layer::{Compositing, VolumeLayer};
 use super::light_path::light_paths;
@@ -52,7 +52,8 @@ struct Part {
 }
 
 impl Volume<'_> {
-    /// Draws a tile, by exact paths or as published. The optical depth of a voxel is that of its value for each `length`.
+    /// Draws a tile, by exact paths or as published. The optical depth of a voxel is that of its value for
+    /// each `length`.
     fn draw<const EXACT: bool>(&self, tile: &mut Tile<'_>, length: f64) -> Result<(), Error> {
         let voxels = &self.voxels;
         let records = &voxels.layer.records;

@@ -4,12 +4,12 @@ use crate::lattice::{Cube, Interval};
 use crate::solid::{Enclosure, Slab};
 use core::f64::consts::FRAC_PI_2;
 
-/// Bounds of a host's function f over a box, to first order. The solid is the set of points with f ≤ 0, as for
-/// a signed distance: f is negative inside, and its gradient leads out of the solid.
+/// Bounds of a host's function f over a box, to first order. The solid is the set of points with f ≤ 0, as
+/// for a signed distance: f is negative inside, and its gradient leads out of the solid.
 ///
-/// The promise concerns the points of the box alone. By the mean value theorem it makes a [slab](Slab). If the
-/// gradient's range shrinks with the box, as it does by interval arithmetic, the slab's thickness falls with the
-/// square of the cell's edge.
+/// The promise concerns the points of the box alone. By the mean value theorem it makes a [slab](Slab). If
+/// the gradient's range shrinks with the box, as it does by interval arithmetic, the slab's thickness falls
+/// with the square of the cell's edge.
 ///
 /// An infinite gradient says nothing. One end of `value` may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,8 +46,9 @@ impl GradientRange {
     }
 }
 
-/// An upper bound of the angle between a vector and another one that differs from it by at most a share of its
-/// length; the square of that share is given. The angle is the share's arc sine, which is less than its tangent.
+/// An upper bound of the angle between a vector and another one that differs from it by at most a share of
+/// its length; the square of that share is given. The angle is the share's arc sine, which is less than its
+/// tangent.
 fn cone(square: f64) -> f64 {
     if square < 1.0 {
         let square = Interval::exactly(square);

@@ -78,11 +78,11 @@ struct Functions<'a, F> {
 const SHARED: &str = "a callback is put on frames, and moved, only once it is complete";
 
 impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> Callback<'a, F> {
-    /// A solid from a function that classifies the box `(min, max)` in model units. The box contains the
-    /// cell (it is the cell itself on frames whose lattice planes are doubles), and FULL and EMPTY must be
-    /// proven for all of it. The function is called from several threads at once, and must give the same
-    /// answer to the same box; boxes within a box that is FULL or EMPTY must be so, too. An error, such as [`Error::Callback`], ends the operation and is what that
-    /// returns.
+    /// A solid from a function that classifies the box `(min, max)` in model units. The box contains the cell
+    /// (it is the cell itself on frames whose lattice planes are doubles), and FULL and EMPTY must be proven
+    /// for all of it. The function is called from several threads at once, and must give the same answer to
+    /// the same box; boxes within a box that is FULL or EMPTY must be so, too. An error, such as
+    /// [`Error::Callback`], ends the operation and is what that returns.
     pub fn new(classify: F) -> Callback<'a, F> {
         let functions = Arc::new(Functions {
             classify,
@@ -156,13 +156,13 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         self.with(|functions| functions.distance = Some(Box::new(distance)))
     }
 
-    /// The same solid with a function that bounds the host's own f over boxes, where the solid is f ≤ 0. It gets
-    /// the box `(min, max)`, as the classifying function does, and a point next to the box's middle. `None` says
-    /// nothing of the box.
+    /// The same solid with a function that bounds the host's own f over boxes, where the solid is f ≤ 0. It
+    /// gets the box `(min, max)`, as the classifying function does, and a point next to the box's middle.
+    /// `None` says nothing of the box.
     ///
     /// The function is asked about undecided cells by whoever uses their [enclosures](Question::Enclosure):
-    /// [`measure`](crate::measure), [`bounding_box`](crate::bounding_box) and [`Adaptive`](crate::solid::Adaptive) need
-    /// far fewer splits with it. No verdict depends on it.
+    /// [`measure`](crate::measure), [`bounding_box`](crate::bounding_box) and
+    /// [`Adaptive`](crate::solid::Adaptive) need far fewer splits with it. No verdict depends on it.
     ///
     /// ```
     /// use leafless::{Callback, Control, Frame, Interval, Verdict, measure, solid::GradientRange};
@@ -198,9 +198,9 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         self.with(|functions| functions.gradient = Some(Box::new(gradient)))
     }
 
-    /// The same solid with a function that tells where the surface passes next to the middle of a box, and how it
-    /// bends there. It gets the same as the function of [`with_gradient`](Self::with_gradient), and is asked for
-    /// the same. If there are both, this one is asked where the other one proves nothing.
+    /// The same solid with a function that tells where the surface passes next to the middle of a box, and
+    /// how it bends there. It gets the same as the function of [`with_gradient`](Self::with_gradient), and is
+    /// asked for the same. If there are both, this one is asked where the other one proves nothing.
     #[must_use]
     pub fn with_tangent(
         self,
@@ -210,8 +210,9 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
     }
 
     /// The same solid with a promise about the space around the universe: EMPTY if the shape ends inside.
-    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL. The promise does not hold of
-    /// the shape under an affine map, whose universe is another one; [`with_bounds`](Self::with_bounds) moves along.
+    /// Without it the shape counts as clipped by the universe. BRANCH means PARTIAL. The promise does not
+    /// hold of the shape under an affine map, whose universe is another one;
+    /// [`with_bounds`](Self::with_bounds) moves along.
     #[must_use]
     pub fn with_exterior(self, exterior: Tag) -> Callback<'a, F> {
         self.with(|functions| {
@@ -254,10 +255,11 @@ impl<'a, F: Fn([f64; 3], [f64; 3]) -> Result<Verdict<()>, Error> + Send + Sync> 
         Some(placement.back.numbers().fold(all, |all, number| all.numbers(&[number])).finish())
     }
 
-    /// A cell is classified by the box around its inverse image, with as many calls as ever. A surface that is not parallel to
-    /// the lattice blurs by about a cell. Where the placement permutes axes, with signs and powers of two as scales, and moves,
-    /// nothing blurs, as far as coordinates are not rounded. Centres of cells are moved back and rounded, and the host decides
-    /// there; other points only where nothing is rounded.
+    /// A cell is classified by the box around its inverse image, with as many calls as ever. A surface that
+    /// is not parallel to the lattice blurs by about a cell. Where the placement permutes axes, with signs
+    /// and powers of two as scales, and moves, nothing blurs, as far as coordinates are not rounded. Centres
+    /// of cells are moved back and rounded, and the host decides there; other points only where nothing is
+    /// rounded.
     fn placed(&self, placement: &Affine) -> Result<Option<Self>, Error> {
         let placement = match &self.placement {
             Some(before) => before.then(placement),

@@ -35,8 +35,8 @@ impl Placement {
         [image.map(|x| x.lower), image.map(|x| x.upper)]
     }
 
-    /// What a range of the gradient over the box around a cell's inverse image proves of the cell; the value is that at `at`, a
-    /// point of the box.
+    /// What a range of the gradient over the box around a cell's inverse image proves of the cell; the value
+    /// is that at `at`, a point of the box.
     pub(super) fn enclosure(
         &self,
         range: &GradientRange,
@@ -45,7 +45,8 @@ impl Placement {
     ) -> Option<Enclosure> {
         let (min, max) = cube.bounds();
         let middle = middle(min, max);
-        // By the mean value theorem from `at` to the image of the cell's middle, both of which lie in the box.
+        // By the mean value theorem from `at` to the image of the cell's middle, both of which lie in the
+        // box.
         let image = self.back.image(&middle.map(Interval::exactly));
         let way = |axis: usize| image[axis].minus(Interval::exactly(at[axis]));
         let value = (0..3).fold(range.value, |sum, axis| sum.plus(range.gradient[axis].times(way(axis))));
@@ -57,7 +58,8 @@ impl Placement {
         self.back.image(&cube.centre_from([0.0; 3]))
     }
 
-    /// A slab over the cube of half edge `half` around the inverse image of a cell's centre, as a slab over the cell.
+    /// A slab over the cube of half edge `half` around the inverse image of a cell's centre, as a slab over
+    /// the cell.
     pub(super) fn slab(&self, slab: &Slab, half: f64, cube: &Cube<'_>) -> Option<Slab> {
         let ratio = Interval::exactly(cube.half_edge()).over(Interval::exactly(half));
         let pulled = self.back.pulled_back(&slab.normal.map(Interval::exactly)).map(|c| c.times(ratio));

@@ -6,25 +6,26 @@ use crate::solid::Slab;
 
 /// Two balls that touch the surface at a point, one in the solid and one outside of it.
 ///
-/// Let d = y − `point` for a point y of the box, and let n be `normal` divided by its length. The promise has two
-/// halves, which concern the points of the box alone:
+/// Let d = y − `point` for a point y of the box, and let n be `normal` divided by its length. The promise has
+/// two halves, which concern the points of the box alone:
 ///
 /// - each y with n · d < −(`inner_curvature` / 2 · |d|² + `error`) lies in the solid;
 /// - each y with n · d > `outer_curvature` / 2 · |d|² + `error` lies outside.
 ///
-/// Without an error, the first half is about the open ball of radius 1 / `inner_curvature` that touches the surface
-/// at `point` from within, and the second half about its counterpart outside. A curvature of 0 stands for a
-/// half-space, a negative one for all points outside of a ball, and ∞ for no point. For a ball of radius r the
-/// curvatures are 1/r and −1/r, exactly.
+/// Without an error, the first half is about the open ball of radius 1 / `inner_curvature` that touches the
+/// surface at `point` from within, and the second half about its counterpart outside. A curvature of 0 stands
+/// for a half-space, a negative one for all points outside of a ball, and ∞ for no point. For a ball of
+/// radius r the curvatures are 1/r and −1/r, exactly.
 ///
-/// A bound of the surface's own curvatures does not suffice, because another sheet of the surface may pass through
-/// the box. The reciprocal of the surface's reach suffices for both (Federer 1959). The reach is the greatest
-/// distance up to which every point has only one nearest point on the surface, so its reciprocal is no less than any
-/// curvature, nor than 2 over the width of any wall or gap. In a box that a single face of a part passes through,
-/// the reach of that face's surface suffices: 0 is the reciprocal for a plane, 1/r for a cylinder or a sphere.
+/// A bound of the surface's own curvatures does not suffice, because another sheet of the surface may pass
+/// through the box. The reciprocal of the surface's reach suffices for both (Federer 1959). The reach is the
+/// greatest distance up to which every point has only one nearest point on the surface, so its reciprocal is
+/// no less than any curvature, nor than 2 over the width of any wall or gap. In a box that a single face of a
+/// part passes through, the reach of that face's surface suffices: 0 is the reciprocal for a plane, 1/r for a
+/// cylinder or a sphere.
 ///
-/// The slab is thinnest if `point` is the surface's nearest point to the middle of the box. Its thickness falls with
-/// the square of the cell's edge, down to twice the error.
+/// The slab is thinnest if `point` is the surface's nearest point to the middle of the box. Its thickness
+/// falls with the square of the cell's edge, down to twice the error.
 ///
 /// A NaN, a negative error, or a normal that is zero or infinite says nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,13 +38,14 @@ pub struct TangentBalls {
     pub inner_curvature: f64,
     /// The reciprocal of the radius of the ball outside of it.
     pub outer_curvature: f64,
-    /// By how much the surface may be off, in model units, because point and normal are rounded. Not negative.
+    /// By how much the surface may be off, in model units, because point and normal are rounded. Not
+    /// negative.
     pub error: f64,
 }
 
 impl TangentBalls {
-    /// What this proves of the cube of half edge `half` around a centre, as far as it lies in the box: a slab from the centre, in
-    /// half edges. `to_centre` leads from `point` to the centre.
+    /// What this proves of the cube of half edge `half` around a centre, as far as it lies in the box: a slab
+    /// from the centre, in half edges. `to_centre` leads from `point` to the centre.
     pub(super) fn slab(&self, half: f64, to_centre: [Interval; 3]) -> Option<Slab> {
         let numbers = [self.inner_curvature, self.outer_curvature];
         if self.error >= 0.0 && !numbers.iter().chain(&self.point).any(|c| c.is_nan()) {
@@ -55,11 +57,11 @@ impl TangentBalls {
         }
     }
 
-    /// A lower bound of n · x over the points x of the cube, in the cube's own coordinates, that the promise of one
-    /// side does not cover. That side is the one from which n leads away.
+    /// A lower bound of n · x over the points x of the cube, in the cube's own coordinates, that the promise
+    /// of one side does not cover. That side is the one from which n leads away.
     ///
-    /// Let a be the vector from `point` to the cube's centre, h the cube's half edge, l the length of n, κ the
-    /// curvature, and a = α n + t with t at right angles to n. The promise covers x if
+    /// Let a be the vector from `point` to the cube's centre, h the cube's half edge, l the length of n, κ
+    /// the curvature, and a = α n + t with t at right angles to n. The promise covers x if
     ///
     /// n · a + l (κ/2 |a|² + error) + h (1 + l κ α) n · x + h l κ t · x + h² l κ/2 |x|² < 0,
     ///

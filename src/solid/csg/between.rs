@@ -8,7 +8,8 @@ use crate::lattice::valid::{self, length};
 use crate::lattice::{Affine, Bounds, Interval};
 
 impl Csg {
-    /// The cylinder of `radius` around the segment between two points (model units), with flat ends through them.
+    /// The cylinder of `radius` around the segment between two points (model units), with flat ends through
+    /// them.
     ///
     /// Nothing is rounded: the coefficients of its surface are exact for every direction of the axis. Along a
     /// coordinate axis it is the same solid as the [`cylinder`](Self::cylinder) that is moved there.
@@ -22,21 +23,22 @@ impl Csg {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] if the points are equal, the radius is not between 2^-256 and 2^256, or a coordinate not
-    /// zero and not of such a magnitude.
+    /// [`Error::Argument`] if the points are equal, the radius is not between 2^-256 and 2^256, or a
+    /// coordinate not zero and not of such a magnitude.
     pub fn cylinder_between(from: [f64; 3], to: [f64; 3], radius: f64) -> Result<Csg, Error> {
         length("radius", radius)?;
         Csg::frustum_between(from, to, [radius; 2])
     }
 
-    /// The frustum of a cone around the segment between two points (model units): of radius `radii[0]` at `from` and
-    /// `radii[1]` at `to`, with flat ends through both. One of the radii may be 0, which makes a cone.
+    /// The frustum of a cone around the segment between two points (model units): of radius `radii[0]` at
+    /// `from` and `radii[1]` at `to`, with flat ends through both. One of the radii may be 0, which makes a
+    /// cone.
     ///
     /// Nothing is rounded, as of [`cylinder_between`](Self::cylinder_between).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the points are equal, if both radii are 0 or one is not between 2^-256 and 2^256, or a
-    /// coordinate not zero and not of such a magnitude.
+    /// [`Error::Argument`] if the points are equal, if both radii are 0 or one is not between 2^-256 and
+    /// 2^256, or a coordinate not zero and not of such a magnitude.
     pub fn frustum_between(from: [f64; 3], to: [f64; 3], radii: [f64; 2]) -> Result<Csg, Error> {
         for radius in radii {
             if radius != 0.0 || radii[0] == radii[1] {
@@ -83,11 +85,12 @@ impl Csg {
 }
 
 impl Csg {
-    /// The torus around the axis through `centre` (model units) in the direction `axis`, of any length: all points at
-    /// most `minor` from the circle of radius `major` around the centre.
+    /// The torus around the axis through `centre` (model units) in the direction `axis`, of any length: all
+    /// points at most `minor` from the circle of radius `major` around the centre.
     ///
-    /// Along a coordinate axis nothing is rounded. Any other direction is rounded to numbers of double precision, and
-    /// the torus is the image of the exact one under the matrix of these: it is off by some 2^-52 of its size.
+    /// Along a coordinate axis nothing is rounded. Any other direction is rounded to numbers of double
+    /// precision, and the torus is the image of the exact one under the matrix of these: it is off by some
+    /// 2^-52 of its size.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, measure};
@@ -98,8 +101,8 @@ impl Csg {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] as for [`torus`](Self::torus), if the axis is zero, or if a coordinate is not zero and not of
-    /// a magnitude between 2^-256 and 2^256.
+    /// [`Error::Argument`] as for [`torus`](Self::torus), if the axis is zero, or if a coordinate is not zero
+    /// and not of a magnitude between 2^-256 and 2^256.
     pub fn torus_around(centre: [f64; 3], axis: [f64; 3], major: f64, minor: f64) -> Result<Csg, Error> {
         valid::numbers("centre", &centre)?;
         valid::numbers("axis", &axis)?;

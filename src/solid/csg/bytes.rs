@@ -11,8 +11,8 @@ use hashbrown::HashSet;
 const COUNTS: usize = 2 * size_of::<usize>();
 
 impl Csg {
-    /// About how many bytes the nodes, half-spaces and other solids take: each once, however often it occurs. Without recursion;
-    /// what there is no memory to remember is left out.
+    /// About how many bytes the nodes, half-spaces and other solids take: each once, however often it occurs.
+    /// Without recursion; what there is no memory to remember is left out.
     pub(super) fn bytes_of_expression(&self) -> u64 {
         let mut sum = 0;
         let mut seen: HashSet<usize> = HashSet::new();

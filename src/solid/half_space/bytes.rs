@@ -1,4 +1,5 @@
-//! The memory that half-spaces take, about: of exact numbers the digits count, not what their lists have to spare.
+//! The memory that half-spaces take, about: of exact numbers the digits count, not what their lists have to
+//! spare.
 
 use super::{HalfSpace, Placed, Surface};
 use crate::lattice::exact::Dyadic;

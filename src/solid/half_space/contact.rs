@@ -1,13 +1,15 @@
 //! Planes and quadrics that touch: exact numbers decide, where bounds over cells never tell.
 //!
-//! Two polynomials of degree two that are positive together at no point have a sum, with a positive factor, that is nowhere positive
-//! ([`pencil`]): so for balls, ellipsoids, cylinders and cones beside and inside of each other, and for all of these on planes.
-//! What an affine map does to both does not count, since it keeps the signs of all values.
+//! Two polynomials of degree two that are positive together at no point have a sum, with a positive factor,
+//! that is nowhere positive ([`pencil`]): so for balls, ellipsoids, cylinders and cones beside and inside of
+//! each other, and for all of these on planes. What an affine map does to both does not count, since it keeps
+//! the signs of all values.
 //!
-//! A quadric of two sheets that lie on both sides of a plane, such as the two nappes of a cone whose ruling lies in the plane, has no
-//! such factor: one sheet is positive together with the plane. Then there may be a linear function ℓ such that f + ℓ g is nowhere
-//! positive. Where ℓ is not negative, f and g are not positive together: that is so in cells on one side of the cone's apex, and,
-//! for a cone that ends at its apex, wherever its base's function is positive.
+//! A quadric of two sheets that lie on both sides of a plane, such as the two nappes of a cone whose ruling
+//! lies in the plane, has no such factor: one sheet is positive together with the plane. Then there may be a
+//! linear function ℓ such that f + ℓ g is nowhere positive. Where ℓ is not negative, f and g are not positive
+//! together: that is so in cells on one side of the cone's apex, and, for a cone that ends at its apex,
+//! wherever its base's function is positive.
 
 use super::bounds::{centre, half_edge};
 use super::linear;
@@ -45,8 +47,8 @@ pub(crate) struct Sheets {
     /// Twice the matrix of the quadric's function, which is positive inside.
     form: Form,
     plane: Linear,
-    /// Where this is not negative, nothing inside lies where the plane's function is positive; where it is not positive, nothing where
-    /// that is negative.
+    /// Where this is not negative, nothing inside lies where the plane's function is positive; where it is
+    /// not positive, nothing where that is negative.
     factor: Linear,
 }
 
@@ -59,8 +61,8 @@ impl Contact {
 }
 
 impl PlacedHalfSpace {
-    /// What two functions exclude of each other in the universe of a frame. Nothing is known of surfaces other than planes and
-    /// quadrics.
+    /// What two functions exclude of each other in the universe of a frame. Nothing is known of surfaces
+    /// other than planes and quadrics.
     ///
     /// # Errors
     /// [`Error::Limit`] if exact numbers of placements become too long.
@@ -163,11 +165,11 @@ impl Sheets {
             .map(|negative| self.signs(negative))
     }
 
-    /// Twice the signs of both functions, and of that of a third surface, a plane, that occur together at no point: whether they are
-    /// negative. `None` if the third surface does not tell.
+    /// Twice the signs of both functions, and of that of a third surface, a plane, that occur together at no
+    /// point: whether they are negative. `None` if the third surface does not tell.
     pub(crate) fn excluded_with(&self, third: &Linear) -> Option<[((bool, bool), bool); 2]> {
-        // Moved to the plane along any direction w, a point has the value f + ℓ g, where ℓ g(w)² is f(w) g − 2 g(w) (w F): of a
-        // cone there is a w such that w F is the function h of the plane through the apex.
+        // Moved to the plane along any direction w, a point has the value f + ℓ g, where ℓ g(w)² is f(w) g −
+        // 2 g(w) (w F): of a cone there is a w such that w F is the function h of the plane through the apex.
         let (f, g, h) = (&self.form, &self.plane, third);
         let adjugate = |i: usize, k: usize| {
             let at = |a: usize, b: usize| &f[(i + a) % 3][(k + b) % 3];
@@ -197,8 +199,8 @@ impl Sheets {
     }
 }
 
-/// Whether there is an a ≥ 0 such that no value is less than a times the other: where the other is positive, the value is not negative.
-/// Of the negatives of all values if so said.
+/// Whether there is an a ≥ 0 such that no value is less than a times the other: where the other is positive,
+/// the value is not negative. Of the negatives of all values if so said.
 fn is_above(values: &[Dyadic; 8], others: &[Dyadic; 8], negative: bool) -> bool {
     // Bounds of a: fractions, with positive denominators.
     let mut least = (Dyadic::zero(), Dyadic::new(1.0));
@@ -234,7 +236,8 @@ fn symmetric(coefficients: &Coefficients) -> Form {
     })
 }
 
-/// The form in other coordinates: those of points over the plane's factor `pivot`, but in that place the plane's function over it.
+/// The form in other coordinates: those of points over the plane's factor `pivot`, but in that place the
+/// plane's function over it.
 fn on_plane(form: &Form, plane: &Linear, pivot: usize) -> Form {
     let map: Form = from_fn(|i| {
         from_fn(|k| match (i == pivot, i == k) {

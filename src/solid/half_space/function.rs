@@ -1,8 +1,9 @@
-//! What a cell knows in which few half-spaces are open, whatever function of them the solid is: points, rays, moments and area.
+//! What a cell knows in which few half-spaces are open, whatever function of them the solid is: points, rays,
+//! moments and area.
 //!
-//! A function of up to three half-spaces is a union of intersections that do not overlap ([`Terms`]). So its moments are sums of
-//! theirs. A piece of a half-space's surface belongs to the boundary where the function's value depends on that half-space, which
-//! is a function of the others.
+//! A function of up to three half-spaces is a union of intersections that do not overlap ([`Terms`]). So its
+//! moments are sums of theirs. A piece of a half-space's surface belongs to the boundary where the function's
+//! value depends on that half-space, which is a function of the others.
 
 use super::Placed;
 use super::bounds::{centre, half_edge};
@@ -22,7 +23,8 @@ struct Function<'h> {
     table: Table,
 }
 
-/// The moments in a cell, if more is known of them than slabs tell. Half-spaces are given with their numbers in the table.
+/// The moments in a cell, if more is known of them than slabs tell. Half-spaces are given with their numbers
+/// in the table.
 pub(crate) fn moments(
     variables: impl Iterator<Item = (usize, u32)> + Clone,
     table: Table,
@@ -57,8 +59,8 @@ pub(crate) fn area(
     }
 }
 
-/// Whether a point is inside, given on which side of half-spaces it lies; `None` if the function depends on one of which that is not
-/// known.
+/// Whether a point is inside, given on which side of half-spaces it lies; `None` if the function depends on
+/// one of which that is not known.
 pub(crate) fn inside(
     variables: impl Iterator<Item = (usize, u32)>,
     mut table: Table,
@@ -174,7 +176,8 @@ fn sides(term: &Term, surfaces: &[Option<Taylor>; 3]) -> [Option<Taylor>; 3] {
     sides
 }
 
-/// The moments of an intersection: to third order where one curved half-space is open, alone or with planes, else by slabs.
+/// The moments of an intersection: to third order where one curved half-space is open, alone or with planes,
+/// else by slabs.
 fn moments_of_term(term: &Term, slabs: &[Slab; 3], curves: &[Option<Quadratic>; 3]) -> CellMoments {
     let literals = || term.iter().enumerate().filter_map(|(i, not)| Some((i, (*not)?)));
     let slab = |(i, not): (usize, bool)| if not { slabs[i].complement() } else { slabs[i] };

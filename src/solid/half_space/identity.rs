@@ -1,8 +1,9 @@
-//! Half-spaces that are one, wherever they come from: planes and quadrics whose coefficients on the universe are proportional, from
-//! one side or from the other, and other surfaces with the same numbers in the same place.
+//! Half-spaces that are one, wherever they come from: planes and quadrics whose coefficients on the universe
+//! are proportional, from one side or from the other, and other surfaces with the same numbers in the same
+//! place.
 //!
-//! So the truth tables of cells know what coincides: a solid less itself is empty, and solids that touch in a face have nothing in
-//! common, without a split.
+//! So the truth tables of cells know what coincides: a solid less itself is empty, and solids that touch in a
+//! face have nothing in common, without a split.
 
 use super::map::ExactMap;
 use super::{HalfSpace, Placed, Surface};
@@ -33,8 +34,8 @@ const KNOWN: f64 = 1e-3;
 const MOST: usize = 16;
 
 impl Identities {
-    /// The number of the half-space among `known` that is the same, and whether it is its complement; if there is none it is the
-    /// next one. O(1).
+    /// The number of the half-space among `known` that is the same, and whether it is its complement; if
+    /// there is none it is the next one. O(1).
     pub(crate) fn find(
         &mut self,
         half_space: &HalfSpace,

@@ -11,8 +11,9 @@ pub(crate) struct Joined {
 }
 
 impl Joined {
-    /// Takes in a region, in which the function has the values of a table for all combinations of signs that are possible there;
-    /// `false` if it has another value for one of them in a region that was taken in before.
+    /// Takes in a region, in which the function has the values of a table for all combinations of signs that
+    /// are possible there; `false` if it has another value for one of them in a region that was taken in
+    /// before.
     pub(crate) fn take(&mut self, value: Table, possible: Table) -> bool {
         self.holds |= value.0 & possible.0;
         self.fails |= !value.0 & possible.0;

@@ -1,5 +1,5 @@
-//! Whether two polynomials bound the same half-space, or one the other's complement: their coefficients on the universe are
-//! proportional.
+//! Whether two polynomials bound the same half-space, or one the other's complement: their coefficients on
+//! the universe are proportional.
 
 use super::Placed;
 use crate::lattice::exact::{Dyadic, sqrt};
@@ -46,7 +46,8 @@ impl Placed {
         }
     }
 
-    /// A number between −3 and 3 that all planes have that are the same from either side, and all quadrics, to 10⁻¹⁴; `None` of others.
+    /// A number between −3 and 3 that all planes have that are the same from either side, and all quadrics,
+    /// to 10⁻¹⁴; `None` of others.
     pub(crate) fn likeness(&self) -> Option<f64> {
         let (c, count) = self.rounded()?;
         let first = c.iter().copied().find(|&c| c != 0.0)?;

@@ -1,9 +1,10 @@
 //! Where a half-space's surface crosses a ray through cell centres.
 //!
-//! A ray is a line of the lattice in unit coordinates, on which a plane or a quadric is a polynomial of degree two with a
-//! known error: its roots have closed forms. Where these cannot tell, as near to a tangent, and for surfaces of higher degree,
-//! the ray is halved until the function has one sign on a piece, or rises or falls throughout it (Taylor's formula with its
-//! remainder), and signs are decided exactly. On which side a cell's centre lies is always its exact sign.
+//! A ray is a line of the lattice in unit coordinates, on which a plane or a quadric is a polynomial of
+//! degree two with a known error: its roots have closed forms. Where these cannot tell, as near to a tangent,
+//! and for surfaces of higher degree, the ray is halved until the function has one sign on a piece, or rises
+//! or falls throughout it (Taylor's formula with its remainder), and signs are decided exactly. On which side
+//! a cell's centre lies is always its exact sign.
 
 use super::Placed;
 use crate::dexel::{first_above, within};
@@ -24,7 +25,8 @@ pub(crate) struct Root {
 /// Roots are found to this part of the universe's edge.
 const FINE: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// Most pieces of a ray on which a function is looked at. (Where it is all but zero along the ray, halving does not end.)
+/// Most pieces of a ray on which a function is looked at. (Where it is all but zero along the ray, halving
+/// does not end.)
 const MOST_PIECES: u32 = 1 << 12;
 
 /// A piece of a ray between two planes of the lattice.
@@ -140,7 +142,8 @@ impl Line {
         self.place(half_space, which, [a.high, b.high], [x, y], wrong + 4.0 * f64::EPSILON, roots)
     }
 
-    /// Appends the roots that lie on the piece, given those of a polynomial; nothing if one lies too near to an end.
+    /// Appends the roots that lie on the piece, given those of a polynomial; nothing if one lies too near to
+    /// an end.
     #[inline]
     fn place(
         &self,
@@ -177,7 +180,8 @@ impl Line {
         Ok(Some(at_low))
     }
 
-    /// A root in cells, off by at most `wrong`, behind which is the inside or the outside: moved into the right gap.
+    /// A root in cells, off by at most `wrong`, behind which is the inside or the outside: moved into the
+    /// right gap.
     #[inline]
     fn settled(&self, half_space: &Placed, at: f64, wrong: f64, inside: bool) -> Result<f64, Error> {
         let wrong = wrong + 8.0 * f64::EPSILON * self.cells;
@@ -193,7 +197,8 @@ impl Line {
         Ok(within(at, above, self.cells))
     }
 
-    /// Appends the roots in a piece, at whose ends the sides are known. The recursion is as deep as doubles have bits.
+    /// Appends the roots in a piece, at whose ends the sides are known. The recursion is as deep as doubles
+    /// have bits.
     fn isolate(
         &self,
         half_space: &Placed,
@@ -251,7 +256,8 @@ impl Line {
         memory::push(roots, Root { at, which })
     }
 
-    /// The roots in a piece that is not halved any more: as many as its ends, and the centres between them, tell.
+    /// The roots in a piece that is not halved any more: as many as its ends, and the centres between them,
+    /// tell.
     fn finest(
         &self,
         half_space: &Placed,

@@ -10,8 +10,9 @@ use crate::lattice::{Cell, CellMoments, Interval};
 /// Up to three half-spaces, or their complements.
 type Chosen = [Option<(u32, bool)>; 3];
 
-/// The intersection of up to three half-spaces, or of their complements, that is a solid in a cell or contains it; or that is the
-/// solid's complement or contains that. (A union is the complement of an intersection, so that complements have the same bits.)
+/// The intersection of up to three half-spaces, or of their complements, that is a solid in a cell or
+/// contains it; or that is the solid's complement or contains that. (A union is the complement of an
+/// intersection, so that complements have the same bits.)
 #[derive(Clone, Copy)]
 pub(crate) struct Literals {
     /// Which half-spaces, and whether their complements are meant.
@@ -28,8 +29,8 @@ impl Literals {
         Literals { literals: [Some((index, false)), None, None], one_sided: false, complement }
     }
 
-    /// A function of half-spaces, which are given with their numbers in the table. `None` if neither the solid nor its complement
-    /// lies in any of them.
+    /// A function of half-spaces, which are given with their numbers in the table. `None` if neither the
+    /// solid nor its complement lies in any of them.
     pub(crate) fn of_table(
         variables: impl Iterator<Item = (usize, u32)> + Clone,
         table: Table,
@@ -81,8 +82,8 @@ impl Literals {
         (count > 0).then(|| if self.complement { enclosure.complement() } else { enclosure })
     }
 
-    /// The moments to third order where one curved half-space is open, alone or with planes, if more is known of them than slabs
-    /// tell.
+    /// The moments to third order where one curved half-space is open, alone or with planes, if more is known
+    /// of them than slabs tell.
     pub(crate) fn moments(&self, half_spaces: &[Placed], cell: Cell) -> Option<CellMoments> {
         let is_plane = |half_space: &Placed| matches!(half_space, Placed::Plane(_));
         let mut curved = self.each(half_spaces).filter(|(half_space, _)| !is_plane(half_space));
@@ -127,7 +128,8 @@ impl Literals {
     }
 }
 
-/// More than the area that surfaces have in a cell, whatever function of them the solid is; `None` if too little is known.
+/// More than the area that surfaces have in a cell, whatever function of them the solid is; `None` if too
+/// little is known.
 pub(crate) fn most_area<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Option<Interval> {
     let taylor = |half_space: &Placed| half_space.taylor(centre(cell), half_edge(cell));
     let areas = half_spaces.map(|half_space| Some(cut::area_of_surface(&taylor(half_space)?).upper));

@@ -226,8 +226,8 @@ impl HalfSpace {
         matches!(&*self.0, Surface::Slab(_))
     }
 
-    /// The slab of which it is known which one it is, by its origin and its number there, or (`None`) is not. Any other half-space as
-    /// it is.
+    /// The slab of which it is known which one it is, by its origin and its number there, or (`None`) is not.
+    /// Any other half-space as it is.
     pub(crate) fn identified(&self, identity: Option<(Origin, u64)>) -> HalfSpace {
         match &*self.0 {
             &Surface::Slab(ThickPlane { normal, inner, outer, cell_slab, .. }) => {
@@ -326,8 +326,8 @@ impl Placed {
         })
     }
 
-    /// What is known of f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of
-    /// functions of the host.
+    /// What is known of f over the cube of half edge `half` around `centre`, both in unit coordinates; `None`
+    /// of functions of the host.
     #[inline]
     pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Option<Tangent> {
         Some(match self {
@@ -340,8 +340,8 @@ impl Placed {
         })
     }
 
-    /// f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of functions of the host, and of
-    /// slabs, whose surface has normals of which nothing is known.
+    /// f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of functions of
+    /// the host, and of slabs, whose surface has normals of which nothing is known.
     #[inline]
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Option<Taylor> {
         Some(match self {
@@ -353,7 +353,8 @@ impl Placed {
         })
     }
 
-    /// How often a line that does not lie in the surface meets it at most; `None` of functions of the host and of slabs.
+    /// How often a line that does not lie in the surface meets it at most; `None` of functions of the host
+    /// and of slabs.
     pub(crate) fn degree(&self) -> Option<u32> {
         Some(match self {
             Placed::Plane(_) => 1,
@@ -384,7 +385,8 @@ impl Placed {
         }
     }
 
-    /// Of a plane with a width, more than what its ends are moved outward by, as for what is rounded of a value.
+    /// Of a plane with a width, more than what its ends are moved outward by, as for what is rounded of a
+    /// value.
     pub(crate) fn layer_slack(&self) -> Option<f64> {
         match self {
             Placed::Slab(slab) => Some(slab.slack()),
@@ -392,8 +394,8 @@ impl Placed {
         }
     }
 
-    /// Whether a piece of the surface may lie in a face of a cell that the surface crosses. (Planes that do so cross no cell
-    /// beside the face.)
+    /// Whether a piece of the surface may lie in a face of a cell that the surface crosses. (Planes that do
+    /// so cross no cell beside the face.)
     pub(crate) fn may_hold_face(&self) -> bool {
         !matches!(self, Placed::Plane(_)) && self.may_hold_lattice_plane(0)
     }
@@ -413,7 +415,8 @@ impl Placed {
         )
     }
 
-    /// Exact sign of f at a point of the universe; `None` if the host does not know it, or the point lies in a slab.
+    /// Exact sign of f at a point of the universe; `None` if the host does not know it, or the point lies in
+    /// a slab.
     #[inline]
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> Result<Option<i32>, Error> {
         Ok(Some(match self {
@@ -443,8 +446,8 @@ impl Placed {
         self.decided(t, sign)
     }
 
-    /// On a ray along `axis` through a point, as a polynomial of degree two: the factors of 1, s and s² for the coordinate s,
-    /// and more than what its values on the universe are off by. `None` of others.
+    /// On a ray along `axis` through a point, as a polynomial of degree two: the factors of 1, s and s² for
+    /// the coordinate s, and more than what its values on the universe are off by. `None` of others.
     #[inline]
     pub(crate) fn along(&self, axis: usize, point: [f64; 3]) -> Option<([f64; 3], f64)> {
         match self {

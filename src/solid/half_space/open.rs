@@ -26,9 +26,10 @@ impl PlacedHalfSpace {
 /// Up to six surfaces that cross a PARTIAL cell, and the function of their signs that the solid is.
 ///
 /// # Law
-/// At a point of the open cell at which no function of the surfaces is zero, the solid is what the table says of the signs there. A
-/// layer, a plane with a width, has no sign at points in its width: where the table says the same for all signs of the layers
-/// in whose widths a point lies, the solid is that there, and elsewhere nothing is known.
+/// At a point of the open cell at which no function of the surfaces is zero, the solid is what the table says
+/// of the signs there. A layer, a plane with a width, has no sign at points in its width: where the table
+/// says the same for all signs of the layers in whose widths a point lies, the solid is that there, and
+/// elsewhere nothing is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OpenSurfaces {
     indices: [u32; OpenSurfaces::MOST],
@@ -69,13 +70,14 @@ impl OpenSurfaces {
         Some(i)
     }
 
-    /// The surfaces, by their numbers in the classifier's list ([`WholeQuestion::Surfaces`](crate::solid::WholeQuestion::Surfaces)).
+    /// The surfaces, by their numbers in the classifier's list
+    /// ([`WholeQuestion::Surfaces`](crate::solid::WholeQuestion::Surfaces)).
     pub fn indices(&self) -> &[u32] {
         &self.indices[..usize::from(self.count)]
     }
 
-    /// Whether the solid is where the surfaces' functions are positive whose bits are set in `signs`, and negative those of the
-    /// others.
+    /// Whether the solid is where the surfaces' functions are positive whose bits are set in `signs`, and
+    /// negative those of the others.
     pub fn inside(&self, signs: u8) -> bool {
         self.table.0 >> (signs & 63) & 1 != 0
     }
@@ -90,7 +92,8 @@ impl OpenSurfaces {
         OpenSurfaces { table, ..self }
     }
 
-    /// The second of two functions of the same surfaces where surface `i` of the list is positive, else the first one.
+    /// The second of two functions of the same surfaces where surface `i` of the list is positive, else the
+    /// first one.
     #[cfg(feature = "std")]
     pub(crate) fn choice(i: usize, [below, above]: [OpenSurfaces; 2]) -> OpenSurfaces {
         let is_above = Table::of(i, false).0;

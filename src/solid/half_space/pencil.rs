@@ -1,15 +1,17 @@
 //! Quadratic forms of which a sum is nowhere positive, in exact numbers.
 //!
-//! Let f and g be polynomials of degree two at most, with the symmetric matrices F and G (of 4 × 4 numbers: those of points (x, y, z, 1)).
-//! If a λ > 0 makes F + λ G negative semi-definite, then f + λ g is nowhere positive, so that f and g are positive together at no point.
-//! If there is a point at which g is positive, the converse holds, too (the S-lemma: Yakubovich, 1971).
+//! Let f and g be polynomials of degree two at most, with the symmetric matrices F and G (of 4 × 4 numbers:
+//! those of points (x, y, z, 1)). If a λ > 0 makes F + λ G negative semi-definite, then f + λ g is nowhere
+//! positive, so that f and g are positive together at no point. If there is a point at which g is positive,
+//! the converse holds, too (the S-lemma: Yakubovich, 1971).
 //!
-//! A symmetric matrix is negative semi-definite just if the sums of its principal minors of k rows, times (−1)^k, are not negative for
-//! k = 1 to 4: those are the coefficients of its characteristic polynomial, all of whose roots are real. Of F + λ G the sums are
-//! polynomials in λ. Let c be the last of them that is not zero everywhere. Where surfaces are apart, the λ that serve are an interval,
-//! at both ends of which c is zero, so that a root of c′ lies within. Where surfaces touch, there is one λ only, and it is a multiple
-//! root of c: it solves gcd(c, c′), of degree three at most, and no root of degree more than two is needed. Both are decided without
-//! rounding.
+//! A symmetric matrix is negative semi-definite just if the sums of its principal minors of k rows, times
+//! (−1)^k, are not negative for k = 1 to 4: those are the coefficients of its characteristic polynomial, all
+//! of whose roots are real. Of F + λ G the sums are polynomials in λ. Let c be the last of them that is not
+//! zero everywhere. Where surfaces are apart, the λ that serve are an interval, at both ends of which c is
+//! zero, so that a root of c′ lies within. Where surfaces touch, there is one λ only, and it is a multiple
+//! root of c: it solves gcd(c, c′), of degree three at most, and no root of degree more than two is needed.
+//! Both are decided without rounding.
 
 use crate::lattice::exact::Dyadic;
 use core::array::from_fn;
@@ -33,7 +35,8 @@ struct Number {
 /// How much less than nothing a value may be, as a share of its terms, for a multiple root to be looked for.
 const NEARLY: f64 = 1e-9;
 
-/// The signs that two functions have together at no point: whether the first and the second are negative. `None` if there are none.
+/// The signs that two functions have together at no point: whether the first and the second are negative.
+/// `None` if there are none.
 pub(super) fn excluded(f: &Form, g: &Form) -> Option<(bool, bool)> {
     let sums = sums(&normal(f), &normal(g));
     [(false, false), (false, true), (true, false), (true, true)].into_iter().find(
@@ -49,7 +52,8 @@ pub(super) fn excluded(f: &Form, g: &Form) -> Option<(bool, bool)> {
     )
 }
 
-/// Whether three rows and columns of a matrix, without number `left_out`, are negative semi-definite; or, if so said, positive.
+/// Whether three rows and columns of a matrix, without number `left_out`, are negative semi-definite; or, if
+/// so said, positive.
 pub(super) fn is_semi_definite(f: &Form, left_out: usize, positive: bool) -> bool {
     let rows: [usize; 3] = from_fn(|k| k + usize::from(k >= left_out));
     let constant = |c: &Dyadic| Polynomial::new(&[c]);
@@ -117,7 +121,8 @@ fn determinant(entries: &[[Polynomial; 4]; 4], [i, j, k]: [usize; 3]) -> Polynom
         .plus(&row[k].times(&minor(entries, [j, k], [i, j])))
 }
 
-/// Whether there is a positive number at which none of the polynomials is negative, if these are the sums of principal minors.
+/// Whether there is a positive number at which none of the polynomials is negative, if these are the sums of
+/// principal minors.
 fn are_somewhere_not_negative(all: &[Polynomial; 4]) -> bool {
     let Some(last) = all.iter().rev().find(|c| c.degree().is_some()) else { return false };
     let last = last.without_zeros();
@@ -204,7 +209,8 @@ impl Polynomial {
         sign_of(&u, &v, &at.d)
     }
 
-    /// The roots, each of them once, of a polynomial of degree three at most whose roots are equal if it is of degree three.
+    /// The roots, each of them once, of a polynomial of degree three at most whose roots are equal if it is
+    /// of degree three.
     fn simple_roots(&self) -> [Option<Number>; 2] {
         let [c, b, a, third, _] = &self.0;
         let zero = Dyadic::zero;
@@ -284,7 +290,8 @@ fn value(c: &[f64; 5], at: f64) -> Value {
     })
 }
 
-/// The positive roots of a polynomial and of its derivatives, but for rounding, with zeros in the place of others.
+/// The positive roots of a polynomial and of its derivatives, but for rounding, with zeros in the place of
+/// others.
 fn roots(c: &[f64; 5]) -> [f64; 10] {
     let mut found = [0.0; 10];
     let mut count = 0;

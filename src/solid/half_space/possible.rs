@@ -7,11 +7,11 @@ use super::tangent::Tangent;
 use crate::cut::Quadratic;
 use crate::lattice::{Cell, axes};
 
-/// The combinations of signs that functions may have in a cell: bit m is for those that are positive whose bits are set in m. A
-/// combination is left out if a function is proven to have its sign nowhere, or two functions are proven not to have theirs at one
-/// point: a positive multiple of the one, added to the other, would be positive there, and is nowhere so. (For one quadric and one
-/// plane, or two quadrics, in all of space there is such a multiple whenever no point has both signs: the S-lemma of Yakubovich,
-/// 1971.)
+/// The combinations of signs that functions may have in a cell: bit m is for those that are positive whose
+/// bits are set in m. A combination is left out if a function is proven to have its sign nowhere, or two
+/// functions are proven not to have theirs at one point: a positive multiple of the one, added to the other,
+/// would be positive there, and is nowhere so. (For one quadric and one plane, or two quadrics, in all of
+/// space there is such a multiple whenever no point has both signs: the S-lemma of Yakubovich, 1971.)
 pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Table {
     met(half_spaces, cell).possible
 }
@@ -67,8 +67,8 @@ pub(crate) fn met<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell)
     Met { possible: Table(possible), seen }
 }
 
-/// A function to second order, and at which of the 27 vertices, middles of edges and faces, and the centre of the cell it surely is
-/// positive, and negative.
+/// A function to second order, and at which of the 27 vertices, middles of edges and faces, and the centre of
+/// the cell it surely is positive, and negative.
 #[derive(Clone, Copy)]
 struct Close {
     f: Quadratic,
@@ -102,7 +102,8 @@ impl Close {
         }
         let signed = |f: &Quadratic, negative: bool| if negative { f.complement() } else { *f };
         let (a, b) = (signed(&self.f, negative_self), signed(&other.f, negative_other));
-        // Of surfaces that are offsets of each other the terms of second order, or the gradients, cancel at one share.
+        // Of surfaces that are offsets of each other the terms of second order, or the gradients, cancel at
+        // one share.
         if [a.cancelled(&b, 3..9), a.cancelled(&b, 0..3)]
             .into_iter()
             .flatten()
@@ -136,8 +137,8 @@ impl Close {
 }
 
 impl Quadratic {
-    /// The share at which the greatest of some factors of the other function cancels that of this one: of the gradient 0 to 2, of the
-    /// second order 3 to 8. `None` if it has the same sign, or there is none.
+    /// The share at which the greatest of some factors of the other function cancels that of this one: of the
+    /// gradient 0 to 2, of the second order 3 to 8. `None` if it has the same sign, or there is none.
     fn cancelled(&self, other: &Quadratic, factors: core::ops::Range<usize>) -> Option<f64> {
         let factor = |f: &Quadratic, k: usize| if k < 3 { f.gradient[k] } else { f.squares[k - 3] };
         let greatest = factors.max_by(|&i, &k| factor(other, i).abs().total_cmp(&factor(other, k).abs()))?;
@@ -195,13 +196,13 @@ fn exclude(a: &Tangent, negative_a: bool, b: &Tangent, negative_b: bool) -> bool
 }
 
 impl Table {
-    /// The function on the combinations that are possible, of as few half-spaces as can be; of several choices of so many that is
-    /// taken in which the last half-spaces have the least numbers. A combination that is not possible has the value of the possible
-    /// one that comes first in this order: by the number of the last half-space whose sign differs, then by that of the one before,
-    /// and so on.
+    /// The function on the combinations that are possible, of as few half-spaces as can be; of several
+    /// choices of so many that is taken in which the last half-spaces have the least numbers. A combination
+    /// that is not possible has the value of the possible one that comes first in this order: by the number
+    /// of the last half-space whose sign differs, then by that of the one before, and so on.
     ///
-    /// So the result depends on the values at possible combinations alone, and the complement of the function has the complement
-    /// of the result.
+    /// So the result depends on the values at possible combinations alone, and the complement of the function
+    /// has the complement of the result.
     pub(crate) fn simplified(self, possible: Table) -> Table {
         let counts = |i: usize| self.depends_on(i) || possible.depends_on(i);
         let all = (0..MOST).filter(|&i| counts(i)).fold(0u8, |all, i| all | 1 << i);
@@ -219,7 +220,8 @@ impl Table {
         Table(table)
     }
 
-    /// The function without some half-spaces, and which combinations of the others are possible; `None` if it depends on them.
+    /// The function without some half-spaces, and which combinations of the others are possible; `None` if it
+    /// depends on them.
     fn without(self, possible: Table, half_spaces: u8) -> Option<(Table, Table)> {
         let (mut table, mut possible) = (self.0, possible.0);
         for i in (0..MOST).filter(|&i| half_spaces >> i & 1 != 0) {

@@ -256,8 +256,8 @@ impl PlacedPowers {
         self.terms.iter().map(|term| term.exponent).max().unwrap_or(0)
     }
 
-    /// Whether the surface may contain a plane of a lattice. It does not if, on the planes across each axis, the sum
-    /// grows beyond all bounds along another one.
+    /// Whether the surface may contain a plane of a lattice. It does not if, on the planes across each axis,
+    /// the sum grows beyond all bounds along another one.
     pub(crate) fn may_hold_lattice_plane(&self) -> bool {
         let grows = |axis: usize| {
             let along = || self.terms.iter().filter(|term| !term.line.exact[axis].is_zero());

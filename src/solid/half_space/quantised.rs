@@ -16,10 +16,10 @@ const THICKER: f64 = 1.4;
 const FINE: f64 = 1024.0;
 
 impl PlacedHalfSpace {
-    /// A slab in model space that is used in one cell alone, its `index`-th, in whole numbers: what is proven of points of the cell by
-    /// the result is true. `None` of what is no slab; of what is thicker in the cell than `tolerance` (model units); and where a slab
-    /// would become thicker by more than two fifths and be thicker than a 1024th of that, in cells that are large in comparison with
-    /// its width.
+    /// A slab in model space that is used in one cell alone, its `index`-th, in whole numbers: what is proven
+    /// of points of the cell by the result is true. `None` of what is no slab; of what is thicker in the cell
+    /// than `tolerance` (model units); and where a slab would become thicker by more than two fifths and be
+    /// thicker than a 1024th of that, in cells that are large in comparison with its width.
     pub(crate) fn quantised(
         &self,
         frame: &Frame,

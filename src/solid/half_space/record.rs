@@ -17,8 +17,8 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// What surfaces are known by: two are one if these are equal. Of planes and quadrics it is the polynomial in model space, up to a
-/// factor; of others the figure and its place.
+/// What surfaces are known by: two are one if these are equal. Of planes and quadrics it is the polynomial in
+/// model space, up to a factor; of others the figure and its place.
 #[derive(PartialEq, Eq, Hash)]
 enum Identity {
     Polynomial(Vec<Dyadic>),
@@ -40,7 +40,8 @@ impl PlacedHalfSpace {
         self.placements.iter().try_fold(from, |map, placement| map.of_placed(placement))
     }
 
-    /// Whether two surfaces are one, and if so, whether the function of the one is positive where that of the other is negative.
+    /// Whether two surfaces are one, and if so, whether the function of the one is positive where that of the
+    /// other is negative.
     pub(crate) fn same(&self, other: &PlacedHalfSpace) -> Result<Option<bool>, Error> {
         Ok(match (self.identity()?, other.identity()?) {
             (Some((own, turned)), Some((others, other_turned))) if own == others => {
@@ -50,8 +51,8 @@ impl PlacedHalfSpace {
         })
     }
 
-    /// What the surface is known by, and whether the function is negative where that of the identity is positive. `None` of what
-    /// has no exact numbers.
+    /// What the surface is known by, and whether the function is negative where that of the identity is
+    /// positive. `None` of what has no exact numbers.
     fn identity(&self) -> Result<Option<(Identity, bool)>, Error> {
         let map = || self.map(ExactMap::identity());
         let polynomial = |mut numbers: Vec<Dyadic>| {
@@ -109,7 +110,8 @@ impl PlacedHalfSpace {
 }
 
 impl HalfSpace {
-    /// The kind of the surface, and its numbers, of a slab without those that tell which it is; `None` of functions of the host.
+    /// The kind of the surface, and its numbers, of a slab without those that tell which it is; `None` of
+    /// functions of the host.
     fn numbers(&self) -> Option<(SurfaceKind, Vec<Dyadic>)> {
         Some(match &*self.0 {
             Surface::Plane(plane) => (SurfaceKind::Plane, plane.to_vec()),
@@ -198,8 +200,8 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// The number of a surface, and whether the function of that is positive where this one's is negative. `None` of what has no
-    /// exact numbers.
+    /// The number of a surface, and whether the function of that is positive where this one's is negative.
+    /// `None` of what has no exact numbers.
     pub(crate) fn number(&mut self, surface: &PlacedHalfSpace) -> Result<Option<(u32, bool)>, Error> {
         let Some((identity, turned)) = surface.identity()? else { return Ok(None) };
         self.known.try_reserve(1)?;
@@ -219,7 +221,8 @@ impl Pool {
         Ok(Some((number, turned)))
     }
 
-    /// The surfaces in an order that does not depend on that in which they were numbered, and for each number the place there.
+    /// The surfaces in an order that does not depend on that in which they were numbered, and for each number
+    /// the place there.
     pub(crate) fn sorted(self) -> Result<(Vec<PlacedHalfSpace>, Vec<u32>), Error> {
         let keys = memory::collected(self.surfaces.iter().map(PlacedHalfSpace::size))?;
         let mut order = memory::collected(0..self.surfaces.len())?;
@@ -235,8 +238,8 @@ impl Pool {
 }
 
 impl PlacedHalfSpace {
-    /// What surfaces are ordered by, and records that tell of one surface, as [`SurfacesRef::order`] does of those that are stored:
-    /// the number of doubles, the kind, and the doubles themselves.
+    /// What surfaces are ordered by, and records that tell of one surface, as [`SurfacesRef::order`] does of
+    /// those that are stored: the number of doubles, the kind, and the doubles themselves.
     pub(crate) fn size(&self) -> (usize, Vec<u64>) {
         let (mut bits, mut doubles) = (Vec::new(), Vec::new());
         if let Some((kind, numbers)) = self.half_space.numbers() {
@@ -261,12 +264,12 @@ impl PlacedHalfSpace {
         cell_slab.filter(|slab| is_there && has_cell(slab)).map(|slab| (slab, origin))
     }
 
-    /// Writes surfaces of a tree on a frame one after the other; maps that several share stand once. Slabs of cells stand at the end,
-    /// those of one origin together.
+    /// Writes surfaces of a tree on a frame one after the other; maps that several share stand once. Slabs of
+    /// cells stand at the end, those of one origin together.
     ///
     /// # Errors
-    /// [`Error::Limit`] if a number is the sum of more than seven doubles, if a surface has more than 64 maps, or if there are
-    /// too many doubles; [`Error::OutOfMemory`].
+    /// [`Error::Limit`] if a number is the sum of more than seven doubles, if a surface has more than 64
+    /// maps, or if there are too many doubles; [`Error::OutOfMemory`].
     pub(crate) fn write<'s>(
         surfaces: impl ExactSizeIterator<Item = &'s PlacedHalfSpace>,
         frame: &Frame,

@@ -1,9 +1,9 @@
 //! A short number by which surfaces that are one are found among many.
 //!
-//! Two stored surfaces may be one although their numbers differ: polynomials that are proportional, a figure that is placed by
-//! several maps or by one. The exact comparison takes long numbers. So the polynomial in model space is computed modulo a prime
-//! first, where sums of doubles, products and quotients are exact and short. Surfaces that are one have equal residues; of others
-//! two in 2^61 do, and are compared exactly.
+//! Two stored surfaces may be one although their numbers differ: polynomials that are proportional, a figure
+//! that is placed by several maps or by one. The exact comparison takes long numbers. So the polynomial in
+//! model space is computed modulo a prime first, where sums of doubles, products and quotients are exact and
+//! short. Surfaces that are one have equal residues; of others two in 2^61 do, and are compared exactly.
 
 use crate::octree::cuts::{SurfaceKind, SurfacesRef};
 
@@ -68,7 +68,8 @@ impl Residue {
     }
 }
 
-/// A projective map: homogeneous coordinates of a point of model space to those of the point in a figure's space.
+/// A projective map: homogeneous coordinates of a point of model space to those of the point in a figure's
+/// space.
 type Map = [[Residue; 4]; 4];
 
 fn product(a: &Map, b: &Map) -> Map {
@@ -110,8 +111,8 @@ fn projective(seed: u64, form: impl Iterator<Item = Residue> + Clone) -> u64 {
     mixed(seed, form.map(|c| c.times(scale).0))
 }
 
-/// A number that is the same of all surfaces that are one; `None` of a surface that is like no other (a slab without an origin), or
-/// damaged. O(maps).
+/// A number that is the same of all surfaces that are one; `None` of a surface that is like no other (a slab
+/// without an origin), or damaged. O(maps).
 pub(crate) fn residue(surfaces: &SurfacesRef<'_>, id: usize) -> Option<u64> {
     let (kind, numbers) = surfaces.get(id)?;
     if let (Some(slab), Some(([low, high], _))) = (surfaces.cell_slab(id), surfaces.identity(id)) {

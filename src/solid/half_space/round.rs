@@ -7,11 +7,13 @@ use crate::error::Error;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Frame, Interval, axes};
 
-/// A surface all of whose points are about as far from a point, or from a line: a ball or a cylinder around its *core*.
+/// A surface all of whose points are about as far from a point, or from a line: a ball or a cylinder around
+/// its *core*.
 ///
 /// # Law
-/// Let x be a point of the universe. If x lies on the near side of the surface, the square of its distance from the core is at
-/// most `square.upper`. If it lies on the far side, that square is at least `square.lower`.
+/// Let x be a point of the universe. If x lies on the near side of the surface, the square of its distance
+/// from the core is at most `square.upper`. If it lies on the far side, that square is at least
+/// `square.lower`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Round {
     /// The centre of the ball, or a point of the axis: in finest cells from the universe's lower corner.
@@ -166,7 +168,8 @@ fn of_quadric(c: &[Interval; 10], frame: &Frame) -> Option<Round> {
     if !core.iter().all(|c| c.abs() < 1e100) {
         return None;
     }
-    // f / scale − |x − core|² across the axis, over the universe: a constant, but for what rounding makes of it.
+    // f / scale − |x − core|² across the axis, over the universe: a constant, but for what rounding makes of
+    // it.
     let over = |c: Interval| {
         if scale > 0.0 { c.over(exactly(scale)) } else { c.negated().over(exactly(-scale)) }
     };

@@ -11,13 +11,14 @@ use crate::lattice::exact::{Dyadic, sqrt};
 
 /// A surface in model space, by its kind and its numbers.
 ///
-/// The numbers are those of the exact surface, rounded: relative errors are some 10^-15 of the coordinates. A surface of degree two has
-/// the name of a ball, a cylinder or a cone if its coefficients are those of one to 10^-9 of their size.
+/// The numbers are those of the exact surface, rounded: relative errors are some 10^-15 of the coordinates. A
+/// surface of degree two has the name of a ball, a cylinder or a cone if its coefficients are those of one to
+/// 10^-9 of their size.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SurfaceShape {
-    /// The plane `normal` · p = `offset`. The normal has the length one and points out of the half-space. Of a plane with a width, as
-    /// octrees of meshes have them, it is the middle.
+    /// The plane `normal` · p = `offset`. The normal has the length one and points out of the half-space. Of
+    /// a plane with a width, as octrees of meshes have them, it is the middle.
     Plane {
         /// Of length one.
         normal: [f64; 3],
@@ -62,8 +63,9 @@ pub enum SurfaceShape {
     },
     /// Any other surface of degree two.
     Quadric {
-        /// The factors of x², y², z², xy, yz, zx, x, y, z and 1, as [`HalfSpace::quadric`](super::HalfSpace::quadric) takes them: the sum
-        /// is positive in the half-space. The largest one is between 1/2 and 1.
+        /// The factors of x², y², z², xy, yz, zx, x, y, z and 1, as
+        /// [`HalfSpace::quadric`](super::HalfSpace::quadric) takes them: the sum is positive in the
+        /// half-space. The largest one is between 1/2 and 1.
         coefficients: [f64; 10],
     },
     /// A surface without such numbers: sums of powers, a torus that is stretched, a host program's function.
@@ -105,9 +107,9 @@ impl SurfaceShape {
         }
     }
 
-    /// The direction across the surface at a point next to it, of length one: of a ball away from the centre, of a cylinder, a cone and
-    /// a torus away from the axis or the circle, of a plane and of any other surface out of the half-space. `None` where there
-    /// is none, and of [`Other`](Self::Other).
+    /// The direction across the surface at a point next to it, of length one: of a ball away from the centre,
+    /// of a cylinder, a cone and a torus away from the axis or the circle, of a plane and of any other
+    /// surface out of the half-space. `None` where there is none, and of [`Other`](Self::Other).
     pub fn normal(&self, at: [f64; 3]) -> Option<[f64; 3]> {
         match *self {
             SurfaceShape::Plane { normal, .. } => Some(normal),

@@ -11,7 +11,8 @@ use crate::lattice::{Cube, Interval, axes};
 use crate::octree::cuts::{CellSlab, Origin};
 use alloc::sync::Arc;
 
-/// A point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer` is not; of others nothing is known.
+/// A point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer` is not; of others
+/// nothing is known.
 pub(crate) struct ThickPlane {
     pub(crate) normal: [f64; 3],
     pub(crate) inner: f64,
@@ -55,7 +56,8 @@ impl HalfSpace {
         }
     }
 
-    /// A layer of another identity that is so many times as wide; `None` if that were wider than `most`, and of what has no width.
+    /// A layer of another identity that is so many times as wide; `None` if that were wider than `most`, and
+    /// of what has no width.
     pub(crate) fn widened(&self, times: f64, most: f64) -> Option<HalfSpace> {
         let (normal, [inner, outer]) = self.layer_ends()?;
         let length = sqrt(normal.iter().map(|c| c * c).sum::<f64>());
@@ -66,7 +68,8 @@ impl HalfSpace {
 }
 
 impl PlacedHalfSpace {
-    /// What its own space has as a unit, in model units before it is moved: of a slab of a cell the edge of the universe.
+    /// What its own space has as a unit, in model units before it is moved: of a slab of a cell the edge of
+    /// the universe.
     pub(crate) fn unit(&self) -> f64 {
         match (&*self.half_space.0, self.placements.first()) {
             (Surface::Slab(ThickPlane { cell_slab: Some(_), .. }), Some(universe)) => universe.rows()[0][0],
@@ -75,8 +78,8 @@ impl PlacedHalfSpace {
     }
 }
 
-/// Which slab it is. A slab stands for a set that is not known, so that only its origin tells it from others: two with the same
-/// coefficients may stand for two sets.
+/// Which slab it is. A slab stands for a set that is not known, so that only its origin tells it from others:
+/// two with the same coefficients may stand for two sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct SlabIdentity {
     /// What it was made from: a fingerprint of the solid and of how that was built.

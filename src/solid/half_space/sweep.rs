@@ -25,7 +25,8 @@ impl Sweep {
         self.half_spaces.iter().filter_map(half_space).all(|half_space| half_space.degree().is_some())
     }
 
-    /// Adds the intervals of all rays of a beam. `value` is the function: it gets which of the half-spaces hold.
+    /// Adds the intervals of all rays of a beam. `value` is the function: it gets which of the half-spaces
+    /// hold.
     pub(crate) fn find(
         &mut self,
         all: &[Placed],

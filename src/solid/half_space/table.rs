@@ -67,8 +67,8 @@ impl Table {
         }
     }
 
-    /// The function with half-space `to` in the place of half-space `i`, or (`complement`) its complement. What it says of
-    /// combinations that cannot be does not count.
+    /// The function with half-space `to` in the place of half-space `i`, or (`complement`) its complement.
+    /// What it says of combinations that cannot be does not count.
     pub(crate) fn renamed(self, i: usize, to: usize, complement: bool) -> Table {
         let [inside, outside] = [self.with(i, !complement), self.with(i, complement)];
         Table(inside.0 & HOLDS[to] | outside.0 & !HOLDS[to])

@@ -12,8 +12,8 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
-    /// From the value at the centre, the slopes along the axes in units of half edges, the least and the greatest
-    /// remainder, and more than what all of this is off by.
+    /// From the value at the centre, the slopes along the axes in units of half edges, the least and the
+    /// greatest remainder, and more than what all of this is off by.
     #[inline(always)]
     pub(crate) fn new(value: f64, gradient: [f64; 3], (least, most): (f64, f64), error: f64) -> Tangent {
         // The sums here are rounded, too.

@@ -19,9 +19,10 @@ impl Terms {
 
     const NONE: Terms = Terms { terms: [[None; 3]; Terms::MOST], count: 0, cost: 0 };
 
-    /// The cheapest terms that are found for a function of half-spaces 0 to 2 by asking one half-space after the other, or those
-    /// of its complement if they are cheaper; `true` for the complement. A complement has the same terms. Terms of more than one
-    /// `curved` half-space, whose moments are known less well, are dear.
+    /// The cheapest terms that are found for a function of half-spaces 0 to 2 by asking one half-space after
+    /// the other, or those of its complement if they are cheaper; `true` for the complement. A complement has
+    /// the same terms. Terms of more than one `curved` half-space, whose moments are known less well, are
+    /// dear.
     pub(crate) fn cheapest(table: Table, curved: [bool; 3]) -> (Terms, bool) {
         let [own, other] = [table, Table(!table.0)].map(|table| Terms::of(table, [None; 3], curved));
         // Of two that cost the same the one counts that is not where no half-space holds.

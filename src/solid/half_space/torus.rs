@@ -166,12 +166,13 @@ impl PlacedTorus {
             true => (self.major / near - 1.0).max(0.0) * (across * across),
             false => f64::INFINITY,
         };
-        // On the axis the tangent of ρ may be any, and none is what the bound from below allows for; above, the
-        // bend is infinite there.
+        // On the axis the tangent of ρ may be any, and none is what the bound from below allows for; above,
+        // the bend is infinite there.
         Tangent::new(value, gradient, (-(half * half * self.diagonal), bend), self.error)
     }
 
-    /// f over a cube. All of it is quadratic but for ρ, whose third derivative along a line is at most 2 / √3 ρ².
+    /// f over a cube. All of it is quadratic but for ρ, whose third derivative along a line is at most 2 / √3
+    /// ρ².
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let Tangent { gradient, low, high } = self.tangent(centre, half);
         let [x, y, z] = self.lines.each_ref().map(|line| line.value(centre));

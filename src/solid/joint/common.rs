@@ -17,7 +17,8 @@ use hashbrown::hash_map::Entry;
 /// The signs of two functions: whether they are negative.
 const SIGNS: [(bool, bool); 4] = [(false, false), (false, true), (true, false), (true, true)];
 
-/// Pairs of surfaces at most of which it is remembered what they exclude. (What is forgotten is found out again.)
+/// Pairs of surfaces at most of which it is remembered what they exclude. (What is forgotten is found out
+/// again.)
 const REMEMBERED: usize = 1 << 12;
 
 /// What pairs of surfaces exclude of each other, as far as somebody has asked.
@@ -34,7 +35,8 @@ impl Contacts {
     }
 }
 
-/// The surfaces of two solids. A surface that bounds both has one number, whichever side of it the one and the other lie on.
+/// The surfaces of two solids. A surface that bounds both has one number, whichever side of it the one and
+/// the other lie on.
 pub(crate) struct Common {
     frame: Frame,
     surfaces: Vec<PlacedHalfSpace>,
@@ -105,7 +107,8 @@ impl Common {
         Some(table.spread(&places[..own.indices().len()]))
     }
 
-    /// The same function on the combinations of signs that are possible in a cell, of as few surfaces as that takes.
+    /// The same function on the combinations of signs that are possible in a cell, of as few surfaces as that
+    /// takes.
     pub(super) fn possible(
         &self,
         cell: Cell,
@@ -212,7 +215,8 @@ impl Common {
 #[derive(Default)]
 struct Numbered {
     pool: Pool,
-    /// For each number of the pool that of the surface, and whether its function is the negative of the pool's.
+    /// For each number of the pool that of the surface, and whether its function is the negative of the
+    /// pool's.
     places: Vec<(u32, bool)>,
     surfaces: Vec<PlacedHalfSpace>,
 }

@@ -18,10 +18,11 @@ use common::{Common, Contacts};
 
 /// The intersection of two solids on one frame.
 ///
-/// A cell where one of them is EMPTY is EMPTY, and where one is FULL it is what the other is. Where both know functions of surfaces,
-/// the function of both is looked at: of a surface that bounds both, the two sides have nothing in common, and of others bounds tell
-/// which sides have. From there on the cells below know nothing but that function. Where one of them knows no function, slabs of both
-/// may tell that the cell is EMPTY.
+/// A cell where one of them is EMPTY is EMPTY, and where one is FULL it is what the other is. Where both know
+/// functions of surfaces, the function of both is looked at: of a surface that bounds both, the two sides
+/// have nothing in common, and of others bounds tell which sides have. From there on the cells below know
+/// nothing but that function. Where one of them knows no function, slabs of both may tell that the cell is
+/// EMPTY.
 #[derive(Clone)]
 pub(crate) struct Joint<A, B> {
     a: A,
@@ -439,8 +440,8 @@ fn is_nowhere<P>(children: &[Verdict<P>; 8]) -> bool {
     children.iter().all(|verdict| matches!(verdict, Verdict::Empty))
 }
 
-/// A guess for each of eight siblings, between 0 and 1, how much of it lies in the solid: from the siblings that share a face with
-/// it.
+/// A guess for each of eight siblings, between 0 and 1, how much of it lies in the solid: from the siblings
+/// that share a face with it.
 fn guesses<P>(verdicts: &[Verdict<P>; 8]) -> [f64; 8] {
     // What cannot be split any more lies in the solid nowhere that one could tell.
     if verdicts.iter().all(|verdict| matches!(verdict, Verdict::Undecided)) {

@@ -24,7 +24,8 @@ impl View<'_> {
         })
     }
 
-    /// By how much the winding number changes on the way from the lowest centre along x, y and z to that of `cell`.
+    /// By how much the winding number changes on the way from the lowest centre along x, y and z to that of
+    /// `cell`.
     fn change(&self, cell: [i32; 3]) -> i32 {
         let mut from = self.at;
         let mut change = 0;

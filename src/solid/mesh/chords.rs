@@ -1,8 +1,9 @@
 //! Rays through cell centres: where they enter and leave.
 //!
-//! Every triangle is scan-converted once for each direction. Between which centres a ray is pierced is exact; where in
-//! between is known to a small part of the universe's edge, of steep triangles by exact arithmetic. The winding numbers
-//! along a ray then say what is inside, so that a ray of a closed mesh has as many starts as ends, whatever it meets.
+//! Every triangle is scan-converted once for each direction. Between which centres a ray is pierced is exact;
+//! where in between is known to a small part of the universe's edge, of steep triangles by exact arithmetic.
+//! The winding numbers along a ray then say what is inside, so that a ray of a closed mesh has as many starts
+//! as ends, whatever it meets.
 
 use super::crossing::Projection;
 use super::placed::Placed;
@@ -40,7 +41,8 @@ impl Hit {
     }
 }
 
-/// Rows of rays of a band: those of a tile of `dexelize`. Rows that lie in several bands are looked for in all triangles.
+/// Rows of rays of a band: those of a tile of `dexelize`. Rows that lie in several bands are looked for in
+/// all triangles.
 const BAND: i32 = 32;
 
 /// Fewer triangles than this are looked at one by one.
@@ -61,8 +63,8 @@ pub(super) struct Chords {
 /// The triangles of a cell by the bands of rows that they may be pierced in.
 #[derive(Default)]
 struct Bands {
-    /// The cell's lowest finest cell, its number of triangles, and the axis of the rays. (Cells with one lowest finest cell lie
-    /// in each other, so that those with as many triangles have the same ones.)
+    /// The cell's lowest finest cell, its number of triangles, and the axis of the rays. (Cells with one
+    /// lowest finest cell lie in each other, so that those with as many triangles have the same ones.)
     of: Option<([i32; 3], usize, usize)>,
     starts: Vec<u32>,
     triangles: Vec<u32>,
@@ -208,7 +210,8 @@ impl Chords {
         (self.floor[index], &self.sorted[self.starts[index] as usize..self.starts[index + 1] as usize])
     }
 
-    /// Winding numbers of the lowest centres on all rays: from the cell's lowest centre along v, then along u.
+    /// Winding numbers of the lowest centres on all rays: from the cell's lowest centre along v, then along
+    /// u.
     fn wind_floor(&mut self, rays: &Rays<'_>, bundle: &Bundle) -> Result<(), Error> {
         let &Rays { placed, at, winding, .. } = rays;
         let &Bundle { w, u, v, ref columns, ref rows, .. } = bundle;
@@ -319,7 +322,8 @@ impl Chords {
         }
         for range in starts.windows(2) {
             if range[0] + 1 < range[1] {
-                // (Equal places are told apart, so that the order of triangles in a cell's list does not matter.)
+                // (Equal places are told apart, so that the order of triangles in a cell's list does not
+                // matter.)
                 sorted[range[0] as usize..range[1] as usize]
                     .sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then(a.triangle.cmp(&b.triangle)));
             }

@@ -180,8 +180,8 @@ impl<'p> Projection<'p> {
         search(height.first, height.last, guess, height.error, |k| self.is_above(column, row, k, step))
     }
 
-    /// The same, and where the line is pierced: in finest cells from the universe's lower face, off by less than 2^-36 of the
-    /// universe's edge.
+    /// The same, and where the line is pierced: in finest cells from the universe's lower face, off by less
+    /// than 2^-36 of the universe's edge.
     #[inline]
     pub(super) fn crossing(&mut self, column: i32, row: i32, step: i32) -> (i32, f64) {
         let height = match self.height {
@@ -211,8 +211,8 @@ impl<'p> Projection<'p> {
         )
     }
 
-    /// The same of a steep triangle from determinants of numbers with 106 bits, as seen from centre k of the line; `None` if these
-    /// are too few.
+    /// The same of a steep triangle from determinants of numbers with 106 bits, as seen from centre k of the
+    /// line; `None` if these are too few.
     fn near_crossing(&self, column: i32, row: i32, k: i32) -> Option<f64> {
         let Axes { u, v, w } = self.axes;
         let mut centre = [0; 3];

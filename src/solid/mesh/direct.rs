@@ -1,18 +1,19 @@
 //! Rays, points and distances, answered for the whole mesh without a descent through cells.
 //!
-//! The winding number of a point of a half-line is what the triangles ahead of it take away until infinity, where it is zero.
-//! So what a half-line passes through (`mesh/pierce`) tells winding numbers all along it, and where the fill rule's answer
-//! changes is the boundary: facets inside of overlapping bodies are none. Between triangles that are passed within each other's
-//! rounding nothing is told.
+//! The winding number of a point of a half-line is what the triangles ahead of it take away until infinity,
+//! where it is zero. So what a half-line passes through (`mesh/pierce`) tells winding numbers all along it,
+//! and where the fill rule's answer changes is the boundary: facets inside of overlapping bodies are none.
+//! Between triangles that are passed within each other's rounding nothing is told.
 //!
-//! Off the surface the shifted half-line's winding numbers are those of the half-line itself. Where that only touches the
-//! surface, its points belong to the solid if points on any side do: it is shifted into all octants. Where all of these run
-//! outside, next to a sharp corner, nothing is told.
+//! Off the surface the shifted half-line's winding numbers are those of the half-line itself. Where that only
+//! touches the surface, its points belong to the solid if points on any side do: it is shifted into all
+//! octants. Where all of these run outside, next to a sharp corner, nothing is told.
 //!
-//! Of a point of an open mesh the triangles on the way to infinity count what the surface and cones over the rim of its holes, from the
-//! other end of that way, wind around it, and the cones' own winding number is taken off (`rim`). An open mesh bounds the solid beside
-//! its triangles, too, where its winding number is one half. A ball and a box without triangles in which the number cannot change by
-//! enough hold none of that boundary. (Rays of open meshes: `open_trace`.)
+//! Of a point of an open mesh the triangles on the way to infinity count what the surface and cones over the
+//! rim of its holes, from the other end of that way, wind around it, and the cones' own winding number is
+//! taken off (`rim`). An open mesh bounds the solid beside its triangles, too, where its winding number is
+//! one half. A ball and a box without triangles in which the number cannot change by enough hold none of that
+//! boundary. (Rays of open meshes: `open_trace`.)
 
 use super::rim::{Course, DIRECTIONS, Fraction, Rim};
 use super::rim_line::RimLine;
@@ -63,8 +64,8 @@ impl Direct {
     }
 }
 
-/// How many of some triangles that were hit, which are in order, are passed at the same time as the first one, as far as rounding
-/// tells, and until when.
+/// How many of some triangles that were hit, which are in order, are passed at the same time as the first
+/// one, as far as rounding tells, and until when.
 pub(super) fn together(hits: &[Hit]) -> (usize, f64) {
     let mut until = hits.first().map_or(0.0, |hit| hit.t.upper);
     let met = hits.iter().take_while(|hit| {
@@ -102,12 +103,14 @@ pub(super) fn rim(mesh: &TriangleMesh, loops: &Loops) -> Result<Rim, Error> {
 }
 
 impl Tracer<'_> {
-    /// Where a ray goes in and out. Nothing is told where the surface may lie beside the mesh, and the ray comes near to an edge.
+    /// Where a ray goes in and out. Nothing is told where the surface may lie beside the mesh, and the ray
+    /// comes near to an edge.
     pub(super) fn trace(&self, direct: &mut Direct, question: RayQuestion<'_>) -> Result<(), Error> {
         let RayQuestion { ray, is_first_enough, trace } = question;
         trace.clear();
         let [first, others @ ..] = Shift::ALL;
-        // From outside the first triangle leads in, unless it leads to a negative winding number that does not count.
+        // From outside the first triangle leads in, unless it leads to a negative winding number that does
+        // not count.
         if is_first_enough && self.fill != FillRule::Positive && self.tree.way_out(&ray.from).is_none() {
             let is_sure = self.tree.pierced(ray, Wanted::First, first, &mut direct.hits)?;
             if !is_sure || self.follow(direct, true, trace)? && !trace.has_touches() {
@@ -131,8 +134,8 @@ impl Tracer<'_> {
         Ok(())
     }
 
-    /// Follows the winding number along the triangles that were hit: all of them, or those up to the first that is passed by a
-    /// ray from outside. `false` if the trace is to go on behind these.
+    /// Follows the winding number along the triangles that were hit: all of them, or those up to the first
+    /// that is passed by a ray from outside. `false` if the trace is to go on behind these.
     fn follow(
         &self,
         direct: &mut Direct,
@@ -190,7 +193,8 @@ impl Tracer<'_> {
         Ok(true)
     }
 
-    /// The first of some triangles at which the fill rule's answer changes, if they are passed in their order.
+    /// The first of some triangles at which the fill rule's answer changes, if they are passed in their
+    /// order.
     pub(super) fn crossed(&self, together: &[Hit], mut winding: i32) -> Hit {
         let before = self.fill.encloses(winding);
         let found = together.iter().find(|hit| {
@@ -200,8 +204,8 @@ impl Tracer<'_> {
         *found.unwrap_or(&together[0])
     }
 
-    /// Whether a way is inside somewhere between triangles, in whatever order it passes them: if each first step leads there.
-    /// Those in one plane are one step, which leads nowhere where facets lie back to back.
+    /// Whether a way is inside somewhere between triangles, in whatever order it passes them: if each first
+    /// step leads there. Those in one plane are one step, which leads nowhere where facets lie back to back.
     fn passes_within(&self, together: &[Hit], winding: i32) -> bool {
         // Nobody knows what lies in one plane.
         if self.tree.displacement() > 0.0 {
@@ -213,7 +217,8 @@ impl Tracer<'_> {
         })
     }
 
-    /// Whether the solid holds a point; nothing of a point on the surface of the mesh, or nearer to it than is known.
+    /// Whether the solid holds a point; nothing of a point on the surface of the mesh, or nearer to it than
+    /// is known.
     #[inline]
     pub(super) fn is_inside(&self, direct: &mut Direct, point: &[f64; 3]) -> Result<Option<bool>, Error> {
         match self.rim {
@@ -251,7 +256,8 @@ impl Tracer<'_> {
         Ok(None)
     }
 
-    /// Whether the solid holds the point at which a ray begins; nothing if that may lie on the surface, or the ray does not tell.
+    /// Whether the solid holds the point at which a ray begins; nothing if that may lie on the surface, or
+    /// the ray does not tell.
     fn is_inside_by(&self, direct: &mut Direct, ray: &Ray) -> Result<Option<bool>, Error> {
         let hits = &mut direct.hits;
         if !self.tree.pierced(ray, Wanted::All, Shift::ALL[0], hits)?
@@ -262,7 +268,8 @@ impl Tracer<'_> {
         Ok(Some(self.fill.encloses(-hits.iter().map(|hit| hit.step).sum::<i32>())))
     }
 
-    /// How a box lies to the solid. Nothing if triangles meet it, and no points on different sides of the boundary are found in it.
+    /// How a box lies to the solid. Nothing if triangles meet it, and no points on different sides of the
+    /// boundary are found in it.
     pub(super) fn content_of(
         &self,
         direct: &mut Direct,
@@ -304,7 +311,8 @@ impl Tracer<'_> {
                 }
             }
             for &triangle in &met[..count.min(MOST)] {
-                // Points of the box on both sides of the triangle, next to its point that is nearest to the centre.
+                // Points of the box on both sides of the triangle, next to its point that is nearest to the
+                // centre.
                 let near = self.tree.nearest_to(triangle, &centre);
                 let normal = self.tree.normal(triangle);
                 let size = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
@@ -328,7 +336,8 @@ impl Tracer<'_> {
         })
     }
 
-    /// Whether the solid of an open mesh holds a point; nothing where its winding number may be one half, or jumps.
+    /// Whether the solid of an open mesh holds a point; nothing where its winding number may be one half, or
+    /// jumps.
     fn is_inside_open(
         &self,
         direct: &mut Direct,
@@ -356,8 +365,9 @@ impl Tracer<'_> {
         self.fill.encloses_all(winding.value - wide, winding.value + wide)
     }
 
-    /// The winding number of an open mesh at a point, and all around it in a ball of a radius in which no triangles lie; nothing where it
-    /// jumps. Where it is near to a whole number it may be told with an error of nearly one half.
+    /// The winding number of an open mesh at a point, and all around it in a ball of a radius in which no
+    /// triangles lie; nothing where it jumps. Where it is near to a whole number it may be told with an error
+    /// of nearly one half.
     fn winding(
         &self,
         direct: &mut Direct,
@@ -414,7 +424,8 @@ impl Tracer<'_> {
         Ok(self.side_of_box(direct, rim, &upper, parts)?.filter(|&other| other == side))
     }
 
-    /// On which side a ball without triangles lies, as far as it lies in a cube, of which the middle and half the edge are given.
+    /// On which side a ball without triangles lies, as far as it lies in a cube, of which the middle and half
+    /// the edge are given.
     fn side_of_ball(
         &self,
         direct: &mut Direct,
@@ -423,8 +434,8 @@ impl Tracer<'_> {
         (middle, half): ([f64; 3], f64),
         parts: &mut usize,
     ) -> Result<Option<bool>, Error> {
-        // Seen from the ball's point that is nearest to the middle, no point of the ball in the cube is further away than it is from the middle,
-        // and the way there lies in the ball.
+        // Seen from the ball's point that is nearest to the middle, no point of the ball in the cube is
+        // further away than it is from the middle, and the way there lies in the ball.
         let away = DVec3::from(middle) - DVec3::from(*centre);
         let distance = sqrt(away.length_squared());
         let wide = half * sqrt(3.0) * (1.0 + 1e-9);
@@ -457,8 +468,9 @@ impl Tracer<'_> {
         Ok(all)
     }
 
-    /// The nearest point of the boundary of an open mesh: that of its triangles, if the winding number is nowhere one half in the ball that they
-    /// leave free. Nothing if that is not proven, or there may be no boundary at the nearest triangle.
+    /// The nearest point of the boundary of an open mesh: that of its triangles, if the winding number is
+    /// nowhere one half in the ball that they leave free. Nothing if that is not proven, or there may be no
+    /// boundary at the nearest triangle.
     pub(super) fn nearest_open(
         &self,
         direct: &mut Direct,
@@ -496,7 +508,8 @@ impl Tracer<'_> {
         NearestSurface { distance, is_inside, point: self.tree.point_of(near), surface }
     }
 
-    /// The nearest point of the boundary. Nothing if it is not found out whether the nearest triangle belongs to it.
+    /// The nearest point of the boundary. Nothing if it is not found out whether the nearest triangle belongs
+    /// to it.
     pub(super) fn nearest(
         &self,
         direct: &mut Direct,
@@ -529,8 +542,8 @@ impl Tracer<'_> {
         Ok(Some(self.surface_at(&near, distance, is_inside)))
     }
 
-    /// Of the triangles that are as near as the first one: the first that bounds the solid all over, or next to which points on
-    /// both sides of the boundary are found. If there is none, the first.
+    /// Of the triangles that are as near as the first one: the first that bounds the solid all over, or next
+    /// to which points on both sides of the boundary are found. If there is none, the first.
     fn bounding(
         &self,
         direct: &mut Direct,
@@ -557,7 +570,8 @@ impl Tracer<'_> {
         Ok(first)
     }
 
-    /// Whether the solid surely lies on one side only of a triangle, next to one of its points, a little towards its middle.
+    /// Whether the solid surely lies on one side only of a triangle, next to one of its points, a little
+    /// towards its middle.
     fn parts_the_solid(&self, direct: &mut Direct, near: &NearestPoint) -> Result<bool, Error> {
         let mut inner = *near;
         inner.weights = near.weights.map(|w| w + (1.0 / 3.0 - w) / 1024.0);
@@ -571,8 +585,8 @@ impl Tracer<'_> {
         Ok(matches!(sides, [Some(one), Some(other)] if one != other))
     }
 
-    /// A distance from a point within which there surely is a point on the other side of the boundary: hardly more than that of
-    /// the surface's point `near`. Nothing if none is found.
+    /// A distance from a point within which there surely is a point on the other side of the boundary: hardly
+    /// more than that of the surface's point `near`. Nothing if none is found.
     fn across(
         &self,
         direct: &mut Direct,
@@ -589,7 +603,8 @@ impl Tracer<'_> {
             way.map(|c| c / length)
         };
         let onward = unit(axes(|axis| near[axis] - point[axis]));
-        // Straight on behind a sharp edge the solid has ended again: there it lies behind the triangle, or in front of it.
+        // Straight on behind a sharp edge the solid has ended again: there it lies behind the triangle, or in
+        // front of it.
         let inward =
             unit(axes(|axis| (a[axis] - near[axis]) + (b[axis] - near[axis]) + (c[axis] - near[axis])));
         let normal = unit(normal);
@@ -618,8 +633,8 @@ pub(super) struct Touched<'t> {
 }
 
 impl Touched<'_> {
-    /// The time of a crossing with those that may be at the same time, as the triangle on the other side of an edge. Where the ray
-    /// runs in a triangle's plane for longer, that is for itself.
+    /// The time of a crossing with those that may be at the same time, as the triangle on the other side of
+    /// an edge. Where the ray runs in a triangle's plane for longer, that is for itself.
     pub(super) fn joined(&self, crossing: Interval) -> Interval {
         let longest = 16.0 * crossing.width() + 1e-14 * crossing.upper;
         let met = self.hits.iter().take_while(|hit| hit.t.lower <= crossing.upper);

@@ -1,8 +1,9 @@
 //! On which side of the triangles in a small cell the solid lies.
 //!
-//! What is known of whole triangles ([`Sides`](crate::mesh::Sides)) leaves out those that intersect others somewhere,
-//! and all of an open surface. In a cell in which no two triangles intersect, the winding number in front of each
-//! triangle is the same all over the cell. It is found at one of its points, on the way there from a base.
+//! What is known of whole triangles ([`Sides`](crate::mesh::Sides)) leaves out those that intersect others
+//! somewhere, and all of an open surface. In a cell in which no two triangles intersect, the winding number
+//! in front of each triangle is the same all over the cell. It is found at one of its points, on the way
+//! there from a base.
 
 use super::base::Base;
 use super::local::{Polygon, Seen, View};
@@ -20,9 +21,9 @@ struct Part {
 }
 
 impl View<'_> {
-    /// On which side of each triangle of the cell the solid lies: 1 if behind and not in front, −1 if the other way
-    /// round, 0 if on both sides or on neither, or if the triangle does not reach into the cell. `None` if that is not
-    /// found out. O(n²).
+    /// On which side of each triangle of the cell the solid lies: 1 if behind and not in front, −1 if the
+    /// other way round, 0 if on both sides or on neither, or if the triangle does not reach into the cell.
+    /// `None` if that is not found out. O(n²).
     pub(super) fn senses(
         &self,
         sides: &Sides,

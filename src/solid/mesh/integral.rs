@@ -1,20 +1,21 @@
 //! Moments of what a mesh encloses in a cell, without splitting it.
 //!
-//! The solid's indicator changes only at triangles, and at each triangle in one way that is known. So it is known along
-//! every line from one of its values, and its moments are sums over triangles. From a *base* point b, a finest centre of
-//! which the winding number is known, lines lead along z, then along y, then along x to all points of the cell. What a
-//! polynomial p has along such a line, beyond what it would have if the indicator did not change, is a sum over the
-//! places ξ where the line meets triangles: of the change there times ∫ p from ξ to the end of the line that lies behind
-//! ξ, seen from b. Three integrals follow of each triangle: over its part in the cell, for lines along x; over the
-//! segment that it has in common with the plane x = b_x, for lines along y; and a value where it meets the line (b_x,
-//! b_y, ·). (The theorem of divergence, in the form that needs nothing but triangles.)
+//! The solid's indicator changes only at triangles, and at each triangle in one way that is known. So it is
+//! known along every line from one of its values, and its moments are sums over triangles. From a *base*
+//! point b, a finest centre of which the winding number is known, lines lead along z, then along y, then
+//! along x to all points of the cell. What a polynomial p has along such a line, beyond what it would have if
+//! the indicator did not change, is a sum over the places ξ where the line meets triangles: of the change
+//! there times ∫ p from ξ to the end of the line that lies behind ξ, seen from b. Three integrals follow of
+//! each triangle: over its part in the cell, for lines along x; over the segment that it has in common with
+//! the plane x = b_x, for lines along y; and a value where it meets the line (b_x, b_y, ·). (The theorem of
+//! divergence, in the form that needs nothing but triangles.)
 //!
-//! **Rounding.** The vertices are rounded in the cell's coordinates, and then the points where edges meet the plane. Both
-//! leave a surface that is closed, the same for all triangles at a vertex and at an edge: on which side of the plane and
-//! of the line a point counts is a comparison of doubles. So the integrals are those of another solid, which differs
-//! from the true one by what is between the two surfaces. That has no part in b if all triangles keep away from b. Every
-//! triangle adds to the error in proportion to the extent of what of it may lie in the cell; those that meet the plane
-//! add as if they were as large as the cell.
+//! **Rounding.** The vertices are rounded in the cell's coordinates, and then the points where edges meet the
+//! plane. Both leave a surface that is closed, the same for all triangles at a vertex and at an edge: on
+//! which side of the plane and of the line a point counts is a comparison of doubles. So the integrals are
+//! those of another solid, which differs from the true one by what is between the two surfaces. That has no
+//! part in b if all triangles keep away from b. Every triangle adds to the error in proportion to the extent
+//! of what of it may lie in the cell; those that meet the plane add as if they were as large as the cell.
 
 use super::base::Base;
 use super::local::{CLIPPING, Point, Polygon, Seen, UNIT, View, between, cross, minus};
@@ -68,7 +69,8 @@ impl View<'_> {
         self.triangles.iter().filter_map(|&triangle| sides.of(triangle))
     }
 
-    /// The area of triangles at which the solid ends. At others than those of a known sense it may or may not.
+    /// The area of triangles at which the solid ends. At others than those of a known sense it may or may
+    /// not.
     fn sum_areas(&self, senses: impl Iterator<Item = Option<i8>>) -> Option<Interval> {
         let (mut lower, mut upper) = (0.0, 0.0);
         for (&triangle, sense) in self.triangles.iter().zip(senses).filter(|(_, sense)| *sense != Some(0)) {
@@ -173,10 +175,10 @@ impl Sums {
         } else {
             self.add_polygon(&polygon, if above[0] { 1.0 } else { -1.0 }, sense);
         }
-        // A corner that moves by d along each axis moves the boundary of what is integrated over: that adds or takes, of
-        // each edge, an area below 1.5 times the extent times d, twice, and more at an edge of the cell. Integrands are
-        // at most 2. In the same way for the two corners that each plane cuts off. Of the terms 60 roundings and fewer
-        // are left, and 32 of areas.
+        // A corner that moves by d along each axis moves the boundary of what is integrated over: that adds
+        // or takes, of each edge, an area below 1.5 times the extent times d, twice, and more at an edge of
+        // the cell. Integrands are at most 2. In the same way for the two corners that each plane cuts off.
+        // Of the terms 60 roundings and fewer are left, and 32 of areas.
         let extent = seen.extent();
         let planes = seen.planes(1.0) + if is_cut { 2.0 } else { 0.0 };
         let clipping = 2.0 * CLIPPING * UNIT * seen.reach * planes;
@@ -224,7 +226,8 @@ impl Sums {
         }
     }
 
-    /// Adds the integral over a segment in the plane x = b_x, and the value where it meets the line (b_x, b_y, ·).
+    /// Adds the integral over a segment in the plane x = b_x, and the value where it meets the line (b_x,
+    /// b_y, ·).
     fn add_segment(&mut self, [p, q]: &[Point; 2], base: &Point, sense: f64) {
         // The part in the cell: Liang and Barsky 1984.
         let (mut first, mut last) = (0.0f64, 1.0f64);
@@ -302,8 +305,8 @@ impl Sums {
 }
 
 impl Seen {
-    /// Where the triangle meets the plane x = `bound`, from where its boundary goes down to where it comes up. `above`
-    /// tells which corners lie above; two do not agree.
+    /// Where the triangle meets the plane x = `bound`, from where its boundary goes down to where it comes
+    /// up. `above` tells which corners lie above; two do not agree.
     fn segment(&self, above: [bool; 3], bound: f64) -> [Point; 2] {
         let mut ends = [[0.0; 3]; 2];
         for i in 0..3 {

@@ -1,14 +1,15 @@
 //! Which planes bound the solid in a cell, and which function of their sides it is.
 //!
-//! The triangles of a cell are divided into up to three groups, each of which lies in a layer: a plane with a width. Outside of the
-//! layers there are no triangles, so that in each of the up to eight regions between them the winding number is the same. It is found
-//! on the way from a base to a point there.
+//! The triangles of a cell are divided into up to three groups, each of which lies in a layer: a plane with a
+//! width. Outside of the layers there are no triangles, so that in each of the up to eight regions between
+//! them the winding number is the same. It is found on the way from a base to a point there.
 //!
-//! The table of the regions says more than their values: where it has the same value for both sides of a layer, it says that within
-//! the layer too. So a rib that is thinner than its layer, with the same on both sides, must not have such a table. For each choice
-//! of layers, and of sides of the others, the table must either differ, or be proven: no triangle of these layers lies on
-//! those sides of the others; or all that do are crossed the same way by straight lines from a point before them to points within,
-//! and to these from a point behind them, so that the winding number lies between those of both.
+//! The table of the regions says more than their values: where it has the same value for both sides of a
+//! layer, it says that within the layer too. So a rib that is thinner than its layer, with the same on both
+//! sides, must not have such a table. For each choice of layers, and of sides of the others, the table must
+//! either differ, or be proven: no triangle of these layers lies on those sides of the others; or all that do
+//! are crossed the same way by straight lines from a point before them to points within, and to these from a
+//! point behind them, so that the winding number lies between those of both.
 
 use super::base::Base;
 use super::local::{Point, Polygon, Seen, UNIT, View, cross, dot, minus};
@@ -55,7 +56,8 @@ impl Layers {
         self.planes.bytes()
     }
 
-    /// What a layer is wider than its triangles: more than all that is rounded, and what the surface may lie beside the mesh.
+    /// What a layer is wider than its triangles: more than all that is rounded, and what the surface may lie
+    /// beside the mesh.
     fn margin(&self, plane: &FacetPlane) -> f64 {
         if self.is_exact(plane) {
             return 0.0;
@@ -234,8 +236,8 @@ impl<'v> Layering<'v> {
         Some(found)
     }
 
-    /// The same twice, for what has the same on both sides: within the layer either may be. So this is for cells that are no
-    /// larger than what may stay undecided around the surface.
+    /// The same twice, for what has the same on both sides: within the layer either may be. So this is for
+    /// cells that are no larger than what may stay undecided around the surface.
     fn as_two(&self, groups: &mut [u8]) -> Option<Found> {
         const DIAGONAL: f64 = 1.732_050_807_568_877_3;
         if self.tolerance < DIAGONAL {
@@ -246,7 +248,8 @@ impl<'v> Layering<'v> {
         Some(found)
     }
 
-    /// The layer around some facets, which may be all that there are; `None` if it is too wide, or they have no direction.
+    /// The layer around some facets, which may be all that there are; `None` if it is too wide, or they have
+    /// no direction.
     fn around(&self, is_member: impl Fn(usize) -> bool, is_lone: bool) -> Option<Layer> {
         let members =
             || self.facets.iter().enumerate().filter(|(i, _)| is_member(*i)).map(|(_, facet)| facet);
@@ -329,7 +332,8 @@ impl<'v> Layering<'v> {
         self.around(|i| groups[i] == group, false)
     }
 
-    /// The winding number on these sides of layers; nothing if they have no point in common. `None` if that is not found out.
+    /// The winding number on these sides of layers; nothing if they have no point in common. `None` if that
+    /// is not found out.
     fn region(&self, found: &Found, sides: Sides, base: &Base) -> Option<Option<Witness>> {
         let mut halves = [([0.0; 3], 0.0); MOST];
         let mut count = 0;
@@ -432,8 +436,8 @@ impl<'v> Layering<'v> {
         Some(Table((0..64).fold(0, |all, signs| all | wide(signs) << signs)))
     }
 
-    /// Whether all of the cell's own ones of the layers `of` lies near to a facet each: what is near to a convex polygon is convex, so
-    /// that it is enough that the corners of the layer are.
+    /// Whether all of the cell's own ones of the layers `of` lies near to a facet each: what is near to a
+    /// convex polygon is convex, so that it is enough that the corners of the layer are.
     fn are_covered(&self, found: &Found, of: usize) -> bool {
         let is_own = |(i, layer): &(usize, &Layer)| of >> i & 1 != 0 && layer.plane.is_none();
         found.each().iter().enumerate().filter(is_own).all(|(_, layer)| {
@@ -561,8 +565,8 @@ struct Witness {
     winding: i32,
 }
 
-/// What must hold of a table for all sides of the layers `of`, at the sides `others` of the others: if its value is one, it is the
-/// one that is allowed.
+/// What must hold of a table for all sides of the layers `of`, at the sides `others` of the others: if its
+/// value is one, it is the one that is allowed.
 #[derive(Debug, Clone, Copy, Default)]
 struct Rule {
     of: usize,

@@ -1,7 +1,7 @@
 //! Triangles in the coordinates of a cell.
 //!
-//! The cell is [-1, 1]³. Corners are rounded in these coordinates, and a vertex comes out the same for each triangle
-//! that has it. So the rounded surface hangs together as the true one does.
+//! The cell is [-1, 1]³. Corners are rounded in these coordinates, and a vertex comes out the same for each
+//! triangle that has it. So the rounded surface hangs together as the true one does.
 
 use super::placed::Placed;
 use crate::lattice::exact::sqrt;
@@ -12,8 +12,8 @@ pub(super) type Point = [f64; 3];
 /// 2^-52: more than what a rounding adds, relative to the result.
 pub(super) const UNIT: f64 = f64::EPSILON;
 
-/// How far clipping moves points of a polygon at the most, in [`UNIT`]s of what its triangle reaches to: 6 for each of
-/// seven planes.
+/// How far clipping moves points of a polygon at the most, in [`UNIT`]s of what its triangle reaches to: 6
+/// for each of seven planes.
 pub(super) const CLIPPING: f64 = 42.0;
 
 /// A cell and the mesh that its triangles belong to.
@@ -114,8 +114,8 @@ impl Seen {
         0.5 * sqrt(dot(&twice, &twice))
     }
 
-    /// The part within `limit` of the cell's centre along each axis. `None` if it has more corners than there is room
-    /// for, which is possible only by rounding.
+    /// The part within `limit` of the cell's centre along each axis. `None` if it has more corners than there
+    /// is room for, which is possible only by rounding.
     #[inline]
     pub(super) fn clipped(&self, limit: f64) -> Option<Polygon> {
         let mut polygon = Polygon::new(&self.corners);
@@ -129,14 +129,15 @@ impl Seen {
         Some(polygon)
     }
 
-    /// On which side of the plane a point lies that is off by `error`: 1 in front, −1 behind, 0 if that is not sure.
+    /// On which side of the plane a point lies that is off by `error`: 1 in front, −1 behind, 0 if that is
+    /// not sure.
     pub(super) fn side(&self, p: &Point, error: f64) -> i32 {
         let [a, b, c] = &self.corners;
         volume_sign([&minus(b, a), &minus(c, a), &minus(p, a)], self.error + error)
     }
 
-    /// By how much the winding number changes on the way from a point to another: 1 if the way goes through the
-    /// triangle from its front, −1 from behind, 0 if it misses. `None` if that is not sure.
+    /// By how much the winding number changes on the way from a point to another: 1 if the way goes through
+    /// the triangle from its front, −1 from behind, 0 if it misses. `None` if that is not sure.
     pub(super) fn pierced(&self, from: &Point, to: &Point) -> Option<i32> {
         let margin = 2.0 * self.error;
         let is_beside = (0..3).any(|axis| {

@@ -39,18 +39,22 @@ use once_cell::race::OnceBox;
 /// around holes stay PARTIAL cells which no triangle cuts: [`TriangleMesh::report`] tells of holes.
 ///
 /// # One question after the other
-/// Rays ([`cast_rays`](crate::cast_rays), [`ray_spans`](crate::query::ray_spans)), points ([`contains`](crate::contains)), boxes
-/// ([`classify_box`](crate::query::classify_box)) and distances ([`distances`](crate::query::distances)) are answered without cells. The
-/// first such question makes what that takes: a tree over the triangles, which the mesh keeps for all solids that share it (O(t log t),
-/// 0.1 to 0.3 µs a triangle; 36 bytes a triangle); for distances of closed meshes, on which sides of its triangles the solid lies (about
-/// twice that, and a byte); for open meshes, the rim of their holes (48 bytes an edge). A [placed](Self::placed) copy takes over the
-/// order of the tree, and makes its boxes anew. Threads that ask first at the same time may each make it once. A solid that is not
-/// [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer than the answer.
+/// Rays ([`cast_rays`](crate::cast_rays), [`ray_spans`](crate::query::ray_spans)), points
+/// ([`contains`](crate::contains)), boxes ([`classify_box`](crate::query::classify_box)) and distances
+/// ([`distances`](crate::query::distances)) are answered without cells. The first such question makes what
+/// that takes: a tree over the triangles, which the mesh keeps for all solids that share it (O(t log t), 0.1
+/// to 0.3 µs a triangle; 36 bytes a triangle); for distances of closed meshes, on which sides of its
+/// triangles the solid lies (about twice that, and a byte); for open meshes, the rim of their holes (48 bytes
+/// an edge). A [placed](Self::placed) copy takes over the order of the tree, and makes its boxes anew.
+/// Threads that ask first at the same time may each make it once. A solid that is not
+/// [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer than the
+/// answer.
 ///
-/// Where a hole is near, an open mesh looks at the edges of its rim for a question: once as a rule, and some dozen times where a ray passes
-/// through a hole. Where the winding number is one half away from triangles, ends of spans are as narrow as at triangles, and have no
-/// triangle. Cells are asked of rays that come very near to the rim, of boxes and points next to a hole for which the rim's bounds are
-/// too wide, and of rays, boxes and distances if the rim has more than 16 384 edges.
+/// Where a hole is near, an open mesh looks at the edges of its rim for a question: once as a rule, and some
+/// dozen times where a ray passes through a hole. Where the winding number is one half away from triangles,
+/// ends of spans are as narrow as at triangles, and have no triangle. Cells are asked of rays that come very
+/// near to the rim, of boxes and points next to a hole for which the rim's bounds are too wide, and of rays,
+/// boxes and distances if the rim has more than 16 384 edges.
 ///
 /// ```
 /// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};
@@ -107,9 +111,9 @@ impl MeshSolid {
     /// were analysed before, else O(t), and n log n in the edges of the boundary.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if the mesh is empty, for [`FillRule::EvenOdd`] if an odd number of triangles meet on an edge, and if the mesh
-    /// has a [deviation](TriangleMesh::with_deviation) and [is not closed](TriangleMesh::check_closed) as the rule demands;
-    /// [`Error::OutOfMemory`].
+    /// [`Error::Mesh`] if the mesh is empty, for [`FillRule::EvenOdd`] if an odd number of triangles meet on
+    /// an edge, and if the mesh has a [deviation](TriangleMesh::with_deviation) and [is not
+    /// closed](TriangleMesh::check_closed) as the rule demands; [`Error::OutOfMemory`].
     pub fn new(mesh: impl Into<Arc<TriangleMesh>>, fill: FillRule) -> Result<MeshSolid, Error> {
         let mesh = mesh.into();
         if mesh.deviation() > 0.0 {
@@ -154,7 +158,8 @@ impl MeshSolid {
         self.boundary.moments.get_or_try_init(find).copied()
     }
 
-    /// What answers without cells: of a mesh whose triangles have a tree, and whose rim is known if it is open.
+    /// What answers without cells: of a mesh whose triangles have a tree, and whose rim is known if it is
+    /// open.
     #[inline]
     fn tracer(&self) -> Option<Tracer<'_>> {
         let rim = if self.is_closed() { None } else { Some(self.boundary.rim.get()?) };
@@ -227,7 +232,8 @@ impl MeshOnFrame {
     }
 }
 
-/// Edges of a rim that are looked at for every ray, box or distance at the most: with more of them cells are no slower.
+/// Edges of a rim that are looked at for every ray, box or distance at the most: with more of them cells are
+/// no slower.
 const MOST_EDGES: usize = 1 << 14;
 
 /// How many triangles are looked at together.
@@ -290,8 +296,8 @@ impl Solid for MeshSolid {
         Ok(MeshClassifier { mesh, solid: self.clone() })
     }
 
-    /// For a closed mesh, the box around it. An open one may enclose points beyond, and the box is larger by as
-    /// much; O(n) in the edges of the boundary, once.
+    /// For a closed mesh, the box around it. An open one may enclose points beyond, and the box is larger by
+    /// as much; O(n) in the edges of the boundary, once.
     fn bounds(&self) -> Option<Bounds> {
         let (min, max) = self.mesh.bounds();
         let displacement = self.mesh.displacement();

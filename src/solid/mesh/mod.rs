@@ -10,21 +10,23 @@
 //! mesh is closed by caps for that (`boundary`), whose own winding number is then taken off with bounds of
 //! its error and its slope (`winding`, `open`).
 //!
-//! Whoever asks for one ray, one point, one box or one distance of a mesh gets the answer from a tree over its triangles, and the rim of
-//! its holes (`direct`, `open_trace`), without cells.
+//! Whoever asks for one ray, one point, one box or one distance of a mesh gets the answer from a tree over
+//! its triangles, and the rim of its holes (`direct`, `open_trace`), without cells.
 //!
-//! Beyond verdicts, cells know the moments of what they hold, the area of the boundary and its slab, from the triangles
-//! that cut them (`integral`, `slab`).
+//! Beyond verdicts, cells know the moments of what they hold, the area of the boundary and its slab, from the
+//! triangles that cut them (`integral`, `slab`).
 //!
 //! From the bottom up, each file uses only files named before it: `placed` (vertices on the lattice),
-//! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `rim` (winding numbers of
-//! caps from the boundary's edges alone), `rim_line` (the same along a line), `terms` (what caps and edges add to sums), `winding` (the caps' winding number),
-//! `reach` (how far an open surface's solid may reach), `scan` (blocks of 64³ cells), `chords` (rays through centres),
-//! `on_frame` (a mesh on a frame, and what is known of a cell), `local` (triangles in a cell's coordinates), `base` (a point whose winding number is known), `fronts` (on
-//! which sides of triangles the solid lies), `integral` (moments and areas), `slab` (enclosures), `layers` (functions of planes with a width), `segment` (crossings),
-//! `direct` (rays, points and distances without cells), `open_trace` (rays of an open surface without cells),
-//! `open` (cells of an open surface), `open_rays` (rays through it), `split` (the solid, its classifier and its workers),
-//! `parity` (rays that pierce an open mesh an odd number of times).
+//! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `rim`
+//! (winding numbers of caps from the boundary's edges alone), `rim_line` (the same along a line), `terms`
+//! (what caps and edges add to sums), `winding` (the caps' winding number), `reach` (how far an open
+//! surface's solid may reach), `scan` (blocks of 64³ cells), `chords` (rays through centres), `on_frame` (a
+//! mesh on a frame, and what is known of a cell), `local` (triangles in a cell's coordinates), `base` (a
+//! point whose winding number is known), `fronts` (on which sides of triangles the solid lies), `integral`
+//! (moments and areas), `slab` (enclosures), `layers` (functions of planes with a width), `segment`
+//! (crossings), `direct` (rays, points and distances without cells), `open_trace` (rays of an open surface
+//! without cells), `open` (cells of an open surface), `open_rays` (rays through it), `split` (the solid, its
+//! classifier and its workers), `parity` (rays that pierce an open mesh an odd number of times).
 
 mod base;
 mod chords;

@@ -58,7 +58,8 @@ impl Branch {
 }
 
 impl MeshPart {
-    /// Of a cell of which nothing is known but the winding number of its lowest centre, of the surface with its caps.
+    /// Of a cell of which nothing is known but the winding number of its lowest centre, of the surface with
+    /// its caps.
     pub(super) fn unknown(winding: i32) -> MeshPart {
         MeshPart { first: 0, count: 0, winding, caps: Some(Branch::UNKNOWN) }
     }

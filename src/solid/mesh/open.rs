@@ -11,7 +11,8 @@
 //!   bounded away from what the fill rule asks for: FULL or EMPTY.
 //! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
 //!
-//! Centres and rays are not asked cell by cell, but by pieces that are as large as expansions are good for (`open_rays`).
+//! Centres and rays are not asked cell by cell, but by pieces that are as large as expansions are good for
+//! (`open_rays`).
 
 use super::on_frame::{Branch, MeshOnFrame, MeshPart};
 use super::slab;
@@ -46,8 +47,8 @@ const MOST_CAPS: usize = 1 << 22;
 /// cell alone, kept for those below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
-    /// Empty before a level's first cell; then one place for each grandchild of a cell, because builders divide a cell twice
-    /// before they ask for what is below the first of its grandchildren.
+    /// Empty before a level's first cell; then one place for each grandchild of a cell, because builders
+    /// divide a cell twice before they ask for what is below the first of its grandchildren.
     levels: [Vec<Slot>; MAX_DEPTH as usize + 1],
 }
 
@@ -166,8 +167,9 @@ impl MeshOnFrame {
         excess(caps) >= 0.0
     }
 
-    /// The integer next to the surface's own winding number all over a cell, but for what the triangles of the surface
-    /// change: what it is at the lowest centre. `None` if the number may come to one half more or less.
+    /// The integer next to the surface's own winding number all over a cell, but for what the triangles of
+    /// the surface change: what it is at the lowest centre. `None` if the number may come to one half more or
+    /// less.
     pub(super) fn nearest_winding(
         &self,
         surroundings: &mut Surroundings,
@@ -183,7 +185,8 @@ impl MeshOnFrame {
         Some(part.winding - nearest)
     }
 
-    /// A slab that holds the boundary in a cell which the surface does not cut: where the winding number is one half.
+    /// A slab that holds the boundary in a cell which the surface does not cut: where the winding number is
+    /// one half.
     pub(super) fn open_slab(
         &self,
         surroundings: &mut Surroundings,

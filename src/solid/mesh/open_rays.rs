@@ -1,17 +1,19 @@
 //! Rays through an open surface: where they enter and leave its solid.
 //!
-//! A cell is divided into pieces. For each, the winding number of the caps that are far from it is expanded around its
-//! middle, and serves all pieces below; the others are few, and are summed at each point that is asked for. In a piece that
-//! the boundary does not come near to, one expansion knows all caps. There the surface's winding number is M − c: M counts the
-//! triangles of the surface alone, and c is the caps' smooth continuation from the middle of the piece.
+//! A cell is divided into pieces. For each, the winding number of the caps that are far from it is expanded
+//! around its middle, and serves all pieces below; the others are few, and are summed at each point that is
+//! asked for. In a piece that the boundary does not come near to, one expansion knows all caps. There the
+//! surface's winding number is M − c: M counts the triangles of the surface alone, and c is the caps' smooth
+//! continuation from the middle of the piece.
 //!
-//! So a ray has ends where it pierces triangles, as through a closed surface, and between them where c passes one half of an
-//! integer. On which side centres lie is what sampling them would say: expansions tell it of most, and where they cannot,
-//! all caps are summed for that centre. Between two centres (or triangles, or faces of the piece) on different sides the
-//! crossing is found by sums over the rim, which have no error but that of rounding.
+//! So a ray has ends where it pierces triangles, as through a closed surface, and between them where c passes
+//! one half of an integer. On which side centres lie is what sampling them would say: expansions tell it of
+//! most, and where they cannot, all caps are summed for that centre. Between two centres (or triangles, or
+//! faces of the piece) on different sides the crossing is found by sums over the rim, which have no error but
+//! that of rounding.
 //!
-//! Near the rim a ray is followed from centre to centre: between two on different sides, or with triangles between them, in
-//! steps in which the winding number changes by less than one half.
+//! Near the rim a ray is followed from centre to centre: between two on different sides, or with triangles
+//! between them, in steps in which the winding number changes by less than one half.
 
 use super::chords::{Bundle, Chords, Hit, Rays, end};
 use super::on_frame::{MeshOnFrame, MeshPart};
@@ -35,7 +37,8 @@ const LEAST: i32 = 2;
 /// Half the diagonal of a cube of half edge 1, rounded up.
 const HALF_DIAGONAL: f64 = 1.732_051;
 
-/// An expansion is good enough if it is off by no more than the caps' winding number changes within so many cells,
+/// An expansion is good enough if it is off by no more than the caps' winding number changes within so many
+/// cells,
 const BLUR: f64 = 0.5;
 
 /// or by no more than this, whatever that changes,
@@ -93,8 +96,8 @@ struct Point {
     inside: bool,
 }
 
-/// Between which points of a ray, the first of which may be the higher one, it crosses the boundary; the number of the
-/// surface with the caps that belongs to theirs; and the axis.
+/// Between which points of a ray, the first of which may be the higher one, it crosses the boundary; the
+/// number of the surface with the caps that belongs to theirs; and the axis.
 struct Bracket {
     w: usize,
     winding: i32,
@@ -138,8 +141,8 @@ struct Search<'s> {
     bundle: &'s Bundle,
 }
 
-/// A piece of the cell: of the caps that are near an exact sum is known, of the others an expansion; and of all together, if
-/// the boundary is not near.
+/// A piece of the cell: of the caps that are near an exact sum is known, of the others an expansion; and of
+/// all together, if the boundary is not near.
 struct Piece<'p> {
     far: &'p Local,
     near: &'p [u32],
@@ -167,8 +170,8 @@ impl Search<'_> {
         }
     }
 
-    /// The cell's pieces, each as large as an expansion is good for, those on a ray in ascending order. `known` tells of all
-    /// caps but those of a list.
+    /// The cell's pieces, each as large as an expansion is good for, those on a ray in ascending order.
+    /// `known` tells of all caps but those of a list.
     fn pieces(
         &self,
         (at, size): ([i32; 3], i32),
@@ -218,7 +221,8 @@ impl Search<'_> {
         cell
     }
 
-    /// The winding number at the centre of cell k of a ray, of the surface with its caps, and what the ray pierces above.
+    /// The winding number at the centre of cell k of a ray, of the surface with its caps, and what the ray
+    /// pierces above.
     fn above(&self, [column, row]: [i32; 2], k: i32) -> (i32, &[Hit]) {
         let (floor, hits) = self.chords.traced(self.bundle, column, row);
         let start = hits.partition_point(|hit| hit.at <= f64::from(self.bundle.span.start) + 0.5);
@@ -238,8 +242,8 @@ impl Search<'_> {
         caps.at(placed, (piece.far, piece.near), cell.map(|a| f64::from(a) + 0.5), Some(cell))
     }
 
-    /// By how much the caps' winding number at the lowest centre of a ray exceeds their smooth continuation. `None` if the centre
-    /// does not tell.
+    /// By how much the caps' winding number at the lowest centre of a ray exceeds their smooth continuation.
+    /// `None` if the centre does not tell.
     fn step(&self, piece: &Piece<'_>, ray: [i32; 2], span: &Range<i32>) -> Option<i32> {
         let cell = self.cell(ray[0], ray[1], span.start);
         let (here, there) = (piece.smooth.as_ref()?.local.at_centre(cell), self.caps_at(piece, cell));
@@ -352,8 +356,8 @@ impl MeshOnFrame {
         })
     }
 
-    /// Whether a centre is inside that an expansion cannot tell, of whose surface with its caps the number is known: what
-    /// [`open_sample`](Self::open_sample) says in the end.
+    /// Whether a centre is inside that an expansion cannot tell, of whose surface with its caps the number is
+    /// known: what [`open_sample`](Self::open_sample) says in the end.
     fn summed_sample(&self, at: [i32; 3], winding: i32) -> bool {
         self.open_sample(&mut Surroundings::default(), at, MeshPart::unknown(winding))
     }
@@ -363,7 +367,8 @@ impl MeshOnFrame {
         self.excess(winding) >= 0.0
     }
 
-    /// The caps' winding number at a point, on the branch that comes near to a guess, which is the answer on the rim.
+    /// The caps' winding number at a point, on the branch that comes near to a guess, which is the answer on
+    /// the rim.
     fn caps_near(&self, point: [f64; 3], guess: f64) -> f64 {
         self.caps_told(point, guess).map_or(guess, |caps| caps.value)
     }
@@ -376,8 +381,8 @@ impl MeshOnFrame {
         Some(Fraction { value: guess + off, error: error + f64::EPSILON * (1.0 + guess.abs()) })
     }
 
-    /// Whether a centre is inside at which the number that belongs to a guess of the caps' is `winding`, if a sum over the rim
-    /// tells. The guess is less than one half off.
+    /// Whether a centre is inside at which the number that belongs to a guess of the caps' is `winding`, if a
+    /// sum over the rim tells. The guess is less than one half off.
     fn told_centre(&self, cell: [i32; 3], winding: i32, guess: f64) -> Option<bool> {
         let caps = self.caps_told(cell.map(|a| f64::from(a) + 0.5), guess)?;
         let excess = self.excess(f64::from(winding) - caps.value);
@@ -385,8 +390,9 @@ impl MeshOnFrame {
         is_told.then_some(excess > 0.0)
     }
 
-    /// Where a ray through `from` crosses the boundary: the number that `guess` tells the branch of passes one half, or minus
-    /// one half. By the rule of false position, which halves the weight of an end that stays (the Illinois method).
+    /// Where a ray through `from` crosses the boundary: the number that `guess` tells the branch of passes
+    /// one half, or minus one half. By the rule of false position, which halves the weight of an end that
+    /// stays (the Illinois method).
     fn crossing(&self, from: [f64; 3], bracket: &Bracket, guess: impl Fn(f64) -> f64) -> BeamEnd {
         let &Bracket { w, winding, ends: [first, last] } = bracket;
         let excess = |caps: f64| self.excess(f64::from(winding) - caps);
@@ -457,8 +463,8 @@ impl<'r> Ray<'r> {
         self.along[0] + (self.along[1] + self.along[2] * x) * x
     }
 
-    /// On which side all points lie whose winding number is in a range, give or take the expansion's error; `None` if they may
-    /// lie on both.
+    /// On which side all points lie whose winding number is in a range, give or take the expansion's error;
+    /// `None` if they may lie on both.
     fn side(&self, low: f64, high: f64) -> Option<bool> {
         let (low, high) = (low - self.smooth.error, high + self.smooth.error);
         let (first, last) = (self.mesh.excess(low), self.mesh.excess(high));
@@ -696,7 +702,8 @@ impl Search<'_> {
         intervals.pass(BeamEnd::between(span.end as u32), false)
     }
 
-    /// On which side a face lies half a cell from a centre, with no triangle of the surface between them, if that is told.
+    /// On which side a face lies half a cell from a centre, with no triangle of the surface between them, if
+    /// that is told.
     fn side_of_face(&self, piece: &Piece<'_>, walk: &Walk<'_>, centre: &Point, at: f64) -> Option<bool> {
         let ray = [walk.at[self.bundle.u], walk.at[self.bundle.v]];
         let (_, hits) = self.chords.traced(self.bundle, ray[0], ray[1]);
@@ -724,8 +731,8 @@ impl Walk<'_> {
         place
     }
 
-    /// Goes from the centre to a face through triangles, and notes where the ray passes the boundary, and whether it lies inside
-    /// above. Returns the face's point.
+    /// Goes from the centre to a face through triangles, and notes where the ray passes the boundary, and
+    /// whether it lies inside above. Returns the face's point.
     fn lead<'h>(
         &self,
         mut point: Point,
@@ -748,8 +755,8 @@ impl Walk<'_> {
         self.advance(point, face, winding, passes)
     }
 
-    /// Goes from a point to another one between which lies no triangle, by steps in which the winding number changes by less
-    /// than one half.
+    /// Goes from a point to another one between which lies no triangle, by steps in which the winding number
+    /// changes by less than one half.
     fn advance(
         &self,
         mut point: Point,

@@ -1,9 +1,10 @@
 //! Rays of open meshes, without a descent through cells.
 //!
-//! An open mesh bounds the solid where its triangles do, and where its winding number is one half. Triangles ahead of a point of the ray count
-//! what the surface and cones over the rim wind around it, and the cones' own number (`rim_line`) is taken off. Where that is less than
-//! one half in magnitude all along the ray, the ray is that of a closed mesh. Else the number is bounded from triangle to triangle: by the
-//! sums at both ends, by its change around the middle (an interval's Newton step), and by halves.
+//! An open mesh bounds the solid where its triangles do, and where its winding number is one half. Triangles
+//! ahead of a point of the ray count what the surface and cones over the rim wind around it, and the cones'
+//! own number (`rim_line`) is taken off. Where that is less than one half in magnitude all along the ray, the
+//! ray is that of a closed mesh. Else the number is bounded from triangle to triangle: by the sums at both
+//! ends, by its change around the middle (an interval's Newton step), and by halves.
 
 use super::direct::{Direct, Touched, Tracer, together};
 use super::rim::{self, Rim};
@@ -21,8 +22,8 @@ const MOST_LOOKS: usize = 256;
 const SHORTEST: f64 = 1.0 / (1 << 20) as f64;
 
 impl Tracer<'_> {
-    /// Where a ray goes in and out of the solid of an open mesh. Nothing is told if it comes very near to the rim, or if the winding number
-    /// is not told after many looks.
+    /// Where a ray goes in and out of the solid of an open mesh. Nothing is told if it comes very near to the
+    /// rim, or if the winding number is not told after many looks.
     pub(super) fn trace_open(
         &self,
         direct: &mut Direct,
@@ -192,7 +193,8 @@ impl Course<'_> {
                 Some(hit) => self.look(hit.t.lower.max(now.at)),
                 None => Sums::END,
             };
-            // (No time passes before a triangle on which the ray begins. What it is off the triangle it is there.)
+            // (No time passes before a triangle on which the ray begins. What it is off the triangle it is
+            // there.)
             match self.stretch(winding, &now, &next)? {
                 Next::GoOn => {}
                 Next::Enough => return Ok(true),
@@ -224,8 +226,8 @@ impl Course<'_> {
         self.line.sums(at)
     }
 
-    /// On which side the ray is between two times, with no triangle between them, or some that add so much; nothing if that
-    /// is not sure.
+    /// On which side the ray is between two times, with no triangle between them, or some that add so much;
+    /// nothing if that is not sure.
     fn side(&self, winding: i32, [falls, rises]: [i32; 2], from: &Sums, to: &Sums) -> Option<bool> {
         let [least, most] = from.until(to);
         let (low, high) = (f64::from(winding + falls) - most, f64::from(winding + rises) - least);
@@ -336,7 +338,8 @@ impl Course<'_> {
         }
     }
 
-    /// The only number that parts inside from outside which may be passed between two times; nothing if both may be.
+    /// The only number that parts inside from outside which may be passed between two times; nothing if both
+    /// may be.
     fn threshold(&self, winding: i32, from: &Sums, to: &Sums) -> Option<f64> {
         let [least, most] = from.until(to);
         let (low, high) = (f64::from(winding) - most, f64::from(winding) - least);
@@ -349,8 +352,8 @@ impl Course<'_> {
         }
     }
 
-    /// When the winding number passes a threshold in a stretch around a look, through which it surely rises or falls all the
-    /// way: an interval beside which it is on either side. Nothing if that is not sure.
+    /// When the winding number passes a threshold in a stretch around a look, through which it surely rises
+    /// or falls all the way: an interval beside which it is on either side. Nothing if that is not sure.
     fn root(&self, winding: i32, threshold: f64, stretch: Interval, middle: &Sums) -> Option<Root> {
         let speed = self.line.speed();
         let reach = (middle.at - stretch.lower).max(stretch.upper - middle.at) * speed;

@@ -53,7 +53,8 @@ impl Overlap {
             let (error, magnitude) = accuracy(placed, corners);
             16.0 * error + 64.0 * f64::EPSILON * (magnitude + placed.displacement)
         };
-        // A surface beside the mesh lies in the sum of the triangle and a cube, which reaches so far along a direction.
+        // A surface beside the mesh lies in the sum of the triangle and a cube, which reaches so far along a
+        // direction.
         let aside = |direction: &[f64]| {
             placed.displacement * direction.iter().fold(0.0, |sum: f64, c| sum + c.abs()) * (1.0 + 1e-9)
         };

@@ -18,16 +18,18 @@ const BITS: u64 = 1 << 27;
 const TRIANGLES: usize = 1 << 12;
 
 impl MeshSolid {
-    /// How many of the rays along x, along y and along z pierce the triangles of the mesh an odd number of times: those on
-    /// which an open mesh contradicts itself. Of a closed mesh, as [`FillRule::EvenOdd`] demands it, there are none.
+    /// How many of the rays along x, along y and along z pierce the triangles of the mesh an odd number of
+    /// times: those on which an open mesh contradicts itself. Of a closed mesh, as [`FillRule::EvenOdd`]
+    /// demands it, there are none.
     ///
-    /// The rays are the 4^depth lines along each axis through the centres of the frame's finest cells, in thought shifted
-    /// by (ε, ε², ε³), so that they meet no edge of a triangle, as those of [`dexelize`](crate::dexelize). A ray is the whole
-    /// line: what it pierces outside of the universe counts, too. What closes the holes for winding numbers does not.
+    /// The rays are the 4^depth lines along each axis through the centres of the frame's finest cells, in
+    /// thought shifted by (ε, ε², ε³), so that they meet no edge of a triangle, as those of
+    /// [`dexelize`](crate::dexelize). A ray is the whole line: what it pierces outside of the universe
+    /// counts, too. What closes the holes for winding numbers does not.
     ///
-    /// O(1) for a closed mesh whose edges were analysed before. Else O(rays / 64 + t + rows), where each triangle has so many
-    /// rows as rays beside each other meet it, with a bit for each ray, but 16 MiB at the most. For frames of more than 8192
-    /// cells to an axis all triangles are looked at several times.
+    /// O(1) for a closed mesh whose edges were analysed before. Else O(rays / 64 + t + rows), where each
+    /// triangle has so many rows as rays beside each other meet it, with a bit for each ray, but 16 MiB at
+    /// the most. For frames of more than 8192 cells to an axis all triangles are looked at several times.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]; [`Error::Cancelled`].

@@ -35,8 +35,8 @@ pub(super) struct Vertex {
 pub(super) struct Placed {
     pub(super) frame: Frame,
     pub(super) mesh: Arc<TriangleMesh>,
-    /// How far the surface may lie from the mesh along an axis, in finest cells: what was moved to close hair cracks, and what
-    /// deviation was stated.
+    /// How far the surface may lie from the mesh along an axis, in finest cells: what was moved to close hair
+    /// cracks, and what deviation was stated.
     pub(super) displacement: f64,
     /// How far it may lie from the mesh, straight on.
     pub(super) radius: f64,

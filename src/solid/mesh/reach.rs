@@ -5,10 +5,10 @@
 //! surface's own is that of the caps alone, with the other sign. It is less than ½ in magnitude if the caps
 //! are seen at solid angles of less than 2π together: then every rule leaves the point out.
 //!
-//! A flat, convex cap is seen at less than 2π from everywhere off its plane, and at no more than its area over
-//! the square of the distance. So a surface with one such hole does not reach out of its box at all. With more
-//! holes it may: seen from a point close to a facet that is turned over, the hole that the facet leaves and
-//! the facet's own wrong side come to nearly 4π.
+//! A flat, convex cap is seen at less than 2π from everywhere off its plane, and at no more than its area
+//! over the square of the distance. So a surface with one such hole does not reach out of its box at all.
+//! With more holes it may: seen from a point close to a facet that is turned over, the hole that the facet
+//! leaves and the facet's own wrong side come to nearly 4π.
 
 use crate::error::Error;
 use crate::lattice::axes;
@@ -27,15 +27,16 @@ const STEPS: usize = 24;
 /// Outweighs what is rounded in sums of areas and solid angles, of which there are fewer than 2^32.
 const SLACK: f64 = 1.0 + 1e-6;
 
-/// A flat, convex cap, in units of the longest side of the box around the surface, from the box's lower corner.
+/// A flat, convex cap, in units of the longest side of the box around the surface, from the box's lower
+/// corner.
 struct Patch {
     area: f64,
     min: DVec3,
     max: DVec3,
 }
 
-/// How far the solid may reach beyond the box around the vertices: beyond its lower and its upper side on each
-/// axis. `displacement` is how far, along each axis, the surface may lie from the mesh; it comes on top.
+/// How far the solid may reach beyond the box around the vertices: beyond its lower and its upper side on
+/// each axis. `displacement` is how far, along each axis, the surface may lie from the mesh; it comes on top.
 ///
 /// O(n) in the edges of the boundary.
 ///

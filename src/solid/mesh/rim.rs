@@ -1,8 +1,9 @@
 //! Winding numbers of caps from the rim alone.
 //!
-//! All surfaces over the same loops have one winding number, but for integers. Of cones from a point infinitely far away
-//! it is a sum over the loops' edges, as smooth beside the caps as anywhere else. It has no error but that of rounding, so
-//! that it tells where a winding number passes one half, however slowly it changes.
+//! All surfaces over the same loops have one winding number, but for integers. Of cones from a point
+//! infinitely far away it is a sum over the loops' edges, as smooth beside the caps as anywhere else. It has
+//! no error but that of rounding, so that it tells where a winding number passes one half, however slowly it
+//! changes.
 
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
@@ -11,7 +12,8 @@ use alloc::vec::Vec;
 use core::f64::consts::PI;
 use glam::DVec3;
 
-/// Whence cones come: directions that hardly any model has. The second is for points that an edge hides from the first.
+/// Whence cones come: directions that hardly any model has. The second is for points that an edge hides from
+/// the first.
 pub(super) const DIRECTIONS: [DVec3; 3] = [
     DVec3::new(0.267_261_241_912_424_4, 0.534_522_483_824_848_8, 0.801_783_725_737_273_2),
     DVec3::new(-0.811_107_105_653_812_7, 0.324_442_842_261_525_1, 0.486_664_263_392_287_6),
@@ -139,20 +141,22 @@ impl Rim {
         memory::push(&mut self.loops, Patch { middle, radius, first, end, area })
     }
 
-    /// A bound of the winding number of caps that lie in balls around their loops, wherever `gap` tells how far such a ball's middle is,
-    /// at the least; infinite if that may be in one of the balls. O(n) in the loops.
+    /// A bound of the winding number of caps that lie in balls around their loops, wherever `gap` tells how
+    /// far such a ball's middle is, at the least; infinite if that may be in one of the balls. O(n) in the
+    /// loops.
     fn most(&self, gap: impl Fn(DVec3) -> f64) -> f64 {
         let most = self.loops.iter().map(|patch| patch.most(gap(patch.middle))).sum::<f64>();
         if most.is_nan() { f64::INFINITY } else { most * SLACK }
     }
 
-    /// That bound on a half-line, or on all of its line. The half-line meets none of these caps if the bound is finite, so that the
-    /// winding number of cones back along the line is that of the caps.
+    /// That bound on a half-line, or on all of its line. The half-line meets none of these caps if the bound
+    /// is finite, so that the winding number of cones back along the line is that of the caps.
     pub(super) fn most_along(&self, course: &Course) -> f64 {
         self.most(|middle| course.gap(middle))
     }
 
-    /// Calls `visit` with the edges of each loop for which that bound is no less than `least`. Returns the bound of the others.
+    /// Calls `visit` with the edges of each loop for which that bound is no less than `least`. Returns the
+    /// bound of the others.
     pub(super) fn near_loops<'r>(
         &'r self,
         course: &Course,
@@ -179,14 +183,15 @@ impl Rim {
         })
     }
 
-    /// The caps' winding number at a point (in finest cells from the frame's origin), but for an integer. `None` on the rim
-    /// itself. O(n) in the edges.
+    /// The caps' winding number at a point (in finest cells from the frame's origin), but for an integer.
+    /// `None` on the rim itself. O(n) in the edges.
     pub(super) fn fraction(&self, point: [f64; 3]) -> Option<Fraction> {
         let point = DVec3::from(point);
         DIRECTIONS.into_iter().find_map(|towards| self.fraction_of_cones(point, towards))
     }
 
-    /// The same by cones from one direction: the product of their complex numbers has the argument of the sum.
+    /// The same by cones from one direction: the product of their complex numbers has the argument of the
+    /// sum.
     fn fraction_of_cones(&self, point: DVec3, towards: DVec3) -> Option<Fraction> {
         let (mut real, mut imaginary, mut error) = (1.0f64, 0.0f64, 0.0);
         for &[from, to] in &self.edges {
@@ -200,8 +205,9 @@ impl Rim {
         Some(Fraction { value: libm::atan2(imaginary, real) / (2.0 * PI), error: error + 4.0 * f64::EPSILON })
     }
 
-    /// The winding number of the cones from one of the [`DIRECTIONS`] at a point, the whole of it: what the surface's own lacks of
-    /// the integer that triangles on the way to the other side count. `None` if the point may lie on a cone, or the rim. O(n) in the edges.
+    /// The winding number of the cones from one of the [`DIRECTIONS`] at a point, the whole of it: what the
+    /// surface's own lacks of the integer that triangles on the way to the other side count. `None` if the
+    /// point may lie on a cone, or the rim. O(n) in the edges.
     pub(super) fn of_cones(&self, point: DVec3, towards: DVec3) -> Option<Fraction> {
         let (mut real, mut imaginary, mut error, mut turns) = (1.0f64, 0.0f64, 0.0, 0.0);
         for &[from, to] in &self.edges {
@@ -227,8 +233,8 @@ impl Rim {
         Some(Fraction { value, error: error + 4.0 * f64::EPSILON * (1.0 + turns.abs()) })
     }
 
-    /// Half the solid angle of an edge's triangle, one corner of which is infinitely far away, as a complex number of modulus 1
-    /// (van Oosterom and Strackee 1983). `None` of a point that the edge hides.
+    /// Half the solid angle of an edge's triangle, one corner of which is infinitely far away, as a complex
+    /// number of modulus 1 (van Oosterom and Strackee 1983). `None` of a point that the edge hides.
     #[inline(always)]
     fn cone(&self, [a, b]: [DVec3; 2], towards: DVec3) -> Option<Cone> {
         let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
@@ -246,8 +252,8 @@ impl Rim {
         is_seen.then_some(Cone { real: x * inverse, imaginary: y * inverse, error: wrong * inverse })
     }
 
-    /// How far the rim is, and a bound of the slope: the gradient is the magnetic field of a current along the rim. O(n) in the
-    /// edges.
+    /// How far the rim is, and a bound of the slope: the gradient is the magnetic field of a current along
+    /// the rim. O(n) in the edges.
     pub(super) fn slope(&self, point: [f64; 3]) -> Slope {
         let point = DVec3::from(point);
         let (mut least, mut most) = (f64::INFINITY, 0.0);
@@ -261,8 +267,8 @@ impl Rim {
         Slope { distance: least, most: most / (4.0 * PI) }
     }
 
-    /// By how much the caps' winding number may differ from that at a point within `radius` of it, caps not counted: infinitely
-    /// much if the rim may be as near. O(n) in the edges.
+    /// By how much the caps' winding number may differ from that at a point within `radius` of it, caps not
+    /// counted: infinitely much if the rim may be as near. O(n) in the edges.
     pub(super) fn change_within(&self, point: [f64; 3], radius: f64) -> f64 {
         let point = DVec3::from(point);
         let reach = radius * SLACK + 2.0 * self.vertex_error;
@@ -281,7 +287,8 @@ impl Rim {
         if most.is_nan() { f64::INFINITY } else { most }
     }
 
-    /// The gradient of the caps' winding number, but for rounding: the magnetic field of a current along the rim. O(n) in the edges.
+    /// The gradient of the caps' winding number, but for rounding: the magnetic field of a current along the
+    /// rim. O(n) in the edges.
     pub(super) fn gradient(&self, point: [f64; 3]) -> DVec3 {
         let point = DVec3::from(point);
         let mut sum = DVec3::ZERO;

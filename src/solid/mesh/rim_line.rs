@@ -1,16 +1,18 @@
 //! The winding number of caps along a line, from the rim alone.
 //!
-//! Cones over the rim that all lead back along the line, to a point infinitely far behind, meet the line only where it passes the rim
-//! itself. So their winding number changes smoothly along the line, and it is zero infinitely far ahead. Nothing is added to it or
-//! taken off but what triangles ahead count.
+//! Cones over the rim that all lead back along the line, to a point infinitely far behind, meet the line only
+//! where it passes the rim itself. So their winding number changes smoothly along the line, and it is zero
+//! infinitely far ahead. Nothing is added to it or taken off but what triangles ahead count.
 //!
-//! Seen along the line a corner of the rim lies at the complex number ρ across it, and at a height. With r its distance from a point of the
-//! line, and s how far it lies behind, half the solid angle of an edge's cone is the argument of g g' + ρ̄ ρ', where g = r + s. Along
-//! the line g grows and ρ stays, so that each angle tends to zero and never turns back. The angles that are positive and those that are
-//! negative, summed apart, therefore bound the winding number between any two points of the line.
+//! Seen along the line a corner of the rim lies at the complex number ρ across it, and at a height. With r
+//! its distance from a point of the line, and s how far it lies behind, half the solid angle of an edge's
+//! cone is the argument of g g' + ρ̄ ρ', where g = r + s. Along the line g grows and ρ stays, so that each
+//! angle tends to zero and never turns back. The angles that are positive and those that are negative, summed
+//! apart, therefore bound the winding number between any two points of the line.
 //!
-//! **Errors.** A corner that is off by δ changes g by less than 2δ and the angle by δ (|ρ| + |ρ'|) / |g g' + ρ̄ ρ'| to the first
-//! order. All corners lie much further from the line than δ, and twice that bound outweighs what is of higher order.
+//! **Errors.** A corner that is off by δ changes g by less than 2δ and the angle by δ (|ρ| + |ρ'|) / |g g' +
+//! ρ̄ ρ'| to the first order. All corners lie much further from the line than δ, and twice that bound
+//! outweighs what is of higher order.
 
 use super::rim::{Course, Rim};
 use crate::error::Error;
@@ -54,7 +56,8 @@ struct Corner {
     product: f64,
 }
 
-/// The rim of a mesh along a line. Lengths are such that its corners lie within about 1 of where the line begins.
+/// The rim of a mesh along a line. Lengths are such that its corners lie within about 1 of where the line
+/// begins.
 #[derive(Default)]
 pub(super) struct RimLine {
     corners: Vec<Corner>,
@@ -134,8 +137,8 @@ impl Sums {
 }
 
 impl RimLine {
-    /// Looks along a ray at the loops of a rim of which the caps' winding number may come to `least` on its course. `false` if the ray comes too near
-    /// to such a loop, or numbers are too large. O(n) in the edges.
+    /// Looks along a ray at the loops of a rim of which the caps' winding number may come to `least` on its
+    /// course. `false` if the ray comes too near to such a loop, or numbers are too large. O(n) in the edges.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -342,8 +345,9 @@ impl Change {
         self.distance
     }
 
-    /// The least and the greatest change of the winding number with the length, within `reach`, which is less than half the rim's distance. (Each
-    /// angle's is an integral of one sign over the inverse cubes of distances, none of which changes by more than `reach`.)
+    /// The least and the greatest change of the winding number with the length, within `reach`, which is less
+    /// than half the rim's distance. (Each angle's is an integral of one sign over the inverse cubes of
+    /// distances, none of which changes by more than `reach`.)
     pub(super) fn within(&self, reach: f64) -> [f64; 2] {
         let part = reach / self.distance;
         let cube = |x: f64| 1.0 / (x * x * x);

@@ -1,9 +1,9 @@
 //! Where a segment first crosses the boundary of what a mesh encloses.
 //!
-//! The winding number at the segment's beginning is found on the way from a base. From there on it changes at each
-//! triangle that the segment passes through, and where the fill rule's answer changes is the boundary. Whether the
-//! segment passes through a triangle is decided with the bounds of all that is rounded; where that is not sure, as
-//! next to edges of triangles, there is no answer.
+//! The winding number at the segment's beginning is found on the way from a base. From there on it changes at
+//! each triangle that the segment passes through, and where the fill rule's answer changes is the boundary.
+//! Whether the segment passes through a triangle is decided with the bounds of all that is rounded; where
+//! that is not sure, as next to edges of triangles, there is no answer.
 
 use super::local::{Point, UNIT, View, cross, dot, minus};
 use crate::mesh::FillRule;
@@ -26,8 +26,8 @@ impl View<'_> {
     pub(super) fn first_crossing(&self, segment: &Segment, fill: FillRule) -> Option<Crossing> {
         let base = self.base()?;
         let [from, to] = [segment.from, segment.to].map(|p| self.local(p));
-        // What the ends are off by: two roundings of lattice coordinates, and one here. Where the surface may lie
-        // beside the mesh, it is passed through if the mesh is that far from the triangle's edges.
+        // What the ends are off by: two roundings of lattice coordinates, and one here. Where the surface may
+        // lie beside the mesh, it is passed through if the mesh is that far from the triangle's edges.
         let frame = &self.placed.frame;
         let error = 4.0 * UNIT * f64::from(frame.cells()) * self.scale() + 2.0 * self.displacement();
         let mut winding = base.winding;

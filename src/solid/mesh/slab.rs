@@ -1,7 +1,7 @@
 //! The slab of a cell: how far triangles reach to either side along their mean normal, and what lies beyond.
 //!
-//! No triangle reaches beyond the slab's ends, so that on each side the winding number is the same. It is found on the
-//! way from a base to a point there.
+//! No triangle reaches beyond the slab's ends, so that on each side the winding number is the same. It is
+//! found on the way from a base to a point there.
 
 use super::base::Base;
 use super::local::{Point, UNIT, View, dot};
@@ -80,7 +80,8 @@ impl View<'_> {
 
     /// The winding number at a point of the cell that no triangle comes near.
     pub(super) fn winding_at(&self, p: &Point, base: &Base) -> Option<i32> {
-        /// Points by way of which to go where the straight way comes near to an edge, as in cubes, where base and point lie alike.
+        /// Points by way of which to go where the straight way comes near to an edge, as in cubes, where base
+        /// and point lie alike.
         const DETOURS: [Point; 3] = [[-0.61, 0.37, 0.83], [0.53, -0.71, 0.29], [0.19, 0.67, -0.43]];
         let change = |from: &Point, to: &Point| {
             let mut triangles = self.triangles.iter();

@@ -1,8 +1,8 @@
 //! What caps and their edges add to winding numbers and derivatives, many at a time.
 //!
-//! Loops over arrays find the terms, which compilers make vector instructions of if nothing in them is a call (so do arrays
-//! without `map`). Whoever sums takes the terms in turn, so that
-//! sums are those of one term after the other, bit for bit.
+//! Loops over arrays find the terms, which compilers make vector instructions of if nothing in them is a call
+//! (so do arrays without `map`). Whoever sums takes the terms in turn, so that sums are those of one term
+//! after the other, bit for bit.
 
 use crate::lattice::exact::sqrt;
 use core::f64::consts::PI;

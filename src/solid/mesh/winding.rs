@@ -162,8 +162,8 @@ impl Range {
     }
 }
 
-/// For each edge of each cap that is none of the boundary the cap beyond it: one that has the same edge backward. (There may be
-/// several, of different loops. They lie in one place, and each is taken once.)
+/// For each edge of each cap that is none of the boundary the cap beyond it: one that has the same edge
+/// backward. (There may be several, of different loops. They lie in one place, and each is taken once.)
 fn neighbours(slots: &[Slot]) -> Result<Vec<[u32; 3]>, Error> {
     let mut edges = memory::with_capacity(3 * slots.len())?;
     for (cap, (corners, rims)) in slots.iter().enumerate() {
@@ -209,7 +209,8 @@ impl Local {
         }
     }
 
-    /// The same function as seen from another point, good for a ball around that which lies in the one it is of.
+    /// The same function as seen from another point, good for a ball around that which lies in the one it is
+    /// of.
     fn moved(&self, point: [f64; 3], radius: f64) -> Local {
         let to = DVec3::from(point) - self.point;
         let Range { value, .. } = self.at(point);
@@ -239,8 +240,8 @@ impl Local {
         }
     }
 
-    /// In such a cube, as a linear function of where a point lies, from the middle in half edges: its value in the
-    /// middle, its slope, and how much further off the winding number may be.
+    /// In such a cube, as a linear function of where a point lies, from the middle in half edges: its value
+    /// in the middle, its slope, and how much further off the winding number may be.
     pub(super) fn tangent(&self, at: [i32; 3], size: i32) -> (f64, [f64; 3], f64) {
         let half = size as f64 / 2.0;
         let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
@@ -412,12 +413,13 @@ impl Caps {
         Ok(())
     }
 
-    /// The winding number of the caps that are not `near`, in the ball of `radius` around a point, which lies in the ball that
-    /// `known` is of. That tells of all caps but those of a list; those of them that are far from the ball are added, and the
-    /// others are appended to `near`.
+    /// The winding number of the caps that are not `near`, in the ball of `radius` around a point, which lies
+    /// in the ball that `known` is of. That tells of all caps but those of a list; those of them that are far
+    /// from the ball are added, and the others are appended to `near`.
     ///
-    /// Lists are ascending. A cap that is far from the ball has all its edges far from it, so that derivatives of its own winding
-    /// number are sums over these. Edges between two caps that are added cancel.
+    /// Lists are ascending. A cap that is far from the ball has all its edges far from it, so that
+    /// derivatives of its own winding number are sums over these. Edges between two caps that are added
+    /// cancel.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -447,8 +449,9 @@ impl Caps {
         Ok(with_vectors(Far { caps: self, placed, list, near, reach, known: local }))
     }
 
-    /// The winding number of all caps in the ball of `radius` around the point that `far` is of, which tells of all that are
-    /// not `near`. `None` if the boundary passes through the ball, or comes so near to it that one expansion says little.
+    /// The winding number of all caps in the ball of `radius` around the point that `far` is of, which tells
+    /// of all that are not `near`. `None` if the boundary passes through the ball, or comes so near to it
+    /// that one expansion says little.
     pub(super) fn whole(&self, placed: &Placed, far: &Local, near: &[u32], radius: f64) -> Option<Local> {
         let reach = radius + self.boundary_error;
         let is_close = |&cap: &u32| {
@@ -464,8 +467,8 @@ impl Caps {
         with_vectors(Whole { caps: self, placed, near, reach, far: *far })
     }
 
-    /// The winding number at a point of the ball that `far` is of, which tells of all caps that are not `near`. If the point is
-    /// a cell's centre, `cell` says so, as for [`local`](Self::local).
+    /// The winding number at a point of the ball that `far` is of, which tells of all caps that are not
+    /// `near`. If the point is a cell's centre, `cell` says so, as for [`local`](Self::local).
     pub(super) fn at(
         &self,
         placed: &Placed,
@@ -478,7 +481,8 @@ impl Caps {
         Range { value: near.value + far.value, change: 0.0, error: near.error_at(0.0) + far.error }
     }
 
-    /// Those edges of a cap that are none of the boundary, as bits, but for edges beyond which lies a cap that is added, too.
+    /// Those edges of a cap that are none of the boundary, as bits, but for edges beyond which lies a cap
+    /// that is added, too.
     #[inline(always)]
     fn inner_edges(&self, cap: u32, is_added: impl Fn(u32) -> bool) -> u8 {
         let (rims, beyond) = (self.rims[cap as usize], self.beyond[cap as usize]);
@@ -645,8 +649,8 @@ impl Node {
         let slivers = count * node.radius * node.radius;
         node.rounding = 16.0 * f64::EPSILON * ((count + 16.0) * node.size + slivers);
         node.size += node.rounding;
-        // The sums over the boundary's n edges are off by 5·((n + 3)·rim + 2·n·r)·u in the gradient, in units of
-        // SCALE/(|y| − r)²: n roundings of sums, and corners that are off by u·r. 10^-11 of the boundary's
+        // The sums over the boundary's n edges are off by 5·((n + 3)·rim + 2·n·r)·u in the gradient, in units
+        // of SCALE/(|y| − r)²: n roundings of sums, and corners that are off by u·r. 10^-11 of the boundary's
         // length covers what else is rounded.
         let edges = slots.iter().map(|slot| slot.1.count_ones() as f64).sum::<f64>();
         let sums = 16.0 * f64::EPSILON * ((edges + 16.0) * node.rim + edges * node.radius);
@@ -654,8 +658,8 @@ impl Node {
         node
     }
 
-    /// The group as seen from afar, in the ball of `radius` around a point, if taking it together adds at most `enough` to the
-    /// error anywhere in it.
+    /// The group as seen from afar, in the ball of `radius` around a point, if taking it together adds at
+    /// most `enough` to the error anywhere in it.
     #[inline(always)]
     fn seen(&self, point: DVec3, radius: f64, enough: f64) -> Option<Seen> {
         let towards = self.centre - point;
@@ -767,7 +771,8 @@ enum Item {
     Group(u32, Seen),
 }
 
-/// A sum over caps and groups of them, in the order in which they are given. Terms are found for many at a time.
+/// A sum over caps and groups of them, in the order in which they are given. Terms are found for many at a
+/// time.
 struct Summing<'c> {
     caps: &'c Caps,
     placed: &'c Placed,
@@ -1009,7 +1014,8 @@ struct Near<'c> {
 impl Hot for Near<'_> {
     type Output = Local;
 
-    /// Most half angles are less than a right one and well told: then numbers do that are not divided by the corners' distances.
+    /// Most half angles are less than a right one and well told: then numbers do that are not divided by the
+    /// corners' distances.
     #[inline(always)]
     fn run(self) -> Local {
         let Near { caps, placed, near, point, cell } = self;

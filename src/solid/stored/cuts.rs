@@ -21,8 +21,8 @@ pub(super) struct PlacedCuts {
     surfaces: Vec<PlacedHalfSpace>,
     /// In unit coordinates, for cells.
     cells: Vec<Placed>,
-    /// The least cube around the origin that holds the universe and whose edge is a power of two: points of the model are exact
-    /// in its unit coordinates, too.
+    /// The least cube around the origin that holds the universe and whose edge is a power of two: points of
+    /// the model are exact in its unit coordinates, too.
     around: Frame,
     /// In those coordinates; made when the first point is asked for.
     points: OnceBox<Vec<Placed>>,
@@ -148,7 +148,8 @@ impl PlacedCuts {
         Ok(())
     }
 
-    /// Whether a point of the universe (model units) is inside, by exact signs; `None` if nothing is known of it there.
+    /// Whether a point of the universe (model units) is inside, by exact signs; `None` if nothing is known of
+    /// it there.
     pub(super) fn inside(
         &self,
         tree: &OctreeRef<'_>,

@@ -324,10 +324,10 @@ impl<T: Tree> Worker for StoredOnFrame<T> {
 /// (what is cut becomes PARTIAL), built to more its PARTIAL cells stay undecided. Its verdicts prove what its
 /// cells do ([`OctreeRef::proof`]).
 ///
-/// To put it on a frame, all links are checked, O(elements), unless the tree was made in memory: [`Error::Damaged`] if the tree was mapped
-/// unverified and they are damaged. Whoever writes an octree copies subtrees as they are: of an unverified
-/// one whose links are sound, but not what they lead to, the copy is damaged, too, or [`Error::Damaged`] is
-/// returned.
+/// To put it on a frame, all links are checked, O(elements), unless the tree was made in memory:
+/// [`Error::Damaged`] if the tree was mapped unverified and they are damaged. Whoever writes an octree copies
+/// subtrees as they are: of an unverified one whose links are sound, but not what they lead to, the copy is
+/// damaged, too, or [`Error::Damaged`] is returned.
 impl<'a> Solid for OctreeRef<'a> {
     type Classifier = StoredOnFrame<OctreeRef<'a>>;
 

@@ -16,9 +16,9 @@ use alloc::vec::Vec;
 use hashbrown::HashMap;
 use once_cell::race::OnceBox;
 
-/// An octree whose [shards](crate::Shard) lie in memory or on disk, each an octree: the top, and shards of cells that it leaves
-/// open. It is a solid without being joined. A shard is looked at when one of its cells is asked for. A cell whose shard is missing
-/// is PARTIAL.
+/// An octree whose [shards](crate::Shard) lie in memory or on disk, each an octree: the top, and shards of
+/// cells that it leaves open. It is a solid without being joined. A shard is looked at when one of its cells
+/// is asked for. A cell whose shard is missing is PARTIAL.
 ///
 /// Its cells are those of the octree that [`join`](crate::op::join) makes. It keeps no list of surfaces
 /// ([`WholeQuestion::Surfaces`]): an extended octree of it is made by joining.
@@ -53,8 +53,8 @@ impl ShardedOctree {
     /// Of a top and shards in any order. O(shards).
     ///
     /// # Errors
-    /// [`Error::FrameMismatch`] if the frames differ; [`Error::Argument`] if the cells are not of one level of the frame, or one has two
-    /// shards.
+    /// [`Error::FrameMismatch`] if the frames differ; [`Error::Argument`] if the cells are not of one level
+    /// of the frame, or one has two shards.
     pub fn new(
         top: Octree,
         shards: impl IntoIterator<Item = (Cell, Octree)>,

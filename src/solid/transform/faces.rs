@@ -1,10 +1,10 @@
 //! Planes of a solid's own lattice in which pieces of its boundary lie that no surface tells of.
 //!
-//! A surface in a plane of the lattice crosses no cell, so that no cell keeps it: the cells on both sides are just something else.
-//! Once it is moved it crosses cells as any other.
+//! A surface in a plane of the lattice crosses no cell, so that no cell keeps it: the cells on both sides are
+//! just something else. Once it is moved it crosses cells as any other.
 //!
-//! Where facets meet in such a plane the cells on both sides may know one of them each. That plane is a seam: no part of the boundary,
-//! but where it is known on which side one is, it is known which facet counts.
+//! Where facets meet in such a plane the cells on both sides may know one of them each. That plane is a seam:
+//! no part of the boundary, but where it is known on which side one is, it is known which facet counts.
 
 use crate::control::Control;
 use crate::error::Error;
@@ -28,8 +28,8 @@ const MOST_SPLITS: usize = 1 << 20;
 /// Most seams that are kept: of the largest cells.
 const MOST_SEAMS: usize = 1 << 13;
 
-/// So many times faces are divided to see whether cells are decided on both sides, and most cells of all faces that are split for
-/// that.
+/// So many times faces are divided to see whether cells are decided on both sides, and most cells of all
+/// faces that are split for that.
 const MOST_DIVISIONS: u8 = 4;
 const MOST_DIVIDED: usize = 1 << 14;
 
@@ -60,7 +60,8 @@ pub(super) struct LatticePlanes {
     pub(super) seams: Vec<LatticePlane>,
 }
 
-/// The planes; none if the faces lie in too many, or there are too many cells. `placed`: the surfaces on the universe of the solid's own frame.
+/// The planes; none if the faces lie in too many, or there are too many cells. `placed`: the surfaces on the
+/// universe of the solid's own frame.
 pub(super) fn lattice_planes<W: Worker>(
     inner: &mut W,
     exterior: Tag,
@@ -244,7 +245,8 @@ impl<W: Worker> Walk<'_, '_, W> {
     }
 }
 
-/// Of two cells the larger, if that is PARTIAL: whether it is the lower, and its octant that the other lies beside.
+/// Of two cells the larger, if that is PARTIAL: whether it is the lower, and its octant that the other lies
+/// beside.
 fn beside<P>(a: &Node<P>, b: &Node<P>, axis: usize) -> Option<(bool, u8)> {
     let (lower, upper) = (a.cell?, b.cell?);
     let is_open = |node: &Node<P>| matches!(node.verdict, Verdict::Partial(_));

@@ -18,7 +18,8 @@ pub(super) struct LatticeMap {
 
 impl LatticeMap {
     /// The map p ↦ linear · (p − before) + after of model space. `linear` may be off by 5 · 2^-53,
-    /// relatively, in each entry; none of a row is that is `monomial`, and then it has one entry, which is a power of two.
+    /// relatively, in each entry; none of a row is that is `monomial`, and then it has one entry, which is a
+    /// power of two.
     fn new(
         linear: &[[f64; 3]; 3],
         before: [f64; 3],

@@ -44,13 +44,14 @@ use surfaces::Surfaces;
 /// where cells of the solid's own depth decide them, or, if the placement is an offset of whole cells, by the
 /// solid. With [`nearest`](Self::nearest) every centre is decided.
 ///
-/// What the solid knows of its surface in cells ([`Enclosure`]) is known of the result: one slab a cell, as thin as the
-/// surface is flat there, and where nothing blurs the solid's own enclosure, exactly.
+/// What the solid knows of its surface in cells ([`Enclosure`]) is known of the result: one slab a cell, as
+/// thin as the surface is flat there, and where nothing blurs the solid's own enclosure, exactly.
 ///
-/// Surfaces that a stored solid keeps ([`build_extended`](crate::build_extended)) are moved exactly. Where one function of up to six of
-/// them is what all the cells are that a cell touches, the result is known as its source is, and splits below any depth; so a tree that
-/// is built from it keeps the same surfaces. So are faces in planes of the solid's own lattice, which cross no cell and which no cell
-/// keeps, if they are few. What the source gave up stays undecided.
+/// Surfaces that a stored solid keeps ([`build_extended`](crate::build_extended)) are moved exactly. Where
+/// one function of up to six of them is what all the cells are that a cell touches, the result is known as
+/// its source is, and splits below any depth; so a tree that is built from it keeps the same surfaces. So are
+/// faces in planes of the solid's own lattice, which cross no cell and which no cell keeps, if they are few.
+/// What the source gave up stays undecided.
 ///
 /// ```
 /// use leafless::{Affine, Control, Csg, Frame, Rule, build, solid::Transform};
@@ -161,15 +162,17 @@ impl<S: Solid> Transform<S> {
         Transform { solid: Arc::new(solid), own, placement: *placement, nearest: false }
     }
 
-    /// The same, but that centres are decided by the nearest centre of the solid's own frame: a finest cell is FULL under
-    /// [`Rule::Sampled`](crate::Rule::Sampled) if the own cell from which its centre comes is, or has its own centre inside.
-    /// So an octree that is made of samples is sampled again, on a lattice that is turned, coarser or finer. This is how
-    /// voxels have always been moved: the nearest voxel, without interpolation. A surface is displaced by up to half a
-    /// diagonal of the solid's own cells. Verdicts on cells stay as they are, and so do the other rules.
+    /// The same, but that centres are decided by the nearest centre of the solid's own frame: a finest cell
+    /// is FULL under [`Rule::Sampled`](crate::Rule::Sampled) if the own cell from which its centre comes is,
+    /// or has its own centre inside. So an octree that is made of samples is sampled again, on a lattice that
+    /// is turned, coarser or finer. This is how voxels have always been moved: the nearest voxel, without
+    /// interpolation. A surface is displaced by up to half a diagonal of the solid's own cells. Verdicts on
+    /// cells stay as they are, and so do the other rules.
     ///
-    /// A centre that comes from a face between cells belongs to the cell above, as it does where cells hold points. Only a
-    /// centre that comes from a cell of which the solid itself does not know whether its centre lies inside, like a
-    /// PARTIAL cell of a stored octree, is [`Error::NotSampled`]: [`resolve`](crate::op::resolve) decides those before.
+    /// A centre that comes from a face between cells belongs to the cell above, as it does where cells hold
+    /// points. Only a centre that comes from a cell of which the solid itself does not know whether its
+    /// centre lies inside, like a PARTIAL cell of a stored octree, is [`Error::NotSampled`]:
+    /// [`resolve`](crate::op::resolve) decides those before.
     ///
     /// ```
     /// use leafless::{Affine, Control, Csg, Frame, Rule, build, solid::Transform};
@@ -435,7 +438,8 @@ impl<W: Worker> TransformWorker<W> {
         Ok(TransformPart(What::List(self.lists.len() - 1)))
     }
 
-    /// What is known of a cell with a list, which is the last: a function of the moved surfaces in its place, if there is one.
+    /// What is known of a cell with a list, which is the last: a function of the moved surfaces in its place,
+    /// if there is one.
     fn known_of(&mut self, cell: Cell, part: TransformPart) -> Result<Verdict<TransformPart>, Error> {
         // (What is known of a source is known of its image.)
         let Some(surfaces) = self.surfaces.clone().filter(|_| self.source(cell, part).is_none()) else {
@@ -471,7 +475,8 @@ impl<W: Worker> TransformWorker<W> {
         Ok(())
     }
 
-    /// The same for many targets, whose cells are split together, round by round. With an error comes what is known.
+    /// The same for many targets, whose cells are split together, round by round. With an error comes what is
+    /// known.
     fn gather_many<T: Target>(
         &mut self,
         targets: &[(TransformPart, T, f64)],
@@ -511,8 +516,8 @@ impl<W: Worker> TransformWorker<W> {
         gather(&own, &self.known[range], target, grain, splits, &mut self.at_hand)
     }
 
-    /// What the cells at hand say of the eight children of a cell, or (`count` = 1) of the cell itself. Centres may be asked for of
-    /// finest cells.
+    /// What the cells at hand say of the eight children of a cell, or (`count` = 1) of the cell itself.
+    /// Centres may be asked for of finest cells.
     fn verdicts(
         &mut self,
         images: &Images<'_>,
@@ -565,8 +570,8 @@ fn verdict_of(known: OpenSurfaces) -> Verdict<TransformPart> {
     }
 }
 
-/// From so many cells at hand on none is split. A grain leads to some hundred at the most, unless the rounding errors of
-/// a map are larger than cells.
+/// From so many cells at hand on none is split. A grain leads to some hundred at the most, unless the
+/// rounding errors of a map are larger than cells.
 const MOST_AT_HAND: usize = 1024;
 
 /// Whether a cell is to be split.
@@ -581,8 +586,8 @@ fn is_to_be_split<P>(
     Ok(cell.level < own.depth() && extent(own, *cell).1 > grain && !splits.is_function(*cell, part)?)
 }
 
-/// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their children; `false` if some of
-/// these are not known.
+/// Puts the cells of a list at hand that touch a target, those larger than its grain replaced by their
+/// children; `false` if some of these are not known.
 fn gather<P: Clone>(
     own: &Frame,
     list: &[Known<P>],
@@ -855,8 +860,8 @@ impl<W: Worker> TransformWorker<W> {
         Ok(inside)
     }
 
-    /// What the cells at hand say of the image of a centre; and the finest cell of the solid's own frame that has the image as its
-    /// centre, if that is left to ask.
+    /// What the cells at hand say of the image of a centre; and the finest cell of the solid's own frame that
+    /// has the image as its centre, if that is left to ask.
     #[allow(clippy::type_complexity)]
     fn at_point(&self, point: &Point<'_>) -> (Option<bool>, Option<(Cell, W::Part)>) {
         let Met { empty, full, undecided, part } = self.met(point.reaches_beyond(self.own.cells() as f64));

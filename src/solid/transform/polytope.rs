@@ -1,21 +1,25 @@
 //! A cube that planes clip again and again.
 //!
-//! Faces are closed polygons, and each edge belongs to two faces, once in each direction. Both find the same point where a plane
-//! cuts the edge, and the edges that are left without a second face make loops, which become faces. So the surface stays closed
-//! however corners are rounded. What a plane cuts off lies beyond that plane, but for roundings, and winds around no point before
-//! it. So the surface goes on winding around all points that are further before each plane than rounding makes corners differ from
-//! the planes of their faces, and such points lie in the convex hull of the corners. Each plane is moved outward by more than that.
+//! Faces are closed polygons, and each edge belongs to two faces, once in each direction. Both find the same
+//! point where a plane cuts the edge, and the edges that are left without a second face make loops, which
+//! become faces. So the surface stays closed however corners are rounded. What a plane cuts off lies beyond
+//! that plane, but for roundings, and winds around no point before it. So the surface goes on winding around
+//! all points that are further before each plane than rounding makes corners differ from the planes of their
+//! faces, and such points lie in the convex hull of the corners. Each plane is moved outward by more than
+//! that.
 
-/// Most corners, most faces, and most corners of a face. A body that would have more stays as it is, which is larger.
+/// Most corners, most faces, and most corners of a face. A body that would have more stays as it is, which is
+/// larger.
 const CORNERS: usize = 64;
 const FACES: usize = 32;
 const AROUND: usize = 24;
 
-/// By so much planes are moved outward, relative to their coefficients. A corner is interpolated once a plane, and each time off by
-/// some units of the last place.
+/// By so much planes are moved outward, relative to their coefficients. A corner is interpolated once a
+/// plane, and each time off by some units of the last place.
 const SLACK: f64 = 256.0 * f64::EPSILON;
 
-/// A convex body in the cube [−1, 1]³: no point of the cube on the inner sides of all planes lies outside of the hull of the corners.
+/// A convex body in the cube [−1, 1]³: no point of the cube on the inner sides of all planes lies outside of
+/// the hull of the corners.
 #[derive(Clone)]
 pub(super) struct Polytope {
     corners: [[f64; 3]; CORNERS],

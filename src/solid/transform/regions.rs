@@ -1,11 +1,12 @@
 //! One function of few surfaces that says what pieces of a target say, told apart by where layers are known.
 //!
-//! At a point a surface is known to be on one side, or the point lies in the width of a layer: that is the *state* of the point. What
-//! a table says there it says for all sides of the layers in whose widths the point lies. So a function may stand for a piece if for
-//! each state that occurs in the piece it says what the piece does, or nothing. It must not say anything where the piece says
-//! nothing. To say nothing where the piece does is to lose, which is allowed along lines: where two facets meet in a wall between
-//! two cells of the source, one of these knows both planes and the other one of them, and it is but in the widths around their edge
-//! that the other plane counts in that, too.
+//! At a point a surface is known to be on one side, or the point lies in the width of a layer: that is the
+//! *state* of the point. What a table says there it says for all sides of the layers in whose widths the
+//! point lies. So a function may stand for a piece if for each state that occurs in the piece it says what
+//! the piece does, or nothing. It must not say anything where the piece says nothing. To say nothing where
+//! the piece does is to lose, which is allowed along lines: where two facets meet in a wall between two cells
+//! of the source, one of these knows both planes and the other one of them, and it is but in the widths
+//! around their edge that the other plane counts in that, too.
 
 use super::polytope::Polytope;
 use crate::error::Error;
@@ -69,7 +70,8 @@ impl Flat {
         }
     }
 
-    /// Whether it is a layer that is known nowhere in the cube but where the other is, and there to be on the same side.
+    /// Whether it is a layer that is known nowhere in the cube but where the other is, and there to be on the
+    /// same side.
     pub(super) fn holds(&self, other: &Flat) -> bool {
         let Some(margin) = self.layer else { return false };
         let length = |flat: &Flat| {
@@ -149,8 +151,8 @@ pub(super) struct Regions {
 pub(super) type Seen<'f> = [(Flat, Option<bool>)];
 
 impl Regions {
-    /// Takes in a piece, which says `value` of these surfaces; `false` if there are too many states. What is lost must lie within
-    /// `finest` of a line.
+    /// Takes in a piece, which says `value` of these surfaces; `false` if there are too many states. What is
+    /// lost must lie within `finest` of a line.
     pub(super) fn take(
         &mut self,
         body: &Polytope,
@@ -162,7 +164,8 @@ impl Regions {
         self.divide(body, seen, 0, (u64::MAX, 0.0), finest)
     }
 
-    /// Of those that lie in places of the first surfaces: these combinations of signs; the greatest width of a layer in which they are.
+    /// Of those that lie in places of the first surfaces: these combinations of signs; the greatest width of
+    /// a layer in which they are.
     fn divide(
         &mut self,
         body: &Polytope,
@@ -171,7 +174,8 @@ impl Regions {
         (signs, width): (u64, f64),
         finest: f64,
     ) -> Result<bool, Error> {
-        /// What is lost may be so many times as thick as the layers are wide: planes may meet at a small angle.
+        /// What is lost may be so many times as thick as the layers are wide: planes may meet at a small
+        /// angle.
         const SLENDER: f64 = 256.0;
         let Some(&(flat, side)) = seen.get(number) else {
             let piece = self.values.len() - 1;

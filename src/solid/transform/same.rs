@@ -4,8 +4,8 @@ use super::image::Maps;
 use crate::lattice::{Cell, CellMoments, CubeMoments, Frame, Inverse, PAIRS, PLACES, axes};
 use crate::solid::{Crossing, Segment};
 
-/// A map of cells to cells as it acts on the coordinates of a cell, from its centre in half edges: y = P x with a signed
-/// permutation P.
+/// A map of cells to cells as it acts on the coordinates of a cell, from its centre in half edges: y = P x
+/// with a signed permutation P.
 pub(super) struct Turn {
     /// For each axis of the solid's own cell: the axis of the image, and the sign.
     axes: [(usize, f64); 3],
@@ -32,7 +32,8 @@ impl Turn {
         Some(Turn { axes: turn })
     }
 
-    /// Moments of the solid in the source as those in the cell. Axes change places and signs; the error stays.
+    /// Moments of the solid in the source as those in the cell. Axes change places and signs; the error
+    /// stays.
     pub(super) fn moments(&self, known: &CellMoments) -> CellMoments {
         let CubeMoments { volume, first, second } = known.moments;
         let mut moved = CubeMoments { volume, first: [0.0; 3], second: [0.0; 6] };

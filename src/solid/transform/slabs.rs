@@ -1,9 +1,9 @@
 //! The slab of a cell, from what the cells of the solid's own frame that it touches know of the surface.
 //!
-//! Each of these cells bounds the slab along one direction ν, the mean of their normals. A slab with normal n is one
-//! along ν if its offsets leave room for (ν − λ n) · u, which is small over a cell, whatever λ > 0 is. A FULL cell
-//! bounds the outer side by how far it reaches along ν, an EMPTY cell the inner side. A cell of which nothing is known
-//! bounds both. The worst bound of all cells counts.
+//! Each of these cells bounds the slab along one direction ν, the mean of their normals. A slab with normal n
+//! is one along ν if its offsets leave room for (ν − λ n) · u, which is small over a cell, whatever λ > 0 is.
+//! A FULL cell bounds the outer side by how far it reaches along ν, an EMPTY cell the inner side. A cell of
+//! which nothing is known bounds both. The worst bound of all cells counts.
 
 use super::image::Maps;
 use crate::lattice::Cube;
@@ -42,8 +42,8 @@ struct Known {
     outer: f64,
 }
 
-/// The slab of a cell, from those cells that it touches; `exterior` is what lies beyond the universe of `cells`
-/// finest cells.
+/// The slab of a cell, from those cells that it touches; `exterior` is what lies beyond the universe of
+/// `cells` finest cells.
 pub(super) fn enclosure(
     maps: &Maps,
     cube: &Cube<'_>,

@@ -1,5 +1,5 @@
-//! Where the children of cells of the solid's own frame come from: from its worker at once, or from many splits that were asked
-//! for together.
+//! Where the children of cells of the solid's own frame come from: from its worker at once, or from many
+//! splits that were asked for together.
 
 use crate::error::Error;
 use crate::lattice::Cell;
@@ -13,7 +13,8 @@ pub(super) trait Splits<P> {
     /// The children of a cell; `None` if they are not known yet.
     fn children(&mut self, cell: Cell, part: &P) -> Result<Option<[Verdict<P>; 8]>, Error>;
 
-    /// Whether a cell is not to be split, because it is a function of surfaces: some of these may lie in faces of its children.
+    /// Whether a cell is not to be split, because it is a function of surfaces: some of these may lie in
+    /// faces of its children.
     fn is_function(&mut self, _: Cell, _: &P) -> Result<bool, Error> {
         Ok(false)
     }

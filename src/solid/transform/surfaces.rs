@@ -1,16 +1,21 @@
-//! The function of the moved surfaces that a solid is in a cell, from what the cells of its own frame say that the cell touches.
+//! The function of the moved surfaces that a solid is in a cell, from what the cells of its own frame say
+//! that the cell touches.
 //!
-//! Each of these cells knows a function of the surfaces that cross it. One function of up to six surfaces is looked for that has the
-//! value of each of them for all combinations of signs that are possible where it meets the target. What is possible there is told
-//! by the sides on which the target and the cell itself lie, exactly, and by bounds over a box around the piece that they have in
-//! common, in the target's coordinates and in those of the cell. Only where that does not suffice it is told by bounds of pairs, too.
+//! Each of these cells knows a function of the surfaces that cross it. One function of up to six surfaces is
+//! looked for that has the value of each of them for all combinations of signs that are possible where it
+//! meets the target. What is possible there is told by the sides on which the target and the cell itself lie,
+//! exactly, and by bounds over a box around the piece that they have in common, in the target's coordinates
+//! and in those of the cell. Only where that does not suffice it is told by bounds of pairs, too.
 //!
-//! Where there are layers, pieces are convex bodies, and their values are told apart state by state ([`regions`](super::regions)). Layers
-//! of one plane that hold each other count as the widest of them, which is known in fewer places, and a surface that lies in a layer
-//! all over the target counts as that layer. Where that does not suffice either, because facets meet in a wall between two cells each of
-//! which knows one of them, the wall itself becomes a surface: on one side of it the solid is one function, on the other another.
+//! Where there are layers, pieces are convex bodies, and their values are told apart state by state
+//! ([`regions`](super::regions)). Layers of one plane that hold each other count as the widest of them, which
+//! is known in fewer places, and a surface that lies in a layer all over the target counts as that layer.
+//! Where that does not suffice either, because facets meet in a wall between two cells each of which knows
+//! one of them, the wall itself becomes a surface: on one side of it the solid is one function, on the other
+//! another.
 //!
-//! Signs are those of the surfaces, so nothing is rounded that counts. From there on the cells below know nothing but the function.
+//! Signs are those of the surfaces, so nothing is rounded that counts. From there on the cells below know
+//! nothing but the function.
 
 use super::faces::{LatticePlane, LatticePlanes, lattice_planes, lone};
 use super::image::Maps;
@@ -45,8 +50,9 @@ pub(super) struct Surfaces {
     planes: LatticePlanes,
 }
 
-/// By so much a layer is widened, and by the next once more, where two cells of the source cannot be told from each other otherwise:
-/// their facets meet in the wall between them, or nearly there, and one facet's width takes up more of it than the other's.
+/// By so much a layer is widened, and by the next once more, where two cells of the source cannot be told
+/// from each other otherwise: their facets meet in the wall between them, or nearly there, and one facet's
+/// width takes up more of it than the other's.
 const WIDER: [f64; 4] = [3.0, 3.0, 8.0, 32.0];
 
 /// A layer that would be wider than that share of a finest cell stays as it is.
@@ -76,8 +82,8 @@ impl Source {
 }
 
 impl Surfaces {
-    /// Those of a classifier, and the planes of its lattice in which its boundary lies; `None` if there are none, or one has no exact
-    /// place. O(surfaces), and some thousand cells are split.
+    /// Those of a classifier, and the planes of its lattice in which its boundary lies; `None` if there are
+    /// none, or one has no exact place. O(surfaces), and some thousand cells are split.
     pub(super) fn of<C: Classifier>(
         inner: &C,
         placement: &Affine,
@@ -291,7 +297,8 @@ impl<'s> Target<'s> {
         })
     }
 
-    /// One function of up to six surfaces that is what all sources are, each where it meets the target; `None` if there is none.
+    /// One function of up to six surfaces that is what all sources are, each where it meets the target;
+    /// `None` if there is none.
     pub(super) fn function(&mut self, sources: &[Source]) -> Result<Option<OpenSurfaces>, Error> {
         let mut pieces = memory::with_capacity(sources.len())?;
         pieces.extend(sources.iter().filter_map(|source| self.piece(source)));
@@ -422,8 +429,8 @@ impl<'s> Target<'s> {
         Ok(is_any)
     }
 
-    /// Makes layers wider that the values depend on and a piece does not know of, or, if there are none, that it does; `false` if no
-    /// layer can be made wider.
+    /// Makes layers wider that the values depend on and a piece does not know of, or, if there are none, that
+    /// it does; `false` if no layer can be made wider.
     fn widen(&self, all: &OpenSurfaces, values: &mut [OpenSurfaces], piece: usize) -> bool {
         let own = values[piece];
         for is_known in [false, true] {
@@ -502,8 +509,8 @@ impl<'s> Target<'s> {
         Some(body)
     }
 
-    /// Adds the planes of the solid's own lattice that the target's image reaches on both sides of; `false` if there are none, or too
-    /// many.
+    /// Adds the planes of the solid's own lattice that the target's image reaches on both sides of; `false`
+    /// if there are none, or too many.
     fn add_planes(&self, all: &mut OpenSurfaces) -> bool {
         let before = all.indices().len();
         let first = self.surfaces.first_plane();
@@ -538,8 +545,8 @@ impl<'s> Target<'s> {
         all.indices().len() > before
     }
 
-    /// A function that has the values of all pieces, and the combinations for which it has; `None` if two differ. Bounds of pairs
-    /// count if it is to be found out `closely`.
+    /// A function that has the values of all pieces, and the combinations for which it has; `None` if two
+    /// differ. Bounds of pairs count if it is to be found out `closely`.
     fn joined(
         &mut self,
         all: &OpenSurfaces,

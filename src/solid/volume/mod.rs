@@ -27,10 +27,11 @@ use value::Limits;
 
 /// A three-dimensional bitmap, or an array of samples with a threshold, as a solid.
 ///
-/// **The solid** is the union of all voxels whose sample lies in the [`Band`]. A voxel is the closed box around its
-/// sample ([`VoxelGrid`]). So the solid is a regularised closed set, as all solids are: a cell is FULL if all
-/// voxels that its interior meets are inside and the cell lies in the grid, EMPTY if none is, and no verdict
-/// is wider than that. What lies beyond the grid is outside. A sample that is not a number is outside.
+/// **The solid** is the union of all voxels whose sample lies in the [`Band`]. A voxel is the closed box
+/// around its sample ([`VoxelGrid`]). So the solid is a regularised closed set, as all solids are: a cell is
+/// FULL if all voxels that its interior meets are inside and the cell lies in the grid, EMPTY if none is, and
+/// no verdict is wider than that. What lies beyond the grid is outside. A sample that is not a number is
+/// outside.
 ///
 /// On the frame of [`VoxelGrid::frame`], finest cells are voxels: nothing is PARTIAL there, and a tree built
 /// by [`Rule::Sampled`](crate::Rule::Sampled) is the bitmap, bit for bit. On any other frame, however its
@@ -158,7 +159,8 @@ impl<'a> Volume<'a> {
         Ok(Volume { field: Field { grid, ..self.field.clone() }, ..self.clone() })
     }
 
-    /// The voxel that the first of a frame's finest cells is, if these are voxels, or would be beyond the grid.
+    /// The voxel that the first of a frame's finest cells is, if these are voxels, or would be beyond the
+    /// grid.
     pub(crate) fn first_voxel(&self, frame: &Frame) -> Option<[i64; 3]> {
         VolumeOnFrame::new(self.clone(), frame).first_voxel()
     }

@@ -1,4 +1,5 @@
-//! The boundary in cells: polygons on one surface each, bounded by arcs in faces and by the edges in which surfaces meet.
+//! The boundary in cells: polygons on one surface each, bounded by arcs in faces and by the edges in which
+//! surfaces meet.
 
 use super::curve::refine;
 use super::edges::{Edges, NONE};
@@ -14,10 +15,12 @@ use alloc::vec::Vec;
 /// Pieces of the boundary.
 #[derive(Default)]
 pub(super) struct Pieces {
-    /// Polygons, each on one surface, with the solid behind it: the vertices counter-clockwise seen from outside.
+    /// Polygons, each on one surface, with the solid behind it: the vertices counter-clockwise seen from
+    /// outside.
     pub(super) polygons: Vec<Polygon>,
     pub(super) corners: Vec<u32>,
-    /// Triangles where the surfaces have no simple arrangement, with the surface that each comes from, or [`NONE`], and the cell.
+    /// Triangles where the surfaces have no simple arrangement, with the surface that each comes from, or
+    /// [`NONE`], and the cell.
     pub(super) triangles: Vec<([u32; 3], u32, Cell)>,
 }
 
@@ -124,7 +127,8 @@ impl Cutter<'_, '_> {
     /// An arc as the boundary of a piece runs along it in this cell.
     fn run(&self, number: u32, is_above: bool) -> (u32, u32, Arc) {
         let arc = self.faces.arcs[number as usize];
-        // Seen from outside of the cell below, the solid in the face lies on the left; the piece lies on the other side of the arc.
+        // Seen from outside of the cell below, the solid in the face lies on the left; the piece lies on the
+        // other side of the arc.
         if is_above { (arc.from, arc.to, arc) } else { (arc.to, arc.from, arc) }
     }
 
@@ -162,7 +166,8 @@ impl Cutter<'_, '_> {
         Ok(vertices)
     }
 
-    /// The edges in which surfaces meet, twice each: as both surfaces see them. `None` if they have no simple arrangement.
+    /// The edges in which surfaces meet, twice each: as both surfaces see them. `None` if they have no simple
+    /// arrangement.
     fn ways(&mut self, open: &OpenSurfaces, joint: Option<Joint>) -> Result<Option<Vec<Way>>, Error> {
         let count = open.indices().len();
         let mut ways = Vec::new();
@@ -223,7 +228,8 @@ impl Cutter<'_, '_> {
             let [low, high] = if open.indices()[i] < open.indices()[j] { [i, j] } else { [j, i] };
             Corner { open, low, high, signs }
         };
-        // Where the boundary of a part of surface i goes on that comes to the point along its edge with j, in the sector `signs`.
+        // Where the boundary of a part of surface i goes on that comes to the point along its edge with j, in
+        // the sector `signs`.
         let mut found: Vec<(usize, u32, u32)> = Vec::new();
         for (i, j) in [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)] {
             for sector in 0..4u8 {

@@ -8,8 +8,9 @@ use alloc::vec::Vec;
 /// How often a chord is halved at most.
 const HALVINGS: u32 = 12;
 
-/// Adds points of a curve between two points of it, so that no chord is further from the curve than the tolerance (edges of the
-/// universe): the curve of points on one or two surfaces, which keep a coordinate if that is said.
+/// Adds points of a curve between two points of it, so that no chord is further from the curve than the
+/// tolerance (edges of the universe): the curve of points on one or two surfaces, which keep a coordinate if
+/// that is said.
 pub(super) fn refine(
     figures: &Figures,
     surfaces: &[u32],

@@ -1,8 +1,9 @@
 //! The boundary in the faces of cells: arcs of surfaces, and the points where two surfaces meet.
 //!
-//! In a face of a simple cell each surface is a single arc between two points of the face's outline, if it is there at all, and
-//! two arcs cross each other once if their ends alternate along the outline, else never. So the signs of the surfaces at the
-//! corners of the lattice decide what is connected with what, and the same for both cells beside the face; no rounding does.
+//! In a face of a simple cell each surface is a single arc between two points of the face's outline, if it is
+//! there at all, and two arcs cross each other once if their ends alternate along the outline, else never. So
+//! the signs of the surfaces at the corners of the lattice decide what is connected with what, and the same
+//! for both cells beside the face; no rounding does.
 
 use super::curve::refine;
 use super::edges::{Crossing, Edges, NONE, best};
@@ -17,8 +18,8 @@ use crate::solid::OpenSurfaces;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// A curve in a face on which the solid begins, which it has on its left, seen from above: from where the coordinate across the face
-/// is greater.
+/// A curve in a face on which the solid begins, which it has on its left, seen from above: from where the
+/// coordinate across the face is greater.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arc {
     pub(super) surface: u32,
@@ -36,8 +37,9 @@ pub(super) struct Meeting {
     pub(super) pair: [u8; 2],
     /// The signs that the surfaces of the cell's list have there; those of the two are 0.
     pub(super) signs: u8,
-    /// The vertices there, if an edge of the boundary leads through the point: where two do, the solid lies between the surfaces twice,
-    /// once where the second one is negative and once where it is positive. Of one edge, the same vertex twice.
+    /// The vertices there, if an edge of the boundary leads through the point: where two do, the solid lies
+    /// between the surfaces twice, once where the second one is negative and once where it is positive. Of
+    /// one edge, the same vertex twice.
     pub(super) vertices: [u32; 2],
 }
 
@@ -45,7 +47,8 @@ pub(super) struct Meeting {
 pub(super) struct Faces {
     pub(super) arcs: Vec<Arc>,
     pub(super) between: Vec<u32>,
-    /// Cells with their arcs, and whether they lie above the face. Cells that are decided have numbers behind all others.
+    /// Cells with their arcs, and whether they lie above the face. Cells that are decided have numbers behind
+    /// all others.
     pub(super) of_cells: Vec<(u32, u32, bool)>,
     pub(super) meetings: Vec<(u32, Meeting)>,
 }
@@ -121,7 +124,8 @@ impl Arrangement<'_> {
         i != j && within(b.ends[0]) != within(b.ends[1])
     }
 
-    /// Whether surface k is positive where i and j meet; `first` tells that of the third surface where the first two meet.
+    /// Whether surface k is positive where i and j meet; `first` tells that of the third surface where the
+    /// first two meet.
     fn sign_at_meeting(&self, k: usize, i: usize, j: usize, first: bool) -> bool {
         if !self.cross(j, k) {
             return self.sign_at_start(k, j);
@@ -133,7 +137,8 @@ impl Arrangement<'_> {
         if k == 2 {
             return first;
         }
-        // Along 0, or along 1, the meeting with 2 comes before that of 0 and 1 if 2 is not there what it is where the line begins.
+        // Along 0, or along 1, the meeting with 2 comes before that of 0 and 1 if 2 is not there what it is
+        // where the line begins.
         let other = 1 - k;
         let two_comes_first = first != self.sign_at_start(2, other);
         self.sign_at_start(k, other) ^ !two_comes_first
@@ -281,8 +286,8 @@ impl Finder<'_, '_, '_> {
         self.meeting_in(face, surfaces, start).unwrap_or(start)
     }
 
-    /// The meetings of an arrangement, with vertices of those that are known; new ones are made for the others if `makes`. `None` if
-    /// a vertex is missing.
+    /// The meetings of an arrangement, with vertices of those that are known; new ones are made for the
+    /// others if `makes`. `None` if a vertex is missing.
     fn meetings(
         &mut self,
         face: &Face,
@@ -347,7 +352,8 @@ impl Finder<'_, '_, '_> {
         Ok(self.edges.vertices.len() as u32 - 1)
     }
 
-    /// Adds the arcs of a face as a cell with a simple arrangement knows them. `false` if it is not as simple as it looks.
+    /// Adds the arcs of a face as a cell with a simple arrangement knows them. `false` if it is not as simple
+    /// as it looks.
     fn arrange(
         &mut self,
         face: &Face,
@@ -374,7 +380,8 @@ impl Finder<'_, '_, '_> {
                 memory::push(&mut on_way, meeting)?;
             }
             if let [one, two] = on_way[..] {
-                // The other surface of the second meeting has at the first one the sign that it has at the beginning, or not.
+                // The other surface of the second meeting has at the first one the sign that it has at the
+                // beginning, or not.
                 let other = other(two, i);
                 if (one.signs ^ signs) >> other & 1 != 0 {
                     on_way.swap(0, 1);
@@ -417,7 +424,8 @@ impl Finder<'_, '_, '_> {
         Ok(outline.iter().all(|crossing| crossing.vertex == NONE || ends(crossing.vertex) == 1))
     }
 
-    /// Adds an arc, which has the solid on its left as it is given, or on its right. `false` if an end has no vertex.
+    /// Adds an arc, which has the solid on its left as it is given, or on its right. `false` if an end has no
+    /// vertex.
     fn add(
         &mut self,
         face: &Face,
@@ -465,8 +473,8 @@ impl Finder<'_, '_, '_> {
         Ok(true)
     }
 
-    /// Adds the arcs of a face as a cell with a joint knows them: one on each of its surfaces where the plane crosses the face, else one on
-    /// either. `false` if it is not as simple as it looks.
+    /// Adds the arcs of a face as a cell with a joint knows them: one on each of its surfaces where the plane
+    /// crosses the face, else one on either. `false` if it is not as simple as it looks.
     fn arrange_joint(
         &mut self,
         face: &Face,
@@ -527,8 +535,9 @@ impl Finder<'_, '_, '_> {
         Ok(true)
     }
 
-    /// Connects the vertices of an outline so that each piece of the solid in it is cut off alone; of two pieces only if the solid is not
-    /// known to lie between them. Where two surfaces meet in the face, each has its own arc.
+    /// Connects the vertices of an outline so that each piece of the solid in it is cut off alone; of two
+    /// pieces only if the solid is not known to lie between them. Where two surfaces meet in the face, each
+    /// has its own arc.
     fn pair(&mut self, face: &Face, outline: &[Crossing], own: Option<&OpenSurfaces>) -> Result<(), Error> {
         let mut ends = Vec::new();
         for crossing in outline.iter().filter(|crossing| crossing.vertex != NONE) {
@@ -560,7 +569,8 @@ impl Finder<'_, '_, '_> {
             let surface = if surfaces[0] == surfaces[1] { surfaces[0] } else { NONE };
             let before = self.faces.between.len();
             self.add(face, surface, [leaves.vertex, enters.vertex], [leaves.at, enters.at], true)?;
-            // Other faces beside an edge may have an arc between the same two places of it: each gets a vertex of its own.
+            // Other faces beside an edge may have an arc between the same two places of it: each gets a
+            // vertex of its own.
             let is_on_side = (0..3).filter(|&k| leaves.at[k] == enters.at[k]).count() >= 2;
             if is_on_side && self.faces.between.len() == before {
                 let vertex = self.vertex(start)?;
@@ -616,8 +626,8 @@ impl Corner<'_> {
         }
     }
 
-    /// Which of the two edges the half of surface i belongs to on which the other one has a sign: the sign that the second surface has
-    /// in the solid there.
+    /// Which of the two edges the half of surface i belongs to on which the other one has a sign: the sign
+    /// that the second surface has in the solid there.
     pub(super) fn copy(&self, i: usize, sign: u8) -> usize {
         if i == self.low { usize::from(sign) } else { usize::from(self.inside(sign, 1)) }
     }

@@ -1,7 +1,8 @@
 //! The surfaces that bound a solid, as functions on the lattice of a boundary evaluation.
 //!
-//! Points are in unit coordinates: the universe is [0, 1]³. Which side of a surface a corner of the lattice lies on is an
-//! exact sign. Places are found in plain doubles, to the last digits: nothing is decided by them but the order of places.
+//! Points are in unit coordinates: the universe is [0, 1]³. Which side of a surface a corner of the lattice
+//! lies on is an exact sign. Places are found in plain doubles, to the last digits: nothing is decided by
+//! them but the order of places.
 
 use crate::cut::{Quadratic, Taylor};
 use crate::error::Error;
@@ -31,10 +32,12 @@ pub(super) struct Figures {
     list: Vec<Figure>,
 }
 
-/// A cylinder or a cone has a determinant that is no greater part than this of the product that it is a sum of.
+/// A cylinder or a cone has a determinant that is no greater part than this of the product that it is a sum
+/// of.
 const SINGULAR: f64 = 1e-9;
 
-/// Half the edge of a cube in which a function is known well enough for its value and its gradient at the centre: a power of two.
+/// Half the edge of a cube in which a function is known well enough for its value and its gradient at the
+/// centre: a power of two.
 const NEAR: f64 = 1.0 / (1u64 << 24) as f64;
 
 /// Steps of Newton's method.
@@ -85,7 +88,8 @@ impl Figures {
         self.list[surface as usize].shape
     }
 
-    /// Whether a point lies on the positive side of a surface. A point on it is taken as a point a little further along x, y and z.
+    /// Whether a point lies on the positive side of a surface. A point on it is taken as a point a little
+    /// further along x, y and z.
     pub(super) fn is_positive(&self, surface: u32, at: [f64; 3]) -> Result<bool, Error> {
         let placed = &self.list[surface as usize].placed;
         if !matches!(placed, Placed::Slab(_))
@@ -108,8 +112,8 @@ impl Figures {
         Some(self.near(surface, centre, half)?.0)
     }
 
-    /// What is known of a surface's function in a cube, by how much the surface may differ from where that is 0, and whether the terms
-    /// are all that the function has.
+    /// What is known of a surface's function in a cube, by how much the surface may differ from where that is
+    /// 0, and whether the terms are all that the function has.
     pub(super) fn near(&self, surface: u32, centre: [f64; 3], half: f64) -> Option<(Taylor, f64, bool)> {
         let placed = &self.list[surface as usize].placed;
         match placed {
@@ -177,8 +181,8 @@ impl Figures {
         x
     }
 
-    /// A point next to another one on up to three surfaces, which keeps a coordinate if that is said: by steps that are as short as
-    /// they can be. Nothing if there is none.
+    /// A point next to another one on up to three surfaces, which keeps a coordinate if that is said: by
+    /// steps that are as short as they can be. Nothing if there is none.
     pub(super) fn onto(&self, surfaces: &[u32], kept: Option<usize>, start: [f64; 3]) -> Option<[f64; 3]> {
         let mut point = start;
         let mut before = f64::INFINITY;
@@ -239,7 +243,8 @@ pub(super) fn shortest(rows: &[[f64; 3]], values: &[f64; 3]) -> Option<[f64; 3]>
     vector.iter().all(|c| c.is_finite()).then_some(vector)
 }
 
-/// Whether the surface of a polynomial of degree two is a cylinder or a cone: whether its matrix of four rows is singular.
+/// Whether the surface of a polynomial of degree two is a cylinder or a cone: whether its matrix of four rows
+/// is singular.
 fn is_ruled(f: &Quadratic) -> bool {
     let ([x, y, z], [xx, yy, zz, xy, xz, yz]) = (f.gradient.map(|c| 0.5 * c), f.squares);
     let mut rows = [[xx, xy, xz, x], [xy, yy, yz, y], [xz, yz, zz, z], [x, y, z, f.value]];

@@ -1,4 +1,5 @@
-//! Cells in which no vertex is taken out, nor in those beside them, because the mesh was too far from the boundary there.
+//! Cells in which no vertex is taken out, nor in those beside them, because the mesh was too far from the
+//! boundary there.
 
 use crate::error::Error;
 use crate::lattice::{Cell, axes};
@@ -21,8 +22,8 @@ impl Held {
         Ok(())
     }
 
-    /// Which points (unit coordinates) lie in a cell or in one of the 26 of its size around it. (Triangles that reach into the cell from
-    /// there would go on changing.)
+    /// Which points (unit coordinates) lie in a cell or in one of the 26 of its size around it. (Triangles
+    /// that reach into the cell from there would go on changing.)
     pub(super) fn chosen(&self, points: impl ExactSizeIterator<Item = [f64; 3]>) -> Result<Vec<bool>, Error> {
         let mut levels = [false; 32];
         self.cells.iter().for_each(|cell| levels[usize::from(cell.0 & 31)] = true);

@@ -1,8 +1,9 @@
-//! Where one surface goes over into another one that touches it: as where a ball ends a round bar, or the round end of a slot begins.
+//! Where one surface goes over into another one that touches it: as where a ball ends a round bar, or the
+//! round end of a slot begins.
 //!
-//! Such surfaces, a and b, have a plane p through the curve in which they touch, on which both are 0 in the same places: b = m a there. On one
-//! side of p the solid depends on a alone, and on the other one on b alone. So the boundary is a single smooth sheet, which has an edge
-//! on p.
+//! Such surfaces, a and b, have a plane p through the curve in which they touch, on which both are 0 in the
+//! same places: b = m a there. On one side of p the solid depends on a alone, and on the other one on b
+//! alone. So the boundary is a single smooth sheet, which has an edge on p.
 
 use super::figures::{Figures, length};
 use super::redundant::{least_squares, never, rest, without};
@@ -10,7 +11,8 @@ use super::scaled::{Scaled, Terms};
 use crate::lattice::{Cell, axes};
 use crate::solid::OpenSurfaces;
 
-/// The boundary may be further by no more than this from where the surfaces of a joint have it (edges of the universe).
+/// The boundary may be further by no more than this from where the surfaces of a joint have it (edges of the
+/// universe).
 const SLACK: f64 = 1e-9;
 
 /// The functions of surfaces that are nearly one on a plane differ by less there (half edges of the cell).
@@ -31,8 +33,8 @@ pub(super) struct Joint {
 }
 
 impl Joint {
-    /// The joint in a cell that depends on three surfaces, the function in which it is seen, and by how much the boundary may be elsewhere
-    /// (edges of the universe).
+    /// The joint in a cell that depends on three surfaces, the function in which it is seen, and by how much
+    /// the boundary may be elsewhere (edges of the universe).
     pub(super) fn find(
         figures: &Figures,
         cell: Cell,
@@ -66,8 +68,8 @@ impl Joint {
     }
 }
 
-/// Three surfaces of a cell through the point in which a joint ends: the plane of the joint, one of the two surfaces that touch, and one
-/// that cuts them off. `None` if there is no such point.
+/// Three surfaces of a cell through the point in which a joint ends: the plane of the joint, one of the two
+/// surfaces that touch, and one that cuts them off. `None` if there is no such point.
 pub(super) fn end(figures: &Figures, cell: Cell, open: &OpenSurfaces) -> Option<[u32; 3]> {
     let surfaces = open.indices();
     let count = surfaces.len();

@@ -51,7 +51,8 @@ pub(super) struct Leaves {
     unknown: u32,
 }
 
-/// So many finest cells without a known surface are no points or lines in which surfaces meet, but a boundary that is none of surfaces.
+/// So many finest cells without a known surface are no points or lines in which surfaces meet, but a boundary
+/// that is none of surfaces.
 const UNKNOWN_CELLS: u32 = 1 << 16;
 
 /// A mesh or a host program's function bounds a part of the solid.
@@ -218,8 +219,9 @@ impl Wanted<'_> {
         }
     }
 
-    /// Whether the boundary in a cell lies within the tolerance of one nearly flat surface: if those surfaces count as one that are so near
-    /// to each other, as where a ball ends a round bar, it depends on that one alone.
+    /// Whether the boundary in a cell lies within the tolerance of one nearly flat surface: if those surfaces
+    /// count as one that are so near to each other, as where a ball ends a round bar, it depends on that one
+    /// alone.
     fn is_merged(&self, cell: Cell, open: &OpenSurfaces) -> bool {
         let most = 0.4 * self.tolerance / (0.5 / f64::from(1u32 << cell.level));
         let mut known = [Scaled::default(); OpenSurfaces::MOST];
@@ -244,7 +246,8 @@ impl Wanted<'_> {
         }
     }
 
-    /// Whether the surfaces in a cell are nearly flat, and cross each other at angles, but for two that touch in a joint.
+    /// Whether the surfaces in a cell are nearly flat, and cross each other at angles, but for two that touch
+    /// in a joint.
     fn is_simple(&self, cell: Cell, open: &OpenSurfaces, joint: Option<Joint>) -> bool {
         if open.indices().len() > MOST {
             return false;
@@ -293,7 +296,8 @@ impl Wanted<'_> {
     }
 }
 
-/// Whether a surface leaves a cell through an edge or a face and comes back by the same, by more than `most` (in half edges).
+/// Whether a surface leaves a cell through an edge or a face and comes back by the same, by more than `most`
+/// (in half edges).
 fn bulges(f: &Quadratic, steep: f64, most: f64) -> bool {
     let ([a, b, c], [xx, yy, zz, xy, xz, yz]) = (f.gradient, f.squares);
     let square = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];

@@ -1,16 +1,18 @@
 //! Boundary evaluation: the surfaces that a solid is made of, cut to the pieces that bound it.
 //!
-//! (Requicha and Voelcker, *Boolean operations in solid modeling: boundary evaluation and merging algorithms*, 1985; Brunet and
-//! Navazo, *Solid representation and operation using extended octrees*, 1990.)
+//! (Requicha and Voelcker, *Boolean operations in solid modeling: boundary evaluation and merging
+//! algorithms*, 1985; Brunet and Navazo, *Solid representation and operation using extended octrees*, 1990.)
 //!
-//! Cells are split until the surfaces in each have a simple arrangement. Then edges of cells are crossed by surfaces where these have
-//! different signs at the ends, faces have arcs between such crossings, and cells have polygons between such arcs. All of that is
-//! decided by signs at corners of the lattice, which neighbours share, so that the result is closed. Places are found last.
+//! Cells are split until the surfaces in each have a simple arrangement. Then edges of cells are crossed by
+//! surfaces where these have different signs at the ends, faces have arcs between such crossings, and cells
+//! have polygons between such arcs. All of that is decided by signs at corners of the lattice, which
+//! neighbours share, so that the result is closed. Places are found last.
 //!
-//! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `scaled` (two functions beside each
-//! other), `redundant` (which surfaces need not be known), `joint` (which of them touch), `leaves` (the cells), `walk` (their minimal
-//! faces and edges), `edges`, `curve` (curves as chords), `faces`, `cells`, `patches` (triangles), `held` (where these stay), `mates`,
-//! `proof`, `regions` (triangles on one surface as faces).
+//! From the bottom up, each file uses only files named before it: `figures` (surfaces as functions), `scaled`
+//! (two functions beside each other), `redundant` (which surfaces need not be known), `joint` (which of them
+//! touch), `leaves` (the cells), `walk` (their minimal faces and edges), `edges`, `curve` (curves as chords),
+//! `faces`, `cells`, `patches` (triangles), `held` (where these stay), `mates`, `proof`, `regions` (triangles
+//! on one surface as faces).
 
 mod cells;
 mod curve;
@@ -68,8 +70,8 @@ pub struct BoundaryReport {
     pub cells: u64,
     /// Cells that were split.
     pub splits: u64,
-    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the mesh (model units): proven.
-    /// Infinite if nothing is known.
+    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the
+    /// mesh (model units): proven. Infinite if nothing is known.
     pub deviation: f64,
 }
 
@@ -94,7 +96,8 @@ impl Boundary {
         &self.surfaces
     }
 
-    /// The number of the surface that a triangle lies on, but for chords; `None` where the boundary is known to a cell only.
+    /// The number of the surface that a triangle lies on, but for chords; `None` where the boundary is known
+    /// to a cell only.
     pub fn surface_of(&self, triangle: usize) -> Option<u32> {
         self.of_triangles.get(triangle).copied().filter(|&surface| surface != NONE)
     }
@@ -124,8 +127,8 @@ impl Boundary {
     /// O(n log n) expected.
     ///
     /// # Errors
-    /// [`MeshError::TooMany`](crate::error::MeshError::TooMany) beyond 2^32 - 1 corners; [`Error::OutOfMemory`]; [`Error::Limit`] as
-    /// [`PlacedHalfSpace::shape`].
+    /// [`MeshError::TooMany`](crate::error::MeshError::TooMany) beyond 2^32 - 1 corners;
+    /// [`Error::OutOfMemory`]; [`Error::Limit`] as [`PlacedHalfSpace::shape`].
     pub fn faces(&self) -> Result<BoundaryFaces, Error> {
         BoundaryFaces::find(&self.mesh, &self.surfaces, &self.of_triangles)
     }
@@ -140,51 +143,59 @@ const PROOFS: usize = 6;
 /// Intersecting pairs that are looked at in one round.
 const PAIRS: usize = 4096;
 
-/// How far surfaces may rise between the sides of a cell, and chords of edges be from these, as parts of the tolerance.
+/// How far surfaces may rise between the sides of a cell, and chords of edges be from these, as parts of the
+/// tolerance.
 const CELLS: f64 = 0.8;
 const CHORDS: f64 = 0.5;
 
 /// How far the surface may move where vertices are taken out, as a part of the tolerance.
 const FEWER: f64 = 0.35;
 
-/// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies in it.
+/// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies
+/// in it.
 const SHIFTS: [f64; 3] = [0.013_371, 0.017_317, 0.011_831];
 const LARGER: f64 = 1.031_77;
 
-/// The boundary of a solid that knows its surfaces, as expressions of half-spaces do, and octrees that keep theirs
-/// ([`build_extended`](crate::build_extended)): its plane faces as they are, and curved ones in chords. The solid must end inside of the
-/// universe of `frame`. The boundary of a closed mesh whose triangles do not intersect is the mesh, [simplified](super::simplify()),
-/// without triangles inside of other bodies.
+/// The boundary of a solid that knows its surfaces, as expressions of half-spaces do, and octrees that keep
+/// theirs ([`build_extended`](crate::build_extended)): its plane faces as they are, and curved ones in
+/// chords. The solid must end inside of the universe of `frame`. The boundary of a closed mesh whose
+/// triangles do not intersect is the mesh, [simplified](super::simplify()), without triangles inside of other
+/// bodies.
 ///
-/// Vertices that are not needed within the tolerance are taken out, along edges and within the pieces of one surface, so that walls of
-/// cylinders and cones have triangles from end to end.
+/// Vertices that are not needed within the tolerance are taken out, along edges and within the pieces of one
+/// surface, so that walls of cylinders and cones have triangles from end to end.
 ///
-/// A plane face becomes triangles between its corners alone, whatever its shape, and a corner is the point in which its surfaces meet, to
-/// rounding (some 10^-15 of the coordinates). Where two plane faces meet, they have a straight edge without further vertices. Vertices on
-/// curved edges lie on both surfaces, all others on theirs. No side of a triangle is further from its surface than about `tolerance`
-/// (model units) in its middle, and no triangle in its own. So the number of triangles does not depend on cells: a box has 12, a bore
-/// some π √(2 r / `tolerance`) in a strip around.
+/// A plane face becomes triangles between its corners alone, whatever its shape, and a corner is the point in
+/// which its surfaces meet, to rounding (some 10^-15 of the coordinates). Where two plane faces meet, they
+/// have a straight edge without further vertices. Vertices on curved edges lie on both surfaces, all others
+/// on theirs. No side of a triangle is further from its surface than about `tolerance` (model units) in its
+/// middle, and no triangle in its own. So the number of triangles does not depend on cells: a box has 12, a
+/// bore some π √(2 r / `tolerance`) in a strip around.
 ///
-/// The mesh is closed, and exactly two triangles meet in each edge. Where the solid touches itself in a line or a point, vertices
-/// lie at one place. [`BoundaryReport::intersecting_pairs`] tells whether triangles intersect each other; cells are split until none do,
-/// or there are no finer ones.
+/// The mesh is closed, and exactly two triangles meet in each edge. Where the solid touches itself in a line
+/// or a point, vertices lie at one place. [`BoundaryReport::intersecting_pairs`] tells whether triangles
+/// intersect each other; cells are split until none do, or there are no finer ones.
 ///
-/// Where no triangle is left of a solid that is thinner than a finest cell, [`BoundaryReport::deviation`] is infinite, unless the solid is
-/// proven to be empty: it may be somewhere in the cells.
+/// Where no triangle is left of a solid that is thinner than a finest cell, [`BoundaryReport::deviation`] is
+/// infinite, unless the solid is proven to be empty: it may be somewhere in the cells.
 ///
-/// [`BoundaryReport::deviation`] is proven, by the surfaces and not by how the mesh was made. From the mesh to the boundary: all of a
-/// triangle comes to lie inside by one short step, and outside by another one, so that the boundary lies between. From the
-/// boundary to the mesh: the triangles of a surface, seen along its normal, cover what bounds the solid on it, up to sides of which the
-/// functions of the other surfaces tell how far it goes on. Where the proof is not within the tolerance, cells are split a few times.
-/// What is left beyond it (edges in which the solid touches itself, and finest cells) is told as it is.
+/// [`BoundaryReport::deviation`] is proven, by the surfaces and not by how the mesh was made. From the mesh
+/// to the boundary: all of a triangle comes to lie inside by one short step, and outside by another one, so
+/// that the boundary lies between. From the boundary to the mesh: the triangles of a surface, seen along its
+/// normal, cover what bounds the solid on it, up to sides of which the functions of the other surfaces tell
+/// how far it goes on. Where the proof is not within the tolerance, cells are split a few times. What is left
+/// beyond it (edges in which the solid touches itself, and finest cells) is told as it is.
 ///
-/// Cells are split until there are at most three surfaces in each that are nearly flat and cross at angles, or two that touch along a curve on a
-/// plane and go over into one another there. Where more meet in a point, and where surfaces touch otherwise, cells are split as far as the depth of the frame, and the boundary is known to a finest cell there: a depth of
-/// 12 to 16 is good for parts, and costs little, because only such places are cut that far. What is thinner than such a cell may vanish
-/// there. The lattice is not that of the frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
+/// Cells are split until there are at most three surfaces in each that are nearly flat and cross at angles,
+/// or two that touch along a curve on a plane and go over into one another there. Where more meet in a point,
+/// and where surfaces touch otherwise, cells are split as far as the depth of the frame, and the boundary is
+/// known to a finest cell there: a depth of 12 to 16 is good for parts, and costs little, because only such
+/// places are cut that far. What is thinner than such a cell may vanish there. The lattice is not that of the
+/// frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
 ///
-/// Some 50 µs a cell, most of it for the proof, which several threads share. The result depends on the solid, the frame and the tolerance
-/// alone. The memory is that of the cells and of the triangles, some 500 bytes a cell; `control.max_nodes` bounds the splits.
+/// Some 50 µs a cell, most of it for the proof, which several threads share. The result depends on the solid,
+/// the frame and the tolerance alone. The memory is that of the cells and of the triangles, some 500 bytes a
+/// cell; `control.max_nodes` bounds the splits.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, surface::boundary};
@@ -198,10 +209,11 @@ const LARGER: f64 = 1.031_77;
 /// ```
 ///
 /// # Errors
-/// [`Error::Argument`] if the solid is not known to end inside of the universe, if something else than surfaces bounds it in more than 65,536
-/// finest cells, as in an expression of meshes and half-spaces or with a host program's function (a
-/// [`contour`](crate::surface::contour()) takes any solid), or if `tolerance` is not between 2^-256 and 2^256; the solid's own;
-/// [`Error::Limit`], [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if the solid is not known to end inside of the universe, if something else than
+/// surfaces bounds it in more than 65,536 finest cells, as in an expression of meshes and half-spaces or with
+/// a host program's function (a [`contour`](crate::surface::contour()) takes any solid), or if `tolerance` is
+/// not between 2^-256 and 2^256; the solid's own; [`Error::Limit`], [`Error::OutOfMemory`], and
+/// [`Error::Cancelled`].
 pub fn boundary<S: Solid>(
     solid: &S,
     frame: &Frame,

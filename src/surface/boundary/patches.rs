@@ -28,8 +28,8 @@ struct Region {
 }
 
 impl Patches {
-    /// The triangles of curved polygons, and of those that are none. Cells are `refused` whose triangles are further from the surface
-    /// than the tolerance.
+    /// The triangles of curved polygons, and of those that are none. Cells are `refused` whose triangles are
+    /// further from the surface than the tolerance.
     pub(super) fn of_curves(
         pieces: &Pieces,
         figures: &Figures,

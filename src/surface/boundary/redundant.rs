@@ -1,18 +1,20 @@
-//! Surfaces that need not be known in a cell because others tell their sides: of three that meet in one curve, as where a chamfer ends on
-//! a round, the third; of two beside each other that are nearly parallel, as where a ball ends a round bar, that which bounds nothing.
+//! Surfaces that need not be known in a cell because others tell their sides: of three that meet in one
+//! curve, as where a chamfer ends on a round, the third; of two beside each other that are nearly parallel,
+//! as where a ball ends a round bar, that which bounds nothing.
 //!
-//! Where b = c a + l p with factors c and l that keep their signs in a cell, a point at which c a and l p have the same sign has b of that
-//! sign, too: two of the eight combinations of signs cannot be. For two quadrics that meet in a plane p, l is a linear function, for
-//! three planes through a line it is constant. Where b − c a has one sign in the cell, or everywhere, one of the surfaces lies beside the
-//! other, or touches it.
+//! Where b = c a + l p with factors c and l that keep their signs in a cell, a point at which c a and l p
+//! have the same sign has b of that sign, too: two of the eight combinations of signs cannot be. For two
+//! quadrics that meet in a plane p, l is a linear function, for three planes through a line it is constant.
+//! Where b − c a has one sign in the cell, or everywhere, one of the surfaces lies beside the other, or
+//! touches it.
 
 use super::figures::{Figures, length};
 use super::scaled::{Scaled, Terms};
 use crate::lattice::Cell;
 use crate::solid::OpenSurfaces;
 
-/// The surfaces of a cell in which one is left out may be further by no more than this from where the others have them (edges of the
-/// universe): they are told by rounded numbers.
+/// The surfaces of a cell in which one is left out may be further by no more than this from where the others
+/// have them (edges of the universe): they are told by rounded numbers.
 const SLACK: f64 = 1e-9;
 
 /// The factors of an identity are no smaller, if all functions have slope 1 at the centre.
@@ -24,8 +26,8 @@ const SINE: f64 = 0.01;
 /// The unknown factors of an identity: c, and the four terms of l.
 const UNKNOWN: usize = 5;
 
-/// The function of a cell without surfaces whose sides others tell, and by how much the boundary may be elsewhere (edges of the universe).
-/// `None` if there are none.
+/// The function of a cell without surfaces whose sides others tell, and by how much the boundary may be
+/// elsewhere (edges of the universe). `None` if there are none.
 pub(super) fn without_redundant(
     figures: &Figures,
     cell: Cell,
@@ -61,7 +63,8 @@ pub(super) fn without_redundant(
                     continue;
                 }
                 let Some((positive, off)) = identity(known, [a, b, p]) else { continue };
-                // A point whose signs cannot be is next to all three surfaces, and the curve in which they meet is next to it.
+                // A point whose signs cannot be is next to all three surfaces, and the curve in which they
+                // meet is next to it.
                 let away = 2.0 * off * half / sine;
                 if away > SLACK {
                     continue;
@@ -83,21 +86,23 @@ pub(super) fn without_redundant(
     Some((left_out(open, cannot_be)?, slack))
 }
 
-/// The combinations of signs in which surface b is on the wrong side of surface a: where one function (or its opposite, if it is turned)
-/// is positive and the other one is not, or the reverse.
+/// The combinations of signs in which surface b is on the wrong side of surface a: where one function (or its
+/// opposite, if it is turned) is positive and the other one is not, or the reverse.
 pub(super) fn never(count: usize, [a, b]: [usize; 2], is_turned: bool, is_above: bool) -> u64 {
     let is = |signs: u8, k: usize| signs >> k & 1 != 0;
     let never = |signs: &u8| (is(*signs, a) != is_turned) == is_above && is(*signs, b) != is_above;
     (0..1u8 << count).filter(never).fold(0, |all, signs| all | 1 << signs)
 }
 
-/// The function without a variable on which it depends in no combination that can be, and again. `None` if there are none.
+/// The function without a variable on which it depends in no combination that can be, and again. `None` if
+/// there are none.
 fn left_out(open: &OpenSurfaces, cannot_be: u64) -> Option<OpenSurfaces> {
     let less = without(*open, cannot_be);
     (less != *open).then(|| less.shortened())
 }
 
-/// A function that does not depend on a variable on which it depends in no combination that can be, and again.
+/// A function that does not depend on a variable on which it depends in no combination that can be, and
+/// again.
 pub(super) fn without(mut open: OpenSurfaces, cannot_be: u64) -> OpenSurfaces {
     let count = open.indices().len();
     for k in 0..count {
@@ -153,8 +158,8 @@ fn product(p: &Terms, l: &[f64; 4]) -> Terms {
     ]
 }
 
-/// Whether the factors are positive with which b = c a + l p, and how far a point may be from each of the surfaces (half edges of the cell) at
-/// which rounding makes it wrong. `None` if a factor has no sign.
+/// Whether the factors are positive with which b = c a + l p, and how far a point may be from each of the
+/// surfaces (half edges of the cell) at which rounding makes it wrong. `None` if a factor has no sign.
 fn identity(known: &[Scaled], [a, b, p]: [usize; 3]) -> Option<([bool; 2], f64)> {
     let (own, given, plane) = (&known[b], &known[a], &known[p]);
     let unit = |k: usize| product(&plane.terms, &core::array::from_fn(|i| f64::from(u8::from(i == k))));

@@ -14,15 +14,17 @@ use core::ops::Range;
 
 /// The faces of a boundary, as boundary representations have them.
 ///
-/// A *region* is what hangs together on one surface, over edges of the mesh. On a plane it is one face: an outer loop, which runs
-/// counter-clockwise as seen from outside of the solid, and a loop around each hole, which runs the other way. On a curved surface
-/// its triangles are the faces. Two faces that meet in an edge have the same vertices there, so that each edge of a loop is
-/// run through once more in the opposite direction; where two plane faces meet they have vertices in the ends of the edge alone.
+/// A *region* is what hangs together on one surface, over edges of the mesh. On a plane it is one face: an
+/// outer loop, which runs counter-clockwise as seen from outside of the solid, and a loop around each hole,
+/// which runs the other way. On a curved surface its triangles are the faces. Two faces that meet in an edge
+/// have the same vertices there, so that each edge of a loop is run through once more in the opposite
+/// direction; where two plane faces meet they have vertices in the ends of the edge alone.
 ///
-/// A plane region becomes triangles, too, if its loops touch each other along edges, as they do where the solid touches itself, or if
-/// its corners lie further beside one plane than 10^-9 of the solid's extent.
+/// A plane region becomes triangles, too, if its loops touch each other along edges, as they do where the
+/// solid touches itself, or if its corners lie further beside one plane than 10^-9 of the solid's extent.
 ///
-/// Parts of the boundary that hang together are shells. A shell around a void belongs to the smallest solid in which it lies.
+/// Parts of the boundary that hang together are shells. A shell around a void belongs to the smallest solid
+/// in which it lies.
 #[derive(Debug, Clone)]
 pub struct BoundaryFaces {
     vertices: Vec<[f64; 3]>,
@@ -38,7 +40,8 @@ pub struct BoundaryFaces {
 /// What hangs together on one surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundaryRegion {
-    /// The surface, as a number in [`Boundary::surfaces`](super::Boundary::surfaces); `None` where the boundary is known to a cell only.
+    /// The surface, as a number in [`Boundary::surfaces`](super::Boundary::surfaces); `None` where the
+    /// boundary is known to a cell only.
     pub surface: Option<u32>,
     /// Its faces.
     pub faces: Range<u32>,
@@ -46,14 +49,15 @@ pub struct BoundaryRegion {
     pub triangles: u32,
     /// The area of these triangles, in squared model units.
     pub area: f64,
-    /// Whether the surface's normal ([`SurfaceShape::normal`](crate::solid::SurfaceShape::normal)) points into the solid: that of a bore
-    /// does, which points away from its axis.
+    /// Whether the surface's normal ([`SurfaceShape::normal`](crate::solid::SurfaceShape::normal)) points
+    /// into the solid: that of a bore does, which points away from its axis.
     pub is_turned: bool,
 }
 
 impl BoundaryFaces {
     /// The faces in the arrays that [`Polyhedron`](crate::mesh::Polyhedron) is made from and
-    /// [`write_polygons`](crate::exchange::write_polygons) writes. Without a face there is no solid, which both refuse.
+    /// [`write_polygons`](crate::exchange::write_polygons) writes. Without a face there is no solid, which
+    /// both refuse.
     pub fn arrays(&self) -> PolyhedronArrays<'_> {
         PolyhedronArrays {
             vertices: &self.vertices,
@@ -288,7 +292,8 @@ impl Tracer<'_> {
         is_same.then_some(mate)
     }
 
-    /// The side of the region's boundary that follows one of them: that which is found around the vertex without leaving the region.
+    /// The side of the region's boundary that follows one of them: that which is found around the vertex
+    /// without leaving the region.
     fn next(&self, (mut triangle, mut side): (u32, usize)) -> (u32, usize) {
         side = (side + 1) % 3;
         while let Some(mate) = self.beside(triangle, side) {

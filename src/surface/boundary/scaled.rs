@@ -26,10 +26,12 @@ const SWEEPS: usize = 8;
 /// The part of a stretch at which a search for the best place divides it.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// The coefficients of a polynomial of degree two, those of mixed products twice, so that their squares add up evenly.
+/// The coefficients of a polynomial of degree two, those of mixed products twice, so that their squares add
+/// up evenly.
 pub(super) type Terms = [f64; 10];
 
-/// A function in a cell whose slope at the centre is 1. Places are measured from there in half edges of the cell.
+/// A function in a cell whose slope at the centre is 1. Places are measured from there in half edges of the
+/// cell.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Scaled {
     pub(super) terms: Terms,
@@ -43,8 +45,8 @@ pub(super) struct Scaled {
 pub(super) struct Touch {
     /// Whether their functions have opposite signs.
     pub(super) is_turned: bool,
-    /// Whether one function, less a positive multiple of the other one (with its sign turned, if that is so), is nowhere negative; else
-    /// it is nowhere positive.
+    /// Whether one function, less a positive multiple of the other one (with its sign turned, if that is so),
+    /// is nowhere negative; else it is nowhere positive.
     pub(super) is_above: bool,
     /// It may be so much on the wrong side in the cell.
     pub(super) off: f64,
@@ -80,7 +82,8 @@ impl Scaled {
         self.terms[4..].iter().map(|term| term.abs()).sum::<f64>() + self.error
     }
 
-    /// How far apart this surface and another one may be (half edges of the cell), and whether their functions have opposite signs.
+    /// How far apart this surface and another one may be (half edges of the cell), and whether their
+    /// functions have opposite signs.
     pub(super) fn apart(&self, other: &Scaled) -> (f64, bool) {
         let is_turned = dot(self.normal(), other.normal()) < 0.0;
         let sign = if is_turned { -1.0 } else { 1.0 };
@@ -88,8 +91,8 @@ impl Scaled {
         (differences.sum::<f64>() + self.error + other.error, is_turned)
     }
 
-    /// Whether this function, less a multiple of another one, has one sign in all of the cell: whether the factor is negative, and
-    /// whether the sign is positive.
+    /// Whether this function, less a multiple of another one, has one sign in all of the cell: whether the
+    /// factor is negative, and whether the sign is positive.
     pub(super) fn beside(&self, other: &Scaled) -> Option<(bool, bool)> {
         let factor = dot(self.normal(), other.normal());
         let mut rest = self.terms;
@@ -99,8 +102,9 @@ impl Scaled {
         (rest[0].abs() > away && factor != 0.0).then_some((factor < 0.0, rest[0] > 0.0))
     }
 
-    /// How this surface and another one lie if some combination of their functions, whose factors have opposite signs but for turned
-    /// functions, has one sign everywhere: as where a ball ends a round bar, or a plane face goes over into a round.
+    /// How this surface and another one lie if some combination of their functions, whose factors have
+    /// opposite signs but for turned functions, has one sign everywhere: as where a ball ends a round bar, or
+    /// a plane face goes over into a round.
     ///
     /// The least eigenvalue of own − c other is concave in c, so that the best factor is found by halving.
     pub(super) fn touches(&self, other: &Scaled) -> Option<Touch> {

@@ -1,4 +1,5 @@
-//! Triangles of polygons on curved surfaces: one corner after the other is cut off where the new side stays nearest to the surface.
+//! Triangles of polygons on curved surfaces: one corner after the other is cut off where the new side stays
+//! nearest to the surface.
 
 use super::figures::{Figures, dot, middle, minus};
 use crate::error::Error;
@@ -20,8 +21,9 @@ struct Clipper<'p> {
     cost: Vec<f64>,
 }
 
-/// Adds the triangles of a polygon on a surface that is nearly flat there. The answer is how far their sides and their middles are from
-/// the surface; infinite if the polygon overlaps itself where it is seen along the normal.
+/// Adds the triangles of a polygon on a surface that is nearly flat there. The answer is how far their sides
+/// and their middles are from the surface; infinite if the polygon overlaps itself where it is seen along the
+/// normal.
 pub(super) fn triangulate(
     figures: &Figures,
     surface: u32,

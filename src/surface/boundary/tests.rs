@@ -5,7 +5,8 @@ use super::*;
 use crate::solid::Csg;
 use alloc::vec;
 
-/// What is proven of a mesh whose triangles are said to lie on these surfaces, with cells as they are made for the solid (model units).
+/// What is proven of a mesh whose triangles are said to lie on these surfaces, with cells as they are made
+/// for the solid (model units).
 fn proven(solid: &Csg, mesh: &TriangleMesh, of_triangles: &[u32], tolerance: f64) -> f64 {
     let control = Control::threads(1);
     let job = Job::new(&control);

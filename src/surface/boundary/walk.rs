@@ -38,7 +38,8 @@ pub(super) struct Edge {
     /// The lower end, in finest cells.
     pub(super) at: [u32; 3],
     pub(super) length: u32,
-    /// The cells around it: bit 0 of their places is for the axis that comes next, bit 1 for the one after that.
+    /// The cells around it: bit 0 of their places is for the axis that comes next, bit 1 for the one after
+    /// that.
     pub(super) around: [At; 4],
 }
 

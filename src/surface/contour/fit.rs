@@ -39,8 +39,8 @@ impl Space {
     }
 }
 
-/// The vertex that is no further than `allowed` from all planes, and no further than `slack` edges out of its cell. Of several ones, that
-/// which most planes have a say in.
+/// The vertex that is no further than `allowed` from all planes, and no further than `slack` edges out of its
+/// cell. Of several ones, that which most planes have a say in.
 pub(super) fn fit(places: &[Place], space: &Space, allowed: f64, slack: f64) -> Option<Fit> {
     let mut planes = [([0.0; 3], 0.0); MOST];
     let mut count = 0;

@@ -19,7 +19,8 @@ const COARSEST: u8 = 3;
 /// How far from a vertex the planes of its cell may be, in tolerances.
 const FAR: f64 = 2.0;
 
-/// Cells of so many tolerances with one piece of the surface end whatever it looks like: a comparison with the mesh will tell.
+/// Cells of so many tolerances with one piece of the surface end whatever it looks like: a comparison with
+/// the mesh will tell.
 const SMALL: f64 = 8.0;
 
 /// How far out of its cell a vertex may lie, in edges of the cell.
@@ -28,7 +29,8 @@ const SLACK: f64 = 0.1;
 /// How many levels below a cell are looked at, where its own slab is not thin.
 const AHEAD: u8 = 3;
 
-/// Cells that are split to know where the boundary is, for each cell of the contour, and those of any contour.
+/// Cells that are split to know where the boundary is, for each cell of the contour, and those of any
+/// contour.
 const SPLITS: u64 = 16;
 const ANYWAY: u64 = 4096;
 
@@ -70,7 +72,8 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(Grower { cells, probe, tolerance, job, splits: 0, places: Vec::new() })
     }
 
-    /// Splits a leaf, if it can be split, and the new ones as far as that is needed. `parts` of the work are reported.
+    /// Splits a leaf, if it can be split, and the new ones as far as that is needed. `parts` of the work are
+    /// reported.
     pub(super) fn split(&mut self, leaf: u32, parts: usize) -> Result<bool, Error> {
         let cell = self.cells.leaves[leaf as usize].cell;
         let is_spent = self.job.control().max_splits.is_some_and(|most| self.splits >= most);
@@ -87,8 +90,9 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(true)
     }
 
-    /// Splits leaves, but for those that are split already; `count` of them are asked for, about. Where these are few beside all others, so
-    /// are their parts: one round does the work of two. Whether there was one to split.
+    /// Splits leaves, but for those that are split already; `count` of them are asked for, about. Where these
+    /// are few beside all others, so are their parts: one round does the work of two. Whether there was one
+    /// to split.
     pub(super) fn split_all(
         &mut self,
         count: usize,
@@ -145,7 +149,8 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         }
         let slab = self.slab(cell)?;
         if corners == 0 || corners == 0xFF {
-            // The surface may do no more than reach a little into it, which a comparison with the mesh will tell.
+            // The surface may do no more than reach a little into it, which a comparison with the mesh will
+            // tell.
             return Ok(cell.level > COARSEST || slab.is_some());
         }
         if !is_connected(corners) || !is_connected(!corners) {
@@ -163,7 +168,8 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(is_known || edge <= SMALL * self.tolerance)
     }
 
-    /// The two planes between which the surface in a cell lies, if it is about flat: in unit coordinates, with a normal of length 1.
+    /// The two planes between which the surface in a cell lies, if it is about flat: in unit coordinates,
+    /// with a normal of length 1.
     fn slab(&mut self, cell: Cell) -> Result<Option<Slab>, Error> {
         let Some(enclosure) = self.probe.enclosure(cell)? else { return Ok(None) };
         let mut slabs = enclosure.slabs.iter().filter(|slab| slab.normal != [0.0; 3]);
@@ -209,7 +215,8 @@ impl<'g, 'c, W: Worker> Grower<'g, 'c, W> {
         Ok(self.places.iter().all(|place| dot(place.normal, axes(|k| vertex[k] - place.at[k])).abs() <= most))
     }
 
-    /// The vertex of a cell through which one simple piece of the surface passes: by what crosses its edges, or other lines, too.
+    /// The vertex of a cell through which one simple piece of the surface passes: by what crosses its edges,
+    /// or other lines, too.
     fn fit(&mut self, cell: Cell, corners: u8, by_edges: bool) -> Result<Option<Fit>, Error> {
         let half = 1u32 << (self.cells.depth - cell.level);
         let low = cell.at.map(|c| c * 2 * half);

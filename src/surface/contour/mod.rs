@@ -1,14 +1,15 @@
 //! Contours: closed meshes of any solid, with cells of several sizes.
 //!
-//! (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002; Schaefer, Ju and Warren, *Manifold dual contouring*,
-//! 2007; Ju and Udeshi, *Intersection-free contouring on an octree grid*, 2006.)
+//! (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002; Schaefer, Ju and Warren,
+//! *Manifold dual contouring*, 2007; Ju and Udeshi, *Intersection-free contouring on an octree grid*, 2006.)
 //!
-//! Cells are split until the surface in each is one piece that a single vertex can stand for. Which pieces there are, and how they
-//! hang together, is decided by signs at corners of cells, which neighbours share: the mesh is closed and a manifold whatever they
-//! are. Places are found last.
+//! Cells are split until the surface in each is one piece that a single vertex can stand for. Which pieces
+//! there are, and how they hang together, is decided by signs at corners of cells, which neighbours share:
+//! the mesh is closed and a manifold whatever they are. Places are found last.
 //!
-//! From the bottom up, each file uses only files named before it: `cells`, `walk` (their minimal faces and edges), `sheets` (pieces of
-//! the surface), `triangles`, `probe` (what the solid is asked for), `fit` (vertices), `grow` (when cells end).
+//! From the bottom up, each file uses only files named before it: `cells`, `walk` (their minimal faces and
+//! edges), `sheets` (pieces of the surface), `triangles`, `probe` (what the solid is asked for), `fit`
+//! (vertices), `grow` (when cells end).
 
 mod cells;
 mod fit;
@@ -58,9 +59,10 @@ pub struct ContourReport {
     pub splits: u64,
     /// Points of which the solid did not tell whether they lie inside; they counted as outside.
     pub undecided: u64,
-    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the mesh (model units): proven.
-    /// Where mesh and boundary have more than 32 768 triangles together, it is known no more exactly than it takes to tell whether it is within
-    /// the tolerance. Infinite if nothing is known.
+    /// No point of the mesh is further from the solid's boundary than that, and none of the boundary from the
+    /// mesh (model units): proven. Where mesh and boundary have more than 32 768 triangles together, it is
+    /// known no more exactly than it takes to tell whether it is within the tolerance. Infinite if nothing is
+    /// known.
     pub deviation: f64,
 }
 
@@ -90,8 +92,8 @@ const PAIRS: usize = 1 << 16;
 /// How often cells are split because the mesh is proven to be too far from the boundary next to them.
 const PROOFS: usize = 16;
 
-/// How far cells may be from the surface, and the surface may move where vertices are taken out, as parts of the tolerance. (Both are
-/// rarely so at one place; where they are, vertices stay.)
+/// How far cells may be from the surface, and the surface may move where vertices are taken out, as parts of
+/// the tolerance. (Both are rarely so at one place; where they are, vertices stay.)
 const CELLS: f64 = 0.7;
 const FEWER: f64 = 0.5;
 
@@ -102,7 +104,8 @@ const PROVES: u64 = 1 << 10;
 /// Pairs that intersect are looked for once no more than one cell of so many was refused.
 const ROUGH: u64 = 64;
 
-/// Vertices are put back, and the mesh is compared again, while the triangles that are too far become fewer by a sixteenth, or are so few.
+/// Vertices are put back, and the mesh is compared again, while the triangles that are too far become fewer
+/// by a sixteenth, or are so few.
 const FEW: usize = 1 << 8;
 
 /// How well they tell it, as a part of the tolerance.
@@ -115,40 +118,47 @@ const AHEAD: u8 = 2;
 const CHUNK: usize = 64;
 const MANY: usize = 1 << 10;
 
-/// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies in it.
+/// How far the lattice is moved, as parts of the edge: so that no face of a part with round dimensions lies
+/// in it.
 const SHIFTS: [f64; 3] = [0.013_371, 0.017_317, 0.011_831];
 const LARGER: f64 = 1.031_77;
 
-/// A closed mesh of any solid, with few triangles where it is flat and small ones where it is not: of meshes, expressions with meshes in
-/// them, volumes, tri-dexel models, and a host program's functions. The solid must end inside of the universe of `frame`. (Solids that
-/// know their surfaces have [`boundary`](crate::surface::boundary), whose faces and corners are exact.)
+/// A closed mesh of any solid, with few triangles where it is flat and small ones where it is not: of meshes,
+/// expressions with meshes in them, volumes, tri-dexel models, and a host program's functions. The solid must
+/// end inside of the universe of `frame`. (Solids that know their surfaces have
+/// [`boundary`](crate::surface::boundary), whose faces and corners are exact.)
 ///
-/// Cells are split until the surface in each is one piece that a single vertex can stand for: where the planes of the surface meet, so
-/// that sharp edges and corners of flat faces are exact to rounding in such cells. Cells that are proven empty or full are never split.
-/// Slabs of the solid in a cell and in the cells below it tell whether a vertex will do, and lines through the cell do where there are
-/// none. Where the solid tells nearest points, as meshes do, the mesh is compared with it at many points, and cells are split where the
-/// two are further from each other than seven tenths of `tolerance` (model units), as far as the depth of the frame. At last vertices are taken out as
-/// [`simplify`](super::simplify()) does it, where the mesh stays within `tolerance`: a plane face has few triangles, however many cells it has.
+/// Cells are split until the surface in each is one piece that a single vertex can stand for: where the
+/// planes of the surface meet, so that sharp edges and corners of flat faces are exact to rounding in such
+/// cells. Cells that are proven empty or full are never split. Slabs of the solid in a cell and in the cells
+/// below it tell whether a vertex will do, and lines through the cell do where there are none. Where the
+/// solid tells nearest points, as meshes do, the mesh is compared with it at many points, and cells are split
+/// where the two are further from each other than seven tenths of `tolerance` (model units), as far as the
+/// depth of the frame. At last vertices are taken out as [`simplify`](super::simplify()) does it, where the
+/// mesh stays within `tolerance`: a plane face has few triangles, however many cells it has.
 ///
-/// [`ContourReport::deviation`] is proven, as [`deviation`](crate::deviation) proves it: for closed meshes by their triangles, and for
-/// anything else by slabs of cells, of which up to sixteen are split for each cell of the contour. Where a point of the mesh or of the boundary
-/// is proven to be further from the other than seven tenths of `tolerance`, cells are split, too. What is left beyond it is told as it is: where cells of the
-/// frame's depth are too coarse, and where slabs are. A solid without any is known to about the size of these cells, and of an octree
-/// that proves nothing of its solid nothing is known.
+/// [`ContourReport::deviation`] is proven, as [`deviation`](crate::deviation) proves it: for closed meshes by
+/// their triangles, and for anything else by slabs of cells, of which up to sixteen are split for each cell
+/// of the contour. Where a point of the mesh or of the boundary is proven to be further from the other than
+/// seven tenths of `tolerance`, cells are split, too. What is left beyond it is told as it is: where cells of
+/// the frame's depth are too coarse, and where slabs are. A solid without any is known to about the size of
+/// these cells, and of an octree that proves nothing of its solid nothing is known.
 ///
-/// The mesh is closed, exactly two triangles meet in each edge, and the triangles around each vertex are one fan, whatever the solid is.
-/// It is decided by signs at corners of cells, and of a solid thinner than a finest cell nothing may be left. Triangles may intersect each
-/// other where sheets of the surface come close; cells are split until none do, or there are no finer ones, and
-/// [`ContourReport::intersecting_pairs`] counts what is left. Points of which the solid does not tell on which side they lie, as such in
-/// PARTIAL cells of a stored octree, count as outside. The lattice is not that of the frame but lies a little beside it, so that
-/// faces may lie in planes of the frame's lattice.
+/// The mesh is closed, exactly two triangles meet in each edge, and the triangles around each vertex are one
+/// fan, whatever the solid is. It is decided by signs at corners of cells, and of a solid thinner than a
+/// finest cell nothing may be left. Triangles may intersect each other where sheets of the surface come
+/// close; cells are split until none do, or there are no finer ones, and
+/// [`ContourReport::intersecting_pairs`] counts what is left. Points of which the solid does not tell on
+/// which side they lie, as such in PARTIAL cells of a stored octree, count as outside. The lattice is not
+/// that of the frame but lies a little beside it, so that faces may lie in planes of the frame's lattice.
 ///
-/// Some 100 µs a cell of a mesh, and more for solids that answer no rays; threads share what is compared with the solid, and the proof. The result depends on the solid, the
-/// frame and the tolerance alone. The memory is that of the cells and of the triangles. `control.max_nodes` bounds the splits; with
+/// Some 100 µs a cell of a mesh, and more for solids that answer no rays; threads share what is compared with
+/// the solid, and the proof. The result depends on the solid, the frame and the tolerance alone. The memory
+/// is that of the cells and of the triangles. `control.max_nodes` bounds the splits; with
 /// `control.max_splits` spent cells stay as they are, and the mesh is coarser.
 ///
-/// (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002; Schaefer, Ju and Warren, *Manifold dual contouring*,
-/// 2007.)
+/// (Ju, Losasso, Schaefer and Warren, *Dual contouring of Hermite data*, 2002; Schaefer, Ju and Warren,
+/// *Manifold dual contouring*, 2007.)
 ///
 /// ```
 /// use leafless::{Control, FillRule, Frame, MeshSolid, TriangleMesh, surface::contour};
@@ -162,8 +172,8 @@ const LARGER: f64 = 1.031_77;
 /// ```
 ///
 /// # Errors
-/// [`Error::Argument`] if the solid is not known to end inside of the universe, or `tolerance` is not between 2^-256 and 2^256; the
-/// solid's own; [`Error::Limit`], [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if the solid is not known to end inside of the universe, or `tolerance` is not between
+/// 2^-256 and 2^256; the solid's own; [`Error::Limit`], [`Error::OutOfMemory`], and [`Error::Cancelled`].
 pub fn contour<S: Solid>(
     solid: &S,
     frame: &Frame,
@@ -181,7 +191,8 @@ pub fn contour<S: Solid>(
     let found = match solid.home() {
         None => wanted.find(solid.on(&lattice, &quiet)?, &job)?,
         Some(home) => {
-            // A stored octree is known on its own lattice alone, and says nothing of what is smaller than half of its cells.
+            // A stored octree is known on its own lattice alone, and says nothing of what is smaller than
+            // half of its cells.
             let is_finer = |depth: &u8| edge / f64::from(1u32 << depth) < 0.5 * home.cell_size();
             wanted.depth -= (2..=frame.depth()).filter(is_finer).count() as u8;
             let moved = Transform::new(solid, &home, &Affine::IDENTITY);
@@ -268,8 +279,8 @@ impl Wanted<'_> {
         Ok(Contour { mesh, report })
     }
 
-    /// A mesh with fewer triangles, how many pairs of these intersect, and how far it is from the boundary of a solid in a universe with such
-    /// an edge.
+    /// A mesh with fewer triangles, how many pairs of these intersect, and how far it is from the boundary of
+    /// a solid in a universe with such an edge.
     fn reduced(
         &self,
         mesh: &TriangleMesh,
@@ -351,7 +362,8 @@ impl Compared<'_> {
         self.sheets.crossings[self.made.crossings[triangle as usize] as usize].around
     }
 
-    /// The leaves next to which the mesh is too far from the surface. `known` are points of meshes that are near to it.
+    /// The leaves next to which the mesh is too far from the surface. `known` are points of meshes that are
+    /// near to it.
     fn refused<C: Classifier>(
         &self,
         classifier: &C,
@@ -443,7 +455,8 @@ impl Compared<'_> {
         Ok(leaves)
     }
 
-    /// Points of a triangle that are compared with the surface: its middle, and those of sides that run this way.
+    /// Points of a triangle that are compared with the surface: its middle, and those of sides that run this
+    /// way.
     fn points(&self, triangle: u32) -> impl Iterator<Item = [f64; 3]> {
         let own = self.made.triangles[triangle as usize];
         let [a, b, c] = own.map(|vertex| self.made.vertices[vertex as usize]);

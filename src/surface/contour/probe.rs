@@ -19,7 +19,8 @@ const HALVINGS: usize = 40;
 /// How much finer than an edge the cells are whose slabs tell the normal there.
 const FINER: u8 = 10;
 
-/// How far beside a crossing others are looked for, as a part of its edge, where nothing else tells the normal.
+/// How far beside a crossing others are looked for, as a part of its edge, where nothing else tells the
+/// normal.
 const BESIDE: f64 = 1.0 / 64.0;
 
 /// An edge that is crossed: its axis, its lower end, its length, and whether it starts inside.
@@ -116,7 +117,8 @@ impl<'c, W: Worker> Probe<'c, W> {
         Ok(found.map(|found| axes(|k| (found.point[k] - frame.origin()[k]) / frame.edge())))
     }
 
-    /// Adds points of the surface in a cell: for each small cell in it that is not decided the nearest one, if that is known.
+    /// Adds points of the surface in a cell: for each small cell in it that is not decided the nearest one,
+    /// if that is known.
     pub(super) fn samples(&mut self, cell: Cell, ahead: u8, found: &mut Vec<[f64; 3]>) -> Result<(), Error> {
         if ahead > 0
             && cell.level < MAX_DEPTH
@@ -175,8 +177,8 @@ impl<'c, W: Worker> Probe<'c, W> {
         Cell { level, at: unit.map(|c| (c * cells).clamp(0.0, cells - 1.0) as u32) }
     }
 
-    /// Adds the crossings of the surface on a line along an axis between two lattice points, which are told in halves of finest cells; if
-    /// the solid answers no rays, at most one in each half of it.
+    /// Adds the crossings of the surface on a line along an axis between two lattice points, which are told
+    /// in halves of finest cells; if the solid answers no rays, at most one in each half of it.
     pub(super) fn line(
         &mut self,
         axis: usize,

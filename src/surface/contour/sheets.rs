@@ -1,9 +1,10 @@
 //! Which pieces of the surface there are in each cell.
 //!
-//! Corners of cells lie inside or outside. Minimal edges between an inside corner and an outside one are crossed by the surface.
-//! In a minimal face crossings are joined in pairs by arcs, which both cells beside the face see. Arcs form loops around cells,
-//! and each loop bounds one sheet, a disc. So crossings, arcs and sheets form a closed surface, whatever the signs are: each arc
-//! lies between two sheets, and around each crossing there are three or four sheets.
+//! Corners of cells lie inside or outside. Minimal edges between an inside corner and an outside one are
+//! crossed by the surface. In a minimal face crossings are joined in pairs by arcs, which both cells beside
+//! the face see. Arcs form loops around cells, and each loop bounds one sheet, a disc. So crossings, arcs and
+//! sheets form a closed surface, whatever the signs are: each arc lies between two sheets, and around each
+//! crossing there are three or four sheets.
 
 use super::cells::{Cells, Kind, OUTSIDE};
 use super::walk::{Edge, Face, Visitor, walk};
@@ -85,7 +86,8 @@ const FULL: u8 = 2;
 const ASKED: u8 = 4;
 const INSIDE: u8 = 8;
 
-/// Whether there is nothing but empty cells around an edge: both its ends lie outside. Whoever else meets such an end says so, too.
+/// Whether there is nothing but empty cells around an edge: both its ends lie outside. Whoever else meets
+/// such an end says so, too.
 fn is_empty(cells: &Cells, edge: &Edge) -> bool {
     let mut around = edge.around.iter().map(|&leaf| cells.leaves.get(leaf as usize));
     around.all(|leaf| leaf.is_none_or(|leaf| leaf.kind == Kind::Empty))
@@ -227,7 +229,8 @@ impl<I: Inside> Visitor for Joined<'_, I> {
         centre[u] += length;
         centre[v] += length;
         let is_whole = count > 2 && self.inside.is_inside(centre)?;
-        // An arc cuts off the corners between a crossing and the next one that lie inside; or those that lie outside.
+        // An arc cuts off the corners between a crossing and the next one that lie inside; or those that lie
+        // outside.
         let first = usize::from(self.ring[0].1 != is_whole);
         for k in (first..count + first).step_by(2) {
             let crossings = [self.ring[k % count].0, self.ring[(k + 1) % count].0];

@@ -1,10 +1,12 @@
 //! Triangles between the vertices of sheets.
 //!
-//! Each crossing has a polygon through the sheets around it. Polygons are the dual of the surface that sheets form, which is closed;
-//! so their triangles are, too. Three cases would give an edge more than two triangles, and get further vertices:
+//! Each crossing has a polygon through the sheets around it. Polygons are the dual of the surface that sheets
+//! form, which is closed; so their triangles are, too. Three cases would give an edge more than two
+//! triangles, and get further vertices:
 //!
 //! * Where several arcs lie between the same two sheets, each of them gets a vertex.
-//! * A polygon with such a vertex, and one of which both diagonals are edges already, gets a vertex in its crossing.
+//! * A polygon with such a vertex, and one of which both diagonals are edges already, gets a vertex in its
+//!   crossing.
 //! * So does a triangle of three sheets of two crossings each, whose other side is a triangle, too.
 
 use super::sheets::{NONE, Sheets};
@@ -102,7 +104,8 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// A point for the middle of an arc: where its planes meet in the face, if that lies about there, else half-way.
+    /// A point for the middle of an arc: where its planes meet in the face, if that lies about there, else
+    /// half-way.
     fn on_face(&self, number: u32) -> [f64; 3] {
         let arc = &self.sheets.arcs[number as usize];
         let axis = usize::from(arc.axis);
@@ -178,8 +181,8 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// Which diagonal a quadrilateral gets: that from its first corner (`true`) or the other one. Nothing if neither may be, or both would
-    /// make it fold.
+    /// Which diagonal a quadrilateral gets: that from its first corner (`true`) or the other one. Nothing if
+    /// neither may be, or both would make it fold.
     fn diagonal(&self, number: u32, ring: [u32; 4]) -> Option<bool> {
         let Place { at, normal } = self.places[number as usize];
         let [a, b, c, d] = ring.map(|sheet| self.made.vertices[sheet as usize]);

@@ -49,7 +49,8 @@ pub(super) struct Edge {
     /// The lower end, in finest cells.
     pub(super) at: [u32; 3],
     pub(super) length: u32,
-    /// The leaves around it, counter-clockwise seen from above: low on both other axes first, then high on the axis that comes next.
+    /// The leaves around it, counter-clockwise seen from above: low on both other axes first, then high on
+    /// the axis that comes next.
     pub(super) around: [u32; 4],
 }
 
@@ -86,7 +87,8 @@ struct Walker<'w, V> {
 }
 
 impl<V: Visitor> Walker<'_, V> {
-    /// The child at a place on three axes, the first of which is `axis`. A cell that is not split stands for its children.
+    /// The child at a place on three axes, the first of which is `axis`. A cell that is not split stands for
+    /// its children.
     fn child(&self, at: At, axis: usize, [a, u, v]: [usize; 3]) -> At {
         let Slot::Branch(node) = at.slot else { return at };
         let octant = a << axis | u << ((axis + 1) % 3) | v << ((axis + 2) % 3);

@@ -13,10 +13,12 @@ use core::cmp::Reverse;
 /// Vertices with more triangles stay.
 const MOST: usize = 96;
 
-/// What the length of a side counts beside how far the surface moves: of vertices that are as good, those go first that lie close together.
+/// What the length of a side counts beside how far the surface moves: of vertices that are as good, those go
+/// first that lie close together.
 const LENGTH: f64 = 1e-3;
 
-/// Sums of steps that are no greater part of the tolerance are as good as what points of the first surface tell.
+/// Sums of steps that are no greater part of the tolerance are as good as what points of the first surface
+/// tell.
 const SURE: f64 = 0.125;
 
 /// Of more points over one triangle every other one is forgotten.
@@ -241,7 +243,8 @@ struct Marks {
 }
 
 impl Marks {
-    /// Whether the surface hangs together as before if the middle of the ring goes to one of it: no new side may be there already.
+    /// Whether the surface hangs together as before if the middle of the ring goes to one of it: no new side
+    /// may be there already.
     fn may_go(&mut self, links: &Links, ring: &Ring, onto: usize) -> bool {
         let vertices = &ring.vertices;
         let count = vertices.len();

@@ -17,8 +17,8 @@ pub(super) struct Links {
     /// The first corner of each vertex, and the one behind each corner.
     heads: Vec<u32>,
     next: Vec<u32>,
-    /// The first of the points that are gone and lay over a triangle, and the one behind each of these. (Of vertices, and of the middles
-    /// of sides.)
+    /// The first of the points that are gone and lay over a triangle, and the one behind each of these. (Of
+    /// vertices, and of the middles of sides.)
     first_gone: Vec<u32>,
     next_gone: Vec<u32>,
 }
@@ -147,7 +147,8 @@ impl Links {
     pub(super) fn collapse(&mut self, ring: &Ring, onto: usize) {
         let count = ring.vertices.len();
         let target = ring.vertices[onto];
-        // The sides that the target has in common with the triangles that stay: they take the places of sides that vanish.
+        // The sides that the target has in common with the triangles that stay: they take the places of sides
+        // that vanish.
         let before = (onto + count - 1) % count;
         let [first, last] = [ring.corners[onto], ring.corners[before]];
         let is_sharp = [self.is_opposite_sharp(first), self.is_opposite_sharp(last)];
@@ -161,7 +162,8 @@ impl Links {
             self.triangles[triangle][k] = target;
             self.next[corner as usize] = self.heads[target as usize];
             self.heads[target as usize] = corner;
-            // The triangle behind the first that vanishes begins where that one ended, and the one before the last ends where it began.
+            // The triangle behind the first that vanishes begins where that one ended, and the one before the
+            // last ends where it began.
             if place == (onto + 1) % count {
                 self.set_sharp(triangle, k, is_sharp[0]);
             }

@@ -1,10 +1,10 @@
 //! Meshes with fewer triangles, and a proof of how far they are from those that they were made of.
 //!
-//! (Guéziec, *Locally toleranced surface simplification*, 1999; Borouchaki and Frey, *Simplification of surface mesh using Hausdorff
-//! envelope*, 2005.)
+//! (Guéziec, *Locally toleranced surface simplification*, 1999; Borouchaki and Frey, *Simplification of
+//! surface mesh using Hausdorff envelope*, 2005.)
 //!
-//! From the bottom up, each file uses only files named before it: `links` (triangles around vertices), `sharp` (edges of the shape),
-//! `patch` (how far the surface moves), `collapse` (which vertices go).
+//! From the bottom up, each file uses only files named before it: `links` (triangles around vertices),
+//! `sharp` (edges of the shape), `patch` (how far the surface moves), `collapse` (which vertices go).
 
 mod collapse;
 mod links;
@@ -59,31 +59,34 @@ impl Simplified {
 /// Intersecting pairs that are looked at in one round.
 const PAIRS: usize = 1 << 16;
 
-/// How much less the surface may move where it went too far, and the least part of the tolerance before it stays where it is.
+/// How much less the surface may move where it went too far, and the least part of the tolerance before it
+/// stays where it is.
 const HOLD: f64 = 0.5;
 const LEAST: f64 = 0.1;
 
-/// The same mesh with fewer triangles, no point of which is further than `tolerance` (model units) from the mesh, and none of the mesh
-/// further from it.
+/// The same mesh with fewer triangles, no point of which is further than `tolerance` (model units) from the
+/// mesh, and none of the mesh further from it.
 ///
-/// Vertices are taken out, and none is moved: those first without which the surface moves least. Edges between triangles whose normals
-/// differ by more than 30 degrees stay edges, and so do those between triangles that bear different values: along an edge vertices go
-/// as far as the tolerance allows, and corners stay. So a plane face becomes triangles between its corners, whatever it was made
-/// of, with the rounding of the mesh for a tolerance.
+/// Vertices are taken out, and none is moved: those first without which the surface moves least. Edges
+/// between triangles whose normals differ by more than 30 degrees stay edges, and so do those between
+/// triangles that bear different values: along an edge vertices go as far as the tolerance allows, and
+/// corners stay. So a plane face becomes triangles between its corners, whatever it was made of, with the
+/// rounding of the mesh for a tolerance.
 ///
-/// The triangles hang together as before: a mesh that is closed and a manifold stays so, with as many bodies and holes. Vertices on open
-/// edges, and those where more than two triangles meet in an edge, stay. No triangles intersect each other that did not before. The
-/// result bears the values of triangles that are left ([`AttributeDomain::Triangle`]), and none of corners. Its
-/// [deviation](TriangleMesh::deviation) is that of the mesh with what is proven here.
+/// The triangles hang together as before: a mesh that is closed and a manifold stays so, with as many bodies
+/// and holes. Vertices on open edges, and those where more than two triangles meet in an edge, stay. No
+/// triangles intersect each other that did not before. The result bears the values of triangles that are left
+/// ([`AttributeDomain::Triangle`]), and none of corners. Its [deviation](TriangleMesh::deviation) is that of
+/// the mesh with what is proven here.
 ///
-/// The deviation is proven in both directions by the triangles of both meshes, and not by how vertices were chosen. Where it is too
-/// large, less is taken out the next time.
+/// The deviation is proven in both directions by the triangles of both meshes, and not by how vertices were
+/// chosen. Where it is too large, less is taken out the next time.
 ///
-/// O(n log n) for n triangles whose vertices have few: some 20 µs a triangle, and some 300 bytes. One thread takes vertices out, and
-/// all prove. The result is the same for any number of them.
+/// O(n log n) for n triangles whose vertices have few: some 20 µs a triangle, and some 300 bytes. One thread
+/// takes vertices out, and all prove. The result is the same for any number of them.
 ///
-/// (Guéziec, *Locally toleranced surface simplification*, 1999; Borouchaki and Frey, *Simplification of surface mesh using Hausdorff
-/// envelope*, 2005.)
+/// (Guéziec, *Locally toleranced surface simplification*, 1999; Borouchaki and Frey, *Simplification of
+/// surface mesh using Hausdorff envelope*, 2005.)
 ///
 /// ```
 /// use leafless::{Control, TriangleMesh, surface::simplify};
@@ -99,7 +102,8 @@ const LEAST: f64 = 0.1;
 /// ```
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is not between 2^-256 and 2^256; [`Error::OutOfMemory`], and [`Error::Cancelled`].
+/// [`Error::Argument`] if `tolerance` is not between 2^-256 and 2^256; [`Error::OutOfMemory`], and
+/// [`Error::Cancelled`].
 pub fn simplify(mesh: &TriangleMesh, tolerance: f64, control: &Control<'_>) -> Result<Simplified, Error> {
     valid::length("tolerance", tolerance)?;
     let job = Job::new(control);
@@ -171,7 +175,8 @@ impl<'r> Reduction<'r> {
         }
     }
 
-    /// The mesh with fewer triangles, which of them are left, and how many pairs of these intersect. Progress advances by `parts`.
+    /// The mesh with fewer triangles, which of them are left, and how many pairs of these intersect. Progress
+    /// advances by `parts`.
     pub(super) fn run(
         &mut self,
         job: &Job<'_>,
@@ -202,8 +207,8 @@ impl<'r> Reduction<'r> {
         self.change(triangles, |limit| if limit > least { HOLD * limit } else { 0.0 })
     }
 
-    /// Changes the limits of vertices that are gone and lay over some triangles, or else of all that went to their corners; `false` if
-    /// there are none.
+    /// Changes the limits of vertices that are gone and lay over some triangles, or else of all that went to
+    /// their corners; `false` if there are none.
     fn change(
         &mut self,
         triangles: impl Iterator<Item = u32>,

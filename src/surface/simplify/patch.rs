@@ -1,8 +1,9 @@
 //! The triangles around a vertex as a map of heights, and what it would be without the vertex.
 //!
-//! Seen along one direction in which no triangle turns away, the triangles around a vertex and those that take their place lie one above
-//! the other. The difference of their heights is linear wherever both are, and hence greatest at a corner of one of them or where sides
-//! cross. (Borouchaki and Frey, *Simplification of surface mesh using Hausdorff envelope*, 2005, bound the same distance by cones.)
+//! Seen along one direction in which no triangle turns away, the triangles around a vertex and those that
+//! take their place lie one above the other. The difference of their heights is linear wherever both are, and
+//! hence greatest at a corner of one of them or where sides cross. (Borouchaki and Frey, *Simplification of
+//! surface mesh using Hausdorff envelope*, 2005, bound the same distance by cones.)
 
 use crate::error::Error;
 use crate::lattice::axes;
@@ -26,7 +27,8 @@ pub(super) struct Patch {
     heights: Vec<f64>,
     /// The least and the greatest height, with that of the vertex.
     span: [f64; 2],
-    /// Points of the first surface that belong here, the vertex among them: where they are seen, and their heights.
+    /// Points of the first surface that belong here, the vertex among them: where they are seen, and their
+    /// heights.
     points: Vec<([f64; 2], f64)>,
     /// The axes of the view: two across and the direction.
     view: [[f64; 3]; 3],
@@ -151,7 +153,8 @@ impl Patch {
         if self.flat.len() > LARGE { most } else { self.difference(onto).min(most) }
     }
 
-    /// In which triangle each point is seen then, as the number of its first vertex in the ring, and how far below or above.
+    /// In which triangle each point is seen then, as the number of its first vertex in the ring, and how far
+    /// below or above.
     pub(super) fn places(&self, onto: usize) -> impl Iterator<Item = (usize, f64)> {
         let (flat, heights) = (&self.flat, &self.heights);
         let count = flat.len();

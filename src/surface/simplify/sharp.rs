@@ -6,7 +6,8 @@ use crate::lattice::axes;
 use crate::memory;
 use crate::mesh::MeshAttribute;
 
-/// The cosine of the greatest angle between the normals of two triangles whose common side is no edge: 30 degrees.
+/// The cosine of the greatest angle between the normals of two triangles whose common side is no edge: 30
+/// degrees.
 const SMOOTH: f64 = 0.866;
 
 /// What tells edges of the shape.

@@ -243,8 +243,8 @@ fn laws_of_sets() {
         let mut same = |law: &str, a: Octree, b: Octree| {
             if !gave_up(&a) && !gave_up(&b) {
                 let odd = xor(a.view(), b.view(), &alone()).unwrap();
-                // Cells may be left in which the functions differ for combinations of signs that do not occur there, which shows in
-                // smaller ones.
+                // Cells may be left in which the functions differ for combinations of signs that do not occur
+                // there, which shows in smaller ones.
                 let control = Control { max_splits: Some(4000), ..alone() };
                 let volume = measure(&odd, &frame, 0.0, &control).map(|m| m.volume);
                 let size = frame.edge().powi(3);
@@ -362,7 +362,8 @@ fn cut_block() -> (Frame, Vec<Octree>) {
     (frame, [block].into_iter().chain(balls).chain(others).collect())
 }
 
-/// Limits and a cancel end the work with an error, at any point, and what is made afterwards is the same as before.
+/// Limits and a cancel end the work with an error, at any point, and what is made afterwards is the same as
+/// before.
 #[test]
 fn limits_and_cancels_are_errors() {
     use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -401,8 +402,8 @@ fn limits_and_cancels_are_errors() {
         assert!(ended > 3, "{ended}");
         assert_eq!(difference_of(&views, &Control::threads(threads)).unwrap(), whole);
     }
-    // Surfaces that nearly coincide, of which bounds tell no more, and that cross more than three at a time all along a curve, are no
-    // way around the limit.
+    // Surfaces that nearly coincide, of which bounds tell no more, and that cross more than three at a time
+    // all along a curve, are no way around the limit.
     let frame = Frame::new([-1.0; 3], 2.0, 20).unwrap();
     let lens = |off: f64| {
         let [one, other] = [-0.3, 0.3].map(|x| {
@@ -513,7 +514,8 @@ fn nothing_drops_surfaces_in_silence() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Slabs are one only where they have the same origin: what lies in the width of two is not known to be the same.
+/// Slabs are one only where they have the same origin: what lies in the width of two is not known to be the
+/// same.
 #[test]
 fn meshes_that_differ_within_a_slab() {
     let frame = Frame::new([-1.013, -1.017, -1.009], 2.0, 7).unwrap();

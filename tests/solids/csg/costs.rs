@@ -127,7 +127,8 @@ fn published_cone() {
 
 #[test]
 fn published_hyperboloid() {
-    // Of the printed lower bounds and counts of levels 3 to 5 those are exact arithmetic's; see `printed_hyperboloid`.
+    // Of the printed lower bounds and counts of levels 3 to 5 those are exact arithmetic's; see
+    // `printed_hyperboloid`.
     let lower = [229376.0, 385024.0, 479232.0, 529984.0];
     let rows = |nodes: [u64; 4], upper: [f64; 4]| [0, 1, 2, 3].map(|i| (nodes[i], lower[i], upper[i]));
     let printed_upper = [1048576.0, 819200.0, 696832.0, 638336.0];
@@ -199,11 +200,11 @@ fn solids_within_each_other_have_an_end() {
     assert_eq!((csg.nesting(), volume(&csg).unwrap()), (1, Interval::exactly(1.0)));
 }
 
-/// Why the source prints other lower bounds, and 1129 and 4577 nodes: vertices that lie in the surface, as those with
-/// y - 64 = ±40 and at 40 from the axis, lie outside once 0.64 is rounded to single precision, which is less. The printed
-/// lower bounds are the ones that follow. The printed upper bounds are those of exact arithmetic, where these vertices are
-/// inside: the source's test seems strict in one direction. The printed counts are those of the cells that lie
-/// between the printed bounds.
+/// Why the source prints other lower bounds, and 1129 and 4577 nodes: vertices that lie in the surface, as
+/// those with y - 64 = ±40 and at 40 from the axis, lie outside once 0.64 is rounded to single precision,
+/// which is less. The printed lower bounds are the ones that follow. The printed upper bounds are those of
+/// exact arithmetic, where these vertices are inside: the source's test seems strict in one direction. The
+/// printed counts are those of the cells that lie between the printed bounds.
 #[test]
 fn printed_hyperboloid() {
     let k = f64::from(0.64f32);

@@ -35,7 +35,8 @@ pub(super) fn sign(model: &Model, p: [f64; 3]) -> i32 {
     model.sign(&[x, y, z, Exact::from(1.0)])
 }
 
-/// Points anywhere, and ever closer to the surface between two that are on different sides of it; with their sides.
+/// Points anywhere, and ever closer to the surface between two that are on different sides of it; with their
+/// sides.
 pub(super) fn points(
     model: &Model,
     frame: &Frame,
@@ -88,7 +89,8 @@ pub(super) fn is_given_up(tree: &Octree, p: [f64; 3]) -> bool {
     matches!(verdict, Verdict::Undecided)
 }
 
-/// Random points in `models` random models each, made by `make`: what was found out of points in the universe.
+/// Random points in `models` random models each, made by `make`: what was found out of points in the
+/// universe.
 fn no_lies(models: u64, count: usize, make: impl Fn(&mut Maker<'_>) -> Model) {
     let (mut decided, mut undecided, mut made, mut kept, mut given_up) = (0u64, 0u64, 0, 0, 0);
     let (mut compared, mut ratios) = (0, 0.0);
@@ -118,7 +120,8 @@ fn no_lies(models: u64, count: usize, make: impl Fn(&mut Maker<'_>) -> Model) {
             judge.ask(count as u64 / 4, &mut random);
             found = judge.found;
         }
-        // Cells are decided by the same surfaces; groups of an expression may decide some by the boxes around them.
+        // Cells are decided by the same surfaces; groups of an expression may decide some by the boxes around
+        // them.
         let width = |tree: &Octree| tree.statistics().volume().width();
         if cuts.given_up == 0 && width(&direct) > 0.0 {
             (compared, ratios) = (compared + 1, ratios + width(&plain) / width(&direct));
@@ -218,8 +221,8 @@ fn a_plate_with_twenty_bores_is_small_and_sharp() {
     }
 }
 
-/// A tree is split on a finer frame by signs that are exact there: a plane whose values are doubles on the tree's lattice, and
-/// which misses a vertex of the finest one by 2^-64.
+/// A tree is split on a finer frame by signs that are exact there: a plane whose values are doubles on the
+/// tree's lattice, and which misses a vertex of the finest one by 2^-64.
 #[test]
 fn signs_are_exact_below_the_depth_of_a_tree() {
     const BITS: u32 = 44;
@@ -332,7 +335,8 @@ fn equal_surfaces_are_one() {
     assert!(tree.statistics().nodes() == 0 && tree.view().root_tag() == Tag::Empty);
 }
 
-/// An extended tree within an expression hands on its surfaces: the tree of that is as sharp as if it were made at once.
+/// An extended tree within an expression hands on its surfaces: the tree of that is as sharp as if it were
+/// made at once.
 #[test]
 fn trees_of_trees() {
     let frame = Frame::new([-1.0; 3], 2.0, 12).unwrap();

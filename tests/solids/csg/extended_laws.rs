@@ -39,8 +39,8 @@ fn depth(p: [f64; 3], [min, max]: [[f64; 3]; 2]) -> f64 {
     (0..3).map(|axis| (p[axis] - min[axis]).min(max[axis] - p[axis])).fold(f64::INFINITY, f64::min)
 }
 
-/// A rib, a groove and a tip that are thinner than the tolerance: slabs on both sides of a cell overlap, and no point is told wrong.
-/// Further than twice the tolerance from the faces all points are told.
+/// A rib, a groove and a tip that are thinner than the tolerance: slabs on both sides of a cell overlap, and
+/// no point is told wrong. Further than twice the tolerance from the faces all points are told.
 #[test]
 fn what_is_thinner_than_the_tolerance_does_not_vanish() {
     let block = [[0.0; 3], [1.0, 1.0, 0.5]];
@@ -145,7 +145,8 @@ fn any_number_of_threads_makes_the_same_tree() {
     assert!(cells > 20, "{cells}");
 }
 
-/// Limits and a cancel end the work with an error, at any point, and what is built afterwards is the same as before.
+/// Limits and a cancel end the work with an error, at any point, and what is built afterwards is the same as
+/// before.
 #[test]
 fn limits_and_cancels_are_errors() {
     let part = {
@@ -187,8 +188,8 @@ fn limits_and_cancels_are_errors() {
     }
 }
 
-/// Of a solid: whether it has a list of surfaces, and whether open cells, on ways down, told surfaces, an enclosure, moments, and
-/// an area.
+/// Of a solid: whether it has a list of surfaces, and whether open cells, on ways down, told surfaces, an
+/// enclosure, moments, and an area.
 #[derive(Debug, Default, PartialEq)]
 struct Told {
     list: bool,

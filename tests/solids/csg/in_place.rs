@@ -1,4 +1,5 @@
-//! Cuts that are asked where they lie, without a worker: against exact arithmetic, and against the tree as a solid.
+//! Cuts that are asked where they lie, without a worker: against exact arithmetic, and against the tree as a
+//! solid.
 
 use super::model::{Model, Point};
 use super::oracle::frames;
@@ -40,7 +41,8 @@ fn make(maker: &mut Maker<'_>) -> Model {
     }
 }
 
-/// A point anywhere in the universe, or near the surface: between an inner and an outer point that halving has brought together.
+/// A point anywhere in the universe, or near the surface: between an inner and an outer point that halving
+/// has brought together.
 fn point(model: &Model, frame: &Frame, random: &mut Random) -> [f64; 3] {
     let mut any = || frame.origin().map(|origin| origin + frame.edge() * random.unit());
     let (mut a, mut b) = (any(), any());
@@ -110,7 +112,8 @@ fn rays_in_place_do_not_lie() {
             tree.cast_rays(&[ray], Obstacle::Upper, &mut all).unwrap();
             assert_eq!(all, [hit]);
             let spans = tree.ray_spans(&ray).unwrap();
-            // Before the first place that may be solid nothing is, and in spans that are proven everything is.
+            // Before the first place that may be solid nothing is, and in spans that are proven everything
+            // is.
             let is_in_universe = |t: f64| {
                 (0..3).all(|axis| {
                     let c = from[axis] + t * direction[axis] - frame.origin()[axis];
@@ -135,7 +138,8 @@ fn rays_in_place_do_not_lie() {
                 assert!(!is_inner || sign >= 0, "{t} of {ray:?}: {spans:?}\n{frame:?}\n{model:#?}");
                 judged += 1;
             }
-            // The expression is asked on a finer frame, within limits: a ray in a surface passes very many cells.
+            // The expression is asked on a finer frame, within limits: a ray in a surface passes very many
+            // cells.
             let finer = frame.with_depth(16).unwrap();
             let control = Control { max_splits: Some(3000), ..Control::threads(1) };
             let direct = cast_rays(&csg, &finer, &[ray], Obstacle::Upper, &control).unwrap();
@@ -253,7 +257,8 @@ fn functions_of_cells_are_the_solid() {
     assert!(functions > 1000 && judged > 300, "{functions} {judged}");
 }
 
-/// A tree without cuts that is made of one with them is that of the expression, but where groups of that decide a cell by boxes.
+/// A tree without cuts that is made of one with them is that of the expression, but where groups of that
+/// decide a cell by boxes.
 #[test]
 fn plain_trees_are_those_of_the_expression() {
     let (mut same, mut all) = (0, 0);

@@ -343,7 +343,8 @@ fn maps_of_the_lattice_move_cells_one_to_one() {
     }
 }
 
-/// Faces in planes of the lattice cross no cell, so that no cell keeps them. They are found for a map that turns them.
+/// Faces in planes of the lattice cross no cell, so that no cell keeps them. They are found for a map that
+/// turns them.
 #[test]
 fn faces_in_planes_of_the_lattice_are_moved() {
     let aligned = Frame::new([0.0; 3], 128.0, 14).unwrap();

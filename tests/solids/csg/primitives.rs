@@ -223,7 +223,8 @@ fn shapes() -> Vec<Shape> {
             Csg::frustum_between(from, to, radii).unwrap(),
             Some(PI * length / 3.0 * (r * r + r * s + s * s)),
             (low, high),
-            // The distance from the axis is |(p − a) × d| / |d|, and the radius there r + (s − r) (p − a) · d / |d|².
+            // The distance from the axis is |(p − a) × d| / |d|, and the radius there r + (s − r) (p − a) · d
+            // / |d|².
             Box::new(move |p| {
                 let d = [0, 1, 2].map(|i| Exact::from(b[i]).minus(&a[i].into()));
                 let q = [0, 1, 2].map(|i| p.beyond(i, a[i]));

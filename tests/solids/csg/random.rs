@@ -103,8 +103,8 @@ impl Maker<'_> {
         }
     }
 
-    /// A function of two or three half-spaces that is no intersection or union of them: one chooses between the others, holds or
-    /// both others do, two of three hold, or an odd number of them does.
+    /// A function of two or three half-spaces that is no intersection or union of them: one chooses between
+    /// the others, holds or both others do, two of three hold, or an odd number of them does.
     pub fn function(&mut self, mut half_space: impl FnMut(&mut Self) -> Model) -> Model {
         let [a, b, c] = [(); 3].map(|()| half_space(self));
         let and = |a: &Model, b: &Model| Model::Intersection(vec![a.clone(), b.clone()]);

@@ -4,9 +4,10 @@
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin booleans -- mesh.stl [openvdb]
 //! ```
 //!
-//! `openvdb` is the program made of `openvdb.cpp`, see benches/README.md. The longest side of the mesh has 1024 cells;
-//! the copy is moved by 10 % of its extent along x, on the same lattice. One thread each, in turn, processor time.
-//! Without the second argument: the mesh and its copy turned by 0.002 rad, on one thread and on two, elapsed time.
+//! `openvdb` is the program made of `openvdb.cpp`, see benches/README.md. The longest side of the mesh has
+//! 1024 cells; the copy is moved by 10 % of its extent along x, on the same lattice. One thread each, in
+//! turn, processor time. Without the second argument: the mesh and its copy turned by 0.002 rad, on one
+//! thread and on two, elapsed time.
 
 use leafless::octree::Cursor;
 use leafless::{Control, Frame, Octree, OctreeRef, Rule, TriangleMesh, build, difference, intersection, union};

@@ -4,10 +4,11 @@
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin clearance -- mesh.stl PROGRAM [PLACEMENTS]
 //! ```
 //!
-//! PROGRAM is made of `clearance.cpp`. The mesh is turned around the centre of its box by any rotation, all equally likely, and moved by up
-//! to two of the box's sides along each axis. Every distance of FCL is compared with our interval. FCL takes the triangles for all there
-//! is: what lies inside of the other solid without touching its surface is left out of the comparison. One thread each, in turn; the
-//! ratio is the median of those of the rounds, over the placements that are apart.
+//! PROGRAM is made of `clearance.cpp`. The mesh is turned around the centre of its box by any rotation, all
+//! equally likely, and moved by up to two of the box's sides along each axis. Every distance of FCL is
+//! compared with our interval. FCL takes the triangles for all there is: what lies inside of the other solid
+//! without touching its surface is left out of the comparison. One thread each, in turn; the ratio is the
+//! median of those of the rounds, over the placements that are apart.
 
 use leafless::query::clearance_at;
 use leafless::{Affine, Control, Frame, Solid};

@@ -1,13 +1,14 @@
-//! Single questions to a triangle mesh, asked of Embree and FCL, and of parry3d in single and double precision; see
-//! benches/README.md. One thread, one call for each question.
+//! Single questions to a triangle mesh, asked of Embree and FCL, and of parry3d in single and double
+//! precision; see benches/README.md. One thread, one call for each question.
 //!
 //! ```text
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin mesh_queries -- mesh.stl PROGRAM FOLDER [QUESTIONS [CHECKED]]
 //! ```
 //!
-//! PROGRAM is made of `mesh_queries.cpp`. The mesh is sewn, and kept for all peers as `sewn.stl` in FOLDER. There are a million
-//! questions unless told otherwise. The answers to the first 1000, or as many as CHECKED tells, and those to questions about
-//! which peers disagree, are held against what Leafless proves; of points, all answers.
+//! PROGRAM is made of `mesh_queries.cpp`. The mesh is sewn, and kept for all peers as `sewn.stl` in FOLDER.
+//! There are a million questions unless told otherwise. The answers to the first 1000, or as many as CHECKED
+//! tells, and those to questions about which peers disagree, are held against what Leafless proves; of
+//! points, all answers.
 
 use leafless::query::{DistanceTo, distances, ray_spans};
 use leafless::solid::Prepared;
@@ -169,8 +170,8 @@ fn prove(
     Ok(Proven { crossings, distances, inside })
 }
 
-/// Prints how many answers are wrong, and by how much numbers are off at the most; a t that is off by more than `much` is that
-/// of another hit.
+/// Prints how many answers are wrong, and by how much numbers are off at the most; a t that is off by more
+/// than `much` is that of another hit.
 fn hold(name: &str, answers: &Answers, proven: &Proven, much: f64) {
     let off = |answer: f64, [lower, upper]: [f64; 2]| (lower - answer).max(answer - upper).max(0.0);
     for (list, from) in ["from afar", "from within"].into_iter().enumerate() {
@@ -204,8 +205,8 @@ fn hold(name: &str, answers: &Answers, proven: &Proven, much: f64) {
     println!("{name}, {} points: {} wrong; {open} undecided", proven.inside.len(), wrong.count());
 }
 
-/// The first questions, and those about which the first of the peers and another are of two minds by more than `much`; of
-/// rays, and of distances.
+/// The first questions, and those about which the first of the peers and another are of two minds by more
+/// than `much`; of rays, and of distances.
 fn places(peers: &[(&str, Answers)], first: usize, much: f64) -> [Vec<usize>; 3] {
     let [(_, one), others @ ..] = peers else { return Default::default() };
     let list = |of: &dyn Fn(&Answers) -> &[f64], is_odd: &dyn Fn(usize) -> bool| {

@@ -10,7 +10,8 @@ use fidget::context::Tree;
 use fidget::shape::BoundShape;
 use std::time::Instant;
 
-/// Half of the edge of fidget's cube in the plate's units: the cube reaches from -1 to 1 around the plate's centre.
+/// Half of the edge of fidget's cube in the plate's units: the cube reaches from -1 to 1 around the plate's
+/// centre.
 const HALF: f64 = 42.0;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

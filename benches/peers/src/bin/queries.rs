@@ -4,11 +4,11 @@
 //! cargo run --release --manifest-path benches/peers/Cargo.toml --bin queries -- mesh.stl nanovdb
 //! ```
 //!
-//! `nanovdb` is the program made of `nanovdb.cpp`, see benches/README.md. 1024 cells an axis, decided at their
-//! centres, the same in both. A million rays of a camera to their first full cell, in scan order and in random
-//! order; a million points of the bounding box, uniform at random and along lines. One thread each, in turn,
-//! processor time. The camera: eye at the centre of the box + 2 D w, D its diagonal, w along (1, 0.7, 0.5), half
-//! width D/2.
+//! `nanovdb` is the program made of `nanovdb.cpp`, see benches/README.md. 1024 cells an axis, decided at
+//! their centres, the same in both. A million rays of a camera to their first full cell, in scan order and in
+//! random order; a million points of the bounding box, uniform at random and along lines. One thread each, in
+//! turn, processor time. The camera: eye at the centre of the box + 2 D w, D its diagonal, w along (1, 0.7,
+//! 0.5), half width D/2.
 
 use leafless::octree::Cursor;
 use leafless::query::{Obstacle, PointCursor, PointTable};

@@ -1,10 +1,11 @@
 //! From the distances of a line's cells across the line to those in the plane.
 //!
-//! Along a line, cells of one side form runs. A cell that is √v away from the other side across the line puts a cell k
-//! places further no more than √(v + (2k − 1)²) away: the way goes to the plane between cells that lies before the first,
-//! and from there across. So a plane stands for the better of the two cells beside it, and a cell's square is its own, or
-//! the least of all v + d², with d its centre's distance from a plane. The cells beside the run lie on the other side,
-//! with v = 0. The least of these parabolas is found in linear time: one has the least value on one interval at most.
+//! Along a line, cells of one side form runs. A cell that is √v away from the other side across the line puts
+//! a cell k places further no more than √(v + (2k − 1)²) away: the way goes to the plane between cells that
+//! lies before the first, and from there across. So a plane stands for the better of the two cells beside it,
+//! and a cell's square is its own, or the least of all v + d², with d its centre's distance from a plane. The
+//! cells beside the run lie on the other side, with v = 0. The least of these parabolas is found in linear
+//! time: one has the least value on one interval at most.
 
 use super::sides::{NONE, Signed};
 use crate::error::Error;

@@ -11,8 +11,8 @@ use crate::octree::view::OctreeRef;
 use crate::octree::{Planes, Tag};
 use alloc::vec::Vec;
 
-/// Finest cells from `min` to before `max`. All coordinates are one more than the cells' own, so that a layer of the
-/// space around the universe has coordinates, too.
+/// Finest cells from `min` to before `max`. All coordinates are one more than the cells' own, so that a layer
+/// of the space around the universe has coordinates, too.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Range {
     pub(super) min: [u32; 3],
@@ -171,8 +171,8 @@ impl Fill<'_, '_> {
         self.masks.iter_mut().for_each(|mask| mask.set(cells, false));
     }
 
-    /// Takes in the part of element `index` of level `e` that lies in the range; `at` is its lowest cell. The recursion
-    /// is as deep as the tree has element levels, ten at the most.
+    /// Takes in the part of element `index` of level `e` that lies in the range; `at` is its lowest cell. The
+    /// recursion is as deep as the tree has element levels, ten at the most.
     fn element(&mut self, e: usize, index: usize, at: [u32; 3]) -> Result<(), Error> {
         self.job.check()?;
         let levels = self.tree.levels();

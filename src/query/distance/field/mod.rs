@@ -1,12 +1,13 @@
 //! The distances of all cells in a box.
 //!
-//! Two sets of cells bound the solid: the FULL cells from inside, the FULL and PARTIAL ones from outside. The distance to
-//! the boundary of the first is an upper bound of the signed distance to the solid's boundary, that to the second a
-//! lower bound. Both are exact Euclidean distances from the centres of cells to the nearest closed cell of the other
-//! side, found axis by axis (Felzenszwalb and Huttenlocher 2012; Meijster, Roerdink and Hesselink 2000).
+//! Two sets of cells bound the solid: the FULL cells from inside, the FULL and PARTIAL ones from outside. The
+//! distance to the boundary of the first is an upper bound of the signed distance to the solid's boundary,
+//! that to the second a lower bound. Both are exact Euclidean distances from the centres of cells to the
+//! nearest closed cell of the other side, found axis by axis (Felzenszwalb and Huttenlocher 2012; Meijster,
+//! Roerdink and Hesselink 2000).
 //!
-//! Lengths are integers: a half cell is the unit, and the centres of cells a row apart by k lie 2k − 1 from each other's
-//! faces.
+//! Lengths are integers: a half cell is the unit, and the centres of cells a row apart by k lie 2k − 1 from
+//! each other's faces.
 
 mod envelope;
 mod mask;
@@ -29,34 +30,37 @@ use slab::{DEEP, Slab};
 /// Blocks along the box's longest edge at whose centres the distance is asked for first.
 const BLOCKS: u32 = 16;
 
-/// So many times as many cells as the box has are looked at all together, at the most. Where more were needed, each cell
-/// of the box asks for itself, which costs about as much as so many cells do.
+/// So many times as many cells as the box has are looked at all together, at the most. Where more were
+/// needed, each cell of the box asks for itself, which costs about as much as so many cells do.
 const MOST: u64 = 64;
 
 /// A longer row is not looked at: squares of distances would not fit.
 const LONGEST: u32 = 13_000;
 
 impl OctreeRef<'_> {
-    /// The signed distances of the finest cells in a box from the boundary of the solid: `field[(z·ny + y)·nx + x]` for
-    /// the cell min + (x, y, z), where nx, ny, nz = max − min. `max` is the first cell beyond the box on each axis.
+    /// The signed distances of the finest cells in a box from the boundary of the solid:
+    /// `field[(z·ny + y)·nx + x]` for the cell min + (x, y, z), where nx, ny, nz = max − min. `max` is the
+    /// first cell beyond the box on each axis.
     ///
-    /// The entry [lower, upper] (model units) contains the signed distance of the cell's *centre* from the boundary of
-    /// any solid that the tree's cells and its exterior describe: positive outside, negative inside. The field is that
-    /// of the whole solid, also of what lies outside of the box. For a cell that is EMPTY, lower is the distance from the
-    /// nearest closed cell that is FULL or PARTIAL, and upper from the nearest that is FULL; for a FULL cell, they are
-    /// minus the distances from the nearest EMPTY cell, and from the nearest that is EMPTY or PARTIAL. A PARTIAL one
-    /// takes the first of the second pair and the second of the first. These distances are exact but for one rounding,
-    /// outward, to single precision. They are ∞ where there is no such cell. What is outside of the universe counts as
-    /// cells with the exterior's tag.
+    /// The entry [lower, upper] (model units) contains the signed distance of the cell's *centre* from the
+    /// boundary of any solid that the tree's cells and its exterior describe: positive outside, negative
+    /// inside. The field is that of the whole solid, also of what lies outside of the box. For a cell that is
+    /// EMPTY, lower is the distance from the nearest closed cell that is FULL or PARTIAL, and upper from the
+    /// nearest that is FULL; for a FULL cell, they are minus the distances from the nearest EMPTY cell, and
+    /// from the nearest that is EMPTY or PARTIAL. A PARTIAL one takes the first of the second pair and the
+    /// second of the first. These distances are exact but for one rounding, outward, to single precision.
+    /// They are ∞ where there is no such cell. What is outside of the universe counts as cells with the
+    /// exterior's tag.
     ///
-    /// The time is linear in the cells of the box and a margin around it as wide as the largest distance. Memory beside
-    /// `field` is a quarter of a byte for each of these, and for each thread some 140 bytes for each cell of a slice
-    /// across z. Where the margin were too wide, as for a small box far away from the solid, each cell asks for itself,
-    /// as by [`distance`](Self::distance). The bits are the same for any number of threads.
+    /// The time is linear in the cells of the box and a margin around it as wide as the largest distance.
+    /// Memory beside `field` is a quarter of a byte for each of these, and for each thread some 140 bytes for
+    /// each cell of a slice across z. Where the margin were too wide, as for a small box far away from the
+    /// solid, each cell asks for itself, as by [`distance`](Self::distance). The bits are the same for any
+    /// number of threads.
     ///
     /// # Errors
-    /// [`Error::Argument`] if min > max on an axis, if `max` lies outside of the universe, or if `field` has not one
-    /// entry a cell; [`Error::OutOfMemory`], and [`Error::Cancelled`]: `field` then holds anything.
+    /// [`Error::Argument`] if min > max on an axis, if `max` lies outside of the universe, or if `field` has
+    /// not one entry a cell; [`Error::OutOfMemory`], and [`Error::Cancelled`]: `field` then holds anything.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Rule, build};

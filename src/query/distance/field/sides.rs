@@ -30,8 +30,8 @@ fn last(row: &[u64], side: u64, before: usize) -> Option<usize> {
     Some(64 * word + 63 - differs.leading_zeros() as usize)
 }
 
-/// The signed squares of the distances of a row's cells from `first` on, of which there are `signed.len()`, from the
-/// nearest one of the row's `length` cells on the other side.
+/// The signed squares of the distances of a row's cells from `first` on, of which there are `signed.len()`,
+/// from the nearest one of the row's `length` cells on the other side.
 pub(super) fn along(row: &[u64], length: usize, first: usize, signed: &mut [Signed]) {
     let end = first + signed.len();
     let side_at = |place: usize| 0u64.wrapping_sub(row[place / 64] >> (place % 64) & 1);

@@ -10,7 +10,8 @@ use crate::solid::csg::Csg;
 use crate::solid::half_space::HalfSpace;
 use alloc::vec::Vec;
 
-/// A fan of triangles around the origin: the corners of a convex polygon, or of a part of one, counter-clockwise.
+/// A fan of triangles around the origin: the corners of a convex polygon, or of a part of one,
+/// counter-clockwise.
 pub(crate) struct Fan {
     corners: Vec<[f64; 2]>,
     /// Whether the last corner is joined to the first.
@@ -18,8 +19,8 @@ pub(crate) struct Fan {
 }
 
 impl Fan {
-    /// The regular polygon of radius 1 with `count` corners, the first of them at the angle `start` in degrees;
-    /// `None` if there are less than three.
+    /// The regular polygon of radius 1 with `count` corners, the first of them at the angle `start` in
+    /// degrees; `None` if there are less than three.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -29,7 +30,8 @@ impl Fan {
     }
 
     /// The corners at `count` + 1 angles from `start` on, `angle` degrees apart together; `None` if two
-    /// neighbours are half a turn or more apart, or so close that the corners are no convex polygon in doubles.
+    /// neighbours are half a turn or more apart, or so close that the corners are no convex polygon in
+    /// doubles.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -67,8 +69,8 @@ impl Fan {
         self.corners.iter().zip(next).map(|(&a, &b)| [a, b])
     }
 
-    /// What a half-plane x ρ + y z + 1 ≥ 0 sweeps, ρ being how many times a point is as far out as the polygon
-    /// in its direction. Only what is in the fan's directions is meant.
+    /// What a half-plane x ρ + y z + 1 ≥ 0 sweeps, ρ being how many times a point is as far out as the
+    /// polygon in its direction. Only what is in the fan's directions is meant.
     ///
     /// In each triangle of the fan ρ is linear, and because the polygon is convex it is the greatest of those
     /// linear functions. So the swept half-plane is an intersection of half-spaces, or a union, and the sides

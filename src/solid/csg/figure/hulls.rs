@@ -1,7 +1,7 @@
 //! The farthest of consecutive corners in a direction.
 //!
-//! A tree of convex hulls over halves of halves of the corners. A question about a range of corners goes to the
-//! few nodes that make it up, and is answered on each hull by bisection.
+//! A tree of convex hulls over halves of halves of the corners. A question about a range of corners goes to
+//! the few nodes that make it up, and is answered on each hull by bisection.
 
 use super::segment::{before, turn};
 use crate::error::Error;

@@ -28,8 +28,8 @@ impl Edge {
     }
 }
 
-/// The order from below of edges that some sweep line meets both. It does not depend on the sweep line as long
-/// as the edges do not meet.
+/// The order from below of edges that some sweep line meets both. It does not depend on the sweep line as
+/// long as the edges do not meet.
 impl Ord for Edge {
     fn cmp(&self, other: &Edge) -> Ordering {
         if self.index == other.index {
@@ -63,8 +63,8 @@ impl Eq for Edge {}
 /// What an edge takes in the sorted set, at most.
 const BYTES: usize = 2 * size_of::<Edge>() + 32;
 
-/// Whether no two edges of a closed polygon have a point in common, but for the corners of edges that follow each
-/// other. No two consecutive corners may be equal, and no edge go back along the one before.
+/// Whether no two edges of a closed polygon have a point in common, but for the corners of edges that follow
+/// each other. No two consecutive corners may be equal, and no edge go back along the one before.
 ///
 /// O(n log n).
 ///

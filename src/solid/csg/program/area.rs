@@ -10,7 +10,8 @@ use crate::solid::Ask;
 use crate::solid::half_space::function;
 
 impl Scratch {
-    /// Bounds of the area of the boundary in a cell; `None` if too little is known of an operand that is open there.
+    /// Bounds of the area of the boundary in a cell; `None` if too little is known of an operand that is open
+    /// there.
     pub(crate) fn area(
         &mut self,
         program: &Program,

@@ -1,7 +1,7 @@
 //! Many cells or points at once, where the other solids of an expression like that.
 //!
-//! What the other solids are asked about all cells is gathered first, and asked at once. Then the cells are split or sampled
-//! one by one, as ever, with those answers at hand.
+//! What the other solids are asked about all cells is gathered first, and asked at once. Then the cells are
+//! split or sampled one by one, as ever, with those answers at hand.
 
 use super::Program;
 use super::at_hand::{AtHand, Splits};
@@ -71,8 +71,8 @@ impl Scratch {
         Ok((0..).zip(needed).any(|(solid, needed)| needed > left(&self.at_hand, solid)))
     }
 
-    /// Of which of the other solids, all of which have been asked for the universe, it is PARTIAL with a part that is had without
-    /// asking: a worker of a host's function would ask once more.
+    /// Of which of the other solids, all of which have been asked for the universe, it is PARTIAL with a part
+    /// that is had without asking: a worker of a host's function would ask once more.
     pub(crate) fn recalls(&mut self) -> Result<Vec<bool>, Error> {
         memory::collected(self.workers.iter_mut().map(|other| match other {
             Some(Other { worker, root: Verdict::Partial(_) }) => {
@@ -163,8 +163,8 @@ impl Scratch {
         done
     }
 
-    /// Whether points lie inside: by what the other solids know of them, and what half-spaces say of their finest cells. See
-    /// [`Batch::inside`].
+    /// Whether points lie inside: by what the other solids know of them, and what half-spaces say of their
+    /// finest cells. See [`Batch::inside`].
     pub(crate) fn inside(
         &mut self,
         program: &Program,
@@ -172,8 +172,9 @@ impl Scratch {
         points: &[[f64; 3]],
         answers: &mut [Option<bool>],
     ) -> Result<(), Error> {
-        // (Half-spaces alone are as fast by cells.) Two solids may both say that a point is outside on which their faces meet, and
-        // which their union holds: where there are several, cells decide. The words of a table are no operations.
+        // (Half-spaces alone are as fast by cells.) Two solids may both say that a point is outside on which
+        // their faces meet, and which their union holds: where there are several, cells decide. The words of
+        // a table are no operations.
         if program.solids.len() != 1 || program.paper || part.is_table() || part.words() > MOST_WORDS {
             return Ok(());
         }
@@ -226,9 +227,9 @@ impl Scratch {
         Ok(())
     }
 
-    /// The part of a cell without the way to it, if there is one other solid and that has its own so: the words of the whole
-    /// expression, which say of the cell what its own words would. (Of several solids all would be asked, also those that are
-    /// decided there.) See [`Batch::recall`].
+    /// The part of a cell without the way to it, if there is one other solid and that has its own so: the
+    /// words of the whole expression, which say of the cell what its own words would. (Of several solids all
+    /// would be asked, also those that are decided there.) See [`Batch::recall`].
     pub(crate) fn recall(
         &mut self,
         program: &Program,

@@ -27,8 +27,8 @@ pub(crate) struct Rays {
 }
 
 impl Rays {
-    /// Adds the intervals of all rays of a beam in a cell. `false` if the cell is better split, or some word is not a
-    /// half-space.
+    /// Adds the intervals of all rays of a beam in a cell. `false` if the cell is better split, or some word
+    /// is not a half-space.
     pub(crate) fn find(
         &mut self,
         program: &Program,

@@ -1,5 +1,6 @@
-//! Operands that are one: in a union or an intersection the same operand twice is that operand, and in a parity it is
-//! nothing. A scene of thousands of equal parts costs as much as one of them, and coincident faces leave no doubt.
+//! Operands that are one: in a union or an intersection the same operand twice is that operand, and in a
+//! parity it is nothing. A scene of thousands of equal parts costs as much as one of them, and coincident
+//! faces leave no doubt.
 
 use super::hierarchy::Operand;
 use super::word::Word;
@@ -11,11 +12,12 @@ use core::ops::Range;
 use hashbrown::HashMap;
 use hashbrown::hash_map::Entry;
 
-/// Takes away those of the operands from `first` on that change nothing, because an equal one stands before them.
+/// Takes away those of the operands from `first` on that change nothing, because an equal one stands before
+/// them.
 ///
-/// O(operands) where no two are of one length. Otherwise those are read that are as long as another one: what they are
-/// joined to is twice as long at least, so that no word of an expression is read more often than the logarithm of its
-/// length, however deep it is nested.
+/// O(operands) where no two are of one length. Otherwise those are read that are as long as another one: what
+/// they are joined to is twice as long at least, so that no word of an expression is read more often than the
+/// logarithm of its length, however deep it is nested.
 pub(crate) fn reduce(
     join: Join,
     first: usize,

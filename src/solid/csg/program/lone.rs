@@ -48,7 +48,8 @@ impl Scratch {
             known.clear();
             let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
             worker.answer(cell, &part, Question::Ray(RayQuestion { ray, is_first_enough, trace: known }))?;
-            // What tells of the whole universe says the same in all cells. (An expression in this one may not.)
+            // What tells of the whole universe says the same in all cells. (An expression in this one may
+            // not.)
             if known.is_known()
                 && program.solids[solid as usize].is_direct(Direct::Rays, &Control::threads(1))?
             {

@@ -43,10 +43,11 @@ pub(crate) struct Program {
     pub(crate) half_spaces: Vec<Placed>,
     /// Each half-space as it was given, and which placements it stands under.
     sources: Vec<(HalfSpace, u32)>,
-    /// Chains of placements: the last map, and the chain before it, which is one less than its number says; 0 is none.
+    /// Chains of placements: the last map, and the chain before it, which is one less than its number says; 0
+    /// is none.
     chains: Vec<(u32, Affine)>,
-    /// For each of the other solids where its surfaces begin, behind the half-spaces; in the list without layers, and in that with
-    /// them. (Known once asked for.)
+    /// For each of the other solids where its surfaces begin, behind the half-spaces; in the list without
+    /// layers, and in that with them. (Known once asked for.)
     surfaces: [OnceBox<Vec<Start>>; 2],
     pub(crate) solids: Vec<AnyClassifier>,
     /// Operands of large operations by where they lie.
@@ -80,8 +81,8 @@ enum Task<'a> {
     },
 }
 
-/// The space that a node is given in: the exact map into it from the universe, and the map back to model space
-/// for boxes, if that is not the identity.
+/// The space that a node is given in: the exact map into it from the universe, and the map back to model
+/// space for boxes, if that is not the identity.
 #[derive(Clone)]
 struct Space {
     map: Arc<ExactMap>,
@@ -96,8 +97,8 @@ struct Writer<'c> {
     control: &'c Control<'c>,
     /// Operands of the joins that are pending.
     operands: Vec<Operand>,
-    /// Half-spaces that may occur again, each with whether it is the complement of the one with its number; and other solids: they are
-    /// written once.
+    /// Half-spaces that may occur again, each with whether it is the complement of the one with its number;
+    /// and other solids: they are written once.
     seen_half_spaces: HashMap<(usize, usize), (u32, bool)>,
     seen_solids: HashMap<usize, u32>,
     /// Half-spaces that are one, wherever they come from.

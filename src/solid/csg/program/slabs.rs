@@ -14,8 +14,8 @@ use alloc::vec::Vec;
 
 impl Scratch {
     /// What the half-spaces that are open in a cell know of it. One to three that are joined by one operation
-    /// give a slab each; of other expressions those that the solid lies in, or that lie in the solid, bound it
-    /// from one side.
+    /// give a slab each; of other expressions those that the solid lies in, or that lie in the solid, bound
+    /// it from one side.
     fn slabs_of_half_spaces(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Enclosure> {
         self.literals(program, part)?.enclosure(&program.half_spaces, cell)
     }
@@ -30,8 +30,8 @@ impl Scratch {
         function::moments(variables, table, &program.half_spaces, cell)
     }
 
-    /// What the open operands of a cell know of it, whatever they are, joined by the cell's words. Operands of which nothing is
-    /// known leave one side open, and so do more slabs than there is room for.
+    /// What the open operands of a cell know of it, whatever they are, joined by the cell's words. Operands
+    /// of which nothing is known leave one side open, and so do more slabs than there is room for.
     #[inline]
     pub(crate) fn slabs(
         &mut self,

@@ -116,8 +116,8 @@ impl Classifier for CsgClassifier {
         self.program.bytes()
     }
 
-    /// What is known of the solid that the expression is another name of, if it is; and what of its half-spaces lies in
-    /// planes of the lattice.
+    /// What is known of the solid that the expression is another name of, if it is; and what of its
+    /// half-spaces lies in planes of the lattice.
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         let program = &*self.program;
         match question {
@@ -139,7 +139,8 @@ impl Classifier for CsgClassifier {
                 if let Some(solid) = program.sole() {
                     return solid.answer_whole(question, control);
                 }
-                // The universe is not told of, but cells are in which one of the solids is open alone, and points that one knows.
+                // The universe is not told of, but cells are in which one of the solids is open alone, and
+                // points that one knows.
                 if let WholeQuestion::Direct(kind @ (Direct::Rays | Direct::Points), _) = question {
                     for solid in &program.solids {
                         solid.is_direct(kind, control)?;

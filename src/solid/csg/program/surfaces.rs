@@ -59,9 +59,9 @@ pub(super) struct Start {
 pub(crate) type Layers<'l> = (f64, &'l mut Vec<PlacedHalfSpace>);
 
 impl Scratch {
-    /// The surfaces that are open in a cell, and the function of them that the part is; `None` if they are too many, something is
-    /// open that is not made of surfaces, or the list of the surfaces has not been asked for. With `layers` the list is that with
-    /// layers.
+    /// The surfaces that are open in a cell, and the function of them that the part is; `None` if they are
+    /// too many, something is open that is not made of surfaces, or the list of the surfaces has not been
+    /// asked for. With `layers` the list is that with layers.
     pub(crate) fn open_surfaces(
         &mut self,
         program: &Program,
@@ -144,8 +144,8 @@ impl Scratch {
 /// Most words of a part that are looked at.
 const MOST_WORDS: usize = 64;
 
-/// The function of surfaces in the numbering of `open`, to which those are added that are not there yet. `None` if they are too
-/// many.
+/// The function of surfaces in the numbering of `open`, to which those are added that are not there yet.
+/// `None` if they are too many.
 fn joined(open: &mut OpenSurfaces, own: &OpenSurfaces) -> Option<Table> {
     let mut numbers = [0; OpenSurfaces::MOST];
     for (number, &index) in numbers.iter_mut().zip(own.indices()) {

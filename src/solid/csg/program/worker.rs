@@ -18,7 +18,8 @@ use crate::solid::half_space::table::Table;
 use crate::solid::{AnyWorker, Batch, Classifier, OCTANTS, Parts, Verdict, Worker};
 use alloc::vec::Vec;
 
-/// What a [`Csg`](crate::solid::csg::Csg) remembers about a cell: the words of its expression that are still open there.
+/// What a [`Csg`](crate::solid::csg::Csg) remembers about a cell: the words of its expression that are still
+/// open there.
 #[derive(Debug, Clone, Copy)]
 pub struct CsgPart {
     pub(crate) start: u32,
@@ -79,8 +80,8 @@ pub(crate) struct Other {
 pub(crate) struct Slot {
     pub(crate) solid: u32,
     pub(crate) part: ErasedPart,
-    /// The number of words when its cell's were begun, and the height of the solid's own scratch memory before. Once the cell's
-    /// words are complete, there are more.
+    /// The number of words when its cell's were begun, and the height of the solid's own scratch memory
+    /// before. Once the cell's words are complete, there are more.
     pub(crate) words: usize,
     pub(crate) height: usize,
 }
@@ -228,7 +229,8 @@ impl Scratch {
         })
     }
 
-    /// Splits a cell of another solid, unless the answer is at hand; with the height of the solid's scratch memory before.
+    /// Splits a cell of another solid, unless the answer is at hand; with the height of the solid's scratch
+    /// memory before.
     pub(crate) fn split_other(
         workers: &mut [Option<Other>],
         at_hand: &mut AtHand,
@@ -360,8 +362,8 @@ impl Scratch {
                     self.tabulate(program, &mut cells, k, true)?;
                 }
             }
-            // A child without words has no slots: they would be released as what comes after its siblings. What other solids
-            // remember of it goes with the siblings' or the parent's.
+            // A child without words has no slots: they would be released as what comes after its siblings.
+            // What other solids remember of it goes with the siblings' or the parent's.
             if self.words.len() == words {
                 self.slots.truncate(slots);
             }

@@ -1,5 +1,5 @@
-//! What one proof found out that holds in the next: how near triangles are that both meshes have, and how near the boundary in a cell is to
-//! such triangles.
+//! What one proof found out that holds in the next: how near triangles are that both meshes have, and how
+//! near the boundary in a cell is to such triangles.
 
 use crate::error::Error;
 use crate::lattice::Cell;

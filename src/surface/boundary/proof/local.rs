@@ -6,10 +6,12 @@ use crate::lattice::axes;
 /// A part of all terms that is for rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// How far beside a triangle, as a part of its sides, a place counts as one within: rounding must not lose it between two triangles.
+/// How far beside a triangle, as a part of its sides, a place counts as one within: rounding must not lose it
+/// between two triangles.
 const BESIDE: f64 = 1e-6;
 
-/// A function within a cube: value + gradient · x + xᵀ squares x, where x is measured from the centre in edges of the universe.
+/// A function within a cube: value + gradient · x + xᵀ squares x, where x is measured from the centre in
+/// edges of the universe.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Local {
     centre: [f64; 3],

@@ -1,8 +1,9 @@
-//! How far a mesh and the boundary of a solid are from each other, by the surfaces that the solid is made of: a proof that does not depend
-//! on how the mesh was made.
+//! How far a mesh and the boundary of a solid are from each other, by the surfaces that the solid is made of:
+//! a proof that does not depend on how the mesh was made.
 //!
-//! From the bottom up: `local` (functions about a place), `clip` (polygons), `truth` (what the leaves say), `witness` (from the mesh to the
-//! boundary), `sheets` (from the boundary to the mesh), `known` (what holds for several meshes).
+//! From the bottom up: `local` (functions about a place), `clip` (polygons), `truth` (what the leaves say),
+//! `witness` (from the mesh to the boundary), `sheets` (from the boundary to the mesh), `known` (what holds
+//! for several meshes).
 
 mod clip;
 mod known;
@@ -27,16 +28,18 @@ use sheets::{Lists, Sheet, Subject};
 use truth::{Around, Truth, cube};
 use witness::Witnesses;
 
-/// Parts of cells that are looked at where nothing but their extent is known: of all together, and of one at most.
+/// Parts of cells that are looked at where nothing but their extent is known: of all together, and of one at
+/// most.
 const PARTS: usize = 1 << 18;
 const PARTS_OF_CELL: usize = 64;
 
-/// What each triangle may spend at first on pieces that are halved and on sizes of cubes around them, and each surface in a cell on boxes.
+/// What each triangle may spend at first on pieces that are halved and on sizes of cubes around them, and
+/// each surface in a cell on boxes.
 const PIECES: u32 = 16;
 const BOXES: u32 = 64;
 
-/// What those that this is not enough for share with each other: so much, and as much again as all may spend at first; and what one of
-/// them gets at most.
+/// What those that this is not enough for share with each other: so much, and as much again as all may spend
+/// at first; and what one of them gets at most.
 const MORE: u32 = 1 << 15;
 const MOST: u32 = 1024;
 
@@ -65,8 +68,9 @@ impl Proof {
     }
 }
 
-/// Proves how far a mesh is from the boundary of the solid that the leaves know. `surfaces` are those of the triangles, and `known` is what
-/// proofs for other meshes and leaves of the same solid with the same tolerance found out.
+/// Proves how far a mesh is from the boundary of the solid that the leaves know. `surfaces` are those of the
+/// triangles, and `known` is what proofs for other meshes and leaves of the same solid with the same
+/// tolerance found out.
 ///
 /// The result does not depend on the number of threads.
 pub(super) fn prove(
@@ -104,7 +108,8 @@ pub(super) fn prove(
     })
 }
 
-/// What looks at all triangles and cells. Those that little effort proves near are done first; the others share a budget.
+/// What looks at all triangles and cells. Those that little effort proves near are done first; the others
+/// share a budget.
 struct Prover<'p> {
     truth: &'p Truth<'p>,
     subject: &'p Subject<'p>,
@@ -293,8 +298,8 @@ fn joined<T>(groups: Vec<Vec<T>>) -> Result<Vec<T>, Error> {
     Ok(all)
 }
 
-/// Calls `told` for the cells that are full next to an empty one, where the boundary lies in no cell between, with how far it is from the
-/// mesh there at most.
+/// Calls `told` for the cells that are full next to an empty one, where the boundary lies in no cell between,
+/// with how far it is from the mesh there at most.
 fn contacts(
     truth: &Truth<'_>,
     subject: &Subject<'_>,

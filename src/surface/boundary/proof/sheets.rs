@@ -1,9 +1,10 @@
 //! How far the boundary is from the mesh: surface by surface, in boxes that lie along it.
 //!
-//! In a box in which the surface is a graph over a plane, let the triangles of the surface be seen along the plane's normal. Where they
-//! cover the plane, the graph lies above them, and values of the surface's function on them tell how far. Where the solid begins on the
-//! surface only beside others, all of these go up along one direction in the plane: a line along it that starts where the
-//! boundary is stays there. It comes to a part of the plane that is covered, and so it enters the triangles by a side. How far it has
+//! In a box in which the surface is a graph over a plane, let the triangles of the surface be seen along the
+//! plane's normal. Where they cover the plane, the graph lies above them, and values of the surface's
+//! function on them tell how far. Where the solid begins on the surface only beside others, all of these go
+//! up along one direction in the plane: a line along it that starts where the boundary is stays there. It
+//! comes to a part of the plane that is covered, and so it enters the triangles by a side. How far it has
 //! come by then follows from the values of the others' functions on that side.
 
 use super::super::figures::{Figures, dot, length, minus};
@@ -54,8 +55,8 @@ impl Subject<'_> {
         failed.map_or(Ok(()), Err)
     }
 
-    /// More than the distance of the point that is furthest from the mesh in a box, with the triangle that is as near; infinite without a
-    /// mesh.
+    /// More than the distance of the point that is furthest from the mesh in a box, with the triangle that is
+    /// as near; infinite without a mesh.
     pub(super) fn away(&self, around: &Around) -> (f64, Option<u32>) {
         let centre = around.centre();
         let point = axes(|k| self.origin[k] + centre[k] * self.edge);
@@ -82,7 +83,8 @@ pub(super) struct Sheet<'s> {
     pub(super) open: &'s OpenSurfaces,
     /// The surface's place in the list.
     place: usize,
-    /// Whether the solid is where the surface's function is positive. (Where it is on the other side, that is another sheet.)
+    /// Whether the solid is where the surface's function is positive. (Where it is on the other side, that is
+    /// another sheet.)
     is_above: bool,
     pub(super) cell: Cell,
     pub(super) tolerance: f64,
@@ -144,7 +146,8 @@ impl<'s> Sheet<'s> {
         [self.open.inside(signs | bit), self.open.inside(signs & !bit)] == [self.is_above, !self.is_above]
     }
 
-    /// How far the boundary on the surface is from the mesh at most; `None` if so many boxes do not tell that.
+    /// How far the boundary on the surface is from the mesh at most; `None` if so many boxes do not tell
+    /// that.
     pub(super) fn away(&mut self, boxes: u32) -> Result<Option<f64>, Error> {
         let all = (1u8 << self.open.indices().len()) - 1;
         if (0..=all).all(|signs| !self.is_active(signs)) {
@@ -415,8 +418,8 @@ impl<'s> Sheet<'s> {
         Ok(Outcome::Within(high.max(most) + ROUNDING))
     }
 
-    /// The area of a triangle seen along the normal, which is positive if the triangle faces the way that the boundary does there, and 0
-    /// if it is so small that it covers nothing.
+    /// The area of a triangle seen along the normal, which is positive if the triangle faces the way that the
+    /// boundary does there, and 0 if it is so small that it covers nothing.
     fn area(&self, places: &[[f64; 3]; 3]) -> f64 {
         let flat = places.map(|[u, v, _]| [u, v]);
         let area = turn(flat[0], flat[1], flat[2]);
@@ -428,7 +431,8 @@ impl<'s> Sheet<'s> {
         }
     }
 
-    /// How far the surface is from the triangles above the box at most; `None` if they do not cover the place that lines lead to.
+    /// How far the surface is from the triangles above the box at most; `None` if they do not cover the place
+    /// that lines lead to.
     fn above(&mut self, view: &View, long: &Prism, seen: &[Seen]) -> Result<Option<f64>, Error> {
         let [whole, first, _] = view.boxes;
         let (mut most, mut is_covered) = (0.0f64, false);
@@ -458,8 +462,8 @@ impl<'s> Sheet<'s> {
         Ok(is_covered.then_some(most))
     }
 
-    /// How far the surface goes on at most beside the sides at which its triangles end; `None` if lines may leave the triangles there,
-    /// or nothing is known. `up` is the direction of lines.
+    /// How far the surface goes on at most beside the sides at which its triangles end; `None` if lines may
+    /// leave the triangles there, or nothing is known. `up` is the direction of lines.
     fn beside(
         &mut self,
         view: &View,
@@ -486,8 +490,8 @@ impl<'s> Sheet<'s> {
                             && self.area(&subject.corners(mate).map(|p| long.place(p))) >= 0.0
                     }
                 };
-                // Without limits, what lies outside of the cell does not matter: all that lies inside is convex, and is covered at one
-                // place.
+                // Without limits, what lies outside of the cell does not matter: all that lies inside is
+                // convex, and is covered at one place.
                 if kept.is_empty() && !self.is_in_cell(long, &side)? {
                     continue;
                 }
@@ -508,7 +512,8 @@ impl<'s> Sheet<'s> {
         Ok(Some(most))
     }
 
-    /// The part of the plane through the middle of a box above or below which points of the box may lie in the cell: a convex polygon.
+    /// The part of the plane through the middle of a box above or below which points of the box may lie in
+    /// the cell: a convex polygon.
     fn in_cell(&mut self, prism: &Prism) -> Result<&[[f64; 3]], Error> {
         let corner = |u: f64, v: f64| prism.point([u * prism.half[0], v * prism.half[1], 0.0]);
         self.clip_to_cell(
@@ -585,7 +590,8 @@ struct View {
     slope: f64,
     /// The greatest of the surface over the plane.
     steep: f64,
-    /// Rectangles in the plane, as centres and half edges: all of it, the box itself, and where lines lead from there.
+    /// Rectangles in the plane, as centres and half edges: all of it, the box itself, and where lines lead
+    /// from there.
     boxes: [[[f64; 2]; 2]; 3],
     /// A place that triangles must cover.
     covered: [f64; 2],
@@ -630,7 +636,8 @@ impl View {
         [u, v]
     }
 
-    /// How far the surface is from a polygon along the normal at most; `None` if that is not known. `points` is a list to work with.
+    /// How far the surface is from a polygon along the normal at most; `None` if that is not known. `points`
+    /// is a list to work with.
     fn height_over(
         &self,
         prism: &Prism,
@@ -650,7 +657,8 @@ impl View {
     }
 }
 
-/// How high a surface may be above and below the plane through the centre of a box; `None` if that is not known.
+/// How high a surface may be above and below the plane through the centre of a box; `None` if that is not
+/// known.
 fn height(local: &Local, prism: &Prism) -> Option<f64> {
     let normal = prism.axes[2];
     let corner = |u: f64, v: f64| prism.point([u * prism.half[0], v * prism.half[1], 0.0]);

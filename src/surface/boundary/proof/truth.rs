@@ -119,7 +119,8 @@ impl Truth<'_> {
     }
 }
 
-/// The solid near a place: the leaves there, and the functions of their surfaces, which many polygons are compared with.
+/// The solid near a place: the leaves there, and the functions of their surfaces, which many polygons are
+/// compared with.
 #[derive(Default)]
 pub(super) struct Near {
     around: Option<Around>,
@@ -157,7 +158,8 @@ impl Near {
         Ok(self.functions[place].1.as_ref())
     }
 
-    /// Whether all points of a polygon that lies there are inside of the solid, or all outside; `None` if neither is known.
+    /// Whether all points of a polygon that lies there are inside of the solid, or all outside; `None` if
+    /// neither is known.
     pub(super) fn of(&mut self, truth: &Truth<'_>, polygon: &[[f64; 3]]) -> Result<Option<bool>, Error> {
         let around = Around::of(polygon);
         if !self.around.is_some_and(|own| own.holds(&around)) {

@@ -1,5 +1,5 @@
-//! How far a triangle is from the boundary: a step along which all of it comes to lie inside, and one to outside. Between the two lies the
-//! boundary.
+//! How far a triangle is from the boundary: a step along which all of it comes to lie inside, and one to
+//! outside. Between the two lies the boundary.
 
 use super::super::edges::NONE;
 use super::super::figures::{dot, length, minus, shortest};
@@ -32,8 +32,8 @@ const SLACK: f64 = 1e-14;
 pub(super) struct Witnesses<'t> {
     truth: &'t Truth<'t>,
     tolerance: f64,
-    /// How much may still be spent where the first step proves nothing: one for each piece that is halved, and for each size of cube
-    /// around one.
+    /// How much may still be spent where the first step proves nothing: one for each piece that is halved,
+    /// and for each size of cube around one.
     budget: u32,
     is_spent: bool,
     near: Near,
@@ -73,8 +73,8 @@ impl<'t> Witnesses<'t> {
         is_left
     }
 
-    /// Calls `told` for the parts of a triangle in all leaves, with what no point of the part is further from the boundary than. All of them
-    /// together may spend `budget`. The answer is whether that was not enough.
+    /// Calls `told` for the parts of a triangle in all leaves, with what no point of the part is further from
+    /// the boundary than. All of them together may spend `budget`. The answer is whether that was not enough.
     pub(super) fn triangle(
         &mut self,
         triangle: [[f64; 3]; 3],
@@ -249,7 +249,8 @@ impl<'t> Witnesses<'t> {
         Ok(())
     }
 
-    /// How far all of a part is from the boundary, by points around it: infinite if they are all on one side, or the budget is spent.
+    /// How far all of a part is from the boundary, by points around it: infinite if they are all on one side,
+    /// or the budget is spent.
     fn around(&mut self, part: &[[f64; 3]]) -> Result<f64, Error> {
         let centre = Around::of(part).centre();
         let radius = part.iter().fold(0.0, |most: f64, &p| most.max(length(minus(p, centre))));
@@ -264,8 +265,8 @@ impl<'t> Witnesses<'t> {
         Ok(f64::INFINITY)
     }
 
-    /// How far all points of a cell in which nothing is known are from the boundary, by points around it: infinite if they are all on one
-    /// side.
+    /// How far all points of a cell in which nothing is known are from the boundary, by points around it:
+    /// infinite if they are all on one side.
     fn around_cell(&mut self, number: u32, cell: Cell) -> Result<f64, Error> {
         if let Some(&known) = self.of_cells.get(&number) {
             return Ok(known);
@@ -283,7 +284,8 @@ impl<'t> Witnesses<'t> {
         Ok(most)
     }
 
-    /// Whether some of the corners, of the middles of edges and faces and the centre of a cube lie inside and others outside.
+    /// Whether some of the corners, of the middles of edges and faces and the centre of a cube lie inside and
+    /// others outside.
     fn are_apart(&mut self, centre: [f64; 3], half: f64) -> Result<bool, Error> {
         let mut known = [false; 2];
         // (Points at opposite ends come one after the other.)
