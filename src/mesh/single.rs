@@ -15,7 +15,7 @@ use crate::lattice::exact::sqrt;
 use crate::lattice::{Bounds, axes, valid};
 use crate::memory;
 use alloc::vec::Vec;
-use hashbrown::HashMap;
+use hashbrown::{HashMap, HashSet};
 
 /// A mesh whose coordinates are 32-bit numbers.
 #[derive(Debug)]
@@ -43,8 +43,11 @@ pub struct SinglePrecision {
 /// How often steps of the two kinds take turns.
 const ROUNDS: usize = 12;
 
-/// Intersecting pairs that are looked at in one round.
+/// Intersecting pairs that one round mends.
 const PAIRS: usize = 4096;
+
+/// Intersecting pairs of the given mesh beyond which no pair is mended.
+const GIVEN_PAIRS: usize = 1 << 16;
 
 /// Places that are tried in all.
 const TRIALS: usize = 1 << 14;
@@ -111,16 +114,27 @@ impl TriangleMesh {
         if rounds == 0 {
             found.mesh = mender.mesh()?.0;
         }
+        let mut given = None;
         for round in 0..rounds {
             mender.settle(&mut found)?;
             let (mesh, numbers, welded) = mender.mesh()?;
-            let pairs = mesh.intersecting_pairs(PAIRS, &quiet)?;
+            let pairs = mesh.intersecting_pairs(GIVEN_PAIRS + PAIRS, &quiet)?;
             found.degenerate = mender.flat.len() as u64 + welded;
-            let is_done = found.degenerate + pairs.count == 0;
             found.intersecting_pairs = pairs.count;
+            // Pairs that intersect without rounding are left alone.
+            if pairs.count > 0 && given.is_none() {
+                given = Some(self.given_pairs(&quiet)?);
+            }
+            let made = match &given {
+                Some(Some(given)) => {
+                    let made = pairs.pairs.iter().map(|pair| sorted(pair.triangles.map(|t| numbers[t as usize])));
+                    memory_of(made.filter(|pair| !given.contains(pair)).take(PAIRS))?
+                }
+                _ => Vec::new(),
+            };
+            let is_done = found.degenerate == 0 && made.is_empty();
             let is_last = is_done || round + 1 == rounds || {
-                let triangles = pairs.pairs.iter().flat_map(|pair| pair.triangles);
-                let in_pairs = memory_of(triangles.map(|number| numbers[number as usize]))?;
+                let in_pairs = memory_of(made.iter().flatten().copied())?;
                 let tree = mesh.triangle_tree(&quiet)?;
                 !mender.part(&tree, &numbers, &in_pairs, welded > 0, &quiet)?
             };
@@ -138,6 +152,24 @@ impl TriangleMesh {
         job.advance(WHOLE);
         Ok(found)
     }
+}
+
+impl TriangleMesh {
+    /// The pairs of triangles that intersect, if there are at most [`GIVEN_PAIRS`].
+    fn given_pairs(&self, control: &Control<'_>) -> Result<Option<HashSet<[u32; 2]>>, Error> {
+        let found = self.intersecting_pairs(GIVEN_PAIRS, control)?;
+        if !found.is_complete || found.count > GIVEN_PAIRS as u64 {
+            return Ok(None);
+        }
+        let mut all = HashSet::new();
+        all.try_reserve(found.pairs.len()).map_err(|_| Error::OutOfMemory)?;
+        all.extend(found.pairs.iter().map(|pair| sorted(pair.triangles)));
+        Ok(Some(all))
+    }
+}
+
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// The items of an iterator of unknown length.

@@ -2,7 +2,7 @@
 //! to do, and answers that agree with each other.
 
 use crate::models::model;
-use crate::place::{self, Place, block, meshes, solids, stl};
+use crate::place::{Place, block, meshes, solids, stl};
 use leafless::TriangleMesh;
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -410,61 +410,5 @@ fn options_have_one_meaning_and_the_help_has_headings() {
             assert!(help.text().contains(heading), "{heading} {help:?}");
         }
         assert!(help.text().contains("--to-unit") && help.text().contains("--extents"), "{help:?}");
-    }
-}
-
-/// The answers of a page of the documentation, without the times that they took.
-fn timeless(text: &str) -> String {
-    let line = |line: &str| {
-        let mut words: Vec<&str> = line.split_whitespace().collect();
-        for at in 1..words.len() {
-            if ["s", "ms", "µs"].contains(&words[at].trim_end_matches([',', ';', ':'])) {
-                words[at - 1] = "…";
-                words[at] = "s";
-            }
-        }
-        words.join(" ")
-    };
-    text.lines().map(line).collect::<Vec<_>>().join("\n")
-}
-
-/// The page of the first day says what the program says. With `LEAFLESS_BLESS=1` the program writes its
-/// answers there.
-#[test]
-fn the_page_of_the_first_day_is_true() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/first-day.md");
-    let page = std::fs::read_to_string(&path).unwrap();
-    let place = Place::new();
-    let mut folder = place.0.path().to_owned();
-    let (mut written, mut lines) = (String::new(), page.lines().peekable());
-    let mut commands = 0;
-    while let Some(line) = lines.next() {
-        written += &format!("{line}\n");
-        let Some(command) = line.strip_prefix("$ ") else { continue };
-        let mut told = String::new();
-        while let Some(answer) = lines.next_if(|line| !line.starts_with("$ ") && !line.starts_with("```")) {
-            told += &format!("{answer}\n");
-        }
-        commands += 1;
-        if let Some(name) = command.strip_prefix("cd ") {
-            folder.push(name);
-            continue;
-        }
-        if let Some((text, file)) = command.strip_prefix("echo '").and_then(|rest| rest.split_once("' > ")) {
-            std::fs::write(folder.join(file), text).unwrap();
-            continue;
-        }
-        let words = command.strip_prefix("leafless ").unwrap().split(' ');
-        let output = place.command(words).current_dir(&folder).output().unwrap();
-        let answer = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
-        let answer = place::without_progress(&answer);
-        if std::env::var_os("LEAFLESS_BLESS").is_none() && !command.starts_with("leafless demo") {
-            assert_eq!(timeless(&answer), timeless(&told), "{command}");
-        }
-        written += &answer;
-    }
-    assert!(commands > 20);
-    if std::env::var_os("LEAFLESS_BLESS").is_some() {
-        std::fs::write(path, written).unwrap();
     }
 }
