@@ -1,20 +1,21 @@
 //! Triangle meshes as solids.
 //!
-//! The truth is the set of points with a non-zero winding number (or a positive or an odd one, on request),
-//! so that overlapping bodies, nested shells and shells turned inside out have a meaning. Where a mesh is not
-//! closed the winding number is not an integer, and the nearest one decides: a convention.
+//! The solid is the set of points with a non-zero winding number (or a positive or an odd one, on request).
+//! So overlapping bodies, nested shells and inverted shells have a meaning. Where a mesh is not closed, the
+//! winding number is not an integer, and by convention the nearest integer decides.
 //!
-//! Classification is certified: the cells that a triangle cuts stay PARTIAL and none is ever missed. Every
-//! other cell of a closed mesh is wholly on one side, and which side is an exact integer, the winding number
-//! of its lowest centre, carried from cell to cell along lines that count the triangles they pierce. An open
-//! mesh is closed by caps for that (`boundary`), whose own winding number is then taken off with bounds of
-//! its error and its slope (`winding`, `open`).
+//! Classification is certified: the cells that a triangle cuts stay PARTIAL, and none is ever missed. Every
+//! other cell of a closed mesh lies wholly on one side. The side follows from an exact integer: the winding
+//! number of the cell's lowest centre, carried from cell to cell along lines that count the triangles they
+//! pierce. For this, caps close an open mesh
+//! (`mesh/boundary`). The caps' own winding number is then subtracted, with bounds of its error and its gradient (`winding`,
+//! `open`).
 //!
-//! Whoever asks for one ray, one point, one box or one distance of a mesh gets the answer from a tree over
-//! its triangles, and the rim of its holes (`direct`, `open_trace`), without cells.
+//! A single ray, point, box or distance is answered without cells, from a tree over the triangles and from
+//! the rim of the mesh's holes (`direct`, `open_trace`).
 //!
-//! Beyond verdicts, cells know the moments of what they hold, the area of the boundary and its slab, from the
-//! triangles that cut them (`integral`, `slab`).
+//! Beyond verdicts, cells provide the moments of the solid within them, the area of the boundary and its
+//! slab, from the triangles that cut them (`integral`, `slab`).
 //!
 //! From the bottom up, each file uses only files named before it: `placed` (vertices on the lattice),
 //! `crossing` (where lines of centres pierce triangles), `overlap` (which cells a triangle cuts), `rim`
