@@ -70,7 +70,7 @@ impl<'p> Projection<'p> {
         let edges = [0, 1, 2].map(|i| {
             let (a, b) = (corners[i], corners[(i + 1) % 3]);
             let slope = (b.at[axes.u] - a.at[axes.u]) / (b.at[axes.v] - a.at[axes.v]);
-            // Three positions and a slope of two more go into the meeting point. (NaN and infinity, from
+            // Three positions and the slope of two more enter the meeting point. (NaN and infinity, from
             // edges along the row, make every comparison with this bound uncertain.)
             (slope, 8.0 * error * (1.0 + slope.abs()))
         });
@@ -231,7 +231,8 @@ impl<'p> Projection<'p> {
         let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
         let det = a[u] * minor(v, w) + a[v] * minor(w, u) + a[w] * minor(u, v);
         let slope = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
-        // The errors of the determinants' products, scaled to the greatest possible quotient.
+        // The errors of both determinants' products, those of the divisor times the greatest possible
+        // quotient.
         let wrong = 64.0 * DoubleDouble::EPSILON * size * size * size;
         let cell = self.placed.frame.cell_size();
         (wrong < 0.25 * self.fine * cell * slope.high.abs())

@@ -439,8 +439,8 @@ impl<'v> Layering<'v> {
         Some(Table((0..64).fold(0, |all, signs| all | wide(signs) << signs)))
     }
 
-    /// Whether all of the cell's own ones of the layers `of` lies near to a facet each: what is near to a
-    /// convex polygon is convex, so that it is enough that the corners of the layer are.
+    /// Returns whether each of the layers `of` that belongs to the cell alone lies wholly near one facet. The
+    /// points near a convex polygon form a convex set, so that testing the corners of the layer suffices.
     fn are_covered(&self, found: &Found, of: usize) -> bool {
         let is_own = |(i, layer): &(usize, &Layer)| of >> i & 1 != 0 && layer.plane.is_none();
         found.each().iter().enumerate().filter(is_own).all(|(_, layer)| {
@@ -511,7 +511,8 @@ impl<'v> Layering<'v> {
         Some(is_one.then_some(value))
     }
 
-    /// Replaces the layers' places in the function by their numbers.
+    /// Returns the function in the numbers of the mesh's layers. Layers without a plane of the mesh are added
+    /// to `own`.
     fn named(
         &self,
         found: &Found,
