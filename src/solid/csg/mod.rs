@@ -81,7 +81,7 @@ struct Node {
     nesting: u32,
     /// The greatest nesting depth of placements in the node.
     placements: u32,
-    /// The frame of a stored octree in it, if there is one.
+    /// The frame of a stored octree in the node, if there is one.
     home: Option<Arc<Frame>>,
     extent: Extent,
     opposite: Extent,

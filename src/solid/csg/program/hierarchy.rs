@@ -19,7 +19,7 @@ use core::ops::Range;
 
 /// An operand of an operation that is being written.
 pub(crate) struct Operand {
-    /// Where its words begin; they end where those of the next do.
+    /// Where its words begin. They end where the words of the next operand begin.
     pub(crate) start: usize,
     /// The bounding boxes of the operand and of its complement, if known.
     pub(crate) extent: Option<UnitBox>,

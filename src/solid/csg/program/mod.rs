@@ -43,8 +43,8 @@ pub(crate) struct Program {
     pub(crate) half_spaces: Vec<Placed>,
     /// Each half-space as it was given, and the number of its chain of placements.
     sources: Vec<(HalfSpace, u32)>,
-    /// Chains of placements: the last map, and the chain before it, which is one less than its number says; 0
-    /// is none.
+    /// Chains of placements: the number of the chain before, and the last map. Chains are numbered from 1; 0
+    /// is the empty chain.
     chains: Vec<(u32, Affine)>,
     /// For each of the other solids, where its surfaces begin behind the half-spaces: in the list without
     /// layers, and in the list with them. (Set on first use.)
