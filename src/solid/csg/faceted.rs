@@ -15,9 +15,9 @@ fn upright_plane(a: Dyadic, b: Dyadic, c: Dyadic) -> HalfSpace {
 }
 
 impl Csg {
-    /// Returns the right angular wedge: the box between the origin and
-    /// `size` (model units) whose face at y = `size[1]` is narrowed, or widened, to 0 ≤ x ≤ `top`. With `top` =
-    /// 0, that face is an edge. (STEP, ISO 10303-42, defines the wedge in this way, and calls `top` `ltx`.)
+    /// Returns the right angular wedge: the box between the origin and `size` (model units) whose face at y =
+    /// `size[1]` is narrowed, or widened, to 0 ≤ x ≤ `top`. With `top` = 0, that face is an edge. (STEP, ISO
+    /// 10303-42, defines the wedge in this way, and calls `top` `ltx`.)
     ///
     /// # Errors
     /// [`Error::Argument`] if a size is not between 2^-256 and 2^256, or `top` is neither 0 nor in that
@@ -45,8 +45,9 @@ impl Csg {
     /// O(n log² n) time for n corners.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the outline touches or crosses itself or encloses nothing, if a coordinate is neither zero nor of a magnitude between 2^-256 and 2^256, or if `low`
-    /// is not less than `high`; [`Error::OutOfMemory`].
+    /// [`Error::Argument`] if the outline touches or crosses itself or encloses nothing, if a coordinate is
+    /// neither zero nor of a magnitude between 2^-256 and 2^256, or if `low` is not less than `high`;
+    /// [`Error::OutOfMemory`].
     pub fn prism(polygon: &[[f64; 2]], low: f64, high: f64) -> Result<Csg, Error> {
         heights(low, high)?;
         let (mut min, mut max) =
@@ -79,9 +80,9 @@ impl Csg {
         Ok(operands.pop().unwrap_or_else(Csg::empty))
     }
 
-    /// Returns the convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all
-    /// `planes` (normal, offset). The normals, of any length, point inward. The polyhedron may be unbounded, or empty; then it has no [`bounds`](crate::Solid::bounds).
-    /// O(planes).
+    /// Returns the convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes`
+    /// (normal, offset). The normals, of any length, point inward. The polyhedron may be unbounded, or empty;
+    /// then it has no [`bounds`](crate::Solid::bounds). O(planes).
     ///
     /// # Errors
     /// [`Error::Argument`] if there is no plane; errors as [`HalfSpace::plane`]; [`Error::OutOfMemory`].

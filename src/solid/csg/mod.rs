@@ -210,10 +210,9 @@ impl Csg {
         Csg::new(Kind::Complement(self.root.clone()), self.root.opposite, self.root.extent)
     }
 
-    /// Returns the solid moved by
-    /// `placement`. Half-spaces are moved exactly, and each other solid as [`AnySolid::placed`] moves it;
-    /// [`motion`](Solid::motion) reports the effect. O(1), plus the time for other solids and for the parts
-    /// of the expression that contain them.
+    /// Returns the solid moved by `placement`. Half-spaces are moved exactly, and each other solid as
+    /// [`AnySolid::placed`] moves it; [`motion`](Solid::motion) reports the effect. O(1), plus the time for
+    /// other solids and for the parts of the expression that contain them.
     ///
     /// # Errors
     /// As [`AnySolid::placed`].

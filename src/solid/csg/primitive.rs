@@ -78,19 +78,19 @@ impl Csg {
     /// Returns the cylinder of `radius` around the z axis between z = `low` and z = `high` (model units).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the radius is not between 2^-256 and 2^256, if a coordinate is neither zero nor of such a magnitude, or if `low`
-    /// is not less than `high`.
+    /// [`Error::Argument`] if the radius is not between 2^-256 and 2^256, if a coordinate is neither zero nor
+    /// of such a magnitude, or if `low` is not less than `high`.
     pub fn cylinder(radius: f64, low: f64, high: f64) -> Result<Csg, Error> {
         length("radius", radius)?;
         Csg::frustum(radius, radius, low, high)
     }
 
-    /// Returns the frustum of a cone around the z axis, with radius `bottom` at z = `low` and
-    /// `top` at z = `high` (model units). One of the radii may be 0, which makes a cone.
+    /// Returns the frustum of a cone around the z axis, with radius `bottom` at z = `low` and `top` at z =
+    /// `high` (model units). One of the radii may be 0, which makes a cone.
     ///
     /// # Errors
-    /// [`Error::Argument`] if both radii are 0, if a non-zero radius is not between 2^-256 and 2^256, if a coordinate is neither zero nor of such a magnitude, or if `low`
-    /// is not less than `high`.
+    /// [`Error::Argument`] if both radii are 0, if a non-zero radius is not between 2^-256 and 2^256, if a
+    /// coordinate is neither zero nor of such a magnitude, or if `low` is not less than `high`.
     pub fn frustum(bottom: f64, top: f64, low: f64, high: f64) -> Result<Csg, Error> {
         for radius in [bottom, top] {
             if radius != 0.0 || bottom == top {

@@ -1,5 +1,5 @@
-//! Whether two polynomials bound the same half-space, or one the complement of the other: true if their
-//! coefficients on the universe are proportional.
+//! A test whether two polynomials bound the same half-space, or one the complement of the other: whether
+//! their coefficients on the universe are proportional.
 
 use super::Placed;
 use crate::lattice::exact::{Dyadic, sqrt};
@@ -59,8 +59,8 @@ impl Placed {
         Some(sum.copysign(sum * first) / length + kind)
     }
 
-    /// Decides exactly whether the coefficients are proportional:
-    /// `Some(true)` for a negative factor, `Some(false)` for a positive one.
+    /// Decides exactly whether the coefficients are proportional: `Some(true)` for a negative factor,
+    /// `Some(false)` for a positive one.
     pub(crate) fn is_turned(&self, other: &Placed) -> Option<bool> {
         let ((a, count), (b, other_count)) = (self.rounded()?, other.rounded()?);
         if count != other_count {

@@ -21,9 +21,8 @@ pub(crate) fn value(exact: &[Dyadic; 4], t: &[Dyadic; 3]) -> Dyadic {
     (0..3).fold(exact[3].clone(), |sum, axis| &sum + &(&exact[axis] * &t[axis]))
 }
 
-/// Returns whether no sum of products is rounded. The factors are
-/// `coefficients` (doubles) and multiples of 2^-`places`; no sum is greater than `size`. This holds if `size`
-/// is below 2^53 times the finest grain.
+/// Returns whether no sum of products is rounded. The factors are `coefficients` (doubles) and multiples of
+/// 2^-`places`; no sum is greater than `size`. This holds if `size` is below 2^53 times the finest grain.
 pub(crate) fn is_exact(coefficients: &[Dyadic], places: i64, size: f64) -> bool {
     let grain = coefficients.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - places;
     Dyadic::new(size).magnitude().is_none_or(|m| m + 1 - grain <= 53)

@@ -136,8 +136,8 @@ pub(crate) fn most_area<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell:
     Some(Interval::between(0.0, areas.sum::<Option<f64>>()?))
 }
 
-/// Returns half-spaces, or complements, that all contain the points of a table; the flag is
-/// `false` if the table is their intersection. `None` if there is no such half-space.
+/// Returns half-spaces, or complements, that all contain the points of a table; the flag is `false` if the
+/// table is their intersection. `None` if there is no such half-space.
 fn around(variables: impl Iterator<Item = (usize, u32)>, table: Table) -> Option<(Chosen, bool)> {
     let mut literals = [None; MOST];
     let (mut all, mut count) = (Table::FULL, 0);

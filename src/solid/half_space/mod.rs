@@ -172,9 +172,9 @@ impl HalfSpace {
         HalfSpace(Arc::new(Surface::Torus(torus)))
     }
 
-    /// Returns a half-space that a host program supplies. f is given by its
-    /// `value` at a point and its `range` over a box (lower and upper corner), in model units; under a
-    /// placement, in the space of the half-space.
+    /// Returns a half-space that a host program supplies. f is given by its `value` at a point and its
+    /// `range` over a box (lower and upper corner), in model units; under a placement, in the space of the
+    /// half-space.
     ///
     /// A range must contain all values that f has in the box. Only ranges prove anything: a cell is FULL if
     /// its range is nowhere negative, and EMPTY if its range is nowhere positive. The range is taken over a
@@ -184,10 +184,9 @@ impl HalfSpace {
     /// with `lower > upper`, decide nothing.
     ///
     /// Several threads call both functions at once, and the functions must give the same answer to the same
-    /// arguments. An error, such as
-    /// [`Error::Callback`], ends the operation, which returns it. The `fingerprint` is the promise that
-    /// functions with the same fingerprint are the same. Without one, no expression that contains the
-    /// half-space has a fingerprint.
+    /// arguments. An error, such as [`Error::Callback`], ends the operation, which returns it. The
+    /// `fingerprint` is the promise that functions with the same fingerprint are the same. Without one, no
+    /// expression that contains the half-space has a fingerprint.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Interval, Rule, build, solid::HalfSpace};
@@ -437,9 +436,8 @@ impl Placed {
         }))
     }
 
-    /// Returns whether the centre
-    /// `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface. `None` if the host does not
-    /// know.
+    /// Returns whether the centre `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface.
+    /// `None` if the host does not know.
     #[inline]
     pub(crate) fn contains(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
         self.decided(t, self.sign_at(t)?)
@@ -455,9 +453,9 @@ impl Placed {
         self.decided(t, sign)
     }
 
-    /// Returns f on a ray along
-    /// `axis` through a point as a polynomial of degree two: the factors of 1, s and s² for the coordinate s, and more than the error of its values on the universe. `None`
-    /// for surfaces that are neither planes nor quadrics.
+    /// Returns f on a ray along `axis` through a point as a polynomial of degree two: the factors of 1, s and
+    /// s² for the coordinate s, and more than the error of its values on the universe. `None` for surfaces
+    /// that are neither planes nor quadrics.
     #[inline]
     pub(crate) fn along(&self, axis: usize, point: [f64; 3]) -> Option<([f64; 3], f64)> {
         match self {

@@ -52,8 +52,8 @@ pub(super) fn excluded(f: &Form, g: &Form) -> Option<(bool, bool)> {
     )
 }
 
-/// Returns whether the 3 × 3 matrix without row and column
-/// `left_out` is negative semi-definite; positive semi-definite if `positive`.
+/// Returns whether the 3 × 3 matrix without row and column `left_out` is negative semi-definite; positive
+/// semi-definite if `positive`.
 pub(super) fn is_semi_definite(f: &Form, left_out: usize, positive: bool) -> bool {
     let rows: [usize; 3] = from_fn(|k| k + usize::from(k >= left_out));
     let constant = |c: &Dyadic| Polynomial::new(&[c]);

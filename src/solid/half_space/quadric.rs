@@ -65,8 +65,8 @@ struct Separable {
     constant: f64,
     linear: f64x4,
     square: f64x4,
-    /// The vertex of the parabola along each axis, and its value there: as
-    /// `least` if the parabola opens upward, as `most` if it opens downward, otherwise infinite.
+    /// The vertex of the parabola along each axis, and its value there: as `least` if the parabola opens
+    /// upward, as `most` if it opens downward, otherwise infinite.
     vertex: f64x4,
     least: f64x4,
     most: f64x4,
@@ -267,8 +267,8 @@ impl Quadric {
         }
     }
 
-    /// Returns the polynomial on a ray in numbers of 106 bits. Its error is at most
-    /// [`DoubleDouble::EPSILON`] times 64 times [`size`](Self::size), since coordinates are at most 1.
+    /// Returns the polynomial on a ray in numbers of 106 bits. Its error is at most [`DoubleDouble::EPSILON`]
+    /// times 64 times [`size`](Self::size), since coordinates are at most 1.
     pub(crate) fn finely_along(&self, axis: usize, point: [f64; 3]) -> [DoubleDouble; 3] {
         let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
         let [u, v] = [point[i], point[j]].map(DoubleDouble::from);

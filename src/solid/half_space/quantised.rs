@@ -16,10 +16,10 @@ const THICKER: f64 = 1.4;
 const FINE: f64 = 1024.0;
 
 impl PlacedHalfSpace {
-    /// Returns a slab in model space that is used in one cell alone, its
-    /// `index`-th, in whole numbers. Every point of the cell that the result proves inside or outside has that side for the slab, too. `None`
-    /// if the half-space is no slab; if the slab is thicker in the cell than
-    /// `tolerance` (model units); and if rounding would make the slab thicker by more than two fifths and thicker than a 1024th of `tolerance`,
+    /// Returns a slab in model space that is used in one cell alone, its `index`-th, in whole numbers. Every
+    /// point of the cell that the result proves inside or outside has that side for the slab, too. `None` if
+    /// the half-space is no slab; if the slab is thicker in the cell than `tolerance` (model units); and if
+    /// rounding would make the slab thicker by more than two fifths and thicker than a 1024th of `tolerance`,
     /// as in cells that are large compared with its width.
     pub(crate) fn quantised(
         &self,

@@ -43,7 +43,7 @@ pub enum SurfaceShape {
     },
     /// The lines through `apex` at an angle to the axis, on both sides of the apex.
     Cone {
-        /// In model space.
+        /// The apex, in model space.
         apex: [f64; 3],
         /// The direction of the axis, of length one.
         axis: [f64; 3],

@@ -20,8 +20,8 @@ impl Terms {
     const NONE: Terms = Terms { terms: [[None; 3]; Terms::MOST], count: 0, cost: 0 };
 
     /// Returns the cheapest terms that are found for a function of half-spaces 0 to 2 by testing one
-    /// half-space after the other, or the terms of its complement if they are cheaper;
-    /// `true` for the complement. A function and its complement give the same terms. Terms with more than one `curved`
+    /// half-space after the other, or the terms of its complement if they are cheaper; `true` for the
+    /// complement. A function and its complement give the same terms. Terms with more than one `curved`
     /// half-space are expensive, because their moments are less precise.
     pub(crate) fn cheapest(table: Table, curved: [bool; 3]) -> (Terms, bool) {
         let [own, other] = [table, Table(!table.0)].map(|table| Terms::of(table, [None; 3], curved));

@@ -12,7 +12,7 @@ use crate::lattice::exact::{Dyadic, sign, sqrt};
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// The points (x, y, z) for which (`scale` x, `scale` y, `scale` z + `shift`) is at most √`square` from the
+/// The points (x, y, z) such that (`scale` x, `scale` y, `scale` z + `shift`) is at most √`square` from the
 /// circle of radius `major` > 0 around the z axis in the plane z = 0.
 #[derive(PartialEq, Eq, Hash)]
 pub(crate) struct Torus {
@@ -22,7 +22,7 @@ pub(crate) struct Torus {
     pub(crate) shift: Dyadic,
 }
 
-/// As good as on the axis, if nearer to it than this: 2^-400.
+/// A point nearer to the axis than this counts as on the axis: 2^-400.
 const NEAR: f64 = f64::from_bits((1023 - 400) << 52);
 
 /// A torus on a universe, in its own space up to a positive factor. With ρ² = x² + y², f = minor² − (ρ −

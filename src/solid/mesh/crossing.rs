@@ -1,4 +1,4 @@
-//! Where lines of cell centres pierce triangles, exactly.
+//! The exact places where lines of cell centres pierce triangles.
 //!
 //! The difference of the winding numbers of two cell centres follows from the triangles that an axis-parallel
 //! line between them pierces. All centres are shifted symbolically by (ε, ε², ε³), ε → 0, so that no line

@@ -13,8 +13,9 @@
 //!
 //! For a point of an open mesh, the triangles on the way to infinity count the winding number of the surface
 //! closed by cones: cones over the rim of its holes, with their apex at the other end of that way. The cones'
-//! own winding number is then subtracted
-//! (`rim`). An open mesh also bounds the solid away from its triangles, where its winding number is one half. A ball or box without triangles holds none of that boundary if the winding number cannot change by enough in it. (Rays of open meshes: `open_trace`.)
+//! own winding number is then subtracted (`rim`). An open mesh also bounds the solid away from its triangles,
+//! where its winding number is one half. A ball or box without triangles holds none of that boundary if the
+//! winding number cannot change by enough in it. (Rays of open meshes: `open_trace`.)
 
 use super::rim::{Course, DIRECTIONS, Fraction, Rim};
 use super::rim_line::RimLine;
@@ -65,8 +66,8 @@ impl Direct {
     }
 }
 
-/// How many hits have the same time as the first one, up to rounding, and the time at which they end. `hits`
-/// is sorted.
+/// Returns how many hits have the same time as the first one, up to rounding, and the time at which they end.
+/// `hits` is sorted.
 pub(super) fn together(hits: &[Hit]) -> (usize, f64) {
     let mut until = hits.first().map_or(0.0, |hit| hit.t.upper);
     let met = hits.iter().take_while(|hit| {
@@ -438,8 +439,8 @@ impl Tracer<'_> {
         (middle, half): ([f64; 3], f64),
         parts: &mut usize,
     ) -> Result<Option<bool>, Error> {
-        // `place` is the ball's point that is nearest to the cube's middle. No point of the ball in the cube is further from `place`
-        // than from the middle, and the segment from `place` to it lies in the ball.
+        // `place` is the ball's point that is nearest to the cube's middle. No point of the ball in the cube
+        // is further from `place` than from the middle, and the segment from `place` to it lies in the ball.
         let away = DVec3::from(middle) - DVec3::from(*centre);
         let distance = sqrt(away.length_squared());
         let wide = half * sqrt(3.0) * (1.0 + 1e-9);

@@ -1,4 +1,4 @@
-//! On which side of each triangle in a small cell the solid lies.
+//! The side of each triangle in a small cell on which the solid lies.
 //!
 //! The knowledge about whole triangles ([`Sides`](crate::mesh::Sides)) leaves out triangles that intersect
 //! others somewhere, and all triangles of an open surface. In a cell in which no two triangles intersect, the
@@ -21,9 +21,9 @@ struct Part {
 }
 
 impl View<'_> {
-    /// On which side of each triangle of the cell the solid lies: 1 if only behind it, −1 if only in front of
-    /// it, 0 if on both sides or on neither, or if the triangle does not reach into the cell. `None` if this
-    /// stays undecided. O(n²).
+    /// Returns on which side of each triangle of the cell the solid lies: 1 if only behind it, −1 if only in
+    /// front of it, 0 if on both sides or on neither, or if the triangle does not reach into the cell. `None`
+    /// if this stays undecided. O(n²).
     pub(super) fn senses(
         &self,
         sides: &Sides,

@@ -309,9 +309,8 @@ impl Sums {
 }
 
 impl Seen {
-    /// Returns where the triangle meets the plane x =
-    /// `bound`, from where its boundary goes down to where it comes up. `above` says which corners lie above
-    /// the plane; one corner differs from the other two.
+    /// Returns where the triangle meets the plane x = `bound`, from where its boundary goes down to where it
+    /// comes up. `above` says which corners lie above the plane; one corner differs from the other two.
     fn segment(&self, above: [bool; 3], bound: f64) -> [Point; 2] {
         let mut ends = [[0.0; 3]; 2];
         for i in 0..3 {

@@ -1,4 +1,4 @@
-//! Which planes bound the solid in a cell, and which Boolean function of their sides the solid is.
+//! The planes that bound the solid in a cell, and the Boolean function of their sides that the solid is.
 //!
 //! The triangles of a cell are divided into up to three groups. Each group lies in a layer: a plane with a
 //! width. There are no triangles outside the layers, so that the winding number is constant in each of the up
@@ -335,8 +335,8 @@ impl<'v> Layering<'v> {
         self.around(|i| groups[i] == group, false)
     }
 
-    /// Computes the winding number on these sides of layers;
-    /// `Some(None)` if the sides have no point in common. `None` if it stays undecided.
+    /// Computes the winding number on these sides of layers; `Some(None)` if the sides have no point in
+    /// common. `None` if it stays undecided.
     fn region(&self, found: &Found, sides: Sides, base: &Base) -> Option<Option<Witness>> {
         let mut halves = [([0.0; 3], 0.0); MOST];
         let mut count = 0;

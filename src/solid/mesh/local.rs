@@ -103,7 +103,7 @@ impl Seen {
         (0..3).all(|k| self.high[k] <= limit && -self.low[k] <= limit)
     }
 
-    /// How many of the six planes at `limit` cut the triangle, or have it beyond them.
+    /// Returns how many of the six planes at `limit` cut the triangle, or have it beyond them.
     pub(super) fn planes(&self, limit: f64) -> f64 {
         (0..3).map(|k| f64::from((self.high[k] > limit) as u8 + (-self.low[k] > limit) as u8)).sum()
     }
@@ -129,7 +129,8 @@ impl Seen {
         Some(polygon)
     }
 
-    /// On which side of the plane a point with an error of `error` lies: 1 in front, −1 behind, 0 if unsure.
+    /// Returns on which side of the plane a point with an error of `error` lies: 1 in front, −1 behind, 0 if
+    /// unsure.
     pub(super) fn side(&self, p: &Point, error: f64) -> i32 {
         let [a, b, c] = &self.corners;
         volume_sign([&minus(b, a), &minus(c, a), &minus(p, a)], self.error + error)

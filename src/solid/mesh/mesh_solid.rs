@@ -34,15 +34,21 @@ use once_cell::race::OnceBox;
 
 /// A triangle mesh as a solid. Cheap to clone.
 ///
-/// Any mesh is accepted. For a closed mesh, the inside is exact. For an open mesh,
-/// [`FillRule`] is the convention that says which points are inside. A cell is FULL or EMPTY only if this is proven for all of its points. Around holes, cells that no triangle cuts stay PARTIAL; [`TriangleMesh::report`]
-/// lists holes.
+/// Any mesh is accepted. For a closed mesh, the inside is exact. For an open mesh, [`FillRule`] is the
+/// convention that says which points are inside. A cell is FULL or EMPTY only if this is proven for all of
+/// its points. Around holes, cells that no triangle cuts stay PARTIAL; [`TriangleMesh::report`] lists holes.
 ///
 /// # Single queries
 /// Rays ([`cast_rays`](crate::cast_rays), [`ray_spans`](crate::query::ray_spans)), points
 /// ([`contains`](crate::contains)), boxes ([`classify_box`](crate::query::classify_box)) and distances
-/// ([`distances`](crate::query::distances)) are answered without cells. The first such query builds its data structures. These are: a tree over the triangles, which the mesh keeps for all solids that share it (O(t log t), 0.1 to 0.3 µs a triangle; 36 bytes a triangle); for distances of closed meshes, on which sides of its triangles the solid lies (about twice that time, and a byte a triangle); for open meshes, the rim of their holes (48 bytes an edge). A [placed](Self::placed) copy takes over the order of the tree, and recomputes its boxes. Threads whose first queries coincide may each build the structures once. A solid that is not [`Prepared`](crate::solid::Prepared)
-/// is put on its frame for every call, which takes longer than the answer.
+/// ([`distances`](crate::query::distances)) are answered without cells. The first such query builds its data
+/// structures. These are: a tree over the triangles, which the mesh keeps for all solids that share it (O(t
+/// log t), 0.1 to 0.3 µs a triangle; 36 bytes a triangle); for distances of closed meshes, on which sides of
+/// its triangles the solid lies (about twice that time, and a byte a triangle); for open meshes, the rim of
+/// their holes (48 bytes an edge). A [placed](Self::placed) copy takes over the order of the tree, and
+/// recomputes its boxes. Threads whose first queries coincide may each build the structures once. A solid
+/// that is not [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer
+/// than the answer.
 ///
 /// Near a hole, a query of an open mesh looks at all edges of the rim: once as a rule, and some dozen times
 /// for a ray through a hole. Where the winding number is one half away from triangles, the ends of spans are
@@ -69,11 +75,11 @@ pub struct MeshSolid {
 /// Lazily computed properties of a mesh's boundary, and of the solid that it encloses.
 struct Boundary {
     loops: Loops,
-    /// How far the solid may reach beyond the mesh's bounding box. Computed on first use.
+    /// The reach of the solid beyond the mesh's bounding box. Computed on first use.
     reach: OnceBox<[[f64; 3]; 2]>,
     /// The moments of the solid. Computed on first use.
     moments: OnceBox<MeshMoments>,
-    /// On which sides of the triangles the solid lies; `None` if triangles lie too close to each other.
+    /// The sides of the triangles on which the solid lies; `None` if triangles lie too close to each other.
     /// Computed on first use.
     sides: OnceBox<Option<Sides>>,
     /// The rim of an open mesh. Computed on first use.
@@ -107,8 +113,8 @@ impl MeshSolid {
     /// boundary.
     ///
     /// # Errors
-    /// [`Error::Mesh`] in three cases: the mesh is empty; an odd number of triangles meet on an edge, for [`FillRule::EvenOdd`];
-    /// the mesh has a [deviation](TriangleMesh::with_deviation) and [is not
+    /// [`Error::Mesh`] in three cases: the mesh is empty; an odd number of triangles meet on an edge, for
+    /// [`FillRule::EvenOdd`]; the mesh has a [deviation](TriangleMesh::with_deviation) and [is not
     /// closed](TriangleMesh::check_closed) as the rule demands. [`Error::OutOfMemory`].
     pub fn new(mesh: impl Into<Arc<TriangleMesh>>, fill: FillRule) -> Result<MeshSolid, Error> {
         let mesh = mesh.into();
@@ -232,7 +238,7 @@ impl MeshOnFrame {
 /// are as fast.
 const MOST_EDGES: usize = 1 << 14;
 
-/// How many triangles are processed together.
+/// The number of triangles that are processed together.
 const BATCH: usize = 64;
 
 /// The lowest finest cell of `cell`, and its edge in finest cells.

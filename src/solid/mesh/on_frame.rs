@@ -33,9 +33,9 @@ pub struct MeshPart {
     pub(super) count: usize,
     /// The winding number of the surface with its caps; of the surface alone if `caps` is `None`.
     pub(super) winding: i32,
-    /// The branch of the caps' winding number, which is not an integer.
-    /// `None` if the surface's own winding number rounds to `winding` throughout the cell, except for the
-    /// changes at the triangles that cut the cell. Without caps, always `None`.
+    /// The branch of the caps' winding number, which is not an integer. `None` if the surface's own winding
+    /// number rounds to `winding` throughout the cell, except for the changes at the triangles that cut the
+    /// cell. Without caps, always `None`.
     pub(super) caps: Option<Branch>,
 }
 
@@ -93,9 +93,9 @@ impl MeshOnFrame {
         }
     }
 
-    /// Adds to
-    /// `steps` the changes of the winding number by a triangle, on the ways along x, y and z to the lowest centres of a cell's children of edge `half`.
-    /// `steps` is indexed by the child to which a way leads.
+    /// Adds to `steps` the changes of the winding number by a triangle, on the ways along x, y and z to the
+    /// lowest centres of a cell's children of edge `half`. `steps` is indexed by the child to which a way
+    /// leads.
     #[inline]
     pub(super) fn pierce(
         &self,

@@ -28,8 +28,8 @@ use alloc::vec::Vec;
 /// Half the diagonal of a cube of edge 1, rounded up.
 const HALF_DIAGONAL: f64 = 0.866_025_404;
 
-/// If the errors of two winding numbers sum to less than one half, and the numbers differ by an integer, that
-/// integer is the nearest one to their difference. Each number needs this error.
+/// The greatest error of each of two winding numbers that differ by an integer, so that rounding their
+/// difference gives the integer: the two errors sum to less than one half.
 const SURE: f64 = 0.2;
 
 /// The error that a group of caps may add in a cell.
@@ -56,7 +56,7 @@ pub(super) struct Surroundings {
 /// A cell's lower corner, and its expansion; `None` if the boundary passes close by.
 type Slot = Option<([i32; 3], Option<Local>)>;
 
-/// How many cells of a level are kept along each axis: a power of two.
+/// The number of cells of a level that are kept along each axis: a power of two.
 const KEPT: i32 = 4;
 
 impl Surroundings {
@@ -237,7 +237,7 @@ impl MeshOnFrame {
         self.placed.frame.depth() - size.trailing_zeros() as u8
     }
 
-    /// By how much a winding number exceeds the fill rule's threshold.
+    /// Returns by how much a winding number exceeds the fill rule's threshold.
     pub(super) fn excess(&self, winding: f64) -> f64 {
         self.fill.excess(winding)
     }

@@ -243,8 +243,8 @@ impl Search<'_> {
         caps.at(placed, (piece.far, piece.near), cell.map(|a| f64::from(a) + 0.5), Some(cell))
     }
 
-    /// By how much the caps' winding number at the lowest centre of a ray exceeds the smooth continuation.
-    /// `None` if the sum at the centre is not precise enough.
+    /// Returns by how much the caps' winding number at the lowest centre of a ray exceeds the smooth
+    /// continuation. `None` if the sum at the centre is not precise enough.
     fn step(&self, piece: &Piece<'_>, ray: [i32; 2], span: &Range<i32>) -> Option<i32> {
         let cell = self.cell(ray[0], ray[1], span.start);
         let (here, there) = (piece.smooth.as_ref()?.local.at_centre(cell), self.caps_at(piece, cell));
@@ -369,14 +369,14 @@ impl MeshOnFrame {
         self.excess(winding) >= 0.0
     }
 
-    /// Returns the caps' winding number at a point, on the branch nearest to
-    /// `guess`. On the rim, returns `guess`.
+    /// Returns the caps' winding number at a point, on the branch nearest to `guess`. On the rim, returns
+    /// `guess`.
     fn caps_near(&self, point: [f64; 3], guess: f64) -> f64 {
         self.caps_told(point, guess).map_or(guess, |caps| caps.value)
     }
 
-    /// Returns the caps' number on the branch of
-    /// `guess` with a bound of its error. The guess must be less than one half off. `None` on the rim.
+    /// Returns the caps' number on the branch of `guess` with a bound of its error. The guess must be less
+    /// than one half off. `None` on the rim.
     fn caps_told(&self, point: [f64; 3], guess: f64) -> Option<Fraction> {
         let Fraction { value, error } = self.caps.rim.fraction(point)?;
         let off = value - guess;
@@ -384,9 +384,8 @@ impl MeshOnFrame {
         Some(Fraction { value: guess + off, error: error + f64::EPSILON * (1.0 + guess.abs()) })
     }
 
-    /// Returns whether a centre is inside, if a sum over the rim decides.
-    /// `winding` is the number that belongs to the branch of `guess`. The guess must be less than one half
-    /// off.
+    /// Returns whether a centre is inside, if a sum over the rim decides. `winding` is the number that
+    /// belongs to the branch of `guess`. The guess must be less than one half off.
     fn told_centre(&self, cell: [i32; 3], winding: i32, guess: f64) -> Option<bool> {
         let caps = self.caps_told(cell.map(|a| f64::from(a) + 0.5), guess)?;
         let excess = self.excess(f64::from(winding) - caps.value);
@@ -394,10 +393,9 @@ impl MeshOnFrame {
         is_told.then_some(excess > 0.0)
     }
 
-    /// Returns where a ray through
-    /// `from` crosses the boundary: where the winding number, on the branch that `guess` gives, passes one
-    /// half or minus one half. Uses false position in the Illinois form, which halves the weight of an end
-    /// that stays.
+    /// Returns where a ray through `from` crosses the boundary: where the winding number, on the branch that
+    /// `guess` gives, passes one half or minus one half. Uses false position in the Illinois form, which
+    /// halves the weight of an end that stays.
     fn crossing(&self, from: [f64; 3], bracket: &Bracket, guess: impl Fn(f64) -> f64) -> BeamEnd {
         let &Bracket { w, winding, ends: [first, last] } = bracket;
         let excess = |caps: f64| self.excess(f64::from(winding) - caps);

@@ -228,8 +228,8 @@ impl Course<'_> {
         self.line.sums(at)
     }
 
-    /// Returns the side of the ray between two times. Triangles between them may change the number by
-    /// `falls` to `rises`. `None` if unsure.
+    /// Returns the side of the ray between two times. Triangles between them may change the number by `falls`
+    /// to `rises`. `None` if unsure.
     fn side(&self, winding: i32, [falls, rises]: [i32; 2], from: &Sums, to: &Sums) -> Option<bool> {
         let [least, most] = from.until(to);
         let (low, high) = (f64::from(winding + falls) - most, f64::from(winding + rises) - least);

@@ -1,4 +1,4 @@
-//! Which cells a triangle cuts.
+//! The test of which cells a triangle cuts.
 //!
 //! The separating-axis test of a triangle and a cube in the form of Schwarz and Seidel (*Fast parallel
 //! surface and solid voxelization on GPUs*, 2010): bounding box, plane, and the triangle's edges in the three

@@ -14,7 +14,7 @@ use core::ops::Range;
 /// Bits that are kept at a time: 16 MiB.
 const BITS: u64 = 1 << 27;
 
-/// How many triangles are processed between two checks for cancellation.
+/// The number of triangles that are processed between two checks for cancellation.
 const TRIANGLES: usize = 1 << 12;
 
 impl MeshSolid {

@@ -1,4 +1,4 @@
-//! How far the solid of an open surface may reach beyond the surface.
+//! Bounds of the distance by which the solid of an open surface may reach beyond the surface.
 //!
 //! The surface and caps over the loops of its boundary form a closed surface within the bounding box of the
 //! vertices. At a point outside the box, the surface and the caps together have winding number 0. So the

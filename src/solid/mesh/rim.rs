@@ -207,9 +207,9 @@ impl Rim {
         Some(Fraction { value: libm::atan2(imaginary, real) / (2.0 * PI), error: error + 4.0 * f64::EPSILON })
     }
 
-    /// Returns the full winding number, integers included, of the cones from one of the
-    /// [`DIRECTIONS`] at a point. The surface's own number is the integer count of triangles on the way to the opposite side, minus this number. `None`
-    /// if the point may lie on a cone or on the rim. O(n) in the edges.
+    /// Returns the full winding number, integers included, of the cones from one of the [`DIRECTIONS`] at a
+    /// point. The surface's own number is the integer count of triangles on the way to the opposite side,
+    /// minus this number. `None` if the point may lie on a cone or on the rim. O(n) in the edges.
     pub(super) fn of_cones(&self, point: DVec3, towards: DVec3) -> Option<Fraction> {
         let (mut real, mut imaginary, mut error, mut turns) = (1.0f64, 0.0f64, 0.0, 0.0);
         for &[from, to] in &self.edges {

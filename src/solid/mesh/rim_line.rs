@@ -33,7 +33,7 @@ const APART: f64 = 64.0;
 /// Beyond this many times the rim's distance, the winding number is zero.
 const FAR: f64 = 1e60;
 
-/// On which side the line passes an edge.
+/// The side on which the line passes an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
     /// The corner is the first of a walk, or the edge's angle is negligible.
@@ -139,9 +139,9 @@ impl Sums {
 }
 
 impl RimLine {
-    /// Prepares a ray: projects the loops of a rim whose caps' winding number may reach
-    /// `least` on the ray's course. Returns `false` if the ray comes too near to such a loop, or numbers are
-    /// too large. O(n) in the edges.
+    /// Prepares a ray: projects the loops of a rim whose caps' winding number may reach `least` on the ray's
+    /// course. Returns `false` if the ray comes too near to such a loop, or numbers are too large. O(n) in
+    /// the edges.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -351,7 +351,8 @@ impl Change {
     }
 
     /// Returns the least and the greatest rate of change of the winding number with the length, within
-    /// `reach`, which must be less than half the rim's distance. (The rate of each angle is an integral of constant sign over the inverse cubes of distances, which change by at most `reach`.)
+    /// `reach`, which must be less than half the rim's distance. (The rate of each angle is an integral of
+    /// constant sign over the inverse cubes of distances, which change by at most `reach`.)
     pub(super) fn within(&self, reach: f64) -> [f64; 2] {
         let part = reach / self.distance;
         let cube = |x: f64| 1.0 / (x * x * x);

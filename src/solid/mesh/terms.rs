@@ -191,8 +191,8 @@ impl Edge {
         let is_told = (cosine >= 0.0) | (sine > 1e-12);
         let inverse_open = 1.0 / open;
         let strength = SCALE * both * inverse_product * inverse_open;
-        // Along v, the derivative of from × to is edge × v, and the derivative of
-        // `strength` over both distances is `weaker` · v.
+        // Along v, the derivative of from × to is edge × v, and the derivative of `strength` over both
+        // distances is `weaker` · v.
         let mixed = (a * to.distance + b * from.distance) * inverse_product;
         let weaker =
             strength * (mixed + (a + b) * (both * inverse_product * inverse_open) - (a + b) * (1.0 / both));
@@ -250,7 +250,7 @@ impl EdgeTerms {
         self.count = 0;
     }
 
-    /// How many more edges fit.
+    /// Returns how many more edges fit.
     pub(super) fn room(&self) -> usize {
         MOST - self.count
     }

@@ -52,7 +52,7 @@ pub(super) struct Caps {
     beyond: Vec<[u32; 3]>,
     nodes: Vec<Node>,
     pub(super) rim: Rim,
-    /// How far the boundary may lie from its vertices' placed positions, in finest cells.
+    /// The greatest distance of the boundary from its vertices' placed positions, in finest cells.
     boundary_error: f64,
     /// A bound of the error of a vertex's position along each axis.
     vertex_error: f64,
@@ -393,9 +393,9 @@ impl Caps {
     }
 
     /// Returns the winding number around `point` to second order, within `radius` of it (both in finest cells
-    /// from the frame's origin). A group of caps that is expanded as a whole adds at most
-    /// `enough` to the error. `None` if the boundary passes through the ball. For a ball of radius 0, only
-    /// the value is computed.
+    /// from the frame's origin). A group of caps that is expanded as a whole adds at most `enough` to the
+    /// error. `None` if the boundary passes through the ball. For a ball of radius 0, only the value is
+    /// computed.
     ///
     /// If the point is a cell's centre, `cell` must name the cell. The value is then the one on the side of
     /// every cap to which the symbolic shift moves the centre. Otherwise, a point on a cap may get the value
@@ -422,9 +422,8 @@ impl Caps {
     }
 
     /// Returns the winding number of the caps that are not `near`, in the ball of `radius` around a point.
-    /// The ball must lie in the ball of
-    /// `known`, which covers all caps except those of a list. Caps of the list that are far from the ball are added to `known`.
-    /// The other caps are appended to `near`.
+    /// The ball must lie in the ball of `known`, which covers all caps except those of a list. Caps of the
+    /// list that are far from the ball are added to `known`. The other caps are appended to `near`.
     ///
     /// Lists are ascending. All edges of a far cap are far from the ball, so that derivatives of the cap's
     /// own winding number are sums over its edges. Edges between two added caps cancel.
@@ -585,7 +584,7 @@ impl Caps {
         side.unwrap_or(0.0) * PI
     }
 
-    /// On which side of a cap a cell's centre over it lies: 1 if the cap faces away from the centre.
+    /// Returns on which side of a cap a cell's centre over it lies: 1 if the cap faces away from the centre.
     #[cold]
     fn side(&self, placed: &Placed, cap: usize, cell: [i32; 3]) -> Option<f64> {
         let triangle = (placed.mesh.triangles().len() + cap) as u32;
@@ -669,9 +668,8 @@ impl Node {
         node
     }
 
-    /// Returns the group as seen from afar, in the ball of
-    /// `radius` around a point, if expanding it as a whole adds at most `enough` to the error anywhere in the
-    /// ball.
+    /// Returns the group as seen from afar, in the ball of `radius` around a point, if expanding it as a
+    /// whole adds at most `enough` to the error anywhere in the ball.
     #[inline(always)]
     fn seen(&self, point: DVec3, radius: f64, enough: f64) -> Option<Seen> {
         let towards = self.centre - point;

@@ -20,7 +20,7 @@ pub(crate) struct Hulls {
 /// The upper and the lower hulls of the blocks of one size.
 struct Level {
     corners: [Vec<u32>; 2],
-    /// Where each block's hull begins, and where the last hull ends.
+    /// The places where each block's hull begins, and where the last hull ends.
     starts: [Vec<usize>; 2],
 }
 

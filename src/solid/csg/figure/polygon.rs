@@ -43,7 +43,8 @@ pub(crate) enum Term {
 /// O(n log² n) time, O(n log n) memory.
 ///
 /// # Errors
-/// [`Error::Argument`] if a coordinate is neither zero nor of a magnitude between 2^-256 and 2^256, or if the outline touches or crosses itself or encloses nothing; [`Error::OutOfMemory`].
+/// [`Error::Argument`] if a coordinate is neither zero nor of a magnitude between 2^-256 and 2^256, or if the
+/// outline touches or crosses itself or encloses nothing; [`Error::OutOfMemory`].
 pub(crate) fn monotone_formula(points: &[[f64; 2]]) -> Result<Vec<Term>, Error> {
     valid::numbers("polygon", points.as_flattened())?;
     let mut corners = memory::with_capacity(points.len())?;

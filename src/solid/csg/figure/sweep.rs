@@ -153,9 +153,9 @@ impl Figure {
         extent.between(self.csg.clone(), low, high)
     }
 
-    /// Returns the tapered prism between two heights, `low` less than `high`. Its section at
-    /// `low` is the figure. The section is scaled about the z axis linearly with the height, to `scale` ≥ 0
-    /// (along x and y) at `high`.
+    /// Returns the tapered prism between two heights, `low` less than `high`. Its section at `low` is the
+    /// figure. The section is scaled about the z axis linearly with the height, to `scale` ≥ 0 (along x and
+    /// y) at `high`.
     ///
     /// # Errors
     /// [`Error::Argument`] if the scales differ and the figure has curves.

@@ -50,7 +50,7 @@ impl Program {
     }
 }
 
-/// Where the surfaces of a solid begin in the program's list, and whether layers are among them.
+/// The place where the surfaces of a solid begin in the program's list, and whether layers are among them.
 pub(super) struct Start {
     first: u32,
     has_layers: bool,
@@ -60,9 +60,9 @@ pub(super) struct Start {
 pub(crate) type Layers<'l> = (f64, &'l mut Vec<PlacedHalfSpace>);
 
 impl Scratch {
-    /// The surfaces that are open in a cell, and the function of them that the part is; `None` if they are
-    /// too many, something is open that is not made of surfaces, or the list of the surfaces has not been
-    /// asked for. With `layers` the list is that with layers.
+    /// Returns the surfaces that are open in a cell, and the function of them that the part is. `None` if the
+    /// surfaces are too many, if an open operand is not made of surfaces, or if the list of the surfaces does
+    /// not exist yet. With `layers`, the list with layers is meant.
     pub(crate) fn open_surfaces(
         &mut self,
         program: &Program,

@@ -20,8 +20,8 @@ pub(crate) enum Op {
     Join { join: Join, complement: bool, count: u32 },
     /// A group of operands that are not evaluated one by one: number `index` of the program's groups.
     Group { index: u32 },
-    /// The intersection of the
-    /// `count` half-spaces before it, which are classified together by [`Touch::Paper`].
+    /// The intersection of the `count` half-spaces before it, which are classified together by
+    /// [`Touch::Paper`].
     Primitive { count: u32 },
 }
 
@@ -96,9 +96,8 @@ impl Op {
         }
     }
 
-    /// Returns the value of an operation with
-    /// `open` undecided operands, if it has one. It has a value if an operand that decides the operation was `absorbed`,
-    /// or if no operand is open.
+    /// Returns the value of an operation with `open` undecided operands, if it has one. It has a value if an
+    /// operand that decides the operation was `absorbed`, or if no operand is open.
     pub(crate) fn decided(self, open: u32, parity: bool, absorbed: bool) -> Option<bool> {
         let (none, complement) = match self {
             Op::Join { join: Join::Union, complement, .. } => (false, complement),

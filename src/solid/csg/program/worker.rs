@@ -372,9 +372,9 @@ impl Scratch {
         Ok(cells)
     }
 
-    /// Replaces the words of child
-    /// `k` by a truth table, if it has few half-spaces and no other operands. If the table is constant, the child is decided. `fresh`
-    /// means that the words are the last ones, and belong to this child alone.
+    /// Replaces the words of child `k` by a truth table, if it has few half-spaces and no other operands. If
+    /// the table is constant, the child is decided. `fresh` means that the words are the last ones, and
+    /// belong to this child alone.
     fn tabulate(&mut self, program: &Program, cells: &mut Cells, k: u32, fresh: bool) -> Result<(), Error> {
         let part = cells.parts[k as usize];
         if part.len < 2 || part.len > 64 || program.paper {
