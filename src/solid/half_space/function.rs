@@ -60,7 +60,7 @@ pub(crate) fn area(
 }
 
 /// Returns whether a point is inside, from the sides of half-spaces on which it lies. `None` if the function
-/// depends on a half-space of which the side is unknown.
+/// depends on a half-space whose side is unknown.
 pub(crate) fn inside(
     variables: impl Iterator<Item = (usize, u32)>,
     mut table: Table,

@@ -8,11 +8,11 @@ use crate::cut::Quadratic;
 use crate::lattice::{Cell, axes};
 
 /// Returns the combinations of signs that functions may have in a cell: bit m stands for the combination in
-/// which exactly the functions of the bits in m are positive. A combination is left out in two cases. Either
-/// a function is proven to have its sign nowhere. Or two functions are proven not to have their signs at one
-/// point: with the signs made positive, the one plus a positive multiple of the other is nowhere positive.
-/// (For one quadric and one plane, or two quadrics, in all of space there is such a multiple whenever no
-/// point has both signs: the S-lemma of Yakubovich, 1971.)
+/// which exactly the functions of the bits in m are positive. A combination is left out in two cases: a
+/// function is proven to have its sign nowhere, or two functions are proven not to have their signs at one
+/// point. The latter proof negates the functions that are to be negative, and finds a positive multiple of
+/// the one that, added to the other, is nowhere positive. (For one quadric and one plane, or two quadrics, in
+/// all of space there is such a multiple whenever no point has both signs: the S-lemma of Yakubovich, 1971.)
 pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Table {
     met(half_spaces, cell).possible
 }

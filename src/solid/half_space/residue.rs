@@ -3,8 +3,8 @@
 //! Two stored surfaces may be the same although their numbers differ: polynomials may be proportional, and a
 //! figure may be placed by several maps or by one. The exact comparison takes long numbers. So the polynomial
 //! in model space is first computed modulo a prime, where sums of doubles, products and quotients are exact
-//! and short. Equal surfaces have equal residues. Two of 2^61 different surfaces have equal residues, too,
-//! and are compared exactly.
+//! and short. Equal surfaces have equal residues. Different surfaces have equal residues in two of 2^61
+//! cases, and are then compared exactly.
 
 use crate::octree::cuts::{SurfaceKind, SurfacesRef};
 

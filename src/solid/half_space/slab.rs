@@ -11,8 +11,8 @@ use crate::lattice::{Cube, Interval, axes};
 use crate::octree::cuts::{CellSlab, Origin};
 use alloc::sync::Arc;
 
-/// A slab of uncertainty: a point p with `normal` · p < `inner` is inside, and one with `normal` · p >
-/// `outer` is outside. Nothing is known of other points.
+/// A plane with a width: a point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer`
+/// is outside. Nothing is known of other points.
 pub(crate) struct ThickPlane {
     pub(crate) normal: [f64; 3],
     pub(crate) inner: f64,

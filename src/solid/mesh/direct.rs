@@ -236,7 +236,7 @@ impl Tracer<'_> {
         }
         let Some((axis, sign)) = self.tree.way_out(point) else { return Ok(Some(self.fill.encloses(0))) };
         if !point.iter().all(|&c| valid::is_moderate(c)) {
-            // Replaces tiny coordinates by zero, if no surface lies between.
+            // Replace tiny coordinates by zero, if no surface lies between.
             let at = point.map(|c| if valid::is_moderate(c) { c } else { 0.0 });
             let apart = 1e-76 + 2.0 * self.tree.displacement();
             let near = self.tree.nearest_of(&at, |_| true);
@@ -350,7 +350,7 @@ impl Tracer<'_> {
     ) -> Result<Option<bool>, Error> {
         let (mut at, mut radius) = (*point, 0.0);
         if point.iter().any(|c| c.abs() < valid::SMALLEST && *c != 0.0) {
-            // Replaces tiny coordinates by zero, if no surface lies between.
+            // Replace tiny coordinates by zero, if no surface lies between.
             at = point.map(|c| if c.abs() < valid::SMALLEST { 0.0 } else { c });
             radius = 1e-76;
             let apart = radius + 2.0 * self.tree.displacement();

@@ -195,8 +195,8 @@ impl Course<'_> {
                 Some(hit) => self.look(hit.t.lower.max(now.at)),
                 None => Sums::END,
             };
-            // (No time passes before a triangle on which the ray begins. The error of the hit's time is part
-            // of the hit.)
+            // (No time passes before a triangle on which the ray begins: an error of its time belongs to the
+            // hit.)
             match self.stretch(winding, &now, &next)? {
                 Next::GoOn => {}
                 Next::Enough => return Ok(true),

@@ -187,8 +187,8 @@ impl Placed {
 /// A vertex's position, ranks and flags.
 fn place(frame: &Frame, vertex: [f64; 3]) -> ([f64; 3], [i32; 3], u8) {
     let depth = frame.depth() as i32;
-    // With `grain` bits behind the binary point, a 3 × 3 determinant of differences needs 3·(depth + grain + 1) +
-    // 3 bits: 51.
+    // With `grain` bits behind the binary point, a 3 × 3 determinant of differences needs 51 bits: 3·(depth +
+    // grain + 1) + 3.
     let grain = (1u64 << (15 - depth.min(14))) as f64;
     let (mut position, mut ranks, mut exact, mut short) = ([0.0; 3], [0; 3], 0, depth <= 14);
     for axis in 0..3 {

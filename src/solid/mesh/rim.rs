@@ -241,7 +241,7 @@ impl Rim {
     #[inline(always)]
     fn cone(&self, [a, b]: [DVec3; 2], towards: DVec3) -> Option<Cone> {
         let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
-        // Divided by the product of both distances, which saves a division.
+        // Multiplied by the product of both distances, so that one division suffices.
         let (x, y) = (
             far * farther + a.dot(b) + b.dot(towards) * far + a.dot(towards) * farther,
             towards.dot(a.cross(b)),
@@ -250,7 +250,7 @@ impl Rim {
         // This is false for NaN, too.
         let is_seen = size > HIDDEN * (far * farther);
         let inverse = 1.0 / size;
-        // The same bound as for a cap (`add_cap`) with two corners at these distances.
+        // The same bound as for a cap (`Angle::undivided`) with two corners at these distances.
         let wrong = 64.0 * f64::EPSILON * (far * farther) + 8.0 * self.vertex_error * (far + farther);
         is_seen.then_some(Cone { real: x * inverse, imaginary: y * inverse, error: wrong * inverse })
     }

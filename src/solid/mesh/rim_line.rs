@@ -11,9 +11,9 @@
 //! stays constant, so that each angle tends monotonically to zero. Therefore the sum of the positive angles
 //! and the sum of the negative angles bound the winding number between any two points of the line.
 //!
-//! **Errors.** A corner with an error of δ changes g by less than 2δ and the angle by δ (|ρ| + |ρ'|) / |g g' +
-//! ρ̄ ρ'| to first order. All corners lie much further from the line than δ, and twice that bound covers the
-//! higher orders.
+//! **Errors.** A corner with an error of δ changes g by less than 2δ. To first order, it changes the angle by
+//! δ (|ρ| + |ρ'|) / |g g' + ρ̄ ρ'|. All corners lie much further from the line than δ, and twice that bound
+//! covers the higher orders.
 
 use super::rim::{Course, Rim};
 use crate::error::Error;
@@ -261,8 +261,8 @@ impl RimLine {
         self.speed
     }
 
-    /// The sum of a corner's distance from a point and of the distance by which it lies behind the point, and
-    /// the former.
+    /// Returns g of a corner at a point of the line (the corner's distance plus the length by which it lies
+    /// behind), and its distance.
     #[inline(always)]
     fn seen(corner: &Corner, at: f64) -> [f64; 2] {
         let behind = at - corner.height;

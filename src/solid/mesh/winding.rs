@@ -140,9 +140,9 @@ pub(super) struct Local {
 pub(super) struct Range {
     /// The middle of the range.
     pub(super) value: f64,
-    /// The greatest change from the middle by the model's slope.
+    /// The greatest change that the model predicts from the middle.
     pub(super) change: f64,
-    /// The greatest further error, which is not known to be smaller.
+    /// A bound of the further error.
     pub(super) error: f64,
 }
 
@@ -647,14 +647,14 @@ impl Node {
                 }
             }
         }
-        // `rounding` covers all roundings of the value that `add_from_afar` adds, and of its bound. Let n be
-        // the number of caps, u = ε/2, r the radius and |y| > 2 r the distance; errors are in units of
-        // SCALE/(|y| − r)². A sum of n terms has an error of n·u times their magnitudes, and each term has
-        // fewer than 100 roundings of its own. The terms of value and second moment are at most 4·size: this
-        // gives 4·(n + 100)·u·size. A corner relative to the centre has an error of u·r, so a cap's area has
-        // an error of 11·u·r², however thin the cap is: this gives 17·n·u·r² in value and second moment. 16·ε =
-        // 32·u is more than either needs. Nothing else is rounded, so the bound counts once; with it, `size`
-        // bounds the area.
+        // `rounding` covers all roundings of the value that `Node::add` adds, and of its bound. Let n be the
+        // number of caps, u = ε/2, r the radius and |y| > 2 r the distance; errors are in units of SCALE/(|y|
+        // − r)². A sum of n terms has an error of n·u times their magnitudes, and each term has fewer than
+        // 100 roundings of its own. The terms of value and second moment are at most 4·size: this gives 4·(n +
+        // 100)·u·size. A corner relative to the centre has an error of u·r, so a cap's area has an error of
+        // 11·u·r², however thin the cap is: this gives 17·n·u·r² in value and second moment. The factor 16·ε,
+        // which is 32·u, exceeds the need of both. Nothing else is rounded, so the bound counts once; with
+        // it, `size` bounds the area.
         let count = slots.len() as f64;
         let slivers = count * node.radius * node.radius;
         node.rounding = 16.0 * f64::EPSILON * ((count + 16.0) * node.size + slivers);
@@ -789,7 +789,7 @@ struct Summing<'c> {
     /// The radius of the ball; 0 if only the value is needed.
     reach: f64,
     sum: Local,
-    /// A complex number of modulus 1; half its argument is part of the sum.
+    /// A complex number of modulus 1. Its argument over 2π is a part of the sum.
     turned: DVec2,
     /// False if an edge passes through the ball.
     is_known: bool,

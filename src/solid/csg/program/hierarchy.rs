@@ -33,8 +33,8 @@ struct Group {
     high: [f64; 3],
     /// The longest edge of the box.
     size: f64,
-    /// The operation that joins the members. Outside the box the result is FULL for an intersection, EMPTY
-    /// for a union.
+    /// The operation that joins the members. Outside the box, the result of an intersection is FULL, any
+    /// other result EMPTY.
     join: Join,
     members: Members,
 }
