@@ -58,8 +58,8 @@ impl Csg {
         let start = dot(d.each_ref(), a.each_ref());
         let [r, s] = radii.map(Dyadic::new);
         let slope = &s - &r;
-        // The distance of p from the axis is at most r + slope t / |d|². Squared, times |d|⁴: |d|² (|d|² |p −
-        // a|² − t²) ≤ (r |d|² + slope t)². If the slope is zero, a factor |d|² cancels.
+        // The distance of p from the axis is at most r + slope t / |d|². Squared, times |d|⁴:
+        // |d|² (|d|² |p − a|² − t²) ≤ (r |d|² + slope t)². If the slope is zero, a factor |d|² cancels.
         let [along, around, mixed, most] = match slope.is_zero() {
             true => [Dyadic::new(1.0), square.clone(), Dyadic::zero(), &r.pow(2) * &square],
             false => {

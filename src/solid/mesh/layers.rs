@@ -571,7 +571,8 @@ struct Witness {
 }
 
 /// A condition on a table, for all sides of the layers `of` at the sides `others` of the other layers: if the
-/// table is constant there, its value must be the allowed one.
+/// table is constant there, its value must be the allowed one. Without an allowed value, the table must not
+/// be constant.
 #[derive(Debug, Clone, Copy, Default)]
 struct Rule {
     of: usize,

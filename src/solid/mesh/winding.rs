@@ -35,7 +35,7 @@ use glam::{DMat3, DVec2, DVec3};
 /// The most triangles in a leaf, which are summed one by one.
 const LEAF: usize = 4;
 
-/// A cap is far from a ball if its distance from the ball's middle is this many radii.
+/// A cap is far from a ball if its distance from the ball's middle is more than this many radii.
 const APART: f64 = 6.0;
 
 /// A rim is close to a ball if its distance from the ball's middle is less than this many radii.
