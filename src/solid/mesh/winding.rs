@@ -650,11 +650,11 @@ impl Node {
         // `rounding` covers all roundings of the value that `Node::add` adds, and of its bound. Let n be the
         // number of caps, u = ε/2, r the radius and |y| > 2 r the distance; errors are in units of SCALE/(|y|
         // − r)². A sum of n terms has an error of n·u times their magnitudes, and each term has fewer than
-        // 100 roundings of its own. The terms of value and second moment are at most 4·size: this gives 4·(n +
-        // 100)·u·size. A corner relative to the centre has an error of u·r, so a cap's area has an error of
-        // 11·u·r², however thin the cap is: this gives 17·n·u·r² in value and second moment. The factor 16·ε,
-        // which is 32·u, exceeds the need of both. Nothing else is rounded, so the bound counts once; with
-        // it, `size` bounds the area.
+        // 100 roundings of its own. The terms of value and second moment are at most 4·size: this gives
+        // 4·(n + 100)·u·size. A corner relative to the centre has an error of u·r, so a cap's area has an
+        // error of 11·u·r², however thin the cap is: this gives 17·n·u·r² in value and second moment. The
+        // factor 16·ε, which is 32·u, exceeds the need of both. Nothing else is rounded, so the bound counts
+        // once; with it, `size` bounds the area.
         let count = slots.len() as f64;
         let slivers = count * node.radius * node.radius;
         node.rounding = 16.0 * f64::EPSILON * ((count + 16.0) * node.size + slivers);
