@@ -1,4 +1,4 @@
-//! Round primitives along an axis of any direction, which two points give.
+//! Round primitives along an axis of any direction, given by two points.
 
 use super::{Csg, HalfSpace};
 use crate::error::Error;
@@ -8,11 +8,11 @@ use crate::lattice::valid::{self, length};
 use crate::lattice::{Affine, Bounds, Interval};
 
 impl Csg {
-    /// The cylinder of `radius` around the segment between two points (model units), with flat ends through
-    /// them.
+    /// Returns the cylinder of `radius` around the segment between two points (model units), with flat ends
+    /// through the points.
     ///
     /// Nothing is rounded: the coefficients of its surface are exact for every direction of the axis. Along a
-    /// coordinate axis it is the same solid as the [`cylinder`](Self::cylinder) that is moved there.
+    /// coordinate axis the solid equals a [`cylinder`](Self::cylinder) that is moved there.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, measure};
@@ -23,22 +23,22 @@ impl Csg {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] if the points are equal, the radius is not between 2^-256 and 2^256, or a
-    /// coordinate not zero and not of such a magnitude.
+    /// [`Error::Argument`] if the points are equal, if the radius is not between 2^-256 and 2^256, or if a
+    /// coordinate is neither zero nor of such a magnitude.
     pub fn cylinder_between(from: [f64; 3], to: [f64; 3], radius: f64) -> Result<Csg, Error> {
         length("radius", radius)?;
         Csg::frustum_between(from, to, [radius; 2])
     }
 
-    /// The frustum of a cone around the segment between two points (model units): of radius `radii[0]` at
-    /// `from` and `radii[1]` at `to`, with flat ends through both. One of the radii may be 0, which makes a
-    /// cone.
+    /// Returns the frustum of a cone around the segment between two points (model units), with radius
+    /// `radii[0]` at `from` and `radii[1]` at `to`, and flat ends through both points. One of the radii may
+    /// be 0, which makes a cone.
     ///
-    /// Nothing is rounded, as of [`cylinder_between`](Self::cylinder_between).
+    /// Nothing is rounded, as in [`cylinder_between`](Self::cylinder_between).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the points are equal, if both radii are 0 or one is not between 2^-256 and
-    /// 2^256, or a coordinate not zero and not of such a magnitude.
+    /// [`Error::Argument`] if the points are equal, if both radii are 0, if a non-zero radius is not between
+    /// 2^-256 and 2^256, or if a coordinate is neither zero nor of such a magnitude.
     pub fn frustum_between(from: [f64; 3], to: [f64; 3], radii: [f64; 2]) -> Result<Csg, Error> {
         for radius in radii {
             if radius != 0.0 || radii[0] == radii[1] {
@@ -53,12 +53,13 @@ impl Csg {
         let [a, b] = [from, to].map(|point| point.map(Dyadic::new));
         let d = axes(|axis| &b[axis] - &a[axis]);
         let square = dot(d.each_ref(), d.each_ref());
-        // How far along the axis a point p lies, times |d|: t = d · p − start, which is 0 to |d|² in between.
+        // The place of a point p along the axis, times |d|: t = d · p − start, which is 0 to |d|² between the
+        // ends.
         let start = dot(d.each_ref(), a.each_ref());
         let [r, s] = radii.map(Dyadic::new);
         let slope = &s - &r;
         // The distance of p from the axis is at most r + slope t / |d|². Squared, times |d|⁴:
-        // |d|² (|d|² |p − a|² − t²) ≤ (r |d|² + slope t)². If the slope is zero, less a factor of |d|².
+        // |d|² (|d|² |p − a|² − t²) ≤ (r |d|² + slope t)². If the slope is zero, a factor |d|² cancels.
         let [along, around, mixed, most] = match slope.is_zero() {
             true => [Dyadic::new(1.0), square.clone(), Dyadic::zero(), &r.pow(2) * &square],
             false => {
@@ -85,12 +86,12 @@ impl Csg {
 }
 
 impl Csg {
-    /// The torus around the axis through `centre` (model units) in the direction `axis`, of any length: all
-    /// points at most `minor` from the circle of radius `major` around the centre.
+    /// Returns the torus around the axis through `centre` (model units) in the direction `axis`, of any
+    /// length: all points at most `minor` from the circle of radius `major` around the centre.
     ///
-    /// Along a coordinate axis nothing is rounded. Any other direction is rounded to numbers of double
-    /// precision, and the torus is the image of the exact one under the matrix of these: it is off by some
-    /// 2^-52 of its size.
+    /// Along a coordinate axis nothing is rounded. Any other direction is rounded to doubles, and the torus
+    /// is the image of the exact torus under the matrix of these doubles: its error is some 2^-52 of its
+    /// size.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, measure};
@@ -101,8 +102,8 @@ impl Csg {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Argument`] as for [`torus`](Self::torus), if the axis is zero, or if a coordinate is not zero
-    /// and not of a magnitude between 2^-256 and 2^256.
+    /// [`Error::Argument`] as for [`torus`](Self::torus), if the axis is zero, or if a coordinate is neither
+    /// zero nor of a magnitude between 2^-256 and 2^256.
     pub fn torus_around(centre: [f64; 3], axis: [f64; 3], major: f64, minor: f64) -> Result<Csg, Error> {
         valid::numbers("centre", &centre)?;
         valid::numbers("axis", &axis)?;
@@ -118,7 +119,7 @@ impl Csg {
             axes(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
         };
         let w = unit(axis.map(|x| x / greatest));
-        // The coordinate axis that is farthest from `w`.
+        // The coordinate axis at the greatest angle to `w`.
         let least = (0..3).fold(0, |least, k| if w[k].abs() < w[least].abs() { k } else { least });
         let u = unit(cross(axes(|k| f64::from(u8::from(k == least))), w));
         let v = cross(w, u);
@@ -127,11 +128,11 @@ impl Csg {
     }
 }
 
-/// A box around both ends, which are discs.
+/// The bounding box of both ends, which are discs.
 fn bounds(from: [f64; 3], to: [f64; 3], radii: [f64; 2]) -> Bounds {
     let d = axes(|axis| to[axis] - from[axis]);
     let whole = libm::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    // The disc of a radius reaches that much times the sine between axis and normal.
+    // A disc reaches its radius times the sine of the angle between the axis and the disc's normal.
     let reach = |axis: usize, radius: f64| {
         let (u, v) = (d[(axis + 1) % 3], d[(axis + 2) % 3]);
         if u == 0.0 && v == 0.0 {

@@ -7,12 +7,12 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use hashbrown::HashSet;
 
-/// What the reference counts of a shared value take.
+/// The bytes of the reference counts of a shared value.
 const COUNTS: usize = 2 * size_of::<usize>();
 
 impl Csg {
-    /// About how many bytes the nodes, half-spaces and other solids take: each once, however often it occurs.
-    /// Without recursion; what there is no memory to remember is left out.
+    /// Returns about how many bytes the nodes, half-spaces and other solids take: each counted once, however
+    /// often it occurs. Works without recursion. Without memory to remember an item, the item is left out.
     pub(super) fn bytes_of_expression(&self) -> u64 {
         let mut sum = 0;
         let mut seen: HashSet<usize> = HashSet::new();

@@ -9,24 +9,24 @@ use crate::octree::Tag;
 use crate::solid::AnySolid;
 use alloc::vec::Vec;
 
-/// What a solid surely does not reach beyond, in model units.
+/// The bounds of a solid, in model units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Extent {
-    /// It is empty.
+    /// The solid is empty.
     Nothing,
-    /// A box.
+    /// The solid lies in a box.
     Box(Bounds),
-    /// Nobody knows.
+    /// No bounds are known.
     Unbounded,
 }
 
 impl Extent {
-    /// Of what is known to lie in a box, or not.
+    /// The extent of a solid with these bounds, if they are known.
     pub(super) fn of(bounds: Option<Bounds>) -> Extent {
         bounds.map_or(Extent::Unbounded, Extent::Box)
     }
 
-    /// Whether the solid surely lies in the universe.
+    /// Returns whether the solid surely lies in the universe.
     fn within(self, frame: &Frame) -> bool {
         match self {
             Extent::Nothing => true,
@@ -35,7 +35,7 @@ impl Extent {
         }
     }
 
-    /// Of the union of two solids.
+    /// The extent of the union of two solids.
     pub(super) fn hull(self, other: Extent) -> Extent {
         match (self, other) {
             (Extent::Nothing, extent) | (extent, Extent::Nothing) => extent,
@@ -44,7 +44,7 @@ impl Extent {
         }
     }
 
-    /// Of the intersection of two solids.
+    /// The extent of the intersection of two solids.
     pub(super) fn common(self, other: Extent) -> Extent {
         match (self, other) {
             (Extent::Unbounded, extent) | (extent, Extent::Unbounded) => extent,
@@ -53,7 +53,7 @@ impl Extent {
         }
     }
 
-    /// Of the solid under placements, rounded outward.
+    /// The extent of the solid under placements, rounded outward.
     pub(super) fn under(self, map: &Composed) -> Extent {
         match self {
             Extent::Box(bounds) => Extent::of(bounds.under(map)),
@@ -65,11 +65,12 @@ impl Extent {
 /// A box in unit coordinates, in which the universe is [0, 1]³.
 pub(super) type UnitBox = ([f64; 3], [f64; 3]);
 
-/// The box around an extent under placements in unit coordinates, rounded outward; `None` if there is none.
+/// Returns the box around an extent under placements in unit coordinates, rounded outward; `None` if there is
+/// none.
 pub(super) fn into_universe(extent: Extent, outward: Option<&Composed>, frame: &Frame) -> Option<UnitBox> {
     let extent = outward.map_or(extent, |map| extent.under(map));
     let Extent::Box(Bounds { min, max }) = extent else { return None };
-    // A difference and a quotient, each rounded once.
+    // One rounding each for a difference and a quotient.
     let unit = |axis: usize, end: f64| {
         let distance = end - frame.origin()[axis];
         let error = 4.0 * f64::EPSILON * (end.abs() + frame.origin()[axis].abs()) / frame.edge();
@@ -86,20 +87,20 @@ pub(super) fn into_universe(extent: Extent, outward: Option<&Composed>, frame: &
     low.iter().chain(&high).all(|c| c.is_finite()).then_some((low, high))
 }
 
-/// Nodes that are looked at for one placement: below more of them, boxes around boxes have to do.
+/// The most nodes that are visited for one placement. Below more nodes, boxes around boxes are used.
 const MOST_FOLLOWED: usize = 512;
 
-/// Placements within each other that are followed. More of them are steps, scales and quarter turns, of which
-/// boxes lose nothing: other maps get too long to be exact (`MOST_BITS`).
+/// The deepest nesting of placements that is followed. Deeper nests consist of translations, scalings and
+/// quarter turns, under which boxes lose nothing, since other maps become too long to be exact (`MOST_BITS`).
 const MOST_NESTED: u32 = 128;
 
-/// The boxes around what a node stands for, and around its complement, under a placement, rounded outward.
+/// Returns the bounding boxes of a node's solid and of its complement under a placement, rounded outward.
 ///
-/// A box around a turned box is larger than the solid needs, and in nested placements the excess multiplies.
-/// So the parts' boxes are taken under all placements at once, down to the parts that have no boxes in them.
-/// The box of the node as a whole under the placement holds, too; what both have in common is returned.
+/// A box around a turned box is larger than the solid needs, and the excess multiplies in nested placements.
+/// So the parts' boxes are taken under all placements at once, down to the parts without boxes inside. The
+/// box of the whole node under the placement is valid, too; the intersection of both is returned.
 ///
-/// O(size of the expression), but bounded, so that nesting and sharing cost no more than a constant each.
+/// O(size of the expression), but limited: nesting and sharing cost at most a constant each.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
@@ -163,7 +164,8 @@ pub(super) fn placed(root: &Node, placement: &Affine) -> Result<(Extent, Extent)
 }
 
 impl Join {
-    /// The boxes around what operands are joined to, and around its complement, from theirs.
+    /// Returns the boxes around the joined operands and around the complement of the result, from the
+    /// operands' boxes.
     pub(super) fn boxes(
         self,
         mut operands: impl ExactSizeIterator<Item = (Extent, Extent)>,
@@ -179,15 +181,15 @@ impl Join {
 }
 
 impl Node {
-    /// Whether a box is known, of it or of its complement.
+    /// Returns whether a box of the solid or of its complement is known.
     fn has_box(&self) -> bool {
         [self.extent, self.opposite].iter().any(|extent| *extent != Extent::Unbounded)
     }
 
-    /// What is known of the space around the universe, by what `of_solid` says of other solids; `None` if
+    /// Returns the tag of the space around the universe. `of_solid` gives the tags of other solids. `None` if
     /// memory runs out.
     pub(super) fn exterior(&self, frame: &Frame, of_solid: impl Fn(&AnySolid) -> Option<Tag>) -> Option<Tag> {
-        // Operands first; each operation then takes its own from the end.
+        // Operands first; then each operation takes its operands from the end.
         let (mut tasks, mut tags) = (Vec::new(), Vec::new());
         let mut next = Some((self, false));
         while let Some((node, operands_done)) = next.take().or_else(|| tasks.pop()) {
@@ -198,9 +200,10 @@ impl Node {
                 tags.push(Tag::Full);
             } else {
                 match &node.kind {
-                    // Of half-spaces the boxes say all that is known.
+                    // For half-spaces alone, the boxes already contain all that is known.
                     _ if !node.mixed => tags.push(Tag::Partial),
-                    // Nor is it worth as much time as the expression, which is refused, too.
+                    // The computation is not worth more time than the expression, which is refused at this
+                    // size, too.
                     _ if node.size > MOST => tags.push(Tag::Partial),
                     Kind::Solid(solid) => tags.push(of_solid(solid)?),
                     Kind::Join(_, parts) if !operands_done => {
@@ -232,7 +235,7 @@ impl Node {
 }
 
 impl Join {
-    /// Of operands that are EMPTY, FULL or PARTIAL.
+    /// The tag of joined operands, each EMPTY, FULL or PARTIAL.
     fn of_tags(self, operands: &[Tag]) -> Tag {
         let any = |tag| operands.contains(&tag);
         match self {

@@ -9,18 +9,19 @@ use crate::lattice::valid::length;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// The half-space over the half-plane a x + b y + c ≥ 0.
+/// Returns the half-space over the half-plane a x + b y + c ≥ 0.
 fn upright_plane(a: Dyadic, b: Dyadic, c: Dyadic) -> HalfSpace {
     HalfSpace::linear([a, b, Dyadic::zero(), c])
 }
 
 impl Csg {
-    /// The right angular wedge: the box between the origin and `size` (model units) whose face at y =
-    /// `size[1]` is narrowed, or widened, to 0 ≤ x ≤ `top`; 0 makes that face an edge. (So it is defined by
-    /// STEP, ISO 10303-42, where `top` is called `ltx`.)
+    /// Returns the right angular wedge: the box between the origin and `size` (model units) whose face at y =
+    /// `size[1]` is narrowed, or widened, to 0 ≤ x ≤ `top`. With `top` = 0, that face is an edge. (STEP, ISO
+    /// 10303-42, defines the wedge in this way, and calls `top` `ltx`.)
     ///
     /// # Errors
-    /// [`Error::Argument`] if a size, or `top` unless it is 0, is not between 2^-256 and 2^256.
+    /// [`Error::Argument`] if a size is not between 2^-256 and 2^256, or `top` is neither 0 nor in that
+    /// range.
     pub fn wedge(size: [f64; 3], top: f64) -> Result<Csg, Error> {
         for extent in size {
             length("size", extent)?;
@@ -37,15 +38,15 @@ impl Csg {
         Ok(parts.within([0.0; 3], [size[0].max(top), size[1], size[2]]))
     }
 
-    /// The prism over a simple polygon in the xy plane, between z = `low` and z = `high` (model units). The
-    /// polygon's corners are given in order, in either direction of rotation; the last is joined to the
-    /// first. The planes through its edges are exact.
+    /// Returns the prism over a simple polygon in the xy plane, between z = `low` and z = `high` (model
+    /// units). The polygon's corners are given in order, in either direction of rotation; the last corner is
+    /// joined to the first. The planes through its edges are exact.
     ///
     /// O(n log² n) time for n corners.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the outline touches or crosses itself or encloses nothing, a coordinate is not
-    /// zero and not of a magnitude between 2^-256 and 2^256, or `low` not less than `high`;
+    /// [`Error::Argument`] if the outline touches or crosses itself or encloses nothing, if a coordinate is
+    /// neither zero nor of a magnitude between 2^-256 and 2^256, or if `low` is not less than `high`;
     /// [`Error::OutOfMemory`].
     pub fn prism(polygon: &[[f64; 2]], low: f64, high: f64) -> Result<Csg, Error> {
         heights(low, high)?;
@@ -60,7 +61,7 @@ impl Csg {
         Ok(Csg::intersection_of([Csg::column(polygon)?, bottom, top])?.within(min, max))
     }
 
-    /// The prism that has no ends.
+    /// Returns the prism without ends.
     pub(super) fn column(polygon: &[[f64; 2]]) -> Result<Csg, Error> {
         let mut operands: Vec<Csg> = Vec::new();
         for term in monotone_formula(polygon)? {
@@ -79,12 +80,12 @@ impl Csg {
         Ok(operands.pop().unwrap_or_else(Csg::empty))
     }
 
-    /// The convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes` (normal,
-    /// offset); the normals, of any length, point inward. It may be unbounded, or empty; then it has no
-    /// [`bounds`](crate::Solid::bounds). O(planes).
+    /// Returns the convex polyhedron of the points p with `normal` · p + `offset` ≥ 0 for all `planes`
+    /// (normal, offset). The normals, of any length, point inward. The polyhedron may be unbounded, or empty;
+    /// then it has no [`bounds`](crate::Solid::bounds). O(planes).
     ///
     /// # Errors
-    /// [`Error::Argument`] if there is no plane; as [`HalfSpace::plane`]; [`Error::OutOfMemory`].
+    /// [`Error::Argument`] if there is no plane; errors as [`HalfSpace::plane`]; [`Error::OutOfMemory`].
     pub fn convex(planes: &[([f64; 3], f64)]) -> Result<Csg, Error> {
         if planes.is_empty() {
             return Err(Error::Argument { name: "planes", problem: "must not be empty" });

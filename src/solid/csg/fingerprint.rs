@@ -1,4 +1,4 @@
-//! The fingerprint of an expression: of its parts before it, without recursion.
+//! The fingerprint of an expression, computed from its parts without recursion.
 
 use super::{Csg, Join, Kind, MOST, Node};
 use crate::lattice::exact::Dyadic;
@@ -9,8 +9,8 @@ use crate::solid::{Fingerprint, Fingerprinter, Solid};
 use alloc::vec::Vec;
 
 impl Csg {
-    /// The fingerprint, of all numbers that the expression was given in their order; `None` if a part has
-    /// none. O(n) in the expression written out.
+    /// Returns the fingerprint of all numbers of the expression in their order; `None` if a part has none.
+    /// O(n) in the expression written out.
     pub(super) fn fingerprint_of_expression(&self) -> Option<Fingerprint> {
         if self.root.size > MOST {
             return None;
@@ -58,7 +58,7 @@ impl Csg {
 impl HalfSpace {
     fn fingerprint(&self) -> Option<Fingerprint> {
         let all = match &*self.0 {
-            // A plane is a quadric without squares and products.
+            // A plane counts as a quadric without squares and products.
             Surface::Plane(plane) => {
                 let zero = Dyadic::zero();
                 let all = core::iter::repeat_n(&zero, 6).chain(plane);
@@ -76,7 +76,7 @@ impl HalfSpace {
             Surface::Torus(Torus { major, square, scale, shift }) => [major, square, scale, shift]
                 .iter()
                 .fold(Fingerprinter::new("torus"), |all, c| c.taken_in(all)),
-            // (Slabs are in stored octrees, and no expression has one.)
+            // (Slabs occur only in stored octrees, never in expressions.)
             Surface::Slab(_) => return None,
             Surface::Host(host) => Fingerprinter::new("host half-space").part(host.fingerprint?),
         };
@@ -85,7 +85,7 @@ impl HalfSpace {
 }
 
 impl Dyadic {
-    /// A fingerprint that has taken in this number.
+    /// Returns the fingerprint with this number added.
     fn taken_in(&self, all: Fingerprinter) -> Fingerprinter {
         let (mantissa, exponent) = self.bytes();
         all.bytes(&mantissa).integers(&[exponent as u64])

@@ -30,30 +30,29 @@ use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use extent::Extent;
 use hashbrown::HashMap;
 
-/// Most half-spaces, other solids, operations and placements of an expression that is written out. (A quadric
-/// takes a kilobyte, and a node that contains another twice, which contains another twice …, soon comes to
-/// more than there is.)
+/// The most half-spaces, other solids, operations and placements of an expression that is written out. (A
+/// quadric takes a kilobyte, and nodes that contain another node twice, nested, soon exceed all memory.)
 const MOST: u64 = 1 << 22;
 
-/// What counts as touching: when a cell that meets the solid's boundary, but not its interior, is EMPTY.
+/// The rule of touching: whether a cell that meets the solid's boundary, but not its interior, is EMPTY.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Touch {
     /// Contact is not overlap: a cell is EMPTY if the interiors are disjoint.
     #[default]
     Exact,
-    /// As the method was published: a vertex on the surface counts as inside, so that a cell that touches a
-    /// primitive with a vertex from outside is PARTIAL. It reproduces the published tables and is no better
-    /// for anything else.
+    /// The rule of the published method: a vertex on the surface counts as inside, so that a cell that
+    /// touches a primitive with a vertex from outside is PARTIAL. It reproduces the published tables and has
+    /// no other use.
     Paper,
 }
 
 /// A solid made of half-spaces and other solids by union, intersection, symmetric difference, complement and
 /// placement. Immutable; cloning costs nothing.
 ///
-/// Asked about a cell, it looks only at what still cuts the cell: a child inherits those half-spaces of its
-/// parent that are undecided there, so a scene of ten thousand primitives costs at each cell what is near it.
-/// Verdicts are proofs: the extremes of planes and of quadrics without mixed terms over a box are taken
-/// exactly, others are bounded outward.
+/// A cell costs only the half-spaces that still cut it: a child inherits the half-spaces of its parent that
+/// are undecided there. So in a scene of ten thousand primitives, each cell costs only the primitives near
+/// it. Verdicts are proofs: over a box, the extremes of planes and of quadrics without mixed terms are exact,
+/// and all others are bounded outward.
 ///
 /// ```
 /// use leafless::{Control, Csg, Frame, Rule, build};
@@ -72,21 +71,21 @@ pub struct Csg {
     touch: Touch,
 }
 
-/// A node of an expression, with boxes around what it stands for and around the complement of that.
+/// A node of an expression, with bounding boxes of its solid and of the solid's complement.
 struct Node {
     kind: Kind,
-    /// Half-spaces, other solids, operations and placements that it comes to when it is written out.
+    /// The number of half-spaces, other solids, operations and placements in the node when it is written out.
     size: u64,
-    /// Whether other solids occur in it, and how many of them within each other.
+    /// Whether other solids occur in the node, and their greatest nesting depth.
     mixed: bool,
     nesting: u32,
-    /// How many placements stand within each other in it.
+    /// The greatest nesting depth of placements in the node.
     placements: u32,
-    /// The frame of a stored octree in it, if there is one.
+    /// The frame of a stored octree in the node, if there is one.
     home: Option<Arc<Frame>>,
     extent: Extent,
     opposite: Extent,
-    /// Evaluations for expressions of which this is the root.
+    /// The number of evaluations for expressions whose root this is.
     evaluations: AtomicU64,
 }
 
@@ -103,7 +102,7 @@ enum Kind {
 enum Join {
     Intersection,
     Union,
-    /// What an odd number of operands contain.
+    /// The symmetric difference: the points in an odd number of operands.
     Parity,
 }
 
@@ -142,7 +141,7 @@ impl Csg {
         Ok(Csg::new(Kind::Join(join, nodes), extent, opposite))
     }
 
-    /// The half-space `normal` · p + `offset` ≥ 0; the normal, of any length, points into the solid.
+    /// Returns the half-space `normal` · p + `offset` ≥ 0. The normal, of any length, points into the solid.
     ///
     /// # Errors
     /// As [`HalfSpace::plane`].
@@ -150,18 +149,18 @@ impl Csg {
         Ok(HalfSpace::plane(normal, offset)?.into())
     }
 
-    /// The empty solid.
+    /// Returns the empty solid.
     pub fn empty() -> Csg {
         Csg::new(Kind::Join(Join::Union, Vec::new()), Extent::Nothing, Extent::Unbounded)
     }
 
-    /// All of space.
+    /// Returns the solid that is all of space.
     pub fn everything() -> Csg {
         Csg::new(Kind::Join(Join::Intersection, Vec::new()), Extent::Unbounded, Extent::Nothing)
     }
 
-    /// Any solid. It is asked in whatever frame the whole is asked in, which it must be able to answer. If it
-    /// is an expression itself, this is that.
+    /// Makes an expression of any solid. The solid is queried in the frame of the whole expression, and must
+    /// be able to answer in it. If the solid is an expression itself, it is returned unchanged.
     pub fn solid(solid: AnySolid) -> Csg {
         if let Some(csg) = solid.get::<Csg>() {
             return csg.clone();
@@ -170,7 +169,7 @@ impl Csg {
         Csg::new(Kind::Solid(solid), extent, Extent::Unbounded)
     }
 
-    /// What at least one part contains; nothing, if there is none. O(parts).
+    /// Returns the union: the points that lie in at least one part. The union of no parts is empty. O(parts).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -178,7 +177,8 @@ impl Csg {
         Csg::join(Join::Union, parts)
     }
 
-    /// What all parts contain; everything, if there is none. O(parts).
+    /// Returns the intersection: the points that lie in all parts. The intersection of no parts is all of
+    /// space. O(parts).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -186,7 +186,8 @@ impl Csg {
         Csg::join(Join::Intersection, parts)
     }
 
-    /// What an odd number of parts contain: of two, what is in one and not in the other. O(parts).
+    /// Returns the symmetric difference: the points that lie in an odd number of parts. For two parts, these
+    /// are the points in exactly one of them. O(parts).
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -194,7 +195,7 @@ impl Csg {
         Csg::join(Join::Parity, parts)
     }
 
-    /// What this contains and `other` does not.
+    /// Returns the difference: the points that lie in this solid and not in `other`.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -202,15 +203,16 @@ impl Csg {
         Csg::intersection_of([self.clone(), other.complement()])
     }
 
-    /// What this does not contain. (A solid and its complement share their boundary.)
+    /// Returns the complement: the points that do not lie in this solid. (A solid and its complement share
+    /// their boundary.)
     #[must_use]
     pub fn complement(&self) -> Csg {
         Csg::new(Kind::Complement(self.root.clone()), self.root.opposite, self.root.extent)
     }
 
-    /// The solid moved by `placement`: half-spaces exactly, other solids each as [`AnySolid::placed`] moves
-    /// it; [`motion`](Solid::motion) says what comes of that. O(1), but for what other solids take, and those
-    /// parts of the expression that hold them.
+    /// Returns the solid moved by `placement`. Half-spaces are moved exactly, and each other solid as
+    /// [`AnySolid::placed`] moves it; [`motion`](Solid::motion) reports the effect. O(1), plus the time for
+    /// other solids and for the parts of the expression that contain them.
     ///
     /// # Errors
     /// As [`AnySolid::placed`].
@@ -221,7 +223,7 @@ impl Csg {
         if !self.root.mixed {
             return Ok(Csg { root: Node::placed(&self.root, placement)?, touch: Touch::Exact });
         }
-        // What was moved, by where it stands: a part that occurs twice is moved once.
+        // The moved nodes, by address: a part that occurs twice is moved once.
         let mut moved: HashMap<*const Node, Arc<Node>> = HashMap::new();
         let mut tasks: Vec<(&Arc<Node>, bool)> = Vec::new();
         memory::push(&mut tasks, (&self.root, false))?;
@@ -254,7 +256,7 @@ impl Csg {
         Ok(Csg { root: moved[&Arc::as_ptr(&self.root)].clone(), touch: Touch::Exact })
     }
 
-    /// The mesh that the expression is another name of, if it is.
+    /// Returns the mesh if the expression is nothing but one mesh.
     fn mesh_of_expression(&self) -> Option<&TriangleMesh> {
         let mut node = &self.root;
         loop {
@@ -266,7 +268,7 @@ impl Csg {
         }
     }
 
-    /// What moving it does: the worst of what it does to its parts.
+    /// Returns the effect of a placement: the worst effect on any part.
     fn motion_of_expression(&self) -> Motion {
         let (mut worst, mut rest) = (Motion::Exact, Vec::new());
         let mut seen: HashMap<*const Node, ()> = HashMap::new();
@@ -285,14 +287,15 @@ impl Csg {
         worst
     }
 
-    /// How many [`AnySolid`]s lie within each other in it: 0 for half-spaces alone.
+    /// The nesting depth of [`AnySolid`]s in the expression: 0 for half-spaces alone.
     pub fn nesting(&self) -> u32 {
         self.root.nesting
     }
 
-    /// Half-spaces that were evaluated so far for this expression and its clones, each at a point or over a
-    /// box, by those workers that are gone: once an operation has returned, all of it. (Expressions that this
-    /// one is made of, or is a part of, have counts of their own.)
+    /// Returns how many evaluations of half-spaces, each at a point or over a box, this expression and its
+    /// clones have needed so far. Workers add their counts when they are dropped, so that the number is
+    /// complete once an operation has returned. (Expressions that contain this one, or that it contains, have
+    /// their own counts.)
     pub fn evaluations(&self) -> u64 {
         self.root.evaluations.load(Relaxed)
     }
@@ -301,14 +304,14 @@ impl Csg {
         self.root.evaluations.fetch_add(evaluations, Relaxed);
     }
 
-    /// The same solid by another rule of touching. It holds for the whole expression; parts of a later
-    /// expression follow that one's rule.
+    /// Returns the same solid with another rule of touching. The rule applies to the whole expression; within
+    /// a larger expression, the rule of the larger one applies.
     #[must_use]
     pub fn with_touch(&self, touch: Touch) -> Csg {
         Csg { root: self.root.clone(), touch }
     }
 
-    /// A box beyond which the solid surely does not reach, if one is known. An empty solid has none.
+    /// Returns a box that surely contains the solid, if one is known. An empty solid has none.
     fn bounds_of_expression(&self) -> Option<Bounds> {
         match self.root.extent {
             Extent::Box(bounds) => Some(bounds),
@@ -316,13 +319,13 @@ impl Csg {
         }
     }
 
-    /// Whether the solid is empty by the bounds of its parts.
+    /// Returns whether the bounds of its parts prove that the solid is empty.
     #[cfg(feature = "scene")]
     pub(crate) fn is_known_empty(&self) -> bool {
         self.root.extent == Extent::Nothing
     }
 
-    /// The same solid, which is known to lie in a box.
+    /// Returns the same solid with the knowledge that it lies in a box.
     pub(crate) fn within(mut self, min: [f64; 3], max: [f64; 3]) -> Csg {
         if let Some(node) = Arc::get_mut(&mut self.root) {
             node.extent = node.extent.common(Extent::of(Bounds::new(min, max)));
@@ -332,7 +335,7 @@ impl Csg {
 }
 
 impl Node {
-    /// A node of half-spaces under a placement.
+    /// Makes a node of half-spaces under a placement.
     fn placed(node: &Arc<Node>, placement: &Affine) -> Result<Arc<Node>, Error> {
         let (extent, opposite) = extent::placed(node, placement)?;
         Ok(Csg::new(Kind::Placed(node.clone(), *placement), extent, opposite).root)
@@ -353,7 +356,7 @@ impl Drop for Node {
             kind,
             Kind::Join(Join::Union, Vec::new()),
         ) {
-            // Where there is no memory for the list, recursion has to do.
+            // Without memory for the list, the recursion remains.
             Kind::Join(_, parts) if rest.try_reserve(parts.len()).is_ok() => rest.extend(parts),
             Kind::Complement(part) | Kind::Placed(part, _) if rest.try_reserve(1).is_ok() => rest.push(part),
             _ => {}

@@ -1,4 +1,4 @@
-//! Named primitives that are round, and the box.
+//! Round primitives, and the box.
 
 use super::{Csg, HalfSpace};
 use crate::error::Error;
@@ -7,7 +7,7 @@ use crate::lattice::axes;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::valid::{self, length};
 
-/// Refuses what are no heights of a bottom and a top.
+/// Refuses heights that are not a bottom below a top.
 pub(super) fn heights(low: f64, high: f64) -> Result<(), Error> {
     valid::numbers("height", &[low, high])?;
     if low >= high {
@@ -16,24 +16,24 @@ pub(super) fn heights(low: f64, high: f64) -> Result<(), Error> {
     Ok(())
 }
 
-/// The half-space below (`side` −1) or above (1) a coordinate.
+/// Returns the half-space below (`side` −1) or above (1) a coordinate.
 pub(super) fn axis_plane(axis: usize, side: f64, at: f64) -> HalfSpace {
     let mut c = [0.0, 0.0, 0.0, -side * at];
     c[axis] = side;
     HalfSpace::linear(c.map(Dyadic::new))
 }
 
-/// Between two coordinates of an axis.
+/// Returns the two half-spaces between two coordinates of an axis.
 pub(super) fn slab(axis: usize, low: f64, high: f64) -> [Csg; 2] {
     [axis_plane(axis, 1.0, low).into(), axis_plane(axis, -1.0, high).into()]
 }
 
 impl Csg {
-    /// The box between two corners (model units), `min < max` on every axis.
+    /// Returns the box between two corners (model units), with `min < max` on every axis.
     ///
     /// # Errors
-    /// [`Error::Argument`] if that does not hold, or a coordinate is not zero and not of a magnitude between
-    /// 2^-256 and 2^256.
+    /// [`Error::Argument`] if `min` is not less than `max` on every axis, or if a coordinate is neither zero
+    /// nor of a magnitude between 2^-256 and 2^256.
     pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> Result<Csg, Error> {
         valid::numbers("min", &min)?;
         valid::numbers("max", &max)?;
@@ -44,16 +44,16 @@ impl Csg {
         Ok(Csg::intersection_of(planes)?.within(min, max))
     }
 
-    /// The ball of all points at most `radius` (model units) from `centre`.
+    /// Returns the ball of all points at most `radius` (model units) from `centre`.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the radius is not between 2^-256 and 2^256, or a coordinate not zero and not of
-    /// such a magnitude.
+    /// [`Error::Argument`] if the radius is not between 2^-256 and 2^256, or if a coordinate is neither zero
+    /// nor of such a magnitude.
     pub fn ball(centre: [f64; 3], radius: f64) -> Result<Csg, Error> {
         Csg::ellipsoid(centre, [radius; 3])
     }
 
-    /// The ellipsoid around `centre` with the semi-axes `radii` along x, y and z (model units).
+    /// Returns the ellipsoid around `centre` with the semi-axes `radii` along x, y and z (model units).
     ///
     /// # Errors
     /// As [`ball`](Self::ball).
@@ -75,22 +75,22 @@ impl Csg {
         Ok(Csg::from(HalfSpace::separable(weights, linear, constant)).within(min, max))
     }
 
-    /// The cylinder of `radius` around the z axis between z = `low` and z = `high` (model units).
+    /// Returns the cylinder of `radius` around the z axis between z = `low` and z = `high` (model units).
     ///
     /// # Errors
-    /// [`Error::Argument`] if the radius is not between 2^-256 and 2^256, a coordinate not zero and not of
-    /// such a magnitude, or `low` not less than `high`.
+    /// [`Error::Argument`] if the radius is not between 2^-256 and 2^256, if a coordinate is neither zero nor
+    /// of such a magnitude, or if `low` is not less than `high`.
     pub fn cylinder(radius: f64, low: f64, high: f64) -> Result<Csg, Error> {
         length("radius", radius)?;
         Csg::frustum(radius, radius, low, high)
     }
 
-    /// The frustum of a cone around the z axis: of radius `bottom` at z = `low` and `top` at z = `high`
-    /// (model units). One of the radii may be 0, which makes a cone.
+    /// Returns the frustum of a cone around the z axis, with radius `bottom` at z = `low` and `top` at z =
+    /// `high` (model units). One of the radii may be 0, which makes a cone.
     ///
     /// # Errors
-    /// [`Error::Argument`] if both radii are 0 or one is not between 2^-256 and 2^256, a coordinate not zero
-    /// and not of such a magnitude, or `low` not less than `high`.
+    /// [`Error::Argument`] if both radii are 0, if a non-zero radius is not between 2^-256 and 2^256, if a
+    /// coordinate is neither zero nor of such a magnitude, or if `low` is not less than `high`.
     pub fn frustum(bottom: f64, top: f64, low: f64, high: f64) -> Result<Csg, Error> {
         for radius in [bottom, top] {
             if radius != 0.0 || bottom == top {
@@ -114,8 +114,8 @@ impl Csg {
         Ok(parts.within([-radius, -radius, low], [radius, radius, high]))
     }
 
-    /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane
-    /// z = 0 (model units). See [`HalfSpace::torus`].
+    /// Returns the torus around the z axis: all points at most `minor` from the circle of radius `major` in
+    /// the plane z = 0 (model units). See [`HalfSpace::torus`].
     ///
     /// # Errors
     /// As [`HalfSpace::torus`].

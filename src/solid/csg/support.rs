@@ -1,7 +1,7 @@
-//! How far convex polyhedra reach.
+//! Bounding boxes of convex polyhedra.
 //!
-//! A linear programme is solved in floating point by the dual simplex method; what it finds is then proven:
-//! if a direction e is −Σ λ n over some planes n · p + o ≥ 0 with exact λ ≥ 0, then e · p ≤ Σ λ o.
+//! A linear programme is solved in floating point by the dual simplex method. The result is then proven: if a
+//! direction e is −Σ λ n over some planes n · p + o ≥ 0 with exact λ ≥ 0, then e · p ≤ Σ λ o.
 
 use crate::error::Error;
 use crate::lattice::axes;
@@ -13,11 +13,11 @@ type Plane = ([f64; 3], f64);
 /// The lower and the upper corner of a box.
 type Corners = ([f64; 3], [f64; 3]);
 
-/// Most steps of the simplex method: some ten are usual.
+/// The most steps of the simplex method; some ten are usual.
 const MOST_STEPS: usize = 1000;
-/// What counts as zero, for unit normals and offsets up to one.
+/// Values below this count as zero, for unit normals and offsets up to one.
 const NOTHING: f64 = 1e-10;
-/// Where planes stand that end what has no end.
+/// The offset of auxiliary planes that bound unbounded polyhedra.
 const FAR: f64 = (1u64 << 20) as f64;
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -28,8 +28,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     axes(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
-/// A box that surely contains the polyhedron of all points with n · p + o ≥ 0 for each plane (n, o), if one
-/// is found. O(planes).
+/// Returns a box that surely contains the polyhedron of all points with n · p + o ≥ 0 for each plane (n, o),
+/// if one is found. O(planes).
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
@@ -67,14 +67,14 @@ pub(super) fn box_around(planes: &[Plane]) -> Result<Option<Corners>, Error> {
     Ok(Some((min, max)))
 }
 
-/// Three planes in whose common point `direction` · p seems to be greatest; the last three planes are where
-/// to begin.
+/// Returns three planes at whose common point `direction` · p seems to be greatest. The search starts from
+/// the last three planes.
 fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
     let first = rows.len() - 3;
     let mut basis = [first, first + 1, first + 2];
     for _ in 0..MOST_STEPS {
         let normals = basis.map(|i| rows[i].0);
-        // The dual basis: vectors d with the coordinates d · p.
+        // The dual basis: the vectors d for the coordinates d · p.
         let volume = dot(normals[0], cross(normals[1], normals[2]));
         let dual = axes(|i| cross(normals[(i + 1) % 3], normals[(i + 2) % 3]).map(|c| c / volume));
         let corner = axes(|axis| -(0..3).map(|i| dual[i][axis] * rows[basis[i]].1).sum::<f64>());
@@ -84,7 +84,7 @@ fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
         if height(&rows[lowest]) >= -NOTHING * size {
             return Some(basis);
         }
-        // The plane enters; the one leaves whose share, −dual · direction, is used up first.
+        // The plane enters, and the plane leaves whose share, −dual · direction, is used up first.
         let ratio = |i: usize| {
             let change = dot(dual[i], rows[lowest].0);
             (change > NOTHING).then(|| -dot(dual[i], direction) / change)
@@ -96,13 +96,13 @@ fn best_planes(rows: &[Plane], direction: [f64; 3]) -> Option<[usize; 3]> {
     None
 }
 
-/// An upper bound of `direction` · p on the polyhedron, proven by three planes; beyond the given ones there
-/// are those that are not part of it.
+/// Returns an upper bound of `direction` · p on the polyhedron, proven by three planes. Indices beyond the
+/// given planes stand for planes that do not belong to the polyhedron.
 fn reach(planes: &[Plane], basis: [usize; 3], direction: [f64; 3]) -> Option<f64> {
     let exactly = |v: [f64; 3]| v.map(Dyadic::new);
     let determinant = |[a, b, c]: [&[Dyadic; 3]; 3]| exact::dot(a.each_ref(), exact::cross(b, c).each_ref());
     let unit = |k: usize| axes(|axis| if axis == k { 1.0 } else { 0.0 });
-    // The sign of a plane that has no share does not matter.
+    // The sign of a plane without a share does not matter.
     let normals =
         basis.map(|i| exactly(planes.get(i).map_or_else(|| unit(i - planes.len()), |plane| plane.0)));
     let direction = exactly(direction);

@@ -1,4 +1,4 @@
-//! What one half-space says of the eight children of a cell.
+//! The sides of one half-space for the eight children of a cell.
 
 use crate::lattice::Cell;
 use crate::lattice::axes;
@@ -9,7 +9,7 @@ use wide::f64x4;
 pub(crate) struct Octants {
     /// The cell's lower corner. (A vector would lie in memory, where it is slow to load after its parts.)
     pub(crate) low: [f64; 3],
-    /// Edge of a child.
+    /// The edge of a child.
     pub(crate) half: f64,
 }
 
@@ -26,14 +26,14 @@ impl Octants {
         Octants { low: [0.0; 3], half: 1.0 }
     }
 
-    /// The lower corner; one lane an axis, the last is 0.
+    /// The lower corner, one lane an axis; the last lane is 0.
     #[inline(always)]
     pub(crate) fn lanes(&self) -> f64x4 {
         let [x, y, z] = self.low;
         f64x4::new([x, y, z, 0.0])
     }
 
-    /// The centres of the children, those of the lower and of the upper z, and half their edge.
+    /// The centres of the children (those of the lower, then those of the upper z), and half their edge.
     #[inline(always)]
     pub(crate) fn centres(&self) -> ([[f64x4; 3]; 2], f64) {
         let [low_x, low_y, low_z] = self.low;
@@ -44,7 +44,7 @@ impl Octants {
         ([[xs, ys, f64x4::splat(z)], [xs, ys, f64x4::splat(z + self.half)]], quarter)
     }
 
-    /// Which of the eight are children: of the universe, which is the first itself, no other.
+    /// The children that exist, as bits: of the universe, which is the first itself, only that one.
     pub(crate) fn all(&self) -> u8 {
         if self.half == 1.0 { 1 } else { 0xFF }
     }
@@ -56,8 +56,8 @@ impl Octants {
     }
 }
 
-/// For each child the sum of `constant` and a value an axis, which are given for the lower and the upper
-/// half.
+/// For each child, the sum of `constant` and one value for each axis. The values are given for the lower and
+/// the upper half.
 #[inline(always)]
 pub(crate) fn sums(constant: f64, halves: [f64x4; 2]) -> [f64x4; 2] {
     let [first, second] = [halves[0].to_array(), halves[1].to_array()];
@@ -67,7 +67,7 @@ pub(crate) fn sums(constant: f64, halves: [f64x4; 2]) -> [f64x4; 2] {
     [xy + f64x4::splat(first[2]), xy + f64x4::splat(second[2])]
 }
 
-/// One bit for each child for which a comparison holds.
+/// A mask of the children for which a comparison holds.
 #[inline(always)]
 pub(crate) fn mask([a, b]: [f64x4; 2]) -> u8 {
     (a.to_bitmask() | b.to_bitmask() << 4) as u8
@@ -90,7 +90,7 @@ pub(crate) fn half_edge(cell: Cell) -> f64 {
     edge(cell.level as u32 + 1)
 }
 
-/// For which of the eight children (bit k) f ≥ 0 is proven, and for which f ≤ 0.
+/// The children (bit k) for which f ≥ 0 is proven, and those for which f ≤ 0 is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Sides {
     pub(crate) inside: u8,
@@ -98,8 +98,8 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// From the least and the greatest values, which are off by less than `error`; and the children of which
-    /// they leave a side open.
+    /// Returns the sides that follow from the least and the greatest values, whose error is below `error`,
+    /// and the children for which they leave a side open.
     #[inline(always)]
     pub(crate) fn with_error(least: [f64x4; 2], most: [f64x4; 2], error: f64) -> (Sides, u8) {
         let (above, below) = (f64x4::splat(error), f64x4::splat(-error));
@@ -111,8 +111,8 @@ impl Sides {
         (Sides { inside, outside }, doubt)
     }
 
-    /// The same with what was left open, for the children `doubt`, decided by the exact sign of the least
-    /// (`Less`) and of the greatest value over a box (lower and upper corner).
+    /// Completes the sides for the children `doubt`, by the exact sign of the least (`Less`) and of the
+    /// greatest value over a box (lower and upper corner).
     #[cold]
     pub(crate) fn settled(
         mut self,

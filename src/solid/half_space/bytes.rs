@@ -1,5 +1,4 @@
-//! The memory that half-spaces take, about: of exact numbers the digits count, not what their lists have to
-//! spare.
+//! The approximate memory of half-spaces. Exact numbers count by their digits, without spare capacity.
 
 use super::{HalfSpace, Placed, Surface};
 use crate::lattice::exact::Dyadic;
@@ -11,7 +10,7 @@ fn digits<'d>(numbers: impl IntoIterator<Item = &'d Dyadic>) -> usize {
 }
 
 impl HalfSpace {
-    /// Of the function; what a host's function holds is not known.
+    /// The bytes of the function. The memory that a host's function holds is unknown.
     pub(crate) fn bytes(&self) -> usize {
         let beyond = match &*self.0 {
             Surface::Plane(plane) => digits(plane),
@@ -25,7 +24,7 @@ impl HalfSpace {
 }
 
 impl Placed {
-    /// Beside the value itself.
+    /// The bytes beside the value itself.
     pub(crate) fn heap_bytes(&self) -> usize {
         match self {
             Placed::Plane(plane) => plane.heap_bytes(),

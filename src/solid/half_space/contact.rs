@@ -1,14 +1,14 @@
-//! Planes and quadrics that touch: exact numbers decide, where bounds over cells never tell.
+//! Planes and quadrics that touch: exact numbers decide where bounds over cells never can.
 //!
-//! Two polynomials of degree two that are positive together at no point have a sum, with a positive factor,
-//! that is nowhere positive ([`pencil`]): so for balls, ellipsoids, cylinders and cones beside and inside of
-//! each other, and for all of these on planes. What an affine map does to both does not count, since it keeps
-//! the signs of all values.
+//! Suppose two polynomials of degree two are positive together at no point. Then a positive multiple of the
+//! one, added to the other, is nowhere positive ([`pencil`]). This decides balls, ellipsoids, cylinders and
+//! cones beside or inside each other, and all of these on planes. An affine map of both does not matter,
+//! since it keeps the signs of all values.
 //!
-//! A quadric of two sheets that lie on both sides of a plane, such as the two nappes of a cone whose ruling
-//! lies in the plane, has no such factor: one sheet is positive together with the plane. Then there may be a
-//! linear function ℓ such that f + ℓ g is nowhere positive. Where ℓ is not negative, f and g are not positive
-//! together: that is so in cells on one side of the cone's apex, and, for a cone that ends at its apex,
+//! A quadric of two sheets on both sides of a plane, such as the two nappes of a cone with a ruling in the
+//! plane, has no such factor: one sheet is positive together with the plane. Then there may be a linear
+//! function ℓ such that f + ℓ g is nowhere positive. Where ℓ is not negative, f and g are not positive
+//! together. That holds in cells on one side of the cone's apex. For a cone that ends at its apex, it holds
 //! wherever its base's function is positive.
 
 use super::bounds::{centre, half_edge};
@@ -26,29 +26,30 @@ use core::array::from_fn;
 /// The four coefficients of a linear function, in unit coordinates.
 type Linear = [Dyadic; 4];
 
-/// What two functions exclude of each other.
+/// The combinations of signs that two functions exclude.
 #[derive(Debug)]
 pub(crate) enum Contact {
     /// Nothing is known.
     Unknown,
-    /// The signs that they have together at no point: whether the first and the second are negative.
+    /// A combination of signs that occurs at no point: whether the first and the second function are
+    /// negative.
     Excluded(bool, bool),
-    /// A quadric has points on both sides of a plane, but none in it.
+    /// The quadric has points on both sides of a plane, but none in the plane.
     Sheets(Box<Sheets>),
 }
 
-/// A quadric of which no point inside lies in a plane.
+/// A quadric with no inner point in a plane.
 #[derive(Debug)]
 pub(crate) struct Sheets {
-    /// Whether the plane is the second of both.
+    /// Whether the plane is the second of the two surfaces.
     is_plane_second: bool,
-    /// Whether the quadric's function is negative in what is called inside.
+    /// Whether the quadric's function is negative on its inner side.
     is_inside_negative: bool,
-    /// Twice the matrix of the quadric's function, which is positive inside.
+    /// Twice the matrix of the quadric's function, with the sign that is positive inside.
     form: Form,
     plane: Linear,
-    /// Where this is not negative, nothing inside lies where the plane's function is positive; where it is
-    /// not positive, nothing where that is negative.
+    /// Where this function is not negative, no inner point has a positive plane function. Where it is not
+    /// positive, no inner point has a negative plane function.
     factor: Linear,
 }
 
@@ -61,8 +62,8 @@ impl Contact {
 }
 
 impl PlacedHalfSpace {
-    /// What two functions exclude of each other in the universe of a frame. Nothing is known of surfaces
-    /// other than planes and quadrics.
+    /// Returns the signs that two functions exclude in the universe of a frame. Only planes and quadrics are
+    /// compared.
     ///
     /// # Errors
     /// [`Error::Limit`] if exact numbers of placements become too long.
@@ -71,7 +72,7 @@ impl PlacedHalfSpace {
         if !is_known(&self.half_space.0) || !is_known(&other.half_space.0) {
             return Ok(Contact::Unknown);
         }
-        // What both were moved by last does not count.
+        // Common last placements do not matter.
         let both = self.placements.iter().zip(&*other.placements);
         let common = both.take_while(|(a, b)| a == b).count();
         let (Some(a), Some(b)) = (self.matrix(common)?, other.matrix(common)?) else {
@@ -88,7 +89,7 @@ impl PlacedHalfSpace {
         Ok(sheets.map_or(Contact::Unknown, |sheets| Contact::Sheets(Box::new(sheets))))
     }
 
-    /// Twice the matrix of the function, without the first placements.
+    /// Returns twice the matrix of the function, without the first `left_out` placements.
     fn matrix(&self, left_out: usize) -> Result<Option<Form>, Error> {
         let map = || {
             let mut placements = self.placements.iter().skip(left_out);
@@ -109,7 +110,7 @@ impl PlacedHalfSpace {
         matches!(&*self.half_space.0, Surface::Plane(_))
     }
 
-    /// The coefficients of a plane in the unit coordinates of a frame.
+    /// Returns the coefficients of a plane in the unit coordinates of a frame.
     pub(crate) fn linear(&self, frame: &Frame) -> Result<Option<Linear>, Error> {
         match &*self.half_space.0 {
             Surface::Plane(plane) => Ok(Some(oriented(plane, &self.map(ExactMap::from_universe(frame))?))),
@@ -117,7 +118,8 @@ impl PlacedHalfSpace {
         }
     }
 
-    /// A quadric beside a plane in which the quadric, or its complement, has no point inside.
+    /// Returns the sheets of a quadric beside a plane in which the quadric, or its complement, has no inner
+    /// point.
     fn sheets(
         &self,
         plane: &PlacedHalfSpace,
@@ -136,7 +138,7 @@ impl PlacedHalfSpace {
             [_, true] => true,
             _ => return Ok(None),
         };
-        // So chosen, f + ℓ g is the form without the pivot's row and column, which is semi-definite.
+        // With this choice, f + ℓ g is the form without the pivot's row and column, which is semi-definite.
         let row = &moved[pivot];
         let factor = from_fn(|k| {
             let own = &row[pivot] * &plane[k];
@@ -149,7 +151,7 @@ impl PlacedHalfSpace {
 }
 
 impl Sheets {
-    /// The signs of the first and the second function that occur together at no point of a cell.
+    /// Returns the signs of the first and the second function that occur together at no point of a cell.
     pub(crate) fn excluded(&self, cell: Cell) -> Option<(bool, bool)> {
         let (centre, half) = (centre(cell), half_edge(cell));
         let corners: [[Dyadic; 3]; 8] = from_fn(|corner| {
@@ -165,11 +167,12 @@ impl Sheets {
             .map(|negative| self.signs(negative))
     }
 
-    /// Twice the signs of both functions, and of that of a third surface, a plane, that occur together at no
-    /// point: whether they are negative. `None` if the third surface does not tell.
+    /// Returns two excluded combinations: the signs of both functions, and the sign of a third surface, a
+    /// plane. Each sign says whether the function is negative. `None` if the third surface does not decide.
     pub(crate) fn excluded_with(&self, third: &Linear) -> Option<[((bool, bool), bool); 2]> {
-        // Moved to the plane along any direction w, a point has the value f + ℓ g, where ℓ g(w)² is f(w) g −
-        // 2 g(w) (w F): of a cone there is a w such that w F is the function h of the plane through the apex.
+        // Projected on the plane along any direction w, a point has the value f + ℓ g, where ℓ g(w)² is f(w)
+        // g − 2 g(w) (w F). For a cone there is a w such that w F is the function h of the plane through the
+        // apex.
         let (f, g, h) = (&self.form, &self.plane, third);
         let adjugate = |i: usize, k: usize| {
             let at = |a: usize, b: usize| &f[(i + a) % 3][(k + b) % 3];
@@ -186,7 +189,7 @@ impl Sheets {
         if !is_apex || of_f < 0 || of_g * determinant.sign() == 0 {
             return None;
         }
-        // Where the third plane's function has the sign that makes its share of ℓ that of g, ℓ has that sign.
+        // Where the sign of h gives its term in ℓ the sign of the term of g, ℓ has that sign, too.
         let is_turned = of_g * determinant.sign() > 0;
         Some([false, true].map(|is_negative| (self.signs(is_negative), is_negative != is_turned)))
     }
@@ -199,10 +202,10 @@ impl Sheets {
     }
 }
 
-/// Whether there is an a ≥ 0 such that no value is less than a times the other: where the other is positive,
-/// the value is not negative. Of the negatives of all values if so said.
+/// Returns whether an a ≥ 0 exists such that each value is at least a times the corresponding other value.
+/// Then no value is negative where the other is positive. With `negative`, all values are negated.
 fn is_above(values: &[Dyadic; 8], others: &[Dyadic; 8], negative: bool) -> bool {
-    // Bounds of a: fractions, with positive denominators.
+    // Bounds of a as fractions with positive denominators.
     let mut least = (Dyadic::zero(), Dyadic::new(1.0));
     let mut most: Option<(Dyadic, Dyadic)> = None;
     let is_less = |a: &(Dyadic, Dyadic), b: &(Dyadic, Dyadic)| &a.0 * &b.1 < &b.0 * &a.1;
@@ -220,7 +223,7 @@ fn is_above(values: &[Dyadic; 8], others: &[Dyadic; 8], negative: bool) -> bool 
     most.is_none_or(|most| !is_less(&most, &least))
 }
 
-/// The function of a plane as the map shows it, with its own sign.
+/// Returns the image of a plane's function under the map, with its sign.
 fn oriented(plane: &Linear, map: &ExactMap) -> Linear {
     let linear = map.linear(plane);
     if map.w.sign() < 0 { linear.map(|c| -&c) } else { linear }
@@ -236,8 +239,8 @@ fn symmetric(coefficients: &Coefficients) -> Form {
     })
 }
 
-/// The form in other coordinates: those of points over the plane's factor `pivot`, but in that place the
-/// plane's function over it.
+/// The form in other coordinates: the points divided by the plane's coefficient `pivot`, and in the pivot's
+/// place the plane's function divided by it.
 fn on_plane(form: &Form, plane: &Linear, pivot: usize) -> Form {
     let map: Form = from_fn(|i| {
         from_fn(|k| match (i == pivot, i == k) {

@@ -1,9 +1,9 @@
-//! What a cell knows in which few half-spaces are open, whatever function of them the solid is: points, rays,
-//! moments and area.
+//! The answers in a cell in which few half-spaces are open, for any function of them: points, rays, moments
+//! and area.
 //!
-//! A function of up to three half-spaces is a union of intersections that do not overlap ([`Terms`]). So its
-//! moments are sums of theirs. A piece of a half-space's surface belongs to the boundary where the function's
-//! value depends on that half-space, which is a function of the others.
+//! A function of up to three half-spaces is a union of disjoint intersections ([`Terms`]). So its moments are
+//! sums of the intersections' moments. A piece of a half-space's surface belongs to the boundary where the
+//! function's value depends on that half-space; this is a function of the other half-spaces.
 
 use super::Placed;
 use super::bounds::{centre, half_edge};
@@ -23,8 +23,8 @@ struct Function<'h> {
     table: Table,
 }
 
-/// The moments in a cell, if more is known of them than slabs tell. Half-spaces are given with their numbers
-/// in the table.
+/// Returns the moments in a cell, if more is known of them than slabs give. Half-spaces are given with their
+/// numbers in the table.
 pub(crate) fn moments(
     variables: impl Iterator<Item = (usize, u32)> + Clone,
     table: Table,
@@ -41,7 +41,7 @@ pub(crate) fn moments(
     (2.0 * known.error < doubt).then_some(known)
 }
 
-/// Bounds of the area that the boundary has in a cell; `None` if too little is known.
+/// Returns bounds of the area of the boundary in a cell; `None` if too little is known.
 pub(crate) fn area(
     variables: impl Iterator<Item = (usize, u32)> + Clone,
     table: Table,
@@ -59,15 +59,15 @@ pub(crate) fn area(
     }
 }
 
-/// Whether a point is inside, given on which side of half-spaces it lies; `None` if the function depends on
-/// one of which that is not known.
+/// Returns whether a point is inside, from the sides of half-spaces on which it lies. `None` if the function
+/// depends on a half-space whose side is unknown.
 pub(crate) fn inside(
     variables: impl Iterator<Item = (usize, u32)>,
     mut table: Table,
     side: impl Fn(u32) -> Result<Option<bool>, Error>,
 ) -> Result<Option<bool>, Error> {
     for (i, index) in variables {
-        // What was found before may make it not matter.
+        // The sides before may make this one irrelevant.
         if table.depends_on(i) {
             table = table.at(i, side(index)?);
         }
@@ -79,7 +79,7 @@ pub(crate) fn inside(
     })
 }
 
-/// Adds the intervals of all rays of a beam; `false` if a half-space has no exact place.
+/// Adds the intervals of all rays of a beam. Returns `false` if a half-space has no exact place.
 pub(crate) fn chords(
     variables: impl Iterator<Item = (usize, u32)>,
     table: Table,
@@ -103,7 +103,7 @@ pub(crate) fn chords(
 }
 
 impl<'h> Function<'h> {
-    /// `None` if it depends on more half-spaces.
+    /// `None` if the function depends on more than three half-spaces.
     fn new(
         variables: impl Iterator<Item = (usize, u32)>,
         mut table: Table,
@@ -115,7 +115,7 @@ impl<'h> Function<'h> {
             if !table.depends_on(i) {
                 continue;
             }
-            // Numbers are given in ascending order, so that none is taken that is still to come.
+            // Numbers ascend, so that no number of a later half-space is taken.
             table = table.renamed(i, count, false);
             *half_spaces.get_mut(count)? = Some(&all[index as usize]);
             count += 1;
@@ -123,7 +123,7 @@ impl<'h> Function<'h> {
         Some(Function { half_spaces, table })
     }
 
-    /// The sum of the moments of terms; `None` if nothing is known of a half-space.
+    /// The sum of the terms' moments; `None` if nothing is known of a half-space.
     fn moments(&self, cell: Cell) -> Option<CellMoments> {
         let (centre, half) = (centre(cell), half_edge(cell));
         let (mut slabs, mut curves, mut curved) = ([Slab::NONE; 3], [None; 3], [false; 3]);
@@ -148,7 +148,7 @@ impl<'h> Function<'h> {
         Some(if complement { sum.complement() } else { sum })
     }
 
-    /// The sum of the areas of faces; `None` if nothing is known of a surface.
+    /// The sum of the faces' areas; `None` if nothing is known of a surface.
     fn area(&self, cell: Cell) -> Option<Interval> {
         let mut surfaces = [None; 3];
         for (surface, half_space) in surfaces.iter_mut().zip(&self.half_spaces) {
@@ -166,7 +166,7 @@ impl<'h> Function<'h> {
     }
 }
 
-/// The functions that are positive in a term.
+/// Returns the functions that are positive in a term.
 fn sides(term: &Term, surfaces: &[Option<Taylor>; 3]) -> [Option<Taylor>; 3] {
     let mut sides = [None; 3];
     for ((side, not), surface) in sides.iter_mut().zip(term).zip(surfaces) {
@@ -176,8 +176,8 @@ fn sides(term: &Term, surfaces: &[Option<Taylor>; 3]) -> [Option<Taylor>; 3] {
     sides
 }
 
-/// The moments of an intersection: to third order where one curved half-space is open, alone or with planes,
-/// else by slabs.
+/// Returns the moments of an intersection: to third order if one curved half-space is open, alone or with
+/// planes, otherwise from slabs.
 fn moments_of_term(term: &Term, slabs: &[Slab; 3], curves: &[Option<Quadratic>; 3]) -> CellMoments {
     let literals = || term.iter().enumerate().filter_map(|(i, not)| Some((i, (*not)?)));
     let slab = |(i, not): (usize, bool)| if not { slabs[i].complement() } else { slabs[i] };

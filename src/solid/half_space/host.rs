@@ -14,7 +14,7 @@ use alloc::sync::Arc;
 type Value = dyn Fn([f64; 3]) -> Result<f64, Error> + Send + Sync;
 type Range = dyn Fn([f64; 3], [f64; 3]) -> Result<Interval, Error> + Send + Sync;
 
-/// The exponent of the least double: nothing finer is exact.
+/// The exponent of the least double: finer numbers are not exact.
 const LOWEST: i64 = -1074;
 
 /// A function of the host, by its values at points and its ranges over boxes.
@@ -27,20 +27,20 @@ pub(crate) struct Host {
 /// A function of the host on a universe.
 pub(crate) struct PlacedHost {
     host: Arc<Host>,
-    /// The map into the function's space: rows of `[R | r]`, and more than the error of each coordinate of an
-    /// image.
+    /// The map into the function's space: the rows of `[R | r]`, and more than the error of each coordinate
+    /// of an image.
     rows: [[f64; 4]; 3],
     errors: [f64; 3],
 }
 
 impl PlacedHost {
-    /// The function as the map shows it on the universe of `frame`.
+    /// Returns the image of the function under the map on the universe of `frame`.
     pub(crate) fn new(host: &Arc<Host>, map: &ExactMap, frame: &Frame) -> PlacedHost {
-        // w = divisor · 2^shift, the divisor being of a magnitude of one.
+        // w = divisor · 2^shift, where the divisor has a magnitude of one.
         let shift = map.w.magnitude().unwrap_or(0);
         let divisor = map.w.shifted(-shift).rounded();
         let exact_divisor = map.w.bits() == 1;
-        // Coordinates are of a cell's centre, and nothing is finer than the least double.
+        // The finest coordinates are those of cell centres, and no number is finer than the least double.
         let places = frame.depth() as i64 + 1;
         let lowest = LOWEST + places;
         let mut errors = [0.0; 3];
@@ -52,19 +52,19 @@ impl PlacedHost {
                 && exact.iter().all(|c| c.exactly().is_some() && c.grain().is_none_or(|bit| bit >= lowest))
                 && size.is_finite()
                 && linear::is_exact(&exact, places, size);
-            // A term is rounded at most eight times.
+            // At most eight roundings a term.
             errors[i] = if is_exact { 0.0 } else { 16.0 * f64::EPSILON * size + f64::MIN_POSITIVE };
             row
         });
         PlacedHost { host: host.clone(), rows, errors }
     }
 
-    /// The image of a point, rounded.
+    /// Returns the rounded image of a point.
     fn image(&self, t: [f64; 3]) -> [f64; 3] {
         self.rows.map(|[a, b, c, d]| ((a * t[0] + b * t[1]) + c * t[2]) + d)
     }
 
-    /// A box around the image of a box.
+    /// Returns a box around the image of a box.
     fn image_of_box(&self, low: [f64; 3], high: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let end = |i: usize, upper: bool| {
             let row = self.rows[i];
@@ -75,8 +75,8 @@ impl PlacedHost {
         (axes(|i| end(i, false)), axes(|i| end(i, true)))
     }
 
-    /// For which of the cells `wanted` the function is said to be nowhere negative, and nowhere positive. A
-    /// cell with an inner and an outer vertex is neither, and its range is not asked for.
+    /// Returns for which of the cells `wanted` the host says that the function is nowhere negative, and
+    /// nowhere positive. A cell with an inner and an outer vertex is neither, and its range is not evaluated.
     pub(crate) fn sides(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
         let wanted = wanted & at.all();
         let mut sides = Sides { inside: 0, outside: 0 };
@@ -105,7 +105,7 @@ impl PlacedHost {
         Ok(sides)
     }
 
-    /// The value at a point; `None` if the host does not know.
+    /// Returns the value at a point; `None` if the host does not know it.
     pub(crate) fn value_at(&self, t: [f64; 3]) -> Result<Option<f64>, Error> {
         let image = self.image(t);
         if !image.iter().all(|c| c.is_finite()) {

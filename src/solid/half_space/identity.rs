@@ -1,9 +1,9 @@
-//! Half-spaces that are one, wherever they come from: planes and quadrics whose coefficients on the universe
-//! are proportional, from one side or from the other, and other surfaces with the same numbers in the same
-//! place.
+//! The identification of half-spaces that are the same, wherever they come from: planes and quadrics whose
+//! coefficients on the universe are proportional, with either sign, and other surfaces with the same numbers
+//! and the same placement.
 //!
-//! So the truth tables of cells know what coincides: a solid less itself is empty, and solids that touch in a
-//! face have nothing in common, without a split.
+//! So the truth tables of cells see coinciding surfaces. A solid minus itself is empty, and solids that touch
+//! in a face have nothing in common, without a split.
 
 use super::map::ExactMap;
 use super::{HalfSpace, Placed, Surface};
@@ -14,28 +14,28 @@ use alloc::vec::Vec;
 use core::hash::{Hash, Hasher};
 use hashbrown::HashMap;
 
-/// Half-spaces that were met, by what is the same of equal ones.
+/// The half-spaces met so far, indexed by keys that equal half-spaces share.
 #[derive(Default)]
 pub(crate) struct Identities {
-    /// The last plane or quadric with about such a likeness; of each the one before it.
+    /// The last plane or quadric with about this likeness. `before` has for each the one before it.
     last: HashMap<i64, u32>,
     before: Vec<u32>,
     others: HashMap<Exactly, u32>,
 }
 
-/// There is none before.
+/// Marks that there is no earlier one.
 const NONE: u32 = u32::MAX;
 
-/// Likenesses are told apart in steps of about 10⁻⁹, and known to that share of a step.
+/// The number of steps of likeness per unit: about 10⁹. A likeness is precise to `KNOWN` steps.
 const STEPS: f64 = (1u64 << 30) as f64;
 const KNOWN: f64 = 1e-3;
 
-/// So many are looked at that are nearly alike. (What is missed costs time alone.)
+/// The most candidates with nearly the same likeness that are compared. (A missed match costs only time.)
 const MOST: usize = 16;
 
 impl Identities {
-    /// The number of the half-space among `known` that is the same, and whether it is its complement; if
-    /// there is none it is the next one. O(1).
+    /// Returns the number of the same half-space among `known`, and whether it is the complement. If there is
+    /// none, the number is the next one. O(1).
     pub(crate) fn find(
         &mut self,
         half_space: &HalfSpace,
@@ -72,7 +72,7 @@ impl Identities {
     }
 }
 
-/// A half-space and where it stands, by their exact numbers.
+/// A half-space and its placement, compared by their exact numbers.
 struct Exactly {
     half_space: HalfSpace,
     map: Arc<ExactMap>,
@@ -100,7 +100,7 @@ impl Hash for Exactly {
             Surface::Torus(torus) => torus.hash(state),
             Surface::Powers(powers) => {
                 for (coefficient, centre, exponent) in powers.terms {
-                    // Zero has two signs, and is equal to itself.
+                    // Zero has two signs, which are equal.
                     ([coefficient, centre].map(|x| (x + 0.0).to_bits()), exponent).hash(state);
                 }
                 (powers.constant + 0.0).to_bits().hash(state);

@@ -1,11 +1,12 @@
-//! Whether two polynomials bound the same half-space, or one the other's complement: their coefficients on
-//! the universe are proportional.
+//! A test whether two polynomials bound the same half-space, or one the complement of the other: whether
+//! their coefficients on the universe are proportional.
 
 use super::Placed;
 use crate::lattice::exact::{Dyadic, sqrt};
 use alloc::boxed::Box;
 
-/// A number that proportional coefficients share, but for rounding: weights of no simple ratios.
+/// Weights without simple ratios, whose weighted sum is the same for proportional coefficients, up to
+/// rounding.
 const WEIGHTS: [f64; 10] = [
     0.577_215_664_9,
     1.324_717_957_2,
@@ -20,7 +21,8 @@ const WEIGHTS: [f64; 10] = [
 ];
 
 impl Placed {
-    /// The coefficients as doubles, and how many they are; `None` if it is no plane and no quadric.
+    /// Returns the coefficients as doubles, and their number; `None` if the surface is neither a plane nor a
+    /// quadric.
     fn rounded(&self) -> Option<([f64; 10], usize)> {
         let mut all = [0.0; 10];
         let count = match self {
@@ -46,8 +48,8 @@ impl Placed {
         }
     }
 
-    /// A number between −3 and 3 that all planes have that are the same from either side, and all quadrics,
-    /// to 10⁻¹⁴; `None` of others.
+    /// Returns a number between −3 and 3 that agrees to 10⁻¹⁴ for planes that bound the same half-space or
+    /// complements, and likewise for quadrics. `None` for other surfaces.
     pub(crate) fn likeness(&self) -> Option<f64> {
         let (c, count) = self.rounded()?;
         let first = c.iter().copied().find(|&c| c != 0.0)?;
@@ -57,7 +59,8 @@ impl Placed {
         Some(sum.copysign(sum * first) / length + kind)
     }
 
-    /// Whether the coefficients are proportional, exactly: `Some(true)` if that is by a negative factor.
+    /// Decides exactly whether the coefficients are proportional: `Some(true)` for a negative factor,
+    /// `Some(false)` for a positive one.
     pub(crate) fn is_turned(&self, other: &Placed) -> Option<bool> {
         let ((a, count), (b, other_count)) = (self.rounded()?, other.rounded()?);
         if count != other_count {
@@ -66,7 +69,7 @@ impl Placed {
         let largest = (0..count).max_by(|&i, &j| a[i].abs().total_cmp(&a[j].abs()))?;
         let factor = b[largest] / a[largest];
         let size = factor.abs() * a[largest].abs();
-        // Most that are not are told apart by doubles.
+        // Doubles exclude most pairs that are not proportional.
         let is_near = |i: usize| (b[i] - factor * a[i]).abs() <= 1e-14 * size;
         if !(0..count).all(is_near) {
             return None;

@@ -3,11 +3,11 @@
 use crate::lattice::exact::Dyadic;
 use wide::f64x4;
 
-/// f(x, y, z) = a x + b y + c z + d: exactly, and rounded.
+/// f(x, y, z) = a x + b y + c z + d, with exact and with rounded coefficients.
 pub(crate) struct Linear {
     pub(crate) exact: [Dyadic; 4],
     pub(crate) c: [f64; 4],
-    /// More than the error of a rounded value on the universe, and of the coordinates for which it is exact.
+    /// More than the error of a rounded value on the universe, and of the coordinates for which f is exact.
     pub(crate) error: f64,
 }
 
@@ -21,9 +21,8 @@ pub(crate) fn value(exact: &[Dyadic; 4], t: &[Dyadic; 3]) -> Dyadic {
     (0..3).fold(exact[3].clone(), |sum, axis| &sum + &(&exact[axis] * &t[axis]))
 }
 
-/// Whether no sum of products is rounded, the factors being `coefficients` (doubles) and multiples of
-/// 2^-`places`, and no sum greater than `size`: there is nothing finer than the grain and nothing beyond 2^53
-/// of it.
+/// Returns whether no sum of products is rounded. The factors are `coefficients` (doubles) and multiples of
+/// 2^-`places`; no sum is greater than `size`. This holds if `size` is below 2^53 times the finest grain.
 pub(crate) fn is_exact(coefficients: &[Dyadic], places: i64, size: f64) -> bool {
     let grain = coefficients.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - places;
     Dyadic::new(size).magnitude().is_none_or(|m| m + 1 - grain <= 53)
@@ -34,16 +33,16 @@ impl Linear {
         self.exact.iter().map(Dyadic::heap_bytes).sum()
     }
 
-    /// The function with the coefficients a to d, which are neither all zero nor, rounded, near the ends of
-    /// the range of doubles.
+    /// Returns the function with the coefficients a to d. They must not all be zero, nor, rounded, near the
+    /// ends of the range of doubles.
     pub(crate) fn new(exact: [Dyadic; 4]) -> Linear {
         let c = exact.each_ref().map(Dyadic::rounded);
-        // Coefficients, products and sums are rounded: each term at most six times.
+        // Coefficients, products and sums are rounded: at most six roundings a term.
         let error = 8.0 * f64::EPSILON * c.iter().map(|c| c.abs()).sum::<f64>();
         Linear { exact, c, error }
     }
 
-    /// The axis on which alone the function depends, if there is one.
+    /// Returns the only axis on which the function depends, if there is exactly one.
     pub(crate) fn axis(&self) -> Option<usize> {
         let mut axes = (0..3).filter(|&axis| !self.exact[axis].is_zero());
         axes.next().filter(|_| axes.next().is_none())
@@ -62,7 +61,7 @@ impl Linear {
         ((a * x + b * y) + c * z) + d
     }
 
-    /// How far values differ from that at the centre of a cube of half edge 1.
+    /// The greatest difference of a value from the value at the centre of a cube of half edge 1.
     #[inline(always)]
     pub(crate) fn reach(&self) -> f64 {
         (self.c[0].abs() + self.c[1].abs()) + self.c[2].abs()

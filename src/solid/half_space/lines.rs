@@ -1,10 +1,10 @@
-//! Where a half-space's surface crosses a ray through cell centres.
+//! The crossings of a half-space's surface with a ray through cell centres.
 //!
-//! A ray is a line of the lattice in unit coordinates, on which a plane or a quadric is a polynomial of
-//! degree two with a known error: its roots have closed forms. Where these cannot tell, as near to a tangent,
-//! and for surfaces of higher degree, the ray is halved until the function has one sign on a piece, or rises
-//! or falls throughout it (Taylor's formula with its remainder), and signs are decided exactly. On which side
-//! a cell's centre lies is always its exact sign.
+//! A ray is a line of the lattice in unit coordinates. A plane or a quadric is a polynomial of degree two on
+//! it, with a known error: its roots have closed forms. Where these are too imprecise, as near to a tangent,
+//! and for surfaces of higher degree, the ray is bisected until the function has one sign on a piece, or is
+//! monotone on it (Taylor's formula with its remainder); signs are decided exactly. The side of a cell's
+//! centre is always its exact sign.
 
 use super::Placed;
 use crate::dexel::{first_above, within};
@@ -16,26 +16,26 @@ use alloc::vec::Vec;
 /// A place where a half-space begins or ends on a ray.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Root {
-    /// In finest cells from the universe's lower face, in the gap between the right centres.
+    /// The place in finest cells from the universe's lower face, between the right centres.
     pub at: f64,
-    /// Which of the half-spaces that are asked.
+    /// The half-space's number among those of the query.
     pub which: u32,
 }
 
-/// Roots are found to this part of the universe's edge.
+/// The precision of roots, as a fraction of the universe's edge.
 const FINE: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// Most pieces of a ray on which a function is looked at. (Where it is all but zero along the ray, halving
-/// does not end.)
+/// The most pieces of a ray on which a function is evaluated. (Where the function is almost zero along the
+/// ray, bisection does not end.)
 const MOST_PIECES: u32 = 1 << 12;
 
 /// A piece of a ray between two planes of the lattice.
 #[derive(Clone, Copy)]
 pub(crate) struct Line {
     pub axis: usize,
-    /// The ray's place on the other two axes; the third is any.
+    /// The ray's place on the other two axes; the third coordinate is arbitrary.
     pub point: [f64; 3],
-    /// Cells of an axis.
+    /// The number of cells along an axis.
     pub cells: f64,
     pub low: f64,
     pub high: f64,
@@ -48,17 +48,18 @@ impl Line {
         point
     }
 
-    /// Whether a point of the ray lies inside, by the exact sign; shifted if it lies on the surface.
+    /// Returns whether a point of the ray lies inside, by the exact sign; the point is shifted if it lies on
+    /// the surface.
     fn contains(&self, half_space: &Placed, s: f64) -> Result<bool, Error> {
         Ok(half_space.contains(self.point(s))?.unwrap_or(false))
     }
 
-    /// The same between the points of the lattice.
+    /// Returns the answer of [`contains`](Self::contains) between the points of the lattice.
     fn contains_off_lattice(&self, half_space: &Placed, s: f64) -> Result<bool, Error> {
         Ok(half_space.contains_off_lattice(self.point(s))?.unwrap_or(false))
     }
 
-    /// Appends the roots of a half-space, ascending; the answer is whether the lower end lies inside.
+    /// Appends the roots of a half-space, ascending. Returns whether the lower end lies inside.
     pub fn roots(&self, half_space: &Placed, which: u32, roots: &mut Vec<Root>) -> Result<bool, Error> {
         let first = roots.len();
         if let Some(inside) = self.closed_form(half_space, which, roots)? {
@@ -68,7 +69,7 @@ impl Line {
         let inside = self.contains(half_space, self.low)?;
         let last = self.contains(half_space, self.high)?;
         if half_space.is_linear_along(self.axis) {
-            // It rises or falls throughout, or is constant.
+            // The function is monotone or constant.
             if inside != last {
                 self.bisect(half_space, which, [self.low, self.high], last, roots)?;
             }
@@ -79,7 +80,7 @@ impl Line {
         Ok(inside)
     }
 
-    /// The roots of a polynomial of degree two; nothing if rounding leaves something open.
+    /// Appends the roots of a polynomial of degree two. Returns `None` if rounding leaves something open.
     #[inline]
     fn closed_form(
         &self,
@@ -98,9 +99,9 @@ impl Line {
             return Ok(Some(c > 0.0));
         }
         let root = sqrt(discriminant);
-        // The slope at a root is the discriminant's root, but for rounding.
+        // The derivative at a root is the root of the discriminant, up to rounding.
         let wrong = 2.0 * error / root;
-        // (False for what is not a number, too.)
+        // (This is false for NaN, too.)
         let is_fine = wrong <= FINE;
         if !is_fine {
             return self.finer_form(half_space, which, roots);
@@ -109,7 +110,7 @@ impl Line {
         self.place(half_space, which, [a, b], [q / a, c / q], wrong, roots)
     }
 
-    /// The same in numbers of 106 bits.
+    /// Appends the roots as [`closed_form`](Self::closed_form), in numbers of 106 bits.
     #[cold]
     fn finer_form(
         &self,
@@ -131,7 +132,7 @@ impl Line {
         }
         let root = discriminant.root();
         let wrong = 4.0 * error / root.high;
-        // (False for what is not a number, too.)
+        // (This is false for NaN, too.)
         let is_fine = wrong <= FINE;
         if !is_fine {
             return Ok(None);
@@ -142,8 +143,8 @@ impl Line {
         self.place(half_space, which, [a.high, b.high], [x, y], wrong + 4.0 * f64::EPSILON, roots)
     }
 
-    /// Appends the roots that lie on the piece, given those of a polynomial; nothing if one lies too near to
-    /// an end.
+    /// Appends the roots of a polynomial that lie on the piece. Returns `None` if one lies too near to an
+    /// end.
     #[inline]
     fn place(
         &self,
@@ -157,10 +158,10 @@ impl Line {
         if x > y {
             (x, y) = (y, x);
         }
-        // Left of both roots the sign is that of the square, or of minus the slope.
+        // Left of both roots, the sign is that of the square's factor, or the opposite of the slope's.
         let mut inside = if a != 0.0 { a > 0.0 } else { b < 0.0 };
         if a == 0.0 {
-            // One is at infinity.
+            // One root is at infinity.
             (x, y) = (if x.is_finite() { x } else { y }, f64::INFINITY);
         }
         let mut at_low = inside;
@@ -180,8 +181,8 @@ impl Line {
         Ok(Some(at_low))
     }
 
-    /// A root in cells, off by at most `wrong`, behind which is the inside or the outside: moved into the
-    /// right gap.
+    /// Moves a root into the right gap between centres. The root is given in cells with an error of at most
+    /// `wrong`; `inside` says whether the inside lies behind it.
     #[inline]
     fn settled(&self, half_space: &Placed, at: f64, wrong: f64, inside: bool) -> Result<f64, Error> {
         let wrong = wrong + 8.0 * f64::EPSILON * self.cells;
@@ -190,15 +191,15 @@ impl Line {
         let above = if (at - centre).abs() > wrong {
             first_above(at) as i32
         } else {
-            // The centre is behind the root if it is on that side.
+            // The centre lies behind the root if it is on that side.
             let behind = self.contains(half_space, centre / self.cells)? == inside;
             k as i32 + i32::from(!behind)
         };
         Ok(within(at, above, self.cells))
     }
 
-    /// Appends the roots in a piece, at whose ends the sides are known. The recursion is as deep as doubles
-    /// have bits.
+    /// Appends the roots in a piece whose ends have known sides. The recursion depth is at most the number of
+    /// a double's bits.
     fn isolate(
         &self,
         half_space: &Placed,
@@ -223,7 +224,7 @@ impl Line {
         if let Some(taylor) = half_space.taylor(self.point(middle), half)
             && taylor.f.gradient[self.axis].abs() > taylor.bend + half_space.rounding() * half
         {
-            // It rises or falls throughout.
+            // The function is monotone.
             if sides[0] != sides[1] {
                 self.bisect(half_space, which, [low, high], sides[1], roots)?;
             }
@@ -234,7 +235,7 @@ impl Line {
         self.isolate(half_space, which, [middle, high], [side, sides[1]], pieces, roots)
     }
 
-    /// The only root in a piece, behind which is the inside or the outside.
+    /// Appends the only root in a piece. `inside` says whether the inside lies behind it.
     fn bisect(
         &self,
         half_space: &Placed,
@@ -256,8 +257,8 @@ impl Line {
         memory::push(roots, Root { at, which })
     }
 
-    /// The roots in a piece that is not halved any more: as many as its ends, and the centres between them,
-    /// tell.
+    /// Appends the roots in a piece that is not bisected further: as many as follow from its ends and the
+    /// centres between them.
     fn finest(
         &self,
         half_space: &Placed,
@@ -283,7 +284,7 @@ impl Line {
         }
     }
 
-    /// The outward normal of a half-space at a place in cells; of any length, or 0.
+    /// Returns the outward normal of a half-space at a place in cells; of any length, or 0.
     pub fn normal(&self, half_space: &Placed, at: f64) -> [f64; 3] {
         let taylor = half_space.taylor(self.point(at / self.cells), 1.0 / self.cells);
         taylor.map_or([0.0; 3], |taylor| taylor.f.gradient.map(|c| -c))

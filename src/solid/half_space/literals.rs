@@ -1,4 +1,4 @@
-//! What a cell knows in which few half-spaces are open: slabs, moments to third order, and area.
+//! The answers in a cell in which few half-spaces are open: slabs, moments to third order, and area.
 
 use super::Placed;
 use super::bounds::{centre, half_edge};
@@ -7,30 +7,30 @@ use crate::cut;
 use crate::cut::{Enclosure, Slab, SlabJoin};
 use crate::lattice::{Cell, CellMoments, Interval};
 
-/// Up to three half-spaces, or their complements.
+/// Up to three half-spaces, each with whether its complement is meant.
 type Chosen = [Option<(u32, bool)>; 3];
 
-/// The intersection of up to three half-spaces, or of their complements, that is a solid in a cell or
-/// contains it; or that is the solid's complement or contains that. (A union is the complement of an
-/// intersection, so that complements have the same bits.)
+/// The intersection of up to three half-spaces or complements that a solid is in a cell, or is contained in;
+/// or the same for the solid's complement. (A union is the complement of an intersection, so that complements
+/// give the same bits.)
 #[derive(Clone, Copy)]
 pub(crate) struct Literals {
-    /// Which half-spaces, and whether their complements are meant.
+    /// The half-spaces, and whether their complements are meant.
     literals: Chosen,
-    /// Whether the solid, or its complement, may be less than the intersection.
+    /// Whether the solid, or its complement, may be smaller than the intersection.
     one_sided: bool,
-    /// Whether the solid's complement is meant.
+    /// Whether the intersection stands for the solid's complement.
     complement: bool,
 }
 
 impl Literals {
-    /// One half-space, or its complement.
+    /// Returns one half-space, or its complement.
     pub(crate) fn one(index: u32, complement: bool) -> Literals {
         Literals { literals: [Some((index, false)), None, None], one_sided: false, complement }
     }
 
-    /// A function of half-spaces, which are given with their numbers in the table. `None` if neither the
-    /// solid nor its complement lies in any of them.
+    /// Returns the literals of a function of half-spaces, which are given with their numbers in the table.
+    /// `None` if neither the solid nor its complement lies in any of them.
     pub(crate) fn of_table(
         variables: impl Iterator<Item = (usize, u32)> + Clone,
         table: Table,
@@ -42,7 +42,7 @@ impl Literals {
         around(table, false).or_else(|| around(Table(!table.0), true))
     }
 
-    /// Whether the solid, or its complement, may be less than the intersection.
+    /// Returns whether the solid, or its complement, may be smaller than the intersection.
     pub(crate) fn is_one_sided(&self) -> bool {
         self.one_sided
     }
@@ -51,14 +51,15 @@ impl Literals {
         self.literals.into_iter().flatten().map(|(index, not)| (&half_spaces[index as usize], not))
     }
 
-    /// A slab for each half-space; bounds from one side if the solid is less than their intersection.
+    /// Returns a slab for each half-space, and one-sided bounds if the solid may be smaller than their
+    /// intersection.
     pub(crate) fn enclosure(&self, half_spaces: &[Placed], cell: Cell) -> Option<Enclosure> {
         let (centre, half) = (centre(cell), half_edge(cell));
         let mut slabs = [Slab::NONE; 3];
         let (mut count, mut one_sided) = (0, self.one_sided);
         for (half_space, complement) in self.each(half_spaces) {
             let tangent = half_space.tangent(centre, half);
-            // Where the gradient vanishes there is no slab.
+            // Where the gradient vanishes, there is no slab.
             match tangent.filter(|tangent| tangent.gradient != [0.0; 3]) {
                 Some(tangent) => {
                     let slab = tangent.slab();
@@ -71,7 +72,7 @@ impl Literals {
         if one_sided {
             slabs.iter_mut().for_each(|slab| slab.inner = f64::NEG_INFINITY);
         }
-        // Of several surfaces each has normals of its own.
+        // Several surfaces have different normals.
         let cone = match self.literals {
             [Some((index, _)), None, None] if !one_sided => {
                 half_spaces[index as usize].taylor(centre, half).map_or(f64::INFINITY, |f| f.cone())
@@ -82,8 +83,8 @@ impl Literals {
         (count > 0).then(|| if self.complement { enclosure.complement() } else { enclosure })
     }
 
-    /// The moments to third order where one curved half-space is open, alone or with planes, if more is known
-    /// of them than slabs tell.
+    /// Returns the moments to third order if one curved half-space is open, alone or with planes, and if this
+    /// is better than slabs.
     pub(crate) fn moments(&self, half_spaces: &[Placed], cell: Cell) -> Option<CellMoments> {
         let is_plane = |half_space: &Placed| matches!(half_space, Placed::Plane(_));
         let mut curved = self.each(half_spaces).filter(|(half_space, _)| !is_plane(half_space));
@@ -111,7 +112,7 @@ impl Literals {
         is_better.then(|| if self.complement { known.complement() } else { known })
     }
 
-    /// Bounds of the area that the boundary has in the cell; `None` if too little is known.
+    /// Returns bounds of the area of the boundary in the cell; `None` if too little is known.
     pub(crate) fn area(&self, half_spaces: &[Placed], cell: Cell) -> Option<Interval> {
         if self.one_sided {
             return None;
@@ -128,16 +129,15 @@ impl Literals {
     }
 }
 
-/// More than the area that surfaces have in a cell, whatever function of them the solid is; `None` if too
-/// little is known.
+/// Returns more than the area of surfaces in a cell, for any function of them; `None` if too little is known.
 pub(crate) fn most_area<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Option<Interval> {
     let taylor = |half_space: &Placed| half_space.taylor(centre(cell), half_edge(cell));
     let areas = half_spaces.map(|half_space| Some(cut::area_of_surface(&taylor(half_space)?).upper));
     Some(Interval::between(0.0, areas.sum::<Option<f64>>()?))
 }
 
-/// Half-spaces, or their complements, in all of which the points of a table lie; with `false` if it is their
-/// intersection. `None` if there is no such half-space.
+/// Returns half-spaces, or complements, that all contain the points of a table; the flag is `false` if the
+/// table is their intersection. `None` if there is no such half-space.
 fn around(variables: impl Iterator<Item = (usize, u32)>, table: Table) -> Option<(Chosen, bool)> {
     let mut literals = [None; MOST];
     let (mut all, mut count) = (Table::FULL, 0);

@@ -5,32 +5,32 @@ use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, cross, dot};
 use crate::lattice::{Affine, Frame};
 
-/// Most bits that an entry may take, and most powers of two between one and w: some hundred rotations inside
-/// of each other.
+/// The most bits of an entry, and the greatest exponent between one and w: enough for some hundred nested
+/// rotations.
 pub(crate) const MOST_BITS: u64 = 1 << 14;
 
-/// What the limit is of.
+/// The unit of that limit in messages.
 pub(crate) const MOST_BITS_ARE: &str =
     "bits for the exact numbers of nested placements (some hundred rotations within each other)";
 
-/// The map x ↦ (R x + r) / w, exactly: from the universe's unit coordinates into the space of a shape that
-/// stands under any number of placements.
+/// The exact map x ↦ (R x + r) / w, from the universe's unit coordinates into the space of a shape under any
+/// number of placements.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct ExactMap {
-    /// Rows of `[R | r]`.
+    /// The rows of `[R | r]`.
     pub(crate) rows: [[Dyadic; 4]; 3],
-    /// Not zero.
+    /// The divisor, not zero.
     pub(crate) w: Dyadic,
 }
 
 impl ExactMap {
-    /// The map that moves nothing.
+    /// Returns the identity.
     pub(crate) fn identity() -> ExactMap {
         let rows = axes(|i| [0, 1, 2, 3].map(|j| Dyadic::new(if i == j { 1.0 } else { 0.0 })));
         ExactMap { rows, w: Dyadic::new(1.0) }
     }
 
-    /// From unit coordinates, in which the universe is [0, 1]³, to model space.
+    /// Returns the map from unit coordinates, in which the universe is [0, 1]³, to model space.
     pub(crate) fn from_universe(frame: &Frame) -> ExactMap {
         let edge = Dyadic::new(frame.edge());
         let rows = axes(|i| {
@@ -42,8 +42,8 @@ impl ExactMap {
         ExactMap { rows, w: Dyadic::new(1.0) }
     }
 
-    /// The linear function `given`, by its four coefficients, of the image of its argument: `given` ∘ map,
-    /// times w.
+    /// Returns the composition of a linear function with the map, `given` ∘ map, times w. `given` are the
+    /// four coefficients.
     pub(crate) fn linear(&self, given: &[Dyadic; 4]) -> [Dyadic; 4] {
         let [a, b, c, d] = given.each_ref();
         let [x, y, z] = &self.rows;
@@ -52,8 +52,8 @@ impl ExactMap {
         sums
     }
 
-    /// The map into the space of a shape that `placement` puts into this map's target. With M and t of the
-    /// placement it is x ↦ adj(M) (R x + r − w t) / (w det M).
+    /// Returns the map into the space of a shape that `placement` puts into this map's target. With M and t
+    /// of the placement, this is x ↦ adj(M) (R x + r − w t) / (w det M).
     ///
     /// # Errors
     /// [`Error::Limit`] if the exact entries become too long.
@@ -66,9 +66,9 @@ impl ExactMap {
             row[3] = &row[3] - &(&self.w * &m[i][3]);
             row
         });
-        // The adjugate is the cofactors' transpose.
+        // The adjugate is the transpose of the cofactors.
         let rows = axes(|i| [0, 1, 2, 3].map(|j| dot(axes(|k| &cofactors[k][i]), axes(|k| &moved[k][j]))));
-        // With w of a magnitude of one, sums of entries and products are as long as the entries are apart.
+        // With w of a magnitude of one, sums of entries and products are as long as their exponents differ.
         let w = &self.w * &determinant;
         let scale = -w.magnitude().unwrap_or(0);
         let map = ExactMap { rows: rows.map(|row| row.map(|c| c.shifted(scale))), w: w.shifted(scale) };

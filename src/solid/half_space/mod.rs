@@ -1,4 +1,4 @@
-//! Half-spaces: what all primitives are made of.
+//! Half-spaces: the building blocks of all primitives.
 
 pub(crate) mod bounds;
 mod bytes;
@@ -55,8 +55,8 @@ use wide::f64x4;
 
 /// The points with f(x, y, z) ≥ 0, for one function f. Cheap to clone.
 ///
-/// f is that of exactly the doubles given, and its signs are exact: no rounding decides anything. (Of a host
-/// program's function it is the program that answers for the signs.)
+/// f has exactly the given doubles as its numbers, and its signs are exact: no rounding decides anything.
+/// (For a host program's function, the program is responsible for the signs.)
 #[derive(Clone)]
 pub struct HalfSpace(pub(crate) Arc<Surface>);
 
@@ -64,7 +64,7 @@ pub struct HalfSpace(pub(crate) Arc<Surface>);
 pub(crate) enum Surface {
     /// a x + b y + c z + d.
     Plane([Dyadic; 4]),
-    /// Of degree two.
+    /// A polynomial of degree two.
     Quadric(Box<Coefficients>),
     Powers(Powers),
     Torus(Torus),
@@ -76,10 +76,11 @@ pub(crate) enum Surface {
 const LARGEST_EXPONENT: u32 = 64;
 
 impl HalfSpace {
-    /// `normal` · p + `offset` ≥ 0; the normal, of any length, points into the half-space.
+    /// Returns the half-space `normal` · p + `offset` ≥ 0. The normal, of any length, points into the
+    /// half-space.
     ///
     /// # Errors
-    /// [`Error::Argument`] if the normal is zero, or a number is not zero and not of a magnitude between
+    /// [`Error::Argument`] if the normal is zero, or if a number is neither zero nor of a magnitude between
     /// 2^-256 and 2^256.
     pub fn plane(normal: [f64; 3], offset: f64) -> Result<HalfSpace, Error> {
         if normal == [0.0; 3] {
@@ -91,11 +92,12 @@ impl HalfSpace {
         Ok(HalfSpace::linear([x, y, z, offset].map(Dyadic::new)))
     }
 
-    /// a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0 for the `coefficients` a to j.
+    /// Returns the half-space a x² + b y² + c z² + d xy + e yz + f zx + g x + h y + i z + j ≥ 0 for the
+    /// `coefficients` a to j.
     ///
     /// # Errors
-    /// [`Error::Argument`] if all but the last are zero, or one is not zero and not of a magnitude between
-    /// 2^-256 and 2^256.
+    /// [`Error::Argument`] if all coefficients but the last are zero, or if one is neither zero nor of a
+    /// magnitude between 2^-256 and 2^256.
     pub fn quadric(coefficients: [f64; 10]) -> Result<HalfSpace, Error> {
         valid::numbers("coefficients", &coefficients)?;
         if coefficients[..9].iter().all(|&c| c == 0.0) {
@@ -105,15 +107,15 @@ impl HalfSpace {
         Ok(HalfSpace::exactly(coefficients.map(Dyadic::new)))
     }
 
-    /// A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0, for the `terms` (A, a, n), (B, b, m) and (C,
-    /// c, k). A coefficient 0 leaves a term out.
+    /// Returns the half-space A (x − a)^n + B (y − b)^m + C (z − c)^k + `constant` ≥ 0, for the `terms` (A,
+    /// a, n), (B, b, m) and (C, c, k). A coefficient of 0 omits its term.
     ///
-    /// Least and greatest values over a cell are exact under placements that take axes to axes, and bounded
-    /// outward under others.
+    /// Least and greatest values over a cell are exact under placements that map axes to axes, and bounded
+    /// outward under other placements.
     ///
     /// # Errors
-    /// [`Error::Argument`] if all coefficients are zero, an exponent is not 1 to 64, or a number is not zero
-    /// and not of a magnitude between 2^-256 and 2^256.
+    /// [`Error::Argument`] if all coefficients are zero, if an exponent is not 1 to 64, or if a number is
+    /// neither zero nor of a magnitude between 2^-256 and 2^256.
     pub fn power(terms: [(f64, f64, u32); 3], constant: f64) -> Result<HalfSpace, Error> {
         valid::numbers("terms", terms.map(|(coefficient, centre, _)| [coefficient, centre]).as_flattened())?;
         valid::numbers("constant", &[constant])?;
@@ -146,12 +148,13 @@ impl HalfSpace {
         Ok(HalfSpace::separable(squares, linear, constant))
     }
 
-    /// The torus around the z axis: all points at most `minor` from the circle of radius `major` in the plane
-    /// z = 0. So where `minor` is greater than `major`, the ring being closed in the middle, there is no
-    /// hollow core.
+    /// Returns the torus around the z axis: all points at most `minor` from the circle of radius `major` in
+    /// the plane z = 0. Where `minor` is greater than `major`, the ring is closed in the middle, and there is
+    /// no hollow core.
     ///
     /// # Errors
-    /// [`Error::Argument`] if a radius is not between 2^-256 and 2^256; `major` may be 0, which makes a ball.
+    /// [`Error::Argument`] if a radius is not between 2^-256 and 2^256; `major` may also be 0, which makes a
+    /// ball.
     pub fn torus(major: f64, minor: f64) -> Result<HalfSpace, Error> {
         valid::length("minor", minor)?;
         if major != 0.0 {
@@ -164,35 +167,36 @@ impl HalfSpace {
         Ok(HalfSpace::ring(Torus { major, square: minor.pow(2), scale, shift }))
     }
 
-    /// Of a torus whose numbers need not be doubles.
+    /// Returns a torus whose numbers need not be doubles.
     pub(crate) fn ring(torus: Torus) -> HalfSpace {
         HalfSpace(Arc::new(Surface::Torus(torus)))
     }
 
-    /// A half-space that a host program supplies: by f's `value` at a point and its `range` over a box (lower
-    /// and upper corner), in model units; under a placement, in the space of the half-space.
+    /// Returns a half-space that a host program supplies. f is given by its `value` at a point and its
+    /// `range` over a box (lower and upper corner), in model units; under a placement, in the space of the
+    /// half-space.
     ///
-    /// A range must contain all values that f has in the box. It alone proves anything: a cell is FULL if it
-    /// is nowhere negative over a box around the cell (the cell itself, where its corners are doubles), and
-    /// EMPTY if it is nowhere positive. Values, which are asked for first, keep a cell from it that has
-    /// vertices on both sides, so they need not be exact; they decide single points, at the point's rounded
-    /// image, where zero is inside. A value that is not a number, and a range with a NaN or with `lower >
-    /// upper`, decide nothing.
+    /// A range must contain all values that f has in the box. Only ranges prove anything: a cell is FULL if
+    /// its range is nowhere negative, and EMPTY if its range is nowhere positive. The range is taken over a
+    /// box around the cell (the cell itself, if its corners are doubles). Values are evaluated first. A cell
+    /// with vertices on both sides needs no range, so values need not be exact. Values also decide single
+    /// points, at the point's rounded image, where zero is inside. A NaN value, and a range with a NaN or
+    /// with `lower > upper`, decide nothing.
     ///
-    /// Both functions are called from several threads at once, and must give the same answer to the same
-    /// question. An error, such as [`Error::Callback`], ends the operation and is what that returns. The
-    /// `fingerprint` is the promise that functions that are given the same one are the same; without one no
+    /// Several threads call both functions at once, and the functions must give the same answer to the same
+    /// arguments. An error, such as [`Error::Callback`], ends the operation, which returns it. The
+    /// `fingerprint` is the promise that functions with the same fingerprint are the same. Without one, no
     /// expression that contains the half-space has a fingerprint.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, Interval, Rule, build, solid::HalfSpace};
-    /// // z ≤ exp(−x²), which over a box is least and greatest where |x| is.
+    /// // z ≤ exp(−x²), whose extremes over a box lie where |x| is least and greatest.
     /// let hill = HalfSpace::host(
     ///     |[x, _, z]| Ok((-x * x).exp() - z),
     ///     |min, max| {
     ///         let far = min[0].abs().max(max[0].abs());
     ///         let near = if min[0] <= 0.0 && max[0] >= 0.0 { 0.0 } else { min[0].abs().min(max[0].abs()) };
-    ///         // Some last places for what is rounded.
+    ///         // A margin of some last places for rounding.
     ///         Ok(Interval::new((-far * far).exp() - max[2] - 1e-14, (-near * near).exp() - min[2] + 1e-14).unwrap())
     ///     },
     ///     None,
@@ -211,7 +215,7 @@ impl HalfSpace {
         HalfSpace(Arc::new(Surface::Host(Arc::new(host))))
     }
 
-    /// The points of which `normal` · p ≤ `inner` holds, and perhaps others with `normal` · p ≤ `outer`.
+    /// Returns the points with `normal` · p ≤ `inner`, and perhaps others with `normal` · p ≤ `outer`.
     pub(crate) fn slab(
         normal: [f64; 3],
         inner: f64,
@@ -221,13 +225,13 @@ impl HalfSpace {
         HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer, identity, cell_slab: None })))
     }
 
-    /// Whether it is a plane with a width.
+    /// Returns whether the half-space is a layer: a plane with a width.
     pub(crate) fn is_layer(&self) -> bool {
         matches!(&*self.0, Surface::Slab(_))
     }
 
-    /// The slab of which it is known which one it is, by its origin and its number there, or (`None`) is not.
-    /// Any other half-space as it is.
+    /// Returns the slab with the given identity: its origin and its number there, or `None` if these are
+    /// unknown. Returns any other half-space unchanged.
     pub(crate) fn identified(&self, identity: Option<(Origin, u64)>) -> HalfSpace {
         match &*self.0 {
             &Surface::Slab(ThickPlane { normal, inner, outer, cell_slab, .. }) => {
@@ -239,7 +243,7 @@ impl HalfSpace {
         }
     }
 
-    /// The number of a slab among all of its origin, if that is known.
+    /// Returns the number of a slab among all slabs of its origin, if it is known.
     pub(crate) fn slab_number(&self) -> Option<u64> {
         match &*self.0 {
             Surface::Slab(ThickPlane { identity, cell_slab, .. }) => {
@@ -249,8 +253,8 @@ impl HalfSpace {
         }
     }
 
-    /// Of coefficients in the order of [`quadric`](Self::quadric) that need not be doubles, of which one but
-    /// the last is not zero.
+    /// Returns the half-space of coefficients in the order of [`quadric`](Self::quadric). They need not be
+    /// doubles, and one of them besides the last must not be zero.
     pub(crate) fn exactly(coefficients: Coefficients) -> HalfSpace {
         if coefficients[..6].iter().all(Dyadic::is_zero) {
             let [.., x, y, z, one] = coefficients;
@@ -259,20 +263,21 @@ impl HalfSpace {
         HalfSpace(Arc::new(Surface::Quadric(Box::new(coefficients))))
     }
 
-    /// The sum of `squares` times x², y² and z², `linear` times x, y and z, and a constant; one that is not
-    /// the constant is not zero.
+    /// Returns the half-space of a sum: `squares` times x², y² and z², `linear` times x, y and z, and a
+    /// constant. A coefficient besides the constant must not be zero.
     pub(crate) fn separable(squares: [Dyadic; 3], linear: [Dyadic; 3], constant: Dyadic) -> HalfSpace {
         let ([xx, yy, zz], [x, y, z], zero) = (squares, linear, Dyadic::zero);
         HalfSpace::exactly([xx, yy, zz, zero(), zero(), zero(), x, y, z, constant])
     }
 
-    /// a x + b y + c z + d ≥ 0 for the coefficients a to d, of which one but the last is not zero.
+    /// Returns a x + b y + c z + d ≥ 0 for the coefficients a to d. One of them besides the last must not be
+    /// zero.
     pub(crate) fn linear(coefficients: [Dyadic; 4]) -> HalfSpace {
         HalfSpace(Arc::new(Surface::Plane(coefficients)))
     }
 }
 
-/// A half-space on a universe: f in unit coordinates, times something positive.
+/// A half-space on a universe: f in unit coordinates, up to a positive factor.
 pub(crate) enum Placed {
     Plane(Plane),
     Quadric(Box<Quadric>),
@@ -283,7 +288,7 @@ pub(crate) enum Placed {
 }
 
 impl Surface {
-    /// The half-space as `map` shows it on the universe of `frame`.
+    /// Returns the image of the half-space under `map` on the universe of `frame`.
     pub(crate) fn on(&self, map: &ExactMap, frame: &Frame) -> Placed {
         match self {
             Surface::Plane(plane) => Placed::Plane(Plane::new(plane, map, frame.depth())),
@@ -299,7 +304,8 @@ impl Surface {
 }
 
 impl Placed {
-    /// For which of the cells `wanted` f is proven not negative, and not positive; counts the evaluations.
+    /// Returns for which of the cells `wanted` f is proven not negative, and not positive; counts the
+    /// evaluations.
     #[inline(always)]
     pub(crate) fn sides(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
         *evaluations += wanted.count_ones() as u64;
@@ -310,14 +316,14 @@ impl Placed {
         })
     }
 
-    /// Of those that are neither planes nor quadrics, which are the fastest by far.
+    /// [`sides`](Self::sides) for all kinds except planes and quadrics, which are the fastest by far.
     #[inline(never)]
     fn sides_of_others(&self, at: &Octants, wanted: u8, evaluations: &mut u64) -> Result<Sides, Error> {
         Ok(match self {
             Placed::Powers(powers) => powers.sides(at),
             Placed::Torus(torus) => torus.sides(at),
             Placed::Host(host) => {
-                // It counts what it asks the host program.
+                // The host counts its own calls.
                 *evaluations -= wanted.count_ones() as u64;
                 host.sides(at, wanted, evaluations)?
             }
@@ -326,8 +332,8 @@ impl Placed {
         })
     }
 
-    /// What is known of f over the cube of half edge `half` around `centre`, both in unit coordinates; `None`
-    /// of functions of the host.
+    /// Returns linear bounds of f over the cube of half edge `half` around `centre`, both in unit
+    /// coordinates. `None` for functions of the host.
     #[inline]
     pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Option<Tangent> {
         Some(match self {
@@ -340,8 +346,8 @@ impl Placed {
         })
     }
 
-    /// f over the cube of half edge `half` around `centre`, both in unit coordinates; `None` of functions of
-    /// the host, and of slabs, whose surface has normals of which nothing is known.
+    /// Returns f to second order over the cube of half edge `half` around `centre`, both in unit coordinates.
+    /// `None` for functions of the host, and for slabs, because the normals of a slab's surface are unknown.
     #[inline]
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Option<Taylor> {
         Some(match self {
@@ -353,8 +359,8 @@ impl Placed {
         })
     }
 
-    /// How often a line that does not lie in the surface meets it at most; `None` of functions of the host
-    /// and of slabs.
+    /// The most points in which a line that does not lie in the surface meets it. `None` for functions of the
+    /// host and for slabs.
     pub(crate) fn degree(&self) -> Option<u32> {
         Some(match self {
             Placed::Plane(_) => 1,
@@ -365,7 +371,7 @@ impl Placed {
         })
     }
 
-    /// Whether the function is linear, or constant, along all lines parallel to an axis.
+    /// Returns whether the function is linear, or constant, along all lines parallel to an axis.
     pub(crate) fn is_linear_along(&self, axis: usize) -> bool {
         match self {
             Placed::Plane(_) => true,
@@ -374,7 +380,8 @@ impl Placed {
         }
     }
 
-    /// Whether a piece of the surface may lie in a plane of the lattice, which has 2^depth cells.
+    /// Returns whether a piece of the surface may lie in a plane of the lattice, which has 2^depth cells
+    /// along an axis.
     pub(crate) fn may_hold_lattice_plane(&self, depth: u8) -> bool {
         match self {
             Placed::Plane(plane) => plane.is_of_lattice(depth),
@@ -385,8 +392,8 @@ impl Placed {
         }
     }
 
-    /// Of a plane with a width, more than what its ends are moved outward by, as for what is rounded of a
-    /// value.
+    /// For a plane with a width: more than the distance by which its ends are moved outward to cover the
+    /// rounding of a value. `None` for others.
     pub(crate) fn layer_slack(&self) -> Option<f64> {
         match self {
             Placed::Slab(slab) => Some(slab.slack()),
@@ -394,14 +401,14 @@ impl Placed {
         }
     }
 
-    /// Whether a piece of the surface may lie in a face of a cell that the surface crosses. (Planes that do
-    /// so cross no cell beside the face.)
+    /// Returns whether a piece of the surface may lie in a face of a cell that the surface crosses. (A plane
+    /// in a face does not cross the cell.)
     pub(crate) fn may_hold_face(&self) -> bool {
         !matches!(self, Placed::Plane(_)) && self.may_hold_lattice_plane(0)
     }
 
-    /// In which of the eight cells the centre is surely inside, and in which surely outside, where that is
-    /// had at once.
+    /// Returns in which of the eight cells the centre is surely inside, and in which surely outside, if this
+    /// is cheap to decide.
     #[inline(always)]
     pub(crate) fn centres(&self, at: &Octants) -> (u8, u8) {
         let (values, error) = match self {
@@ -415,8 +422,8 @@ impl Placed {
         )
     }
 
-    /// Exact sign of f at a point of the universe; `None` if the host does not know it, or the point lies in
-    /// a slab.
+    /// Returns the exact sign of f at a point of the universe. `None` if the host does not know it, or if the
+    /// point lies in a slab.
     #[inline]
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> Result<Option<i32>, Error> {
         Ok(Some(match self {
@@ -429,14 +436,14 @@ impl Placed {
         }))
     }
 
-    /// Whether the centre `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface; `None`
-    /// if the host does not know.
+    /// Returns whether the centre `t` of a cell is inside, shifted by (ε, ε², ε³) if it lies on the surface.
+    /// `None` if the host does not know.
     #[inline]
     pub(crate) fn contains(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
         self.decided(t, self.sign_at(t)?)
     }
 
-    /// The same of any point of the universe.
+    /// Returns the answer of [`contains`](Self::contains) for any point of the universe.
     pub(crate) fn contains_off_lattice(&self, t: [f64; 3]) -> Result<Option<bool>, Error> {
         let sign = match self {
             Placed::Plane(plane) => Some(plane.sign_off_lattice(t)),
@@ -446,8 +453,9 @@ impl Placed {
         self.decided(t, sign)
     }
 
-    /// On a ray along `axis` through a point, as a polynomial of degree two: the factors of 1, s and s² for
-    /// the coordinate s, and more than what its values on the universe are off by. `None` of others.
+    /// Returns f on a ray along `axis` through a point as a polynomial of degree two: the factors of 1, s and
+    /// s² for the coordinate s, and more than the error of its values on the universe. `None` for surfaces
+    /// that are neither planes nor quadrics.
     #[inline]
     pub(crate) fn along(&self, axis: usize, point: [f64; 3]) -> Option<([f64; 3], f64)> {
         match self {
@@ -457,7 +465,7 @@ impl Placed {
         }
     }
 
-    /// The same in numbers of 106 bits, of quadrics.
+    /// Returns the polynomial of a quadric on a ray in numbers of 106 bits.
     pub(crate) fn finely_along(&self, axis: usize, point: [f64; 3]) -> Option<([DoubleDouble; 3], f64)> {
         match self {
             Placed::Quadric(quadric) => {
@@ -467,13 +475,13 @@ impl Placed {
         }
     }
 
-    /// More than what values of planes and quadrics are off by at points that are none of the lattice.
+    /// More than the error of the values of planes and quadrics at points off the lattice.
     #[inline]
     pub(crate) fn rounding(&self) -> f64 {
         match self {
             Placed::Plane(plane) => plane.rounding(),
             Placed::Quadric(quadric) => quadric.rounding(),
-            // Errors of others hold everywhere.
+            // The errors of other surfaces hold everywhere.
             _ => 0.0,
         }
     }
@@ -486,7 +494,7 @@ impl Placed {
                 Placed::Quadric(quadric) => quadric.shifted_sign_at(t),
                 Placed::Powers(powers) => powers.shifted_sign_at(t),
                 Placed::Torus(torus) => torus.shifted_sign_at(t),
-                // Which way the function goes is not known.
+                // The gradient is not known.
                 Placed::Host(_) | Placed::Slab(_) => 1,
             },
             Some(sign) => sign,

@@ -1,4 +1,4 @@
-//! Which surfaces cross a cell, and which function of their signs the solid is.
+//! The surfaces that cross a cell, and the function of their signs that the solid is.
 
 use super::HalfSpace;
 use super::table::{self, Table};
@@ -8,14 +8,14 @@ use alloc::sync::Arc;
 /// A half-space under placements.
 #[derive(Clone)]
 pub struct PlacedHalfSpace {
-    /// The half-space in the space in which it was given.
+    /// The half-space, in the space in which it was defined.
     pub half_space: HalfSpace,
-    /// What moves it into model space, the last map first.
+    /// The maps that move it into model space, the last map first.
     pub placements: Arc<[Affine]>,
 }
 
 impl PlacedHalfSpace {
-    /// The same, moved once more.
+    /// Returns the half-space under one more placement.
     #[must_use]
     pub(crate) fn placed(&self, placement: &Affine) -> PlacedHalfSpace {
         let placements = core::iter::once(placement).chain(&*self.placements).copied().collect();
@@ -23,13 +23,13 @@ impl PlacedHalfSpace {
     }
 }
 
-/// Up to six surfaces that cross a PARTIAL cell, and the function of their signs that the solid is.
+/// Up to six surfaces that cross a PARTIAL cell, and the Boolean function of their signs that the solid is.
 ///
 /// # Law
-/// At a point of the open cell at which no function of the surfaces is zero, the solid is what the table says
-/// of the signs there. A layer, a plane with a width, has no sign at points in its width: where the table
-/// says the same for all signs of the layers in whose widths a point lies, the solid is that there, and
-/// elsewhere nothing is known.
+/// At a point of the open cell at which none of the surfaces' functions is zero, the table gives the solid
+/// for the signs there. A layer, which is a plane with a width, has no sign at points within its width. Where
+/// the table has the same value for all signs of the layers in whose widths a point lies, the solid has that
+/// value at the point. Otherwise nothing is known of the point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OpenSurfaces {
     indices: [u32; OpenSurfaces::MOST],
@@ -38,19 +38,19 @@ pub struct OpenSurfaces {
 }
 
 impl OpenSurfaces {
-    /// The number of the first layer that is made for a cell alone: lists are shorter.
+    /// The number of the first layer that is made for a cell alone; lists are shorter than this.
     pub const OWN: u32 = 1 << 31;
 
-    /// Most surfaces of a cell.
+    /// The most surfaces of a cell.
     pub const MOST: usize = table::MOST;
 
-    /// None yet: nothing at all, or everything.
+    /// The constant function, without surfaces.
     pub(crate) fn constant(inside: bool) -> OpenSurfaces {
         let table = if inside { Table::FULL } else { Table::EMPTY };
         OpenSurfaces { indices: [0; OpenSurfaces::MOST], count: 0, table }
     }
 
-    /// The function `table` of surfaces that all differ; `None` if they are too many.
+    /// The function `table` of distinct surfaces; `None` if they are too many.
     pub(crate) fn new(of: impl IntoIterator<Item = u32>, table: Table) -> Option<OpenSurfaces> {
         let mut open = OpenSurfaces { table, ..OpenSurfaces::constant(false) };
         for index in of {
@@ -59,7 +59,8 @@ impl OpenSurfaces {
         Some(open)
     }
 
-    /// The number of a surface in the table, which it gets if it has none yet; `None` if there is no room.
+    /// Returns the number of a surface in the table, and adds the surface if it is new; `None` if there is no
+    /// room.
     pub(crate) fn number(&mut self, index: u32) -> Option<usize> {
         if let Some(i) = self.indices().iter().position(|&known| known == index) {
             return Some(i);
@@ -70,14 +71,14 @@ impl OpenSurfaces {
         Some(i)
     }
 
-    /// The surfaces, by their numbers in the classifier's list
+    /// The surfaces, as numbers in the classifier's list
     /// ([`WholeQuestion::Surfaces`](crate::solid::WholeQuestion::Surfaces)).
     pub fn indices(&self) -> &[u32] {
         &self.indices[..usize::from(self.count)]
     }
 
-    /// Whether the solid is where the surfaces' functions are positive whose bits are set in `signs`, and
-    /// negative those of the others.
+    /// Returns whether the points are inside at which exactly the functions of the surfaces whose bits are
+    /// set in `signs` are positive, and the other functions are negative.
     pub fn inside(&self, signs: u8) -> bool {
         self.table.0 >> (signs & 63) & 1 != 0
     }
@@ -86,27 +87,27 @@ impl OpenSurfaces {
         self.table
     }
 
-    /// The same surfaces with another function.
+    /// Returns the same surfaces with another function.
     #[must_use]
     pub(crate) fn with_table(self, table: Table) -> OpenSurfaces {
         OpenSurfaces { table, ..self }
     }
 
-    /// The second of two functions of the same surfaces where surface `i` of the list is positive, else the
-    /// first one.
+    /// Selects between two functions of the same surfaces: the second where surface `i` of the list is
+    /// positive, otherwise the first.
     #[cfg(feature = "std")]
     pub(crate) fn choice(i: usize, [below, above]: [OpenSurfaces; 2]) -> OpenSurfaces {
         let is_above = Table::of(i, false).0;
         below.with_table(Table(below.table.0 & !is_above | above.table.0 & is_above))
     }
 
-    /// The same function with surfaces called otherwise; some may become one.
+    /// Returns the same function with renamed surfaces; several surfaces may get the same name.
     #[must_use]
     pub(crate) fn renamed(&self, name: impl Fn(u32) -> u32) -> OpenSurfaces {
         let mut own = OpenSurfaces::constant(false);
         let mut table = self.table;
         for (i, index) in self.variables() {
-            // (Numbers ascend, so that none is taken that is still to come.)
+            // (Numbers ascend, so that no number of a later surface is taken.)
             if let Some(to) = own.number(name(index)) {
                 table = table.renamed(i, to, false);
             }
@@ -114,19 +115,20 @@ impl OpenSurfaces {
         own.with_table(table)
     }
 
-    /// The same function of those surfaces alone on which it depends.
+    /// Returns the same function with only the surfaces on which it depends.
     #[must_use]
     pub(crate) fn shortened(&self) -> OpenSurfaces {
         self.renamed(|index| index)
     }
 
-    /// The surfaces on which the function depends, with their numbers in the table.
+    /// Returns the surfaces on which the function depends, with their numbers in the table.
     pub(crate) fn variables(&self) -> impl Iterator<Item = (usize, u32)> + Clone {
         let table = self.table;
         self.indices().iter().copied().enumerate().filter(move |&(i, _)| table.depends_on(i))
     }
 
-    /// Whether the solid is all of the cell, or nothing of it; `None` if that depends on surfaces.
+    /// Returns whether the solid is all of the cell (true) or nothing of it (false); `None` if the surfaces
+    /// decide.
     pub(crate) fn settled(&self) -> Option<bool> {
         match self.table {
             Table::FULL => Some(true),
@@ -135,7 +137,7 @@ impl OpenSurfaces {
         }
     }
 
-    /// What is known of the complement.
+    /// Returns the function of the complement.
     #[must_use]
     pub fn complement(self) -> OpenSurfaces {
         self.with_table(Table(!self.table.0))

@@ -1,25 +1,25 @@
-//! Quadratic forms of which a sum is nowhere positive, in exact numbers.
+//! Pairs of quadratic forms with a positive combination that is nowhere positive, in exact numbers.
 //!
-//! Let f and g be polynomials of degree two at most, with the symmetric matrices F and G (of 4 × 4 numbers:
-//! those of points (x, y, z, 1)). If a λ > 0 makes F + λ G negative semi-definite, then f + λ g is nowhere
-//! positive, so that f and g are positive together at no point. If there is a point at which g is positive,
-//! the converse holds, too (the S-lemma: Yakubovich, 1971).
+//! Let f and g be polynomials of degree at most two, with the symmetric 4 × 4 matrices F and G that act on
+//! (x, y, z, 1). If a λ > 0 makes F + λ G negative semi-definite, then f + λ g is nowhere positive, so that f
+//! and g are positive together at no point. If g is positive at some point, the converse holds, too (the
+//! S-lemma: Yakubovich, 1971).
 //!
-//! A symmetric matrix is negative semi-definite just if the sums of its principal minors of k rows, times
-//! (−1)^k, are not negative for k = 1 to 4: those are the coefficients of its characteristic polynomial, all
-//! of whose roots are real. Of F + λ G the sums are polynomials in λ. Let c be the last of them that is not
-//! zero everywhere. Where surfaces are apart, the λ that serve are an interval, at both ends of which c is
-//! zero, so that a root of c′ lies within. Where surfaces touch, there is one λ only, and it is a multiple
-//! root of c: it solves gcd(c, c′), of degree three at most, and no root of degree more than two is needed.
-//! Both are decided without rounding.
+//! A symmetric matrix is negative semi-definite exactly if, for k = 1 to 4, the sum of its principal minors
+//! of k rows, times (−1)^k, is not negative: these sums are the coefficients of its characteristic
+//! polynomial, all of whose roots are real. For F + λ G the sums are polynomials in λ. Let c be the last of
+//! them that is not identically zero. Where surfaces are apart, the suitable λ form an interval with c zero
+//! at both ends, so that a root of c′ lies within. Where surfaces touch, there is only one λ, and it is a
+//! multiple root of c. It solves gcd(c, c′), which has degree at most three, and no root of a degree above
+//! two is needed. Both cases are decided without rounding.
 
 use crate::lattice::exact::Dyadic;
 use core::array::from_fn;
 
-/// A symmetric matrix, by its rows.
+/// The rows of a symmetric matrix.
 pub(super) type Form = [[Dyadic; 4]; 4];
 
-/// Polynomials of degree four at most, by their coefficients from the constant on.
+/// A polynomial of degree at most four, by its coefficients from the constant on.
 #[derive(Debug, Clone)]
 struct Polynomial([Dyadic; 5]);
 
@@ -28,15 +28,15 @@ struct Number {
     p: Dyadic,
     s: Dyadic,
     d: Dyadic,
-    /// Positive.
+    /// The divisor, positive.
     q: Dyadic,
 }
 
-/// How much less than nothing a value may be, as a share of its terms, for a multiple root to be looked for.
+/// A multiple root is searched for if a value is at least minus this fraction of its terms' magnitudes.
 const NEARLY: f64 = 1e-9;
 
-/// The signs that two functions have together at no point: whether the first and the second are negative.
-/// `None` if there are none.
+/// Returns a combination of signs that two functions have together at no point: whether the first and the
+/// second are negative. `None` if there is none.
 pub(super) fn excluded(f: &Form, g: &Form) -> Option<(bool, bool)> {
     let sums = sums(&normal(f), &normal(g));
     [(false, false), (false, true), (true, false), (true, true)].into_iter().find(
@@ -52,8 +52,8 @@ pub(super) fn excluded(f: &Form, g: &Form) -> Option<(bool, bool)> {
     )
 }
 
-/// Whether three rows and columns of a matrix, without number `left_out`, are negative semi-definite; or, if
-/// so said, positive.
+/// Returns whether the 3 × 3 matrix without row and column `left_out` is negative semi-definite; positive
+/// semi-definite if `positive`.
 pub(super) fn is_semi_definite(f: &Form, left_out: usize, positive: bool) -> bool {
     let rows: [usize; 3] = from_fn(|k| k + usize::from(k >= left_out));
     let constant = |c: &Dyadic| Polynomial::new(&[c]);
@@ -70,13 +70,13 @@ pub(super) fn is_semi_definite(f: &Form, left_out: usize, positive: bool) -> boo
     wanted(&diagonal, true) && wanted(&pairs, false) && wanted(&all, true)
 }
 
-/// The matrix times a power of two, so that its largest entry has a magnitude of about one.
+/// Scales the matrix by a power of two, so that its largest entry has a magnitude of about one.
 fn normal(f: &Form) -> Form {
     let most = f.iter().flatten().filter_map(Dyadic::magnitude).max().unwrap_or(0);
     f.each_ref().map(|row| row.each_ref().map(|c| c.shifted(-most)))
 }
 
-/// The sums of the principal minors of k = 1 to 4 rows of F + λ G.
+/// Returns the sums of the principal minors of k = 1 to 4 rows of F + λ G.
 fn sums(f: &Form, g: &Form) -> [[Dyadic; 5]; 4] {
     let entries: [[Polynomial; 4]; 4] = from_fn(|i| from_fn(|j| Polynomial::new(&[&f[i][j], &g[i][j]])));
     let mut sums = [const { None }; 4];
@@ -94,7 +94,7 @@ fn sums(f: &Form, g: &Form) -> [[Dyadic; 5]; 4] {
         }
         add(3, determinant(&entries, from_fn(|k| k + usize::from(k >= i))));
     }
-    // By Laplace's rule, along the first two rows.
+    // Laplace's expansion along the first two rows.
     for (columns, others, is_even) in [
         ([0, 1], [2, 3], true),
         ([0, 2], [1, 3], false),
@@ -113,7 +113,7 @@ fn minor(entries: &[[Polynomial; 4]; 4], [i, k]: [usize; 2], [j, l]: [usize; 2])
     entries[i][j].times(&entries[k][l]).minus(&entries[i][l].times(&entries[k][j]))
 }
 
-/// The principal minor of three rows.
+/// Returns the principal minor of three rows.
 fn determinant(entries: &[[Polynomial; 4]; 4], [i, j, k]: [usize; 3]) -> Polynomial {
     let row = &entries[i];
     (row[i].times(&minor(entries, [j, k], [j, k])))
@@ -121,7 +121,7 @@ fn determinant(entries: &[[Polynomial; 4]; 4], [i, j, k]: [usize; 3]) -> Polynom
         .plus(&row[k].times(&minor(entries, [j, k], [i, j])))
 }
 
-/// Whether there is a positive number at which none of the polynomials is negative, if these are the sums of
+/// Returns whether some positive number makes no polynomial negative. The polynomials must be sums of
 /// principal minors.
 fn are_somewhere_not_negative(all: &[Polynomial; 4]) -> bool {
     let Some(last) = all.iter().rev().find(|c| c.degree().is_some()) else { return false };
@@ -147,7 +147,7 @@ impl Polynomial {
         Polynomial(from_fn(|k| coefficients.get(k).map_or_else(Dyadic::zero, |&c| c.clone())))
     }
 
-    /// `None` of zero.
+    /// The degree; `None` for the zero polynomial.
     fn degree(&self) -> Option<usize> {
         self.0.iter().rposition(|c| !c.is_zero())
     }
@@ -164,7 +164,7 @@ impl Polynomial {
         Polynomial(self.0.each_ref().map(|c| -c))
     }
 
-    /// Of two whose degrees make up four at the most.
+    /// Returns the product; the degrees must sum to at most four.
     fn times(&self, other: &Polynomial) -> Polynomial {
         let mut product = Polynomial::new(&[]);
         for (i, a) in self.0.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
@@ -182,21 +182,21 @@ impl Polynomial {
         }))
     }
 
-    /// Without its roots at zero.
+    /// Divides out the roots at zero.
     fn without_zeros(&self) -> Polynomial {
         let first = self.0.iter().position(|c| !c.is_zero()).unwrap_or(0);
         Polynomial(from_fn(|k| self.0.get(k + first).map_or_else(Dyadic::zero, Dyadic::clone)))
     }
 
-    /// The coefficients, rounded, times one power of two.
+    /// The coefficients, rounded, times a common power of two.
     fn rounded(&self) -> [f64; 5] {
         let most = self.0.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0);
         self.0.each_ref().map(|c| c.shifted(-most).rounded())
     }
 
-    /// The sign at a number.
+    /// Returns the sign at a number.
     fn sign_at(&self, at: &Number) -> i32 {
-        // (u + v √d) / q^n, by Horner's rule.
+        // The value is (u + v √d) / q^n, by Horner's rule.
         let (mut u, mut v, mut power) = (Dyadic::zero(), Dyadic::zero(), Dyadic::new(1.0));
         for c in self.0.iter().rev() {
             let times = |u: &Dyadic, v: &Dyadic| {
@@ -209,8 +209,8 @@ impl Polynomial {
         sign_of(&u, &v, &at.d)
     }
 
-    /// The roots, each of them once, of a polynomial of degree three at most whose roots are equal if it is
-    /// of degree three.
+    /// Returns the roots, each once, of a polynomial of degree at most three. If the degree is three, its
+    /// roots must be equal.
     fn simple_roots(&self) -> [Option<Number>; 2] {
         let [c, b, a, third, _] = &self.0;
         let zero = Dyadic::zero;
@@ -244,7 +244,7 @@ impl Number {
     }
 }
 
-/// The sign of u + v √d.
+/// Returns the sign of u + v √d.
 fn sign_of(u: &Dyadic, v: &Dyadic, d: &Dyadic) -> i32 {
     let (of_u, of_v) = (u.sign(), if d.is_zero() { 0 } else { v.sign() });
     if of_u * of_v >= 0 {
@@ -253,7 +253,7 @@ fn sign_of(u: &Dyadic, v: &Dyadic, d: &Dyadic) -> i32 {
     of_u * (&(u * u) - &(&(v * v) * d)).sign()
 }
 
-/// The greatest common divisor of two polynomials, times some number.
+/// Returns the greatest common divisor of two polynomials, up to a factor.
 fn gcd(mut a: Polynomial, mut b: Polynomial) -> Polynomial {
     while let Some(degree) = b.degree() {
         while let Some(own) = a.degree().filter(|own| *own >= degree) {
@@ -270,7 +270,7 @@ fn gcd(mut a: Polynomial, mut b: Polynomial) -> Polynomial {
     a
 }
 
-/// A value, and the sum of the magnitudes of its terms.
+/// A value, and the sum of its terms' magnitudes.
 struct Value {
     sum: f64,
     size: f64,
@@ -278,7 +278,7 @@ struct Value {
 
 impl Value {
     fn is_not_negative(&self, but_for: f64) -> bool {
-        // (What is no number is not less.)
+        // (NaN does not compare as less.)
         self.sum >= -but_for * self.size
     }
 }
@@ -290,12 +290,12 @@ fn value(c: &[f64; 5], at: f64) -> Value {
     })
 }
 
-/// The positive roots of a polynomial and of its derivatives, but for rounding, with zeros in the place of
-/// others.
+/// Returns the positive roots of a polynomial and of its derivatives, with rounding errors; zeros fill the
+/// rest.
 fn roots(c: &[f64; 5]) -> [f64; 10] {
     let mut found = [0.0; 10];
     let mut count = 0;
-    // Those of the derivative part the line into pieces on which the polynomial has one root at most.
+    // The derivative's roots divide the line into pieces in which the polynomial has at most one root.
     let mut last = 0..0;
     for times in (0..4).rev() {
         let mut own = *c;
@@ -318,20 +318,20 @@ fn roots(c: &[f64; 5]) -> [f64; 10] {
     found
 }
 
-/// Roots beyond these are not looked for.
+/// The range in which roots are searched for.
 const LEAST: f64 = 1.0 / MOST;
 const MOST: f64 = (1u128 << 100) as f64;
 
-/// Where a function changes its sign between two positive numbers.
+/// Returns the place where a function changes its sign between two positive numbers.
 fn halved(low: f64, high: f64, of: impl Fn(f64) -> f64) -> f64 {
-    // Positive doubles have the order of their bits.
+    // Positive doubles are ordered as their bits.
     let (mut low, mut high) = (low.to_bits(), high.to_bits());
     let is_negative = of(f64::from_bits(low)) < 0.0;
     while high - low > 1 {
         let middle = low + (high - low) / 2;
         if (of(f64::from_bits(middle)) < 0.0) == is_negative { low = middle } else { high = middle }
     }
-    // The simpler of both is more likely to be the root itself.
+    // The simpler of the two is more likely to be the root itself.
     let [low, high] = [low, high].map(f64::from_bits);
     if of(high) == 0.0 || low.to_bits().trailing_zeros() < high.to_bits().trailing_zeros() {
         high
@@ -348,7 +348,7 @@ mod tests {
         rows.map(|row| row.map(Dyadic::new))
     }
 
-    /// The value at a point that is given in whole numbers.
+    /// Returns the value at a point with whole coordinates.
     fn value(rows: &[[f64; 4]; 4], at: [f64; 3]) -> f64 {
         let [x, y, z] = at;
         let at = [x, y, z, 1.0];
@@ -381,19 +381,19 @@ mod tests {
         assert_eq!(excluded(&ball(0.0, 2.0), &ball(1.0 + a_little, 1.0)), None);
     }
 
-    /// −x² − y² / 2 + 2 z and 2 x y − z² − 2: nothing but λ = √½ serves.
+    /// −x² − y² / 2 + 2 z and 2 x y − z² − 2: only λ = √½ works.
     #[test]
     fn a_root_that_is_no_fraction() {
         let f = [[-1.0, 0.0, 0.0, 0.0], [0.0, -0.5, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]];
         let g = [[0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 0.0, 0.0, -2.0]];
         assert_eq!(excluded(&form(f), &form(g)), Some((false, false)));
-        // A little more of one of them, and a point is inside of both.
+        // If one of them grows a little, a point lies inside both.
         let mut more = g;
         more[3][3] += 1.0 / (1u64 << 20) as f64;
         assert_eq!(excluded(&form(f), &form(more)), None);
     }
 
-    /// What is excluded occurs at no point, and what occurs at a point is not excluded.
+    /// Excluded combinations occur at no point, and combinations that occur at a point are not excluded.
     #[test]
     fn forms_of_small_whole_numbers() {
         let mut state = 1u64;

@@ -12,18 +12,18 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// A plane on a universe, a x + b y + c z + d in unit coordinates. Expressions have many of them, so it is
-/// small.
+/// A plane on a universe: a x + b y + c z + d in unit coordinates. Expressions have many planes, so this type
+/// is small.
 pub(crate) struct Plane {
-    /// a to d, of which the largest has a magnitude of one.
+    /// The coefficients a to d. The largest has a magnitude of one.
     c: [f64; 4],
-    /// How far the value at a corner of a unit cube can be below that at its lower corner, as a negative
-    /// number; and how far the values at the corners are apart.
+    /// The least value at a corner of a unit cube minus the value at its lower corner (not positive); and the
+    /// difference of the greatest and the least value at the corners.
     fall: f64,
     reach: f64,
-    /// More than the error of any value on [−1, 2]³; zero if they have none on the lattice.
+    /// More than the error of any value on [−1, 2]³; zero if values on the lattice have no error.
     error: f64,
-    /// The exact coefficients, one behind the other; empty if they are the doubles.
+    /// The exact coefficients, one behind the other; empty if they are equal to the doubles.
     exact: Box<[u8]>,
 }
 
@@ -37,14 +37,15 @@ impl Plane {
         &self.c
     }
 
-    /// The plane `given` as the map shows it on the universe, whose lattice has 2^depth cells.
+    /// Returns the image of the plane `given` under the map on the universe, whose lattice has 2^depth cells
+    /// along an axis.
     pub(crate) fn new(given: &[Dyadic; 4], map: &ExactMap, depth: u8) -> Plane {
         let exact = map.linear(given);
-        // Only the sign counts: the largest coefficient is brought to a magnitude of one.
+        // Only the sign counts: the largest coefficient is scaled to a magnitude of one.
         let scale = -linear::magnitude(&exact);
         let exact = exact.map(|c| if map.w.sign() < 0 { -&c.shifted(scale) } else { c.shifted(scale) });
         let c = exact.each_ref().map(Dyadic::rounded);
-        // No sum of some terms is larger than four times this.
+        // No partial sum is larger than four times this.
         let size: f64 = c.iter().map(|c| c.abs()).sum();
         let is_double = exact.iter().all(|c| c.exactly().is_some());
         let is_exact = is_double && linear::is_exact(&exact, depth as i64 + 1, 4.0 * size);
@@ -54,13 +55,14 @@ impl Plane {
             c,
             fall: (c[0].min(0.0) + c[1].min(0.0)) + c[2].min(0.0),
             reach: (c[0].abs() + c[1].abs()) + c[2].abs(),
-            // A term is rounded at most fourteen times.
+            // At most fourteen roundings a term.
             error: if is_exact { 0.0 } else { 32.0 * f64::EPSILON * size },
             exact: bytes.into_boxed_slice(),
         }
     }
 
-    /// The least values over the eight cells, and by how much the greatest are greater.
+    /// Returns the least values over the eight cells, and the difference of the greatest and the least
+    /// values.
     #[inline(always)]
     fn least(&self, at: &Octants) -> ([f64x4; 2], f64) {
         let ([x, y, z], [a, b, c, d]) = (at.low, self.c);
@@ -69,7 +71,7 @@ impl Plane {
         ([lower, lower + c * at.half], self.reach * at.half)
     }
 
-    /// For which of the eight cells the value is proven not negative, and not positive.
+    /// Returns for which of the eight cells the value is proven not negative, and not positive.
     #[inline(always)]
     pub(crate) fn sides(&self, at: &Octants) -> Sides {
         let (least, reach) = self.least(at);
@@ -85,14 +87,14 @@ impl Plane {
         })
     }
 
-    /// The values at the centres of the eight cells, and more than their error.
+    /// Returns the values at the centres of the eight cells, and more than their error.
     #[inline(always)]
     pub(crate) fn centres(&self, at: &Octants) -> ([f64x4; 2], f64) {
         let (least, reach) = self.least(at);
         ([least[0] + 0.5 * reach, least[1] + 0.5 * reach], self.error)
     }
 
-    /// What is known of the value over a cube: all, but for rounding.
+    /// Returns linear bounds of the value over a cube; their gap is rounding only.
     #[inline(always)]
     pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
         let [a, b, c, d] = self.c;
@@ -104,7 +106,7 @@ impl Plane {
         Tangent::new(value, gradient, (0.0, 0.0), self.error)
     }
 
-    /// The value over a cube.
+    /// Returns the value to second order over a cube.
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let Tangent { gradient, low, high } = self.tangent(centre, half);
         let error = (0.5 * (high - low)).next_up();
@@ -112,14 +114,14 @@ impl Plane {
         Taylor { f, bend: self.error * half, degree: 1 }
     }
 
-    /// Whether the plane may be one of the lattice's.
+    /// Returns whether the plane may be a plane of the lattice.
     pub(crate) fn is_of_lattice(&self, depth: u8) -> bool {
         let exact = self.exact();
         let mut axes = (0..3).filter(|&axis| exact[axis].sign() != 0);
         let (Some(axis), None) = (axes.next(), axes.next()) else { return false };
         let cells = (1u64 << depth) as f64;
         let nearest = libm::round(-self.c[3] / self.c[axis] * cells);
-        // What is far outside of the universe is no matter.
+        // Planes far outside the universe do not matter.
         if !(-2.0..=2.0 * cells).contains(&nearest) {
             return false;
         }
@@ -130,7 +132,7 @@ impl Plane {
         })
     }
 
-    /// Exact sign at a point of the lattice, or of one with half its cells.
+    /// The exact sign at a point of the lattice, or of a lattice with half its cells.
     #[inline]
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let [a, b, c, d] = self.c;
@@ -138,7 +140,8 @@ impl Plane {
         certain(value, self.error).unwrap_or_else(|| linear::value(&self.exact(), &t.map(Dyadic::new)).sign())
     }
 
-    /// The function on a ray along `axis` through a point: the factors of 1 and s for the coordinate s, and 0.
+    /// Returns the function on a ray along `axis` through a point: the factors of 1 and s for the coordinate
+    /// s, and 0.
     #[inline]
     pub(crate) fn along(&self, axis: usize, point: [f64; 3]) -> [f64; 3] {
         let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -150,7 +153,7 @@ impl Plane {
         self.error.max(32.0 * f64::EPSILON * self.c.iter().map(|c| c.abs()).sum::<f64>())
     }
 
-    /// The same of a point that is none of the lattice.
+    /// The exact sign at a point off the lattice.
     pub(crate) fn sign_off_lattice(&self, t: [f64; 3]) -> i32 {
         let [a, b, c, d] = self.c;
         let value = ((a * t[0] + b * t[1]) + c * t[2]) + d;
@@ -158,7 +161,7 @@ impl Plane {
         certain(value, self.rounding()).unwrap_or_else(exact)
     }
 
-    /// The sign that the shift (ε, ε², ε³) gives at a zero.
+    /// The sign to which the shift (ε, ε², ε³) moves a zero.
     #[cold]
     pub(crate) fn shifted_sign(&self) -> i32 {
         self.exact()[..3].iter().map(Dyadic::sign).find(|&sign| sign != 0).unwrap_or(0)

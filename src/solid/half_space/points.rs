@@ -4,9 +4,9 @@ use super::bounds::Octants;
 use crate::error::Error;
 use crate::lattice::axes;
 
-/// The points that the eight children of a cell have as vertices, by their place on each axis (0 lower end, 1
-/// middle, 2 upper end), those of most children first: the centre, centres of faces, middles of edges,
-/// corners.
+/// The points that are vertices of the eight children of a cell, by their place on each axis (0 lower end, 1
+/// middle, 2 upper end). The points of most children come first: the centre, centres of faces, middles of
+/// edges, corners.
 const POINTS: [[u8; 3]; 27] = {
     let mut points = [[1; 3]; 27];
     let mut found = 0;
@@ -27,9 +27,9 @@ const POINTS: [[u8; 3]; 27] = {
     points
 };
 
-/// The children that have a vertex at a point.
+/// Returns the children that have a vertex at a point.
 const fn owners(point: [u8; 3]) -> u8 {
-    // Bits of the children in the lower and in the upper half of each axis.
+    // The bits of the children in the lower and in the upper half of each axis.
     let lower = [0x55, 0x33, 0x0F];
     let mut mask = 0xFF;
     let mut axis = 0;
@@ -44,12 +44,12 @@ const fn owners(point: [u8; 3]) -> u8 {
     mask
 }
 
-/// Asks `inside` about the vertices of the children `wanted` in the published order, each at most once, and
-/// no further than it takes to find an inner and an outer vertex of each child. Returns which children have
-/// an inner vertex and which an outer one; a vertex for which the answer is `None` is neither.
+/// Evaluates `inside` at the vertices of the children `wanted` in the published order, each at most once,
+/// until each child has an inner and an outer vertex. Returns the children with an inner vertex, and those
+/// with an outer vertex. A vertex with the answer `None` is neither.
 ///
 /// # Errors
-/// The first one of `inside`.
+/// The first error of `inside`.
 pub(crate) fn vertices(
     at: &Octants,
     wanted: u8,
@@ -91,7 +91,7 @@ mod tests {
     fn stops_early() {
         let at = Octants::of(Cell::ROOT);
         let mut asked = 0;
-        // A centre outside, two opposite faces inside: three points decide eight children.
+        // With the centre outside and two opposite faces inside, three points decide eight children.
         let sides = vertices(&at, 0xFF, |[_, _, z]| {
             asked += 1;
             Ok(Some(z != 0.5))

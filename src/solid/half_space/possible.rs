@@ -1,4 +1,4 @@
-//! Which combinations of signs occur in a cell.
+//! The combinations of signs that occur in a cell.
 
 use super::Placed;
 use super::bounds::{centre, half_edge};
@@ -7,31 +7,33 @@ use super::tangent::Tangent;
 use crate::cut::Quadratic;
 use crate::lattice::{Cell, axes};
 
-/// The combinations of signs that functions may have in a cell: bit m is for those that are positive whose
-/// bits are set in m. A combination is left out if a function is proven to have its sign nowhere, or two
-/// functions are proven not to have theirs at one point: a positive multiple of the one, added to the other,
-/// would be positive there, and is nowhere so. (For one quadric and one plane, or two quadrics, in all of
-/// space there is such a multiple whenever no point has both signs: the S-lemma of Yakubovich, 1971.)
+/// Returns the combinations of signs that functions may have in a cell: bit m stands for the combination in
+/// which exactly the functions of the bits in m are positive. A combination is left out in two cases: a
+/// function is proven to have its sign nowhere, or two functions are proven not to have their signs at one
+/// point. The latter proof negates the functions that are to be negative, and finds a positive multiple of
+/// the one that, added to the other, is nowhere positive. (For one quadric and one plane, or two quadrics, in
+/// all of space there is such a multiple whenever no point has both signs: the S-lemma of Yakubovich, 1971.)
 pub(crate) fn possible<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Table {
     met(half_spaces, cell).possible
 }
 
-/// Which combinations of signs may occur in a cell, and where signs surely do.
+/// The combinations of signs that may occur in a cell, and points where signs surely occur.
 pub(crate) struct Met {
     /// The combinations that may occur.
     pub(crate) possible: Table,
-    /// Of some points those at which each function surely is positive, and negative.
+    /// Masks of sample points at which each function surely is positive, and surely is negative.
     seen: [[u32; 2]; MOST],
 }
 
 impl Met {
-    /// Whether there surely is a point with all of these signs: functions, and whether they are negative.
+    /// Returns whether a point with all of these signs surely exists. A sign is a function and whether it is
+    /// negative.
     pub(crate) fn is_seen(&self, signs: &[(usize, bool)]) -> bool {
         signs.iter().fold(!0, |all, &(i, negative)| all & self.seen[i][usize::from(negative)]) != 0
     }
 }
 
-/// As [`possible`], with the signs that surely occur.
+/// Returns the combinations of [`possible`], with the signs that surely occur.
 pub(crate) fn met<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell) -> Met {
     let (mut tangents, mut closely) = ([None; MOST], [None; MOST]);
     let (centre, half) = (centre(cell), half_edge(cell));
@@ -67,8 +69,8 @@ pub(crate) fn met<'h>(half_spaces: impl Iterator<Item = &'h Placed>, cell: Cell)
     Met { possible: Table(possible), seen }
 }
 
-/// A function to second order, and at which of the 27 vertices, middles of edges and faces, and the centre of
-/// the cell it surely is positive, and negative.
+/// A function to second order, with masks of the 27 sample points (the vertices, the middles of edges and
+/// faces, and the centre of the cell) at which it surely is positive, and surely is negative.
 #[derive(Clone, Copy)]
 struct Close {
     f: Quadratic,
@@ -94,7 +96,7 @@ impl Close {
         Close { f, positive, negative }
     }
 
-    /// Whether no point of the cell has both functions positive, or, if so said, negative.
+    /// Returns whether no point of the cell has both functions positive (negated as the flags say).
     fn excludes(&self, negative_self: bool, other: &Close, negative_other: bool) -> bool {
         let at = |close: &Close, negative: bool| if negative { close.negative } else { close.positive };
         if at(self, negative_self) & at(other, negative_other) != 0 {
@@ -102,8 +104,8 @@ impl Close {
         }
         let signed = |f: &Quadratic, negative: bool| if negative { f.complement() } else { *f };
         let (a, b) = (signed(&self.f, negative_self), signed(&other.f, negative_other));
-        // Of surfaces that are offsets of each other the terms of second order, or the gradients, cancel at
-        // one share.
+        // For surfaces that are offsets of each other, the terms of second order, or the gradients, cancel at
+        // one factor.
         if [a.cancelled(&b, 3..9), a.cancelled(&b, 0..3)]
             .into_iter()
             .flatten()
@@ -111,7 +113,7 @@ impl Close {
         {
             return true;
         }
-        // The greatest value of the sum is a convex function of the share, so that it has one valley.
+        // The greatest value of the sum is a convex function of the factor, so that it has one minimum.
         let scale = libm::log2(a.size() / b.size());
         let (mut low, mut high) = (scale - 8.0, scale + 8.0);
         let most = |share: f64| greatest(&a, &b, libm::exp2(share));
@@ -137,8 +139,9 @@ impl Close {
 }
 
 impl Quadratic {
-    /// The share at which the greatest of some factors of the other function cancels that of this one: of the
-    /// gradient 0 to 2, of the second order 3 to 8. `None` if it has the same sign, or there is none.
+    /// Returns the factor at which the largest of some coefficients of the other function cancels that of
+    /// this one: coefficients 0 to 2 are the gradient, 3 to 8 the second order. `None` if both have the same
+    /// sign, or there is none.
     fn cancelled(&self, other: &Quadratic, factors: core::ops::Range<usize>) -> Option<f64> {
         let factor = |f: &Quadratic, k: usize| if k < 3 { f.gradient[k] } else { f.squares[k - 3] };
         let greatest = factors.max_by(|&i, &k| factor(other, i).abs().total_cmp(&factor(other, k).abs()))?;
@@ -147,7 +150,7 @@ impl Quadratic {
     }
 }
 
-/// No less than the greatest value of a function and a multiple of another in the cell.
+/// Returns no less than the greatest value of a function plus a multiple of another in the cell.
 fn greatest(a: &Quadratic, b: &Quadratic, share: f64) -> f64 {
     let sum = |a: f64, b: f64| a + share * b;
     let (value, error) = (sum(a.value, b.value), sum(a.error, b.error));
@@ -155,31 +158,31 @@ fn greatest(a: &Quadratic, b: &Quadratic, share: f64) -> f64 {
     for axis in 0..3 {
         let slope = sum(a.gradient[axis], b.gradient[axis]).abs();
         let bend = sum(a.squares[axis], b.squares[axis]);
-        // A hill has its top inside, or at the end as all others.
+        // A concave parabola has its maximum inside, or at the end like all others.
         let is_hill = bend < 0.0 && slope < -2.0 * bend;
         most += if is_hill { 0.25 * slope * slope / -bend } else { slope + bend };
     }
     for mixed in 3..6 {
         most += 2.0 * sum(a.squares[mixed], b.squares[mixed]).abs();
     }
-    // Each term is rounded some ten times.
+    // At most ten roundings a term.
     most + error + 32.0 * f64::EPSILON * sum(a.size(), b.size())
 }
 
-/// A linear function above a function, or, if so said, above its negative: factors and constant.
+/// A linear function above a function, or above its negative if `negative`: factors and constant.
 fn above(t: &Tangent, negative: bool) -> ([f64; 3], f64) {
     if negative { (t.gradient.map(|c| -c), -t.low) } else { (t.gradient, t.high) }
 }
 
-/// Whether a function is nowhere positive in the cell, or, if so said, nowhere negative.
+/// Returns whether a function is nowhere positive in the cell, or nowhere negative if `negative`.
 fn is_nowhere(t: &Tangent, negative: bool) -> bool {
     let (n, p) = above(t, negative);
     let reach: f64 = n.iter().map(|c| c.abs()).sum();
-    // (What is no number is not less.)
+    // (NaN does not compare as less.)
     p + reach + 8.0 * f64::EPSILON * (p.abs() + reach) <= 0.0
 }
 
-/// Whether no point of the cell has both functions positive, or, if so said, negative.
+/// Returns whether no point of the cell has both functions positive (negated as the flags say).
 fn exclude(a: &Tangent, negative_a: bool, b: &Tangent, negative_b: bool) -> bool {
     let ((n, p), (m, q)) = (above(a, negative_a), above(b, negative_b));
     let dot = |u: &[f64; 3], v: &[f64; 3]| (u[0] * v[0] + u[1] * v[1]) + u[2] * v[2];
@@ -189,26 +192,26 @@ fn exclude(a: &Tangent, negative_a: bool, b: &Tangent, negative_b: bool) -> bool
     }
     let rest: f64 = axes(|k| (n[k] + share * m[k]).abs()).iter().sum();
     let most = (p + share * q) + rest;
-    // Each term is rounded at most eight times.
+    // At most eight roundings a term.
     let size: f64 = p.abs() + share * q.abs() + axes(|k| n[k].abs() + share * m[k].abs()).iter().sum::<f64>();
-    // (What is no number is not less.)
+    // (NaN does not compare as less.)
     most + 16.0 * f64::EPSILON * size <= 0.0
 }
 
 impl Table {
-    /// The function on the combinations that are possible, of as few half-spaces as can be; of several
-    /// choices of so many that is taken in which the last half-spaces have the least numbers. A combination
-    /// that is not possible has the value of the possible one that comes first in this order: by the number
-    /// of the last half-space whose sign differs, then by that of the one before, and so on.
+    /// Returns the function on the possible combinations, with as few half-spaces as possible. Among several
+    /// smallest choices, the choice whose last half-spaces have the lowest numbers is taken. An impossible
+    /// combination gets the value of the possible combination that comes first in this order: by the number
+    /// of the last half-space whose sign differs, then by the number of the one before, and so on.
     ///
-    /// So the result depends on the values at possible combinations alone, and the complement of the function
+    /// So the result depends only on the values at possible combinations, and the complement of the function
     /// has the complement of the result.
     pub(crate) fn simplified(self, possible: Table) -> Table {
         let counts = |i: usize| self.depends_on(i) || possible.depends_on(i);
         let all = (0..MOST).filter(|&i| counts(i)).fold(0u8, |all, i| all | 1 << i);
         let fewest = (BY_SIZE.iter().filter(|&&kept| kept & !all == 0))
             .find_map(|&kept| self.without(possible, all & !kept));
-        // (All half-spaces are a choice.)
+        // (All half-spaces together are always a choice.)
         let (Table(mut table), Table(mut possible)) = fewest.unwrap_or((self, possible));
         for i in 0..MOST {
             let ((on, off), (can_on, can_off)) = (signs(table, i), signs(possible, i));
@@ -220,8 +223,8 @@ impl Table {
         Table(table)
     }
 
-    /// The function without some half-spaces, and which combinations of the others are possible; `None` if it
-    /// depends on them.
+    /// Returns the function without some half-spaces, and the possible combinations of the others; `None` if
+    /// the function depends on them.
     fn without(self, possible: Table, half_spaces: u8) -> Option<(Table, Table)> {
         let (mut table, mut possible) = (self.0, possible.0);
         for i in (0..MOST).filter(|&i| half_spaces >> i & 1 != 0) {
@@ -237,12 +240,12 @@ impl Table {
     }
 }
 
-/// Values, or possibilities, of both signs of half-space `i`, at the places of the negative one.
+/// The values, or possibilities, of both signs of half-space `i`, at the places of the negative sign.
 fn signs(bits: u64, i: usize) -> (u64, u64) {
     ((bits & Table::of(i, false).0) >> (1 << i), bits & Table::of(i, true).0)
 }
 
-/// All choices of half-spaces, those of few first.
+/// All choices of half-spaces, the smallest first.
 const BY_SIZE: [u8; 1 << MOST] = {
     let mut all = [0; 1 << MOST];
     let (mut size, mut next) = (0, 0);
@@ -267,24 +270,24 @@ mod tests {
     #[test]
     fn functions_of_as_few_half_spaces_as_there_are() {
         let [a, b, c] = [0, 1, 2].map(|i| Table::of(i, false).0);
-        // a within b: a ∧ b is a, a ∨ b is b, and ¬a ∨ b all.
+        // With a within b: a ∧ b is a, a ∨ b is b, and ¬a ∨ b is all.
         let within = Table(!(a & !b));
         assert_eq!(Table(a & b).simplified(within), Table(a));
         assert_eq!(Table(a | b).simplified(within), Table(b));
         assert_eq!(Table(!a | b).simplified(within), Table::FULL);
         assert_eq!(Table(a & !b).simplified(within), Table::EMPTY);
         assert_eq!(Table(a & b & c).simplified(within), Table(a & c));
-        // No order of leaving out half-spaces one by one finds this: either of a and c alone would do for b.
+        // Removing half-spaces one by one in any order misses this: a alone, or c alone, could replace b.
         let either = Table(a & !b & c | !a & b & !c | !a & !b & !c);
         let simple = Table(a & !b & c).simplified(either);
         assert_eq!((0..6).filter(|&i| simple.depends_on(i)).count(), 1);
-        // What is possible is said as before, whatever it is.
+        // The values at possible combinations never change.
         for bits in 0..=255u64 {
             for can in 1..=255u64 {
                 let wide = |bits: u64| bits * 0x0101_0101_0101_0101;
                 let simple = Table(wide(bits)).simplified(Table(wide(can)));
                 assert_eq!((simple.0 ^ wide(bits)) & wide(can), 0, "{bits:b} {can:b}");
-                // Nothing else counts, and complements are complements.
+                // Other values do not matter, and complements stay complements.
                 assert_eq!(Table(wide(bits & can)).simplified(Table(wide(can))), simple);
                 assert_eq!(Table(!wide(bits)).simplified(Table(wide(can))), Table(!simple.0));
                 assert_eq!(simple.simplified(Table(wide(can))), simple);

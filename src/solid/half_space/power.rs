@@ -1,4 +1,4 @@
-//! Sums of powers of one coordinate each.
+//! Sums of powers, each of one coordinate.
 
 use super::bounds::{Octants, Sides, sums};
 use super::linear;
@@ -14,27 +14,27 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// Σ coefficient · (coordinate − centre)^exponent + constant, as given: a term an axis, of which some may be
-/// zero.
+/// Σ coefficient · (coordinate − centre)^exponent + constant, as given: one term for each axis, some of which
+/// may be zero.
 #[derive(PartialEq)]
 pub(crate) struct Powers {
     pub(crate) terms: [(f64, f64, u32); 3],
     pub(crate) constant: f64,
 }
 
-/// Less than anything that matters, more than what underflow can take away.
+/// A value below all relevant ones, and above all losses by underflow.
 const TINY: f64 = f64::from_bits((1023 - 800) << 52);
 
-/// Such a sum on a universe: Σ weight · line^exponent + constant, in unit coordinates.
+/// A sum of powers on a universe: Σ weight · line^exponent + constant, in unit coordinates.
 pub(crate) struct PlacedPowers {
     terms: Vec<Term>,
     exact_constant: Dyadic,
     constant: f64,
-    /// If each term depends on one axis.
+    /// The terms by axis, if each term depends on one axis.
     aligned: Option<Aligned>,
 }
 
-/// One term. The line's largest coefficient has a magnitude of one.
+/// A term of the sum. The line's largest coefficient has a magnitude of one.
 struct Term {
     line: Linear,
     exponent: u32,
@@ -42,19 +42,20 @@ struct Term {
     weight: f64,
 }
 
-/// The terms by the axes on which they depend, one lane an axis: weight · (slope · t + offset)^exponent.
+/// The terms by the axis on which they depend, one lane an axis: weight · (slope · t + offset)^exponent.
 struct Aligned {
     weight: f64x4,
     slope: f64x4,
     offset: f64x4,
-    /// Whether a lane's base is a factor of its power less one, for each bit of the exponents less one.
+    /// For each bit of the exponents minus one, a mask of the lanes whose bit is set: repeated squaring of
+    /// the base has a factor there.
     factors: Vec<f64x4>,
     /// Whether a power of a negative base is negative.
     odd: f64x4,
-    /// Values where a base is zero: of an even power 0 as `least` or as `most`, else infinite.
+    /// The values where a base is zero: for an even power 0 as `least` or as `most`, otherwise infinite.
     least: f64x4,
     most: f64x4,
-    /// Errors of the base, and of the weighted power by what it is a multiple of.
+    /// The errors of the base, and the errors of the weighted power relative to its factors.
     base_error: f64x4,
     base_share: f64x4,
     power_share: f64x4,
@@ -69,7 +70,7 @@ impl PlacedPowers {
         memory::bytes_of(&self.terms) + terms.sum::<usize>() + factors + self.exact_constant.heap_bytes()
     }
 
-    /// The sum `given` as the map shows it on the universe, times something positive.
+    /// Returns the image of `given` under the map on the universe, up to a positive factor.
     pub(crate) fn new(given: &Powers, map: &ExactMap) -> PlacedPowers {
         let present = || (0..3).filter(|&axis| given.terms[axis].0 != 0.0);
         let highest = present().map(|axis| given.terms[axis].2).max().unwrap_or(0);
@@ -106,7 +107,7 @@ impl PlacedPowers {
         PlacedPowers { terms, exact_constant, constant, aligned }
     }
 
-    /// For which of the eight cells the sum is proven not negative, and not positive.
+    /// Returns for which of the eight cells the sum is proven not negative, and not positive.
     pub(crate) fn sides(&self, at: &Octants) -> Sides {
         match &self.aligned {
             Some(aligned) => {
@@ -120,7 +121,8 @@ impl PlacedPowers {
         }
     }
 
-    /// Exact sign of the least (`Less`) or the greatest value over a box, if each term depends on one axis.
+    /// The exact sign of the least (`Less`) or the greatest value over a box, if each term depends on one
+    /// axis.
     fn extreme_sign(&self, low: [f64; 3], high: [f64; 3], which: Ordering) -> i32 {
         let ends = [low.map(Dyadic::new), high.map(Dyadic::new)];
         let sum = self.terms.iter().fold(self.exact_constant.clone(), |sum, term| {
@@ -128,7 +130,7 @@ impl PlacedPowers {
             let weighted = |base: &Dyadic| &term.exact_weight * &base.pow(term.exponent);
             let (at_a, at_b) = (weighted(&a), weighted(&b));
             let mut extreme = if at_a.cmp(&at_b) == which { at_a } else { at_b };
-            // An even power has its extreme 0 where the base is.
+            // An even power has the extreme 0 where its base is 0.
             let zero = Dyadic::zero();
             if term.exponent % 2 == 0 && a.sign() * b.sign() < 0 && zero.cmp(&extreme) == which {
                 extreme = zero;
@@ -138,7 +140,7 @@ impl PlacedPowers {
         sum.sign()
     }
 
-    /// Exact sign at a point of the universe.
+    /// The exact sign at a point of the universe.
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let (mut value, mut error) = (self.constant, 8.0 * f64::EPSILON * self.constant.abs() + TINY);
         for term in &self.terms {
@@ -159,7 +161,7 @@ impl PlacedPowers {
         self.terms.iter().fold(self.exact_constant.clone(), |sum, term| &sum + &value(term)).sign()
     }
 
-    /// The sign that the shift (ε, ε², ε³) gives at a zero, to first order.
+    /// The sign to which the shift (ε, ε², ε³) moves a zero, to first order.
     #[cold]
     pub(crate) fn shifted_sign_at(&self, t: [f64; 3]) -> i32 {
         let t = t.map(Dyadic::new);
@@ -178,7 +180,7 @@ impl PlacedPowers {
         (0..3).map(slope).find(|&sign| sign != 0).unwrap_or(0)
     }
 
-    /// What is known of the sum over a cube, as [`bounds`](Self::bounds) has it.
+    /// Returns linear bounds of the sum over a cube, as in [`bounds`](Self::bounds).
     pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
         let mut value = self.constant;
         let (mut gradient, mut least, mut most) = ([0.0; 3], 0.0, 0.0);
@@ -210,7 +212,8 @@ impl PlacedPowers {
         Tangent::new(value, gradient, (least, most), error)
     }
 
-    /// The sum over a cube: each term depends on one quantity u alone, and so do its derivatives.
+    /// Returns the sum to second order over a cube: each term depends on one quantity u alone, and so do its
+    /// derivatives.
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let mut value = self.constant;
         let (mut gradient, mut squares) = ([0.0; 3], [0.0; 6]);
@@ -220,7 +223,7 @@ impl PlacedPowers {
             let n = *exponent as f64;
             let spread = half * line.reach();
             let middle = line.value(centre);
-            // The base to the exponent less `k`; 0 where the derivative is.
+            // The base to the power of the exponent minus `k`; 0 if the derivative vanishes.
             let power = |base: f64, k: u32| match exponent.checked_sub(k) {
                 Some(rest) => power(f64x4::splat(base), rest).to_array()[0],
                 None => 0.0,
@@ -239,7 +242,7 @@ impl PlacedPowers {
             let weight = weight.abs();
             let rest =
                 weight * (n * (n - 1.0) * (n - 2.0) / 6.0) * power(farthest, 3) * (spread * spread * spread);
-            // The base and the powers are rounded, each power at most 2 n times.
+            // The base and the powers are rounded: each power at most 2 n times.
             let off = 32.0 * n * n * n * line.error;
             error += rest * (1.0 + 64.0 * n * f64::EPSILON) + weight * off * power(farthest, 1);
             bend += 1.0001
@@ -256,8 +259,8 @@ impl PlacedPowers {
         self.terms.iter().map(|term| term.exponent).max().unwrap_or(0)
     }
 
-    /// Whether the surface may contain a plane of a lattice. It does not if, on the planes across each axis,
-    /// the sum grows beyond all bounds along another one.
+    /// Returns whether the surface may contain a plane of a lattice. It cannot if, on the planes across each
+    /// axis, the sum is unbounded along another axis.
     pub(crate) fn may_hold_lattice_plane(&self) -> bool {
         let grows = |axis: usize| {
             let along = || self.terms.iter().filter(|term| !term.line.exact[axis].is_zero());
@@ -270,9 +273,9 @@ impl PlacedPowers {
         (0..3).any(|axis| !(0..3).any(|other| other != axis && grows(other)))
     }
 
-    /// Bounds where the axes are mixed. As each term depends on one quantity u alone, its remainder after the
-    /// linear part of Taylor's formula about the centre has its extremes at the centre and at the ends of u's
-    /// range. (That of an odd power has one more, opposite the centre, which the farther end exceeds.)
+    /// Bounds for mixed axes. Each term depends on one quantity u alone. So the remainder after the linear
+    /// part of Taylor's formula about the centre has its extremes at the centre and at the ends of u's range.
+    /// (An odd power has one more extreme, opposite the centre, which the farther end exceeds.)
     fn bounds(&self, at: &Octants) -> Sides {
         let (halves, reach) = at.centres();
         let ranges = halves.map(|centre| {
@@ -313,8 +316,8 @@ impl PlacedPowers {
                 for axis in 0..3 {
                     slopes[axis] += weight * slope * splat(line.c[axis]);
                 }
-                // With e the error of the line, which is more than the roundings of u, and |u| at its
-                // greatest, all parts together are off by less than 17 n² e |u|^(n − 1).
+                // Let e be the error of the line, which is more than the roundings of u, and |u| the greatest
+                // magnitude. Then all parts together have an error of less than 17 n² e |u|^(n − 1).
                 let farthest = middle.abs() + spread + splat(line.error);
                 let share = 32.0 * (*exponent as f64) * (*exponent as f64) * line.error;
                 error += (weight * splat(share)).abs() * power(farthest, exponent - 1);
@@ -337,7 +340,7 @@ impl Term {
     }
 }
 
-/// base^exponent; off by `exponent` roundings.
+/// base^exponent, with an error of `exponent` roundings.
 #[inline(always)]
 fn power(mut base: f64x4, mut exponent: u32) -> f64x4 {
     let mut product = f64x4::ONE;
@@ -390,7 +393,7 @@ impl Aligned {
         }
     }
 
-    /// The base, the weighted power and its error at a coordinate of each axis.
+    /// The base, the weighted power and its error, at one coordinate of each axis.
     #[inline(always)]
     fn along(&self, t: f64x4) -> (f64x4, f64x4, f64x4) {
         let base = self.slope * t + self.offset;
@@ -405,7 +408,7 @@ impl Aligned {
         (base, negative.select(-value, value), power * (self.base_share + self.power_share * most))
     }
 
-    /// The sides of the eight cells, and those for which rounding leaves a side open.
+    /// The sides of the eight cells, and the cells for which rounding leaves a side open.
     #[inline(always)]
     fn sides(&self, at: &Octants) -> (Sides, u8) {
         let low = at.lanes();

@@ -10,12 +10,12 @@ use alloc::boxed::Box;
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// Which products of (x, y, z, 1) the coefficients of a quadric belong to: squares, mixed products, linear
-/// terms, 1.
+/// The products of (x, y, z, 1) to which the coefficients of a quadric belong: squares, mixed products,
+/// linear terms, 1.
 const PAIRS: [(usize, usize); 10] =
     [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3), (3, 3)];
 
-/// Where a coefficient is in [`PAIRS`].
+/// The index of a coefficient in [`PAIRS`].
 pub(super) const fn place(a: usize, b: usize) -> usize {
     [[0, 3, 5, 6], [3, 1, 4, 7], [5, 4, 2, 8], [6, 7, 8, 9]][a][b]
 }
@@ -23,7 +23,8 @@ pub(super) const fn place(a: usize, b: usize) -> usize {
 /// The exact coefficients of a polynomial of degree two.
 pub(crate) type Coefficients = [Dyadic; 10];
 
-/// The polynomial that has the sign of `given` at the image of its argument: `given` ∘ `map`, times w².
+/// Returns the polynomial that has the sign of `given` at the image of its argument: `given` ∘ `map`, times
+/// w².
 pub(crate) fn substitute(given: &Coefficients, map: &ExactMap) -> Coefficients {
     let zero = Dyadic::zero();
     let entry = |i: usize, j: usize| match (i, j) {
@@ -53,7 +54,7 @@ pub(crate) struct Quadric {
 }
 
 enum Form {
-    /// Without mixed products: the extremes over a box are those along each axis.
+    /// Without mixed products: the extremes over a box follow from the extremes along each axis.
     Separable(Separable),
     /// With mixed products.
     Mixed(Mixed),
@@ -64,22 +65,22 @@ struct Separable {
     constant: f64,
     linear: f64x4,
     square: f64x4,
-    /// Where the parabola of an axis has its vertex, and its value there: as `least` for one that opens
-    /// upward, as `most` for one that opens downward, else infinite.
+    /// The vertex of the parabola along each axis, and its value there: as `least` if the parabola opens
+    /// upward, as `most` if it opens downward, otherwise infinite.
     vertex: f64x4,
     least: f64x4,
     most: f64x4,
-    /// More than the error of any value on [−1, 2]³; zero if they have none on the lattice.
+    /// More than the error of any value on [−1, 2]³; zero if values on the lattice have no error.
     error: f64,
 }
 
 /// All ten coefficients, in the order of [`PAIRS`].
 struct Mixed {
     c: [f64; 10],
-    /// Over a cube of half edge h around a point the quadratic part alone lies in h² times this.
+    /// The bounds of the quadratic part alone over a cube of half edge 1; over half edge h, times h².
     squares: (f64, f64),
-    /// The same, tighter: the extremes of the mixed products together, and 0 where the form has one sign.
-    /// (Verdicts are as they are with the other one, so that trees do not change.)
+    /// Tighter bounds of the same: the mixed products together have their extremes, and a form of one sign
+    /// has 0. (Verdicts use `squares`, so that trees do not change.)
     remainder: (f64, f64),
     error: f64,
 }
@@ -93,14 +94,15 @@ impl Quadric {
         &self.exact
     }
 
-    /// The quadric `given` as the map shows it on the universe, whose lattice has 2^depth cells.
+    /// Returns the image of the quadric `given` under the map on the universe, whose lattice has 2^depth
+    /// cells along an axis.
     pub(crate) fn new(given: &Coefficients, map: &ExactMap, depth: u8) -> Quadric {
         let exact = substitute(given, map);
-        // Only the sign counts: the largest coefficient is brought to a magnitude of one.
+        // Only the sign counts: the largest coefficient is scaled to a magnitude of one.
         let scale = -linear::magnitude(&exact);
         let exact = exact.map(|c| c.shifted(scale));
         let c = exact.each_ref().map(Dyadic::rounded);
-        // Magnitudes of all terms on [−1, 2]³, where no value is larger.
+        // The sum of the magnitudes of all terms on [−1, 2]³, which bounds all values.
         let size: f64 = 4.0 * c.iter().map(|c| c.abs()).sum::<f64>();
         let form = if exact[3..6].iter().all(Dyadic::is_zero) {
             Form::Separable(Separable::new(&exact, c, size, depth))
@@ -109,7 +111,7 @@ impl Quadric {
                 c[..3].iter().map(|&c| extreme(c, 0.0)).sum::<f64>()
                     + c[3..6].iter().map(|c| extreme(c.abs(), -c.abs())).sum::<f64>()
             });
-            // A term is rounded at most twenty times.
+            // At most twenty roundings a term.
             let squares = (least, most);
             Form::Mixed(Mixed {
                 c,
@@ -123,7 +125,7 @@ impl Quadric {
         Quadric { exact: Box::new(exact), fine, form }
     }
 
-    /// For which of the eight cells the polynomial is proven not negative, and not positive.
+    /// Returns for which of the eight cells the polynomial is proven not negative, and not positive.
     #[inline(always)]
     pub(crate) fn sides(&self, at: &Octants) -> Sides {
         match &self.form {
@@ -138,7 +140,7 @@ impl Quadric {
         }
     }
 
-    /// The values at the centres of the eight cells, and more than their error.
+    /// Returns the values at the centres of the eight cells, and more than their error.
     #[inline(always)]
     pub(crate) fn centres(&self, at: &Octants) -> ([f64x4; 2], f64) {
         match &self.form {
@@ -147,7 +149,7 @@ impl Quadric {
         }
     }
 
-    /// What is known of the value over a cube.
+    /// Returns linear bounds of the value over a cube.
     #[inline(always)]
     pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
         match &self.form {
@@ -156,7 +158,7 @@ impl Quadric {
         }
     }
 
-    /// The value over a cube.
+    /// Returns the value to second order over a cube.
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let square = half * half;
         let (value, gradient, squares, error) = match &self.form {
@@ -174,13 +176,13 @@ impl Quadric {
                 (value, gradient, [xx, yy, zz, xy, zx, yz].map(|c| c * square), mixed.error)
             }
         };
-        // A slope is a sum of four terms, which are no larger than twice the coefficients.
+        // A slope is a sum of four terms, which are at most twice the coefficients.
         let slope = 16.0 * f64::EPSILON * half * self.size();
         let f = Quadratic { value, gradient, squares, error: error + 4.0 * slope };
         Taylor { f, bend: f.bend() + 2.0 * slope, degree: 2 }
     }
 
-    /// The magnitudes of all coefficients.
+    /// The sum of the magnitudes of all coefficients.
     pub(crate) fn size(&self) -> f64 {
         match &self.form {
             Form::Separable(separable) => {
@@ -191,22 +193,22 @@ impl Quadric {
         }
     }
 
-    /// Whether there is no square of a coordinate.
+    /// Returns whether the square of a coordinate has no term.
     pub(crate) fn is_linear_along(&self, axis: usize) -> bool {
         self.exact[place(axis, axis)].is_zero()
     }
 
-    /// Whether the surface may contain a plane of a lattice.
+    /// Returns whether the surface may contain a plane of a lattice.
     pub(crate) fn may_hold_lattice_plane(&self) -> bool {
         let zero = |i: usize, j: usize| self.exact[place(i, j)].is_zero();
-        // On such a plane neither the other squares, nor their mixed product, nor a slope are left.
+        // On such a plane, the other squares, their mixed product and the slopes all vanish.
         [(0, 1, 2), (1, 2, 0), (2, 0, 1)].into_iter().any(|(k, i, j)| {
             let may_be_flat = |other: usize| !zero(k, other) || zero(other, 3);
             zero(i, i) && zero(j, j) && zero(i, j) && may_be_flat(i) && may_be_flat(j)
         })
     }
 
-    /// Exact sign of the least (`Less`) or the greatest value over a box, without mixed products.
+    /// The exact sign of the least (`Less`) or the greatest value over a box, without mixed products.
     fn extreme_sign(&self, low: [f64; 3], high: [f64; 3], which: Ordering) -> i32 {
         let mut sum = self.exact[place(3, 3)].clone();
         let mut vertices: [Option<(Dyadic, Dyadic)>; 3] = [None, None, None];
@@ -219,7 +221,7 @@ impl Quadric {
             let ((at_low, slope_low), (at_high, slope_high)) = (along(low[axis]), along(high[axis]));
             let bends = square.sign() == if which == Ordering::Less { 1 } else { -1 };
             if bends && slope_low * slope_high < 0 {
-                // −linear² / (4 square), a fraction.
+                // The fraction −linear² / (4 square).
                 vertices[axis] = Some((-&(linear * linear), square.shifted(2)));
             } else {
                 sum = &sum + if at_low.cmp(&at_high) == which { &at_low } else { &at_high };
@@ -234,7 +236,7 @@ impl Quadric {
         sum.sign() * denominator.sign()
     }
 
-    /// Exact sign at a point of [−1, 2]³.
+    /// The exact sign at a point of [−1, 2]³.
     #[inline]
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let (value, error) = match &self.form {
@@ -244,7 +246,8 @@ impl Quadric {
         certain(value, error).unwrap_or_else(|| self.exact_sign_at(t))
     }
 
-    /// The polynomial on a ray along `axis` through a point: the factors of 1, s and s² for the coordinate s.
+    /// Returns the polynomial on a ray along `axis` through a point: the factors of 1, s and s² for the
+    /// coordinate s.
     #[inline]
     pub(crate) fn along(&self, axis: usize, point: [f64; 3]) -> [f64; 3] {
         let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -264,8 +267,8 @@ impl Quadric {
         }
     }
 
-    /// The same in numbers of 106 bits, off by no more than [`DoubleDouble::EPSILON`] times 64 times
-    /// [`size`](Self::size), as coordinates are at most 1.
+    /// Returns the polynomial on a ray in numbers of 106 bits. Its error is at most [`DoubleDouble::EPSILON`]
+    /// times 64 times [`size`](Self::size), since coordinates are at most 1.
     pub(crate) fn finely_along(&self, axis: usize, point: [f64; 3]) -> [DoubleDouble; 3] {
         let [i, j] = [(axis + 1) % 3, (axis + 2) % 3];
         let [u, v] = [point[i], point[j]].map(DoubleDouble::from);
@@ -283,7 +286,7 @@ impl Quadric {
         }
     }
 
-    /// The same of a point that is none of the lattice.
+    /// The exact sign at a point off the lattice.
     pub(crate) fn sign_off_lattice(&self, t: [f64; 3]) -> i32 {
         let value = match &self.form {
             Form::Separable(separable) => separable.value(t),
@@ -299,7 +302,7 @@ impl Quadric {
         terms.fold(Dyadic::zero(), |sum, (&(a, b), c)| &sum + &(c * &(&t[a] * &t[b]))).sign()
     }
 
-    /// The sign that the shift (ε, ε², ε³) gives at a zero, to first order.
+    /// The sign to which the shift (ε, ε², ε³) moves a zero, to first order.
     #[cold]
     pub(crate) fn shifted_sign_at(&self, t: [f64; 3]) -> i32 {
         let t = [Dyadic::new(t[0]), Dyadic::new(t[1]), Dyadic::new(t[2]), Dyadic::new(1.0)];
@@ -313,10 +316,10 @@ impl Quadric {
     }
 }
 
-/// Bounds of the quadratic part over [-1, 1]³.
+/// Returns bounds of the quadratic part over [-1, 1]³.
 fn remainder(exact: &Coefficients, c: &[f64; 10]) -> (f64, f64) {
-    // The mixed products are linear in each coordinate, so that their extremes are at corners, of which
-    // opposite ones agree.
+    // The mixed products are linear in each coordinate, so that their extremes are at corners. Opposite
+    // corners have the same value.
     let [xy, yz, zx] = [c[3], c[4], c[5]];
     let corners = [(xy + yz) + zx, (yz - xy) - zx, (xy - yz) - zx, (zx - xy) - yz];
     let squares = |extreme: fn(f64, f64) -> f64| c[..3].iter().map(|&c| extreme(c, 0.0)).sum::<f64>();
@@ -329,8 +332,8 @@ fn remainder(exact: &Coefficients, c: &[f64; 10]) -> (f64, f64) {
     }
 }
 
-/// 1 if the quadratic part is nowhere negative, −1 if it is nowhere positive, by the signs of all principal
-/// minors; else 0.
+/// Returns 1 if the quadratic part is nowhere negative, −1 if it is nowhere positive, by the signs of all
+/// principal minors; otherwise 0.
 fn definite(exact: &Coefficients) -> i32 {
     let [xx, yy, zz, xy, yz, zx, ..] = exact;
     let sign = [xx, yy, zz].map(Dyadic::sign).into_iter().find(|&sign| sign != 0).unwrap_or(0);
@@ -349,7 +352,8 @@ impl Separable {
     fn new(exact: &Coefficients, c: [f64; 10], size: f64, depth: u8) -> Separable {
         let (mut vertex, mut least, mut most) =
             ([f64::INFINITY; 4], [f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
-        // Coordinates are of a cell's centre. A vertex is exact if its value is no finer than others.
+        // The finest coordinates are those of cell centres. A vertex is exact if its value is no finer than
+        // the other values.
         let places = 2 * (depth as i64 + 1);
         let grain = exact.iter().filter_map(Dyadic::grain).min().unwrap_or(0) - places;
         let mut is_exact = exact.iter().all(|c| c.exactly().is_some());
@@ -357,7 +361,7 @@ impl Separable {
         for axis in 0..3 {
             let (square, linear) = (c[place(axis, axis)], c[place(axis, 3)]);
             let at = -linear / (2.0 * square);
-            // Rounding may take a vertex out of the universe only if the ends' values are as good.
+            // Rounding can move a vertex out of the universe only if the values at the ends are as good.
             if square == 0.0 || !(-1.0..=2.0).contains(&at) {
                 continue;
             }
@@ -380,12 +384,12 @@ impl Separable {
             vertex: f64x4::new(vertex),
             least: f64x4::new(least),
             most: f64x4::new(most),
-            // A term is rounded at most eight times.
+            // At most eight roundings a term.
             error: if is_exact { 0.0 } else { 32.0 * f64::EPSILON * size },
         }
     }
 
-    /// The sides of the eight cells, and those for which rounding leaves a side open.
+    /// The sides of the eight cells, and the cells for which rounding leaves a side open.
     #[inline(always)]
     fn sides(&self, at: &Octants) -> (Sides, u8) {
         let low = at.lanes();
@@ -414,7 +418,7 @@ impl Separable {
         sums(self.constant, [first, first + at.half].map(|t| (self.square * t + self.linear) * t))
     }
 
-    /// The squares make up the remainder.
+    /// The squares are the remainder.
     #[inline(always)]
     fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
         let t = f64x4::new([centre[0], centre[1], centre[2], 0.0]);
@@ -447,8 +451,8 @@ impl Mixed {
         Sides::with_error([a.0, b.0], [a.1, b.1], self.error).0
     }
 
-    /// Bounds over four cubes of half edge `reach`, by Taylor's formula about each centre: exact but for what
-    /// the axes have in common.
+    /// Returns bounds over four cubes of half edge `reach`, by Taylor's formula about each centre: exact
+    /// except for the mixed terms.
     #[inline(always)]
     fn range(&self, [x, y, z]: [f64x4; 3], reach: f64) -> (f64x4, f64x4) {
         let [xx, yy, zz, xy, yz, zx, x1, y1, z1, _] = self.c;
@@ -468,8 +472,8 @@ impl Mixed {
         let value = self.value(centre.map(f64x4::splat)).to_array()[0];
         let gradient = self.slopes(centre);
         let (least, most) = self.remainder;
-        // `error` is more than four times the size of the coefficients in roundings, and so more than what a
-        // slope is off by, times an edge of the universe.
+        // `error` is more than four times the size of the coefficients in roundings, and so more than the
+        // error of a slope times an edge of the universe.
         let error = self.error + self.error * half;
         Tangent::new(
             value,

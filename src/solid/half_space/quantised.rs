@@ -1,4 +1,4 @@
-//! Slabs of one cell in whole numbers: rounded outward, once.
+//! Slabs of one cell in whole numbers, rounded outward once.
 
 use super::slab::ThickPlane;
 use super::{HalfSpace, PlacedHalfSpace, Surface};
@@ -6,20 +6,21 @@ use crate::lattice::{Affine, Cell, Frame, Interval, axes};
 use crate::octree::cuts::{CellSlab, Steps, Universe};
 use alloc::sync::Arc;
 
-/// Steps between the planes, as many as can be told with what is rounded at both.
+/// The number of steps between the planes: as many as the roundings of both planes allow.
 const STEPS: f64 = (Steps::MOST_WIDTH - 2) as f64;
 
-/// How much thicker a slab may become.
+/// The greatest factor by which a slab may become thicker.
 const THICKER: f64 = 1.4;
 
-/// How many times thinner than the tolerance slabs are that may become thicker by any factor.
+/// Slabs thinner than the tolerance over this number may become thicker by any factor.
 const FINE: f64 = 1024.0;
 
 impl PlacedHalfSpace {
-    /// A slab in model space that is used in one cell alone, its `index`-th, in whole numbers: what is proven
-    /// of points of the cell by the result is true. `None` of what is no slab; of what is thicker in the cell
-    /// than `tolerance` (model units); and where a slab would become thicker by more than two fifths and be
-    /// thicker than a 1024th of that, in cells that are large in comparison with its width.
+    /// Returns a slab in model space that is used in one cell alone, its `index`-th, in whole numbers. Every
+    /// point of the cell that the result proves inside or outside has that side for the slab, too. `None` if
+    /// the half-space is no slab; if the slab is thicker in the cell than `tolerance` (model units); and if
+    /// rounding would make the slab thicker by more than two fifths and thicker than a 1024th of `tolerance`,
+    /// as in cells that are large compared with its width.
     pub(crate) fn quantised(
         &self,
         frame: &Frame,
@@ -42,7 +43,7 @@ impl PlacedHalfSpace {
         let is_negative = normal[axis] < 0.0;
         let steps = Steps { axis, is_negative, others, offset: 0, width: 0, step: 0 };
 
-        // In units of the universe, from the centre of the cell, of a normal whose greatest component is ±1.
+        // In units of the universe, from the centre of the cell, for a normal whose greatest component is ±1.
         let (own, unit) = (normal.map(Interval::exactly), Interval::exactly(greatest));
         let edge = Interval::exactly(frame.edge());
         let centre = axes(|i| {
@@ -53,7 +54,7 @@ impl PlacedHalfSpace {
         let scale = unit.times(edge);
         let offset = |offset: f64| Interval::exactly(offset).minus(along).over(scale);
         let (inner, outer) = (offset(inner), offset(outer));
-        // How far the rounded normal is off in the corners of the cell.
+        // The error of the rounded normal at the corners of the cell.
         let half = 0.5 / (1u64 << cell.level) as f64;
         let rounded = steps.normal();
         let turned = (0..3).fold(Interval::exactly(0.0), |sum, i| {
@@ -61,7 +62,7 @@ impl PlacedHalfSpace {
             // (A power of two: exact.)
             sum.plus(Interval::exactly(off.upper.max(-off.lower) * half))
         });
-        // What lies beyond the cell's corners does not matter.
+        // Offsets beyond the cell's corners do not matter.
         let reach = rounded.iter().map(|c| c.abs()).sum::<f64>() * half;
         let in_cell = |offset: f64| offset.clamp(-reach, reach);
         let before = in_cell(outer.upper) - in_cell(inner.lower);
@@ -77,7 +78,7 @@ impl PlacedHalfSpace {
         let most = tolerance / frame.edge();
         let is_thin = before <= most && width * size <= f64::max(THICKER * before, most / FINE);
         let fits = width <= f64::from(Steps::MOST_WIDTH) && first.abs() <= f64::from(Steps::MOST_OFFSET);
-        // (What is no number is not less.)
+        // (NaN does not compare as less.)
         if !(is_thin && fits) {
             return None;
         }

@@ -1,4 +1,4 @@
-//! Half-spaces as they are stored: in exact numbers, each surface once.
+//! Half-spaces in stored form: exact numbers, each surface once.
 
 use super::map::ExactMap;
 use super::power::Powers;
@@ -17,8 +17,9 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use hashbrown::HashMap;
 
-/// What surfaces are known by: two are one if these are equal. Of planes and quadrics it is the polynomial in
-/// model space, up to a factor; of others the figure and its place.
+/// The identity of a surface: two surfaces are the same if their identities are equal. A plane or a quadric
+/// is identified by its polynomial in model space, up to a factor, and any other surface by its figure and
+/// its placement.
 #[derive(PartialEq, Eq, Hash)]
 enum Identity {
     Polynomial(Vec<Dyadic>),
@@ -26,7 +27,7 @@ enum Identity {
 }
 
 impl ExactMap {
-    /// Its numbers, which are those of any other form of the same map.
+    /// The map's numbers in a normal form, which is the same for every form of the same map.
     fn primitive(self) -> Vec<Dyadic> {
         let mut numbers = self.rows.into_iter().flatten().chain([self.w]).collect::<Vec<_>>();
         Dyadic::make_primitive(&mut numbers);
@@ -35,13 +36,13 @@ impl ExactMap {
 }
 
 impl PlacedHalfSpace {
-    /// The exact map from another space into that of the half-space.
+    /// Returns the exact map from another space into the space of the half-space.
     pub(crate) fn map(&self, from: ExactMap) -> Result<ExactMap, Error> {
         self.placements.iter().try_fold(from, |map, placement| map.of_placed(placement))
     }
 
-    /// Whether two surfaces are one, and if so, whether the function of the one is positive where that of the
-    /// other is negative.
+    /// Returns `Some` if two surfaces are the same; `Some(true)` if one function is positive where the other
+    /// is negative.
     pub(crate) fn same(&self, other: &PlacedHalfSpace) -> Result<Option<bool>, Error> {
         Ok(match (self.identity()?, other.identity()?) {
             (Some((own, turned)), Some((others, other_turned))) if own == others => {
@@ -51,8 +52,8 @@ impl PlacedHalfSpace {
         })
     }
 
-    /// What the surface is known by, and whether the function is negative where that of the identity is
-    /// positive. `None` of what has no exact numbers.
+    /// Returns the identity of the surface, and whether its function is negative where the identity's
+    /// function is positive. `None` if the surface has no exact numbers.
     fn identity(&self) -> Result<Option<(Identity, bool)>, Error> {
         let map = || self.map(ExactMap::identity());
         let polynomial = |mut numbers: Vec<Dyadic>| {
@@ -76,7 +77,7 @@ impl PlacedHalfSpace {
                 else {
                     return Ok(None);
                 };
-                // (A file may say of two slabs that they are the same, which are not.)
+                // (A file may claim that two slabs are the same that are not.)
                 numbers.extend(identity.numbers());
                 (Identity::Figure(kind, numbers, map()?.primitive()), false)
             }
@@ -84,7 +85,8 @@ impl PlacedHalfSpace {
         }))
     }
 
-    /// The same half-space with those of its first placements in its numbers that take fewer doubles there.
+    /// Returns the same half-space with its first placements applied to its numbers, as far as this saves
+    /// doubles.
     fn shortened(&self) -> Result<PlacedHalfSpace, Error> {
         let (mut half_space, mut left) = (self.half_space.clone(), self.placements.len());
         while let Some(placement) = left.checked_sub(1).map(|last| &self.placements[last]) {
@@ -110,8 +112,8 @@ impl PlacedHalfSpace {
 }
 
 impl HalfSpace {
-    /// The kind of the surface, and its numbers, of a slab without those that tell which it is; `None` of
-    /// functions of the host.
+    /// Returns the kind of the surface and its numbers, without a slab's identity. `None` for functions of
+    /// the host.
     fn numbers(&self) -> Option<(SurfaceKind, Vec<Dyadic>)> {
         Some(match &*self.0 {
             Surface::Plane(plane) => (SurfaceKind::Plane, plane.to_vec()),
@@ -132,13 +134,13 @@ impl HalfSpace {
         })
     }
 
-    /// How many doubles the numbers take.
+    /// The number of doubles that the numbers take.
     fn doubles(&self) -> Option<usize> {
         let (_, numbers) = self.numbers()?;
         numbers.iter().map(|number| Some(number.expansion(MOST_TERMS)?.len())).sum()
     }
 
-    /// The half-space of stored numbers; `None` if they make none.
+    /// Returns the half-space of stored numbers; `None` if they are invalid.
     fn stored(kind: SurfaceKind, numbers: &[Dyadic], identity: Option<SlabIdentity>) -> Option<HalfSpace> {
         let is_constant = |linear: &[Dyadic]| linear.iter().all(Dyadic::is_zero);
         Some(match (kind, numbers) {
@@ -182,7 +184,7 @@ impl HalfSpace {
         })
     }
 
-    /// The points where the function is negative.
+    /// Returns the points where the function is negative.
     fn negated(&self) -> HalfSpace {
         match &*self.0 {
             Surface::Plane(plane) => HalfSpace::linear(plane.each_ref().map(|c| -c)),
@@ -192,7 +194,7 @@ impl HalfSpace {
     }
 }
 
-/// Surfaces that differ: those that are equal have one number.
+/// A set of distinct surfaces: equal surfaces have one number.
 #[derive(Default)]
 pub(crate) struct Pool {
     known: HashMap<Identity, u32>,
@@ -200,8 +202,8 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// The number of a surface, and whether the function of that is positive where this one's is negative.
-    /// `None` of what has no exact numbers.
+    /// Returns the number of a surface, and whether the numbered function is positive where this one is
+    /// negative. `None` if the surface has no exact numbers.
     pub(crate) fn number(&mut self, surface: &PlacedHalfSpace) -> Result<Option<(u32, bool)>, Error> {
         let Some((identity, turned)) = surface.identity()? else { return Ok(None) };
         self.known.try_reserve(1)?;
@@ -221,8 +223,8 @@ impl Pool {
         Ok(Some((number, turned)))
     }
 
-    /// The surfaces in an order that does not depend on that in which they were numbered, and for each number
-    /// the place there.
+    /// Returns the surfaces in an order that does not depend on their numbers, and for each number its place
+    /// in that order.
     pub(crate) fn sorted(self) -> Result<(Vec<PlacedHalfSpace>, Vec<u32>), Error> {
         let keys = memory::collected(self.surfaces.iter().map(PlacedHalfSpace::size))?;
         let mut order = memory::collected(0..self.surfaces.len())?;
@@ -238,8 +240,8 @@ impl Pool {
 }
 
 impl PlacedHalfSpace {
-    /// What surfaces are ordered by, and records that tell of one surface, as [`SurfacesRef::order`] does of
-    /// those that are stored: the number of doubles, the kind, and the doubles themselves.
+    /// The sort key of surfaces, and of records of the same surface; [`SurfacesRef::order`] orders stored
+    /// surfaces alike: the number of doubles, the kind, and the doubles themselves.
     pub(crate) fn size(&self) -> (usize, Vec<u64>) {
         let (mut bits, mut doubles) = (Vec::new(), Vec::new());
         if let Some((kind, numbers)) = self.half_space.numbers() {
@@ -254,18 +256,18 @@ impl PlacedHalfSpace {
         (bits.len(), bits)
     }
 
-    /// The slab of a cell of a universe, and its origin, or two zeros if it has none.
+    /// Returns the slab of a cell of a universe, and its origin, or two zeros if it has no origin.
     pub(crate) fn cell_slab(&self, frame: &Frame) -> Option<(CellSlab, Origin)> {
         let Surface::Slab(ThickPlane { cell_slab, identity, .. }) = &*self.half_space.0 else { return None };
         let is_there = matches!(&*self.placements, [only] if *only.rows() == Universe::of(frame).rows());
         let origin = identity.as_ref().map_or([0; 2], |identity| identity.origin);
-        // (A tree that is less deep than the one that the slab was made for has no such cell.)
+        // (A tree of less depth than the slab was made for has no such cell.)
         let has_cell = |slab: &CellSlab| slab.is_valid(frame.depth());
         cell_slab.filter(|slab| is_there && has_cell(slab)).map(|slab| (slab, origin))
     }
 
-    /// Writes surfaces of a tree on a frame one after the other; maps that several share stand once. Slabs of
-    /// cells stand at the end, those of one origin together.
+    /// Writes surfaces of a tree on a frame one after the other. Maps that several surfaces share are written
+    /// once. Slabs of cells come at the end, grouped by origin.
     ///
     /// # Errors
     /// [`Error::Limit`] if a number is the sum of more than seven doubles, if a surface has more than 64
@@ -298,7 +300,7 @@ impl PlacedHalfSpace {
         Ok(all.finish())
     }
 
-    /// A stored surface; `None` if it is damaged.
+    /// Reads a stored surface; `None` if it is damaged.
     pub(crate) fn read(surfaces: &SurfacesRef<'_>, id: usize) -> Option<PlacedHalfSpace> {
         let identity = surfaces.identity(id).map(|(origin, number)| SlabIdentity { origin, number });
         if let Some(slab) = surfaces.cell_slab(id) {
@@ -320,7 +322,7 @@ impl PlacedHalfSpace {
         })
     }
 
-    /// The half-space on the universe of a frame.
+    /// Returns the half-space on the universe of a frame.
     pub(crate) fn on(&self, frame: &Frame) -> Result<super::Placed, Error> {
         Ok(self.half_space.0.on(&self.map(ExactMap::from_universe(frame))?, frame))
     }

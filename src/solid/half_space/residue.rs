@@ -1,9 +1,10 @@
-//! A short number by which surfaces that are one are found among many.
+//! A short hash by which equal surfaces are found among many.
 //!
-//! Two stored surfaces may be one although their numbers differ: polynomials that are proportional, a figure
-//! that is placed by several maps or by one. The exact comparison takes long numbers. So the polynomial in
-//! model space is computed modulo a prime first, where sums of doubles, products and quotients are exact and
-//! short. Surfaces that are one have equal residues; of others two in 2^61 do, and are compared exactly.
+//! Two stored surfaces may be the same although their numbers differ: polynomials may be proportional, and a
+//! figure may be placed by several maps or by one. The exact comparison takes long numbers. So the polynomial
+//! in model space is first computed modulo a prime, where sums of doubles, products and quotients are exact
+//! and short. Equal surfaces have equal residues. Different surfaces have equal residues in two of 2^61
+//! cases, and are then compared exactly.
 
 use crate::octree::cuts::{SurfaceKind, SurfacesRef};
 
@@ -49,9 +50,9 @@ impl Residue {
         Residue::reduced(u128::from(self.0) * u128::from(other.0))
     }
 
-    /// One over it; zero of zero.
+    /// The reciprocal; zero for zero.
     fn inverse(self) -> Residue {
-        // By Fermat it is the power of 2^61 − 3.
+        // By Fermat's theorem, the reciprocal is the power with exponent 2^61 − 3.
         let (mut power, mut base, mut exponent) = (Residue::ONE, self, PRIME - 2);
         while exponent > 0 {
             if exponent & 1 != 0 {
@@ -68,8 +69,8 @@ impl Residue {
     }
 }
 
-/// A projective map: homogeneous coordinates of a point of model space to those of the point in a figure's
-/// space.
+/// A projective map from homogeneous coordinates of a point of model space to those of the point in a
+/// figure's space.
 type Map = [[Residue; 4]; 4];
 
 fn product(a: &Map, b: &Map) -> Map {
@@ -111,12 +112,12 @@ fn projective(seed: u64, form: impl Iterator<Item = Residue> + Clone) -> u64 {
     mixed(seed, form.map(|c| c.times(scale).0))
 }
 
-/// A number that is the same of all surfaces that are one; `None` of a surface that is like no other (a slab
-/// without an origin), or damaged. O(maps).
+/// Returns a number that is equal for equal surfaces. `None` for a surface that equals no other (a slab
+/// without an origin), or that is damaged. O(maps).
 pub(crate) fn residue(surfaces: &SurfacesRef<'_>, id: usize) -> Option<u64> {
     let (kind, numbers) = surfaces.get(id)?;
     if let (Some(slab), Some(([low, high], _))) = (surfaces.cell_slab(id), surfaces.identity(id)) {
-        // (On another universe it is another slab, and compared as such.)
+        // (On another universe it is another slab, and is compared as such.)
         return Some(mixed(kind as u64, [slab.home, slab.planes, low, high].into_iter()));
     }
     let one =
@@ -159,7 +160,7 @@ mod tests {
     fn doubles_are_exact_modulo_a_prime() {
         for (a, b) in [(0.1, 3.0), (-1e300, 1e-300), (f64::MIN_POSITIVE / 8.0, 2f64.powi(1000)), (0.75, -0.5)]
         {
-            // Of a product of doubles its rounded part and its error.
+            // The rounded part of a product of doubles, and its error.
             let (a, b) = (Residue::of(a), Residue::of(b));
             assert_eq!(a.times(b), b.times(a));
             assert_eq!(a.times(a.inverse()), Residue::ONE);

@@ -1,4 +1,5 @@
-//! Planes and quadrics in numbers that are rounded outward, and which of them are balls or cylinders.
+//! Planes and quadrics in numbers that are rounded outward, and the detection of balls and cylinders among
+//! them.
 
 use super::map::ExactMap;
 use super::quadric::substitute;
@@ -7,8 +8,8 @@ use crate::error::Error;
 use crate::lattice::exact::Dyadic;
 use crate::lattice::{Frame, Interval, axes};
 
-/// A surface all of whose points are about as far from a point, or from a line: a ball or a cylinder around
-/// its *core*.
+/// A surface whose points all have nearly the same distance from a point or a line: a ball or a cylinder
+/// around its *core*.
 ///
 /// # Law
 /// Let x be a point of the universe. If x lies on the near side of the surface, the square of its distance
@@ -26,23 +27,25 @@ pub(crate) struct Round {
     pub(crate) is_near_positive: bool,
 }
 
-/// How well the square of a radius must be known.
+/// The required relative precision of the square of a radius.
 const KNOWN: f64 = 1e-9;
 
-/// How far coefficients may be from those of a ball or of a cylinder, before anything is proven.
+/// The greatest relative deviation of coefficients from those of a ball or a cylinder, before anything is
+/// proven.
 const ALIKE: f64 = 1e-9;
 
 /// A plane or a quadric on the universe of a frame, in numbers that are rounded outward.
 #[derive(Debug, Clone)]
 pub(crate) struct Form {
-    /// Of x², y², z², xy, yz, zx, x, y, z and 1, in unit coordinates: the universe is [0, 1]³.
+    /// The coefficients of x², y², z², xy, yz, zx, x, y, z and 1, in unit coordinates: the universe is [0,
+    /// 1]³.
     coefficients: [Interval; 10],
-    /// The ball or the cylinder that the surface is.
+    /// The ball or the cylinder, if the surface is one.
     pub(crate) round: Option<Round>,
 }
 
 impl Form {
-    /// The value at a point in unit coordinates: positive inside of the half-space.
+    /// Returns the value at a point in unit coordinates: positive inside the half-space.
     pub(crate) fn value(&self, at: &[Interval; 3]) -> Interval {
         let c = &self.coefficients;
         let mut sum = c[9];
@@ -55,7 +58,7 @@ impl Form {
         sum
     }
 
-    /// The value and the gradient at a point in unit coordinates, but for rounding.
+    /// Returns the value and the gradient at a point in unit coordinates, with rounding errors.
     pub(crate) fn about(&self, at: [f64; 3]) -> (f64, [f64; 3]) {
         let c = self.coefficients.map(|c| 0.5 * (c.lower + c.upper));
         let mut gradient = [c[6], c[7], c[8]];
@@ -71,7 +74,7 @@ impl Form {
 }
 
 impl Form {
-    /// The matrix of second derivatives, but for rounding.
+    /// Returns the matrix of second derivatives, with rounding errors.
     pub(crate) fn second(&self) -> [[f64; 3]; 3] {
         let [xx, yy, zz, xy, yz, zx, ..] = self.coefficients.map(|c| 0.5 * (c.lower + c.upper));
         [[2.0 * xx, xy, zx], [xy, 2.0 * yy, yz], [zx, yz, 2.0 * zz]]
@@ -79,7 +82,7 @@ impl Form {
 }
 
 impl PlacedHalfSpace {
-    /// The plane or the quadric that the surface is in the universe of a frame; `None` of other surfaces.
+    /// Returns the plane or the quadric as a form on the universe of a frame; `None` for other surfaces.
     ///
     /// # Errors
     /// [`Error::Limit`] if exact numbers of placements become too long.
@@ -120,13 +123,13 @@ fn interval(exact: &Dyadic) -> Interval {
     }
 }
 
-/// The ball or the cylinder of a polynomial of degree two in unit coordinates.
+/// Returns the ball or the cylinder that a polynomial of degree two in unit coordinates bounds.
 fn of_quadric(c: &[Interval; 10], frame: &Frame) -> Option<Round> {
     let about = c.map(|c| 0.5 * (c.lower + c.upper));
     let [xx, yy, zz, xy, yz, zx, ..] = about;
     let matrix = [[xx, 0.5 * xy, 0.5 * zx], [0.5 * xy, yy, 0.5 * yz], [0.5 * zx, 0.5 * yz, zz]];
     let trace = xx + yy + zz;
-    // (What is no number is not greater.)
+    // (NaN does not compare as greater.)
     let is_usable = trace.abs() > 1e-200 && trace.abs() < 1e200 && about.iter().all(|c| c.abs() < 1e200);
     if !is_usable {
         return None;
@@ -150,7 +153,7 @@ fn of_quadric(c: &[Interval; 10], frame: &Frame) -> Option<Round> {
         }
         (scale, Some(axis))
     };
-    // What projects onto the plane across the axis: the gradient vanishes at the core.
+    // The projection onto the plane across the axis: the gradient there vanishes at the core.
     let exactly = Interval::exactly;
     let across: [[Interval; 3]; 3] = axes(|i| {
         axes(|j| match axis {
@@ -168,8 +171,7 @@ fn of_quadric(c: &[Interval; 10], frame: &Frame) -> Option<Round> {
     if !core.iter().all(|c| c.abs() < 1e100) {
         return None;
     }
-    // f / scale − |x − core|² across the axis, over the universe: a constant, but for what rounding makes of
-    // it.
+    // f / scale − |x − core|² across the axis, over the universe: a constant up to rounding.
     let over = |c: Interval| {
         if scale > 0.0 { c.over(exactly(scale)) } else { c.negated().over(exactly(-scale)) }
     };

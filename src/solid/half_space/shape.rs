@@ -1,4 +1,4 @@
-//! The shapes that surfaces are in model space, in the numbers that other programs know them by.
+//! The shapes of surfaces in model space, in the parameters that other programs use.
 
 use super::map::ExactMap;
 use super::quadric::{Coefficients, substitute};
@@ -9,48 +9,48 @@ use crate::error::Error;
 use crate::lattice::axes;
 use crate::lattice::exact::{Dyadic, sqrt};
 
-/// A surface in model space, by its kind and its numbers.
+/// A surface in model space: its kind and its parameters.
 ///
-/// The numbers are those of the exact surface, rounded: relative errors are some 10^-15 of the coordinates. A
-/// surface of degree two has the name of a ball, a cylinder or a cone if its coefficients are those of one to
-/// 10^-9 of their size.
+/// The parameters are those of the exact surface, rounded: their relative error is some 10^-15 of the
+/// coordinates. A surface of degree two is reported as a ball, a cylinder or a cone if its coefficients agree
+/// with such a shape to 10^-9 of their size.
 #[non_exhaustive]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SurfaceShape {
-    /// The plane `normal` · p = `offset`. The normal has the length one and points out of the half-space. Of
-    /// a plane with a width, as octrees of meshes have them, it is the middle.
+    /// The plane `normal` · p = `offset`. The normal has the length one and points out of the half-space. For
+    /// a plane with a width, as in octrees of meshes, this is the middle plane.
     Plane {
-        /// Of length one.
+        /// The unit normal.
         normal: [f64; 3],
         /// The distance of the plane from the origin, along the normal (model units).
         offset: f64,
     },
-    /// The points that are `radius` away from `centre`.
+    /// The points at a distance of `radius` from `centre`.
     Ball {
-        /// In model space.
+        /// The centre, in model space.
         centre: [f64; 3],
-        /// Model units.
+        /// The radius (model units).
         radius: f64,
     },
-    /// The points that are `radius` away from a line.
+    /// The points at a distance of `radius` from a line.
     Cylinder {
         /// The point of the axis that is nearest to the origin.
         point: [f64; 3],
         /// The direction of the axis, of length one.
         axis: [f64; 3],
-        /// Model units.
+        /// The radius (model units).
         radius: f64,
     },
-    /// The lines through `apex` at an angle to the axis, which go on behind the apex.
+    /// The lines through `apex` at an angle to the axis, on both sides of the apex.
     Cone {
-        /// In model space.
+        /// The apex, in model space.
         apex: [f64; 3],
         /// The direction of the axis, of length one.
         axis: [f64; 3],
         /// The angle between axis and surface: between 0 and π/2.
         half_angle: f64,
     },
-    /// The points that are `minor` away from a circle.
+    /// The points at a distance of `minor` from a circle.
     Torus {
         /// The circle's centre.
         centre: [f64; 3],
@@ -58,24 +58,24 @@ pub enum SurfaceShape {
         axis: [f64; 3],
         /// The radius of the circle (model units).
         major: f64,
-        /// Model units.
+        /// The radius of the tube (model units).
         minor: f64,
     },
     /// Any other surface of degree two.
     Quadric {
-        /// The factors of x², y², z², xy, yz, zx, x, y, z and 1, as
-        /// [`HalfSpace::quadric`](super::HalfSpace::quadric) takes them: the sum is positive in the
-        /// half-space. The largest one is between 1/2 and 1.
+        /// The factors of x², y², z², xy, yz, zx, x, y, z and 1, in the order of
+        /// [`HalfSpace::quadric`](super::HalfSpace::quadric): the sum is positive in the half-space. The
+        /// magnitude of the largest factor is between 1/2 and 1.
         coefficients: [f64; 10],
     },
-    /// A surface without such numbers: sums of powers, a torus that is stretched, a host program's function.
+    /// A surface without such parameters: a sum of powers, a stretched torus, a host program's function.
     Other,
 }
 
-/// How far coefficients may be from those of a ball, a cylinder or a cone, as a part of their size.
+/// The greatest deviation of coefficients from those of a ball, a cylinder or a cone, relative to their size.
 const ALIKE: f64 = 1e-9;
 
-/// Sweeps of Jacobi's method, which takes some five.
+/// The most sweeps of Jacobi's method, which takes some five.
 const SWEEPS: usize = 32;
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -86,7 +86,7 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     axes(|i| a[i] - b[i])
 }
 
-/// A vector of length one; `None` of what has no direction.
+/// The unit vector; `None` if the vector has no direction.
 fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
     let size = sqrt(dot(a, a));
     let unit = a.map(|c| c / size);
@@ -94,7 +94,7 @@ fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
 }
 
 impl SurfaceShape {
-    /// `plane`, `ball`, `cylinder`, `cone`, `torus`, `quadric` or `other`.
+    /// Returns `plane`, `ball`, `cylinder`, `cone`, `torus`, `quadric` or `other`.
     pub fn name(&self) -> &'static str {
         match self {
             SurfaceShape::Plane { .. } => "plane",
@@ -107,9 +107,9 @@ impl SurfaceShape {
         }
     }
 
-    /// The direction across the surface at a point next to it, of length one: of a ball away from the centre,
-    /// of a cylinder, a cone and a torus away from the axis or the circle, of a plane and of any other
-    /// surface out of the half-space. `None` where there is none, and of [`Other`](Self::Other).
+    /// Returns the unit normal of the surface at a point next to it. It points away from the centre of a
+    /// ball, away from the axis or the circle of a cylinder, a cone and a torus, and out of the half-space
+    /// for a plane and any other surface. `None` where there is no normal, and for [`Other`](Self::Other).
     pub fn normal(&self, at: [f64; 3]) -> Option<[f64; 3]> {
         match *self {
             SurfaceShape::Plane { normal, .. } => Some(normal),
@@ -135,20 +135,20 @@ impl SurfaceShape {
     }
 }
 
-/// What a vector is across an axis of length one.
+/// The part of a vector across a unit axis.
 fn across(vector: [f64; 3], axis: [f64; 3]) -> [f64; 3] {
     let along = dot(vector, axis);
     axes(|i| vector[i] - along * axis[i])
 }
 
 impl PlacedHalfSpace {
-    /// Whether the surface is a plane, with a width or without.
+    /// Returns whether the surface is a plane, with or without a width.
     #[cfg(feature = "std")]
     pub(crate) fn is_flat(&self) -> bool {
         matches!(&*self.half_space.0, Surface::Plane(_) | Surface::Slab(_))
     }
 
-    /// The surface in model space, by its kind and its numbers.
+    /// Returns the surface in model space: its kind and its parameters.
     ///
     /// ```
     /// use leafless::{Control, Csg, Frame, solid::SurfaceShape, surface::boundary};
@@ -182,7 +182,7 @@ impl PlacedHalfSpace {
         })
     }
 
-    /// A vector of the half-space's own space in model space, or a point with a last coordinate of 1.
+    /// Maps a vector of the half-space's own space to model space; a point has a last coordinate of 1.
     fn moved(&self, own: [f64; 4]) -> [f64; 3] {
         let moved = self.placements.iter().rev().fold(own, |at, placement| {
             let [x, y, z] = axes(|i| (0..4).map(|j| placement.rows()[i][j] * at[j]).sum::<f64>());
@@ -191,7 +191,7 @@ impl PlacedHalfSpace {
         axes(|i| moved[i])
     }
 
-    /// A torus under placements that stretch all directions alike.
+    /// Returns the shape of a torus if its placements scale all directions alike.
     fn of_torus(&self, torus: &Torus) -> Option<SurfaceShape> {
         let [major, square, scale, shift] =
             [&torus.major, &torus.square, &torus.scale, &torus.shift].map(Dyadic::rounded);
@@ -215,12 +215,12 @@ impl PlacedHalfSpace {
     }
 }
 
-/// The plane of the points with `normal` · p = `offset`.
+/// Returns the plane of the points with `normal` · p = `offset`.
 fn of_plane(normal: [Dyadic; 3], offset: &Dyadic) -> SurfaceShape {
     let scale = -normal.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0);
     let normal = normal.map(|c| c.shifted(scale).rounded());
     let size = sqrt(dot(normal, normal));
-    // (Zeros have no sign.)
+    // (Adding 0.0 removes the sign of a zero.)
     let offset = 0.0 - offset.shifted(scale).rounded() / size;
     SurfaceShape::Plane { normal: normal.map(|c| c / size + 0.0), offset }
 }
@@ -228,7 +228,7 @@ fn of_plane(normal: [Dyadic; 3], offset: &Dyadic) -> SurfaceShape {
 fn of_slab(slab: &ThickPlane, map: &ExactMap) -> SurfaceShape {
     let [x, y, z] = slab.normal.map(Dyadic::new);
     let numbers = map.linear(&[x, y, z, Dyadic::zero()]);
-    // (An offset is infinite where one side alone is known.)
+    // (An offset is infinite if only one side is known.)
     let ends = [slab.inner, slab.outer];
     let middle = match ends.map(f64::is_finite) {
         [true, true] => ends[0].midpoint(ends[1]),
@@ -244,13 +244,13 @@ fn of_slab(slab: &ThickPlane, map: &ExactMap) -> SurfaceShape {
     }
 }
 
-/// Doubles in proportion to exact numbers, the largest between 1/2 and 1.
+/// Returns doubles in proportion to exact numbers; the largest magnitude is between 1/2 and 1.
 fn rounded(exact: &Coefficients) -> [f64; 10] {
     let scale = -exact.iter().filter_map(Dyadic::magnitude).max().unwrap_or(0) - 1;
     exact.each_ref().map(|c| c.shifted(scale).rounded())
 }
 
-/// Eigenvalues of a symmetric matrix, and their vectors of length one. (Jacobi 1846.)
+/// Returns the eigenvalues of a symmetric matrix, and their unit eigenvectors. (Jacobi 1846.)
 fn eigen(mut matrix: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
     let mut vectors: [[f64; 3]; 3] = axes(|i| axes(|j| if i == j { 1.0 } else { 0.0 }));
     for _ in 0..SWEEPS {
@@ -277,20 +277,20 @@ fn eigen(mut matrix: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
     (axes(|i| matrix[i][i]), vectors)
 }
 
-/// The shape that a polynomial of degree two has, by its exact coefficients.
+/// Returns the shape of a polynomial of degree two, from its exact coefficients.
 fn of_quadric(exact: &Coefficients) -> SurfaceShape {
     let coefficients = rounded(exact);
     round(exact, &coefficients).unwrap_or(SurfaceShape::Quadric { coefficients })
 }
 
-/// The ball, the cylinder or the cone of a polynomial.
+/// Returns the ball, the cylinder or the cone that a polynomial bounds, if it bounds one.
 fn round(exact: &Coefficients, coefficients: &[f64; 10]) -> Option<SurfaceShape> {
     let [xx, yy, zz, xy, yz, zx, ..] = *coefficients;
     let matrix = [[xx, 0.5 * xy, 0.5 * zx], [0.5 * xy, yy, 0.5 * yz], [0.5 * zx, 0.5 * yz, zz]];
     let (values, vectors) = eigen(matrix);
     let size = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let is_near = |a: f64, b: f64| (a - b).abs() <= ALIKE * size;
-    // What makes the gradient zero, as near to the origin as it can be.
+    // The point where the gradient is zero, as near to the origin as possible.
     let still = |linear: [f64; 3]| -> [f64; 3] {
         let mut sum = [0.0; 3];
         for (value, vector) in values.into_iter().zip(vectors).filter(|(value, _)| !is_near(*value, 0.0)) {
@@ -303,7 +303,7 @@ fn round(exact: &Coefficients, coefficients: &[f64; 10]) -> Option<SurfaceShape>
     if !(size > 0.0 && first.iter().all(|c| c.is_finite())) {
         return None;
     }
-    // Seen from there, to the last digits.
+    // Expanded around this point, with all digits.
     let mut map = ExactMap::identity();
     (0..3).for_each(|i| map.rows[i][3] = Dyadic::new(first[i]));
     let near = substitute(exact, &map);
@@ -324,11 +324,11 @@ fn round(exact: &Coefficients, coefficients: &[f64; 10]) -> Option<SurfaceShape>
     if is_near(values[odd], 0.0) {
         let square = -constant / around;
         let radius = sqrt(square);
-        // (A paraboloid has no cylinder's radius.)
+        // (A paraboloid is no cylinder.)
         let is_straight = square > 0.0 && dot(linear, axis).abs() <= ALIKE * around.abs() * radius;
         return is_straight.then_some(SurfaceShape::Cylinder { point: core, axis, radius });
     }
-    // A hyperboloid whose waist vanishes is a cone.
+    // A hyperboloid with a vanishing waist is a cone.
     let waist = (constant / around).abs();
     let is_cone = values[odd] * around < 0.0 && waist <= ALIKE * ALIKE * dot(core, core);
     is_cone.then(|| SurfaceShape::Cone {
@@ -366,7 +366,7 @@ mod tests {
         assert_near(&normal, &[-0.8, 0.0, 0.6]);
         let point = turn().apply([5.0, 7.0, 3.0]);
         assert_near(&[offset], &[dot(normal, point)]);
-        // A mirror keeps the side.
+        // A mirror image keeps the side.
         let mirror =
             Affine::new([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0]]).unwrap();
         let expected = SurfaceShape::Plane { normal: [0.0, 0.0, -1.0], offset: 3.0 };
@@ -376,7 +376,7 @@ mod tests {
         assert_eq!(of(slab, &[mirror]), SurfaceShape::Plane { normal: [0.0, 1.0, 0.0], offset: 2.0 });
     }
 
-    /// Far from the origin, too: the radius has as many digits as the numbers given.
+    /// Far from the origin, too, the radius has as many digits as the given numbers.
     #[test]
     fn balls_cylinders_cones_and_tori() {
         let far = |at: [f64; 3]| Affine::translation(at).unwrap();
@@ -417,7 +417,7 @@ mod tests {
         assert_eq!((centre, axis, major, minor), ([1.0, 2.0, 3.0], [1.0, 0.0, 0.0], 10.0, 2.0));
         let wide = [[1.0, 0.0, 0.0, 0.0], [0.0, 2.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
         assert_eq!(of(ring, &[Affine::new(wide).unwrap()]), SurfaceShape::Other);
-        // What is stretched is none of these.
+        // Stretched shapes are none of these.
         for shape in [ball, rod, cone].map(|shape| of(shape, &[Affine::new(wide).unwrap()])) {
             assert_eq!(shape.name(), "quadric");
         }
@@ -437,7 +437,7 @@ mod tests {
         assert_eq!(self::of(powers, &[]), SurfaceShape::Other);
     }
 
-    /// Normals are gradients: the surface lies on both sides of a short step along them.
+    /// Normals are gradients: a short step along them, to either side, crosses the surface.
     #[test]
     fn normals() {
         let cases = [

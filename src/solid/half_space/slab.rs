@@ -1,4 +1,4 @@
-//! Planes with a width: what is known of a surface where nothing exact is known.
+//! Planes with a width: surfaces whose exact place is unknown.
 
 use super::bounds::{Octants, Sides};
 use super::linear;
@@ -11,22 +11,22 @@ use crate::lattice::{Cube, Interval, axes};
 use crate::octree::cuts::{CellSlab, Origin};
 use alloc::sync::Arc;
 
-/// A point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer` is not; of others
-/// nothing is known.
+/// A plane with a width: a point p with `normal` · p < `inner` is inside, and one with `normal` · p > `outer`
+/// is outside. Nothing is known of other points.
 pub(crate) struct ThickPlane {
     pub(crate) normal: [f64; 3],
     pub(crate) inner: f64,
     pub(crate) outer: f64,
     pub(crate) identity: Option<SlabIdentity>,
-    /// The same in whole numbers, of a slab that was made for one cell and is given in units of a universe.
+    /// The slab in whole numbers, if it was made for one cell and is given in units of a universe.
     pub(crate) cell_slab: Option<CellSlab>,
 }
 
 impl HalfSpace {
-    /// The slab of a cell in model space, rounded outward.
+    /// Returns the slab of a cell in model space, rounded outward.
     pub(crate) fn layer(cube: &Cube<'_>, slab: &Slab) -> HalfSpace {
         let Cube { frame, cell } = cube;
-        // Centres of cells are exact in units of the universe.
+        // The centres of cells are exact in units of the universe.
         let unit = |axis: usize| (2 * u64::from(cell.at[axis]) + 1) as f64 / (2u64 << cell.level) as f64;
         let centre = axes(|axis| {
             Interval::exactly(frame.edge())
@@ -41,14 +41,14 @@ impl HalfSpace {
         HalfSpace::slab(slab.normal, offset(slab.inner).lower, offset(slab.outer).upper, None)
     }
 
-    /// A slab of a cell, in units of the universe.
+    /// Returns a slab of a cell, in units of the universe.
     pub(crate) fn of_cell(slab: CellSlab, identity: Option<SlabIdentity>) -> HalfSpace {
         let [x, y, z, inner, outer] = slab.numbers();
         let (normal, cell_slab) = ([x, y, z], Some(slab));
         HalfSpace(Arc::new(Surface::Slab(ThickPlane { normal, inner, outer, identity, cell_slab })))
     }
 
-    /// Normal and ends of a plane with a width; `None` of others.
+    /// Returns the normal and the ends of a plane with a width; `None` for others.
     pub(crate) fn layer_ends(&self) -> Option<([f64; 3], [f64; 2])> {
         match &*self.0 {
             &Surface::Slab(ThickPlane { normal, inner, outer, .. }) => Some((normal, [inner, outer])),
@@ -56,8 +56,8 @@ impl HalfSpace {
         }
     }
 
-    /// A layer of another identity that is so many times as wide; `None` if that were wider than `most`, and
-    /// of what has no width.
+    /// Returns a layer, with no identity of its own, that is `times` as wide. `None` if it would be wider
+    /// than `most`, or if the half-space has no width.
     pub(crate) fn widened(&self, times: f64, most: f64) -> Option<HalfSpace> {
         let (normal, [inner, outer]) = self.layer_ends()?;
         let length = sqrt(normal.iter().map(|c| c * c).sum::<f64>());
@@ -68,8 +68,8 @@ impl HalfSpace {
 }
 
 impl PlacedHalfSpace {
-    /// What its own space has as a unit, in model units before it is moved: of a slab of a cell the edge of
-    /// the universe.
+    /// Returns the unit of the half-space's own space, in model units before it is moved: the edge of the
+    /// universe for a slab of a cell, 1 for others.
     pub(crate) fn unit(&self) -> f64 {
         match (&*self.half_space.0, self.placements.first()) {
             (Surface::Slab(ThickPlane { cell_slab: Some(_), .. }), Some(universe)) => universe.rows()[0][0],
@@ -78,18 +78,18 @@ impl PlacedHalfSpace {
     }
 }
 
-/// Which slab it is. A slab stands for a set that is not known, so that only its origin tells it from others:
-/// two with the same coefficients may stand for two sets.
+/// The identity of a slab. A slab stands for an unknown set, so that only its origin distinguishes it: two
+/// slabs with the same coefficients may stand for two sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct SlabIdentity {
-    /// What it was made from: a fingerprint of the solid and of how that was built.
+    /// A fingerprint of the solid from which the slab was made, and of how the solid was built.
     pub(crate) origin: Origin,
-    /// Its number there.
+    /// The slab's number within its origin.
     pub(crate) number: u64,
 }
 
 impl SlabIdentity {
-    /// The same as numbers.
+    /// The identity as exact numbers.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = Dyadic> {
         let [low, high] = self.origin;
         [low, high, self.number]
@@ -102,10 +102,10 @@ impl SlabIdentity {
 /// A plane with a width on a universe, in unit coordinates.
 pub(crate) struct PlacedSlab {
     normal: [f64; 3],
-    /// The offsets, moved outward by more than all that is rounded on the universe.
+    /// The offsets, moved outward by more than all roundings on the universe.
     inner: f64,
     outer: f64,
-    /// More than that.
+    /// More than the distance by which the offsets were moved.
     slack: f64,
 }
 
@@ -113,12 +113,12 @@ impl PlacedSlab {
     pub(crate) fn new(given: &ThickPlane, map: &ExactMap) -> PlacedSlab {
         let [x, y, z] = given.normal.map(Dyadic::new);
         let [a, b, c, d] = map.linear(&[x, y, z, Dyadic::zero()]);
-        // With w positive, the inequalities stay as they are.
+        // With w positive, the inequalities keep their direction.
         let turned = |c: Dyadic| if map.w.sign() < 0 { -&c } else { c };
         let [a, b, c, d, w] = [a, b, c, d, map.w.clone()].map(turned);
         let scale = -linear::magnitude([&a, &b, &c]);
         let [inner, outer] = [given.inner, given.outer].map(|offset| {
-            // An offset is infinite where one side alone is known.
+            // An offset is infinite if only one side is known.
             let exact =
                 offset.is_finite().then(|| (&(&Dyadic::new(offset) * &w) - &d).shifted(scale).rounded());
             exact.unwrap_or(offset)
@@ -142,7 +142,7 @@ impl PlacedSlab {
         (a * t[0] + b * t[1]) + c * t[2]
     }
 
-    /// For which of the eight cells all points are inside, and for which all are outside.
+    /// Returns for which of the eight cells all points are inside, and for which all are outside.
     pub(crate) fn sides(&self, at: &Octants) -> Sides {
         let mut sides = Sides { inside: 0, outside: 0 };
         for k in 0..8 {
@@ -161,7 +161,7 @@ impl PlacedSlab {
         Tangent { gradient, low: (self.inner - value).next_down(), high: (self.outer - value).next_up() }
     }
 
-    /// The side on which a point lies, unless that is not known.
+    /// Returns the side on which a point lies, if it is known.
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> Option<i32> {
         let value = self.at(t);
         if value < self.inner {

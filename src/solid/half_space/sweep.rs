@@ -1,4 +1,4 @@
-//! Rays through cell centres: where they enter and leave a function of half-spaces.
+//! Rays through cell centres: their intervals inside a function of half-spaces.
 //!
 //! The roots of all half-spaces on a ray cut it into pieces, on each of which the function has one value.
 
@@ -9,24 +9,25 @@ use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// The half-spaces of a function, and what they are on the ray at hand. The memory is kept from cell to cell.
+/// The half-spaces of a function, and their state on the current ray. The memory is kept from cell to cell.
 #[derive(Default)]
 pub(crate) struct Sweep {
-    /// Their numbers among all half-spaces; the first has place 0 in the function.
+    /// The half-spaces' numbers among all half-spaces, in the order of their places in the function.
     pub(crate) half_spaces: Vec<u32>,
     inside: Vec<bool>,
     roots: Vec<Root>,
 }
 
 impl Sweep {
-    /// Whether no function is the host's, of which only boxes are known, and none is a plane with a width.
+    /// Returns whether no half-space is the host's, which has only ranges over boxes, and none is a plane
+    /// with a width.
     pub(crate) fn are_known(&self, all: &[Placed]) -> bool {
         let half_space = |&index: &u32| all.get(index as usize);
         self.half_spaces.iter().filter_map(half_space).all(|half_space| half_space.degree().is_some())
     }
 
-    /// Adds the intervals of all rays of a beam. `value` is the function: it gets which of the half-spaces
-    /// hold.
+    /// Adds the intervals of all rays of a beam. `value` is the function; its argument says which half-spaces
+    /// contain the point.
     pub(crate) fn find(
         &mut self,
         all: &[Placed],
@@ -91,7 +92,7 @@ impl Sweep {
                 if beam.is_marked() {
                     let index = half_spaces[which];
                     let normal = line.normal(&all[index as usize], at);
-                    // The half-space begins here where its normal, which leads out, leads back.
+                    // If the half-space begins here, its outward normal points back along the ray.
                     let turned = inside[which] != next;
                     end = end.on(index, if turned { normal.map(|c| -c) } else { normal });
                 }

@@ -1,16 +1,15 @@
-//! What remains of an expression in a cell that few half-spaces cut: its truth table.
+//! The truth table of an expression in a cell that few half-spaces cut.
 
 use super::bounds::Sides;
 
-/// Most half-spaces of a table: 2^6 combinations are the bits of one word.
+/// The most half-spaces of a table: 2^6 combinations are the bits of one word.
 pub(crate) const MOST: usize = 6;
 
-/// A function of up to six half-spaces: bit i is its value where the half-spaces hold whose bits are set in
-/// i.
+/// A function of up to six half-spaces: bit i is its value where exactly the half-spaces with bits in i hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Table(pub(crate) u64);
 
-/// The bits in which a half-space holds.
+/// For each half-space, the bits of the combinations in which it holds.
 const HOLDS: [u64; MOST] = [
     0xAAAA_AAAA_AAAA_AAAA,
     0xCCCC_CCCC_CCCC_CCCC,
@@ -24,12 +23,12 @@ impl Table {
     pub(crate) const EMPTY: Table = Table(0);
     pub(crate) const FULL: Table = Table(!0);
 
-    /// Half-space `i`, or its complement.
+    /// Returns half-space `i`, or its complement.
     pub(crate) fn of(i: usize, complement: bool) -> Table {
         Table(if complement { !HOLDS[i] } else { HOLDS[i] })
     }
 
-    /// The function where half-space `i` holds, or does not; it does not depend on it any more.
+    /// Returns the function where half-space `i` holds, or does not; the result does not depend on `i`.
     #[inline(always)]
     pub(crate) fn with(self, i: usize, holds: bool) -> Table {
         let shift = 1 << i;
@@ -42,20 +41,20 @@ impl Table {
         })
     }
 
-    /// The function with the complement of half-space `i` in its place.
+    /// Returns the function with half-space `i` replaced by its complement.
     #[inline(always)]
     pub(crate) fn negated(self, i: usize) -> Table {
         let shift = 1 << i;
         Table((self.0 & HOLDS[i]) >> shift | (self.0 & !HOLDS[i]) << shift)
     }
 
-    /// Whether the function depends on half-space `i`.
+    /// Returns whether the function depends on half-space `i`.
     #[inline(always)]
     pub(crate) fn depends_on(self, i: usize) -> bool {
         (self.0 & HOLDS[i]) >> (1 << i) != self.0 & !HOLDS[i]
     }
 
-    /// The function in cell `k`, given what is known there of half-space `i`.
+    /// Returns the function in cell `k`, given the known sides of half-space `i`.
     #[inline(always)]
     pub(crate) fn known(self, i: usize, sides: Sides, k: u32) -> Table {
         if sides.inside >> k & 1 != 0 {
@@ -67,14 +66,14 @@ impl Table {
         }
     }
 
-    /// The function with half-space `to` in the place of half-space `i`, or (`complement`) its complement.
-    /// What it says of combinations that cannot be does not count.
+    /// Returns the function with half-space `i` replaced by half-space `to`, or (`complement`) by its
+    /// complement. Values at impossible combinations do not matter.
     pub(crate) fn renamed(self, i: usize, to: usize, complement: bool) -> Table {
         let [inside, outside] = [self.with(i, !complement), self.with(i, complement)];
         Table(inside.0 & HOLDS[to] | outside.0 & !HOLDS[to])
     }
 
-    /// The function at a point, given whether half-space `i` holds there.
+    /// Returns the function at a point, given whether half-space `i` holds there.
     pub(crate) fn at(self, i: usize, inside: Option<bool>) -> Table {
         inside.map_or(self, |inside| self.with(i, inside))
     }

@@ -1,4 +1,4 @@
-//! What half-spaces know of a cell to second order: a linear function, and what the rest can be.
+//! Bounds of a half-space's function in a cell: a linear function, and a range of the rest.
 
 use crate::solid::Slab;
 
@@ -12,8 +12,8 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
-    /// From the value at the centre, the slopes along the axes in units of half edges, the least and the
-    /// greatest remainder, and more than what all of this is off by.
+    /// Makes bounds from the value at the centre, the slopes along the axes in units of half edges, the least
+    /// and the greatest remainder, and more than the error of all these.
     #[inline(always)]
     pub(crate) fn new(value: f64, gradient: [f64; 3], (least, most): (f64, f64), error: f64) -> Tangent {
         // The sums here are rounded, too.
@@ -26,7 +26,7 @@ impl Tangent {
         }
     }
 
-    /// The slab of the points where the function is not negative.
+    /// Returns the slab of the points where the function is not negative.
     #[inline(always)]
     pub(crate) fn slab(&self) -> Slab {
         Slab { normal: self.gradient.map(|c| -c), inner: self.low, outer: self.high }

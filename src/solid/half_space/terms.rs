@@ -1,11 +1,11 @@
-//! A function of half-spaces as intersections that do not overlap.
+//! A function of half-spaces as a union of disjoint intersections.
 
 use super::table::Table;
 
-/// An intersection of up to three half-spaces: for each nothing, or whether its complement is meant.
+/// An intersection of up to three half-spaces: for each, `None`, or whether its complement is meant.
 pub(crate) type Term = [Option<bool>; 3];
 
-/// Intersections that do not overlap, and whose union is a function of up to three half-spaces.
+/// Disjoint intersections whose union is a function of up to three half-spaces.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms {
     terms: [Term; Terms::MOST],
@@ -14,28 +14,28 @@ pub(crate) struct Terms {
 }
 
 impl Terms {
-    /// Most terms: those of the parity of three half-spaces.
+    /// The most terms: the parity of three half-spaces has four.
     const MOST: usize = 4;
 
     const NONE: Terms = Terms { terms: [[None; 3]; Terms::MOST], count: 0, cost: 0 };
 
-    /// The cheapest terms that are found for a function of half-spaces 0 to 2 by asking one half-space after
-    /// the other, or those of its complement if they are cheaper; `true` for the complement. A complement has
-    /// the same terms. Terms of more than one `curved` half-space, whose moments are known less well, are
-    /// dear.
+    /// Returns the cheapest terms that are found for a function of half-spaces 0 to 2 by testing one
+    /// half-space after the other, or the terms of its complement if they are cheaper; `true` for the
+    /// complement. A function and its complement give the same terms. Terms with more than one `curved`
+    /// half-space are expensive, because their moments are less precise.
     pub(crate) fn cheapest(table: Table, curved: [bool; 3]) -> (Terms, bool) {
         let [own, other] = [table, Table(!table.0)].map(|table| Terms::of(table, [None; 3], curved));
-        // Of two that cost the same the one counts that is not where no half-space holds.
+        // At equal cost, the function is taken that is false where no half-space holds.
         let is_other = if own.cost == other.cost { table.0 & 1 != 0 } else { other.cost < own.cost };
         if is_other { (other, true) } else { (own, false) }
     }
 
-    /// The function as it is.
+    /// Returns the terms of the function itself.
     pub(crate) fn exactly(table: Table) -> Terms {
         Terms::of(table, [None; 3], [false; 3])
     }
 
-    /// Of a function within a term. (At most three calls deep.)
+    /// Returns the terms of a function within a term. (At most three calls deep.)
     fn of(table: Table, term: Term, curved: [bool; 3]) -> Terms {
         match table {
             Table::EMPTY => return Terms::NONE,

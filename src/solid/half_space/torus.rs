@@ -12,7 +12,7 @@ use crate::lattice::exact::{Dyadic, sign, sqrt};
 use core::cmp::Ordering;
 use wide::f64x4;
 
-/// The points (x, y, z) for which (`scale` x, `scale` y, `scale` z + `shift`) is at most √`square` from the
+/// The points (x, y, z) such that (`scale` x, `scale` y, `scale` z + `shift`) is at most √`square` from the
 /// circle of radius `major` > 0 around the z axis in the plane z = 0.
 #[derive(PartialEq, Eq, Hash)]
 pub(crate) struct Torus {
@@ -22,11 +22,11 @@ pub(crate) struct Torus {
     pub(crate) shift: Dyadic,
 }
 
-/// As good as on the axis: 2^-400.
+/// A point nearer to the axis than this counts as on the axis: 2^-400.
 const NEAR: f64 = f64::from_bits((1023 - 400) << 52);
 
-/// A torus on a universe, in its own space times something positive. With ρ² = x² + y²,
-/// f = minor² − (ρ − major)² − z² = 2 major ρ − (ρ² + z² + gap).
+/// A torus on a universe, in its own space up to a positive factor. With ρ² = x² + y², f = minor² − (ρ −
+/// major)² − z² = 2 major ρ − (ρ² + z² + gap).
 pub(crate) struct PlacedTorus {
     /// x, y and z.
     lines: [Linear; 3],
@@ -36,11 +36,11 @@ pub(crate) struct PlacedTorus {
     major: f64,
     /// minor².
     square: f64,
-    /// Half the diagonal of a cube's image, the cube being of half edge 1: its length squared, and the length
-    /// of its projection along z.
+    /// The image of half the diagonal of a cube of half edge 1: its squared length, and the length of its
+    /// projection along z.
     diagonal: f64,
     radius: f64,
-    /// If x, y and z depend on one axis each.
+    /// Whether x, y and z depend on one axis each.
     aligned: bool,
     /// More than the error of any value on the universe.
     error: f64,
@@ -52,7 +52,7 @@ impl PlacedTorus {
         lines + self.exact_major.heap_bytes() + self.gap.heap_bytes()
     }
 
-    /// The torus as the map shows it on the universe.
+    /// Returns the image of the torus under the map on the universe.
     pub(crate) fn new(given: &Torus, map: &ExactMap) -> PlacedTorus {
         let w = if map.w.sign() < 0 { -&map.w } else { map.w.clone() };
         let (major, square) = (&w * &given.major, &w.pow(2) * &given.square);
@@ -79,15 +79,15 @@ impl PlacedTorus {
             diagonal,
             radius: sqrt(radius),
             aligned: lines.iter().all(|line| line.axis().is_some()),
-            // A term is rounded at most twenty times, and what its arguments are off by counts with the
-            // slopes, at most four times the size.
+            // A term is rounded at most twenty times, and the errors of its arguments count with the
+            // gradient, which is at most four times the size.
             error: 256.0 * f64::EPSILON * size * size,
             lines,
             exact_major: major,
         }
     }
 
-    /// For which of the eight cells f is proven not negative, and not positive.
+    /// Returns for which of the eight cells f is proven not negative, and not positive.
     pub(crate) fn sides(&self, at: &Octants) -> Sides {
         let (centres, reach) = at.centres();
         let ranges = centres.map(|centre| {
@@ -103,7 +103,7 @@ impl PlacedTorus {
         if doubt == 0 || !self.aligned { sides } else { self.settle(at, sides, doubt) }
     }
 
-    /// The range of f over the boxes around the images of four cubes; exact if axes go to axes.
+    /// The range of f over the boxes around the images of four cubes; exact if the map takes axes to axes.
     #[inline(always)]
     fn box_range(&self, centre: [f64x4; 3], reach: f64) -> (f64x4, f64x4) {
         let zero = f64x4::ZERO;
@@ -121,9 +121,10 @@ impl PlacedTorus {
         (square - far * far - z.1, square - near * near - z.0)
     }
 
-    /// Bounds by Taylor's formula about the centres c of four cubes. Off the centre by d, ρ is convex, so not
-    /// below its tangent, and above it by at most b² / 2a, with b the part of d across the radius and a ≤ ρ
-    /// the radius c and the part of d along it; −|d|² makes up the rest of f.
+    /// Bounds by Taylor's formula about the centres c of four cubes, at a displacement d from the centre. ρ
+    /// is convex, so it is not below its tangent. It is above the tangent by at most b² / 2a, where b is the
+    /// part of d across the radius, and a ≤ ρ the sum of the radius at c and the part of d along it. −|d|² is
+    /// the rest of f.
     #[inline(always)]
     fn taylor_range(&self, centre: [f64x4; 3], reach: f64) -> (f64x4, f64x4) {
         let zero = f64x4::ZERO;
@@ -132,8 +133,8 @@ impl PlacedTorus {
         let rho = roots(x * x + y * y);
         let off = rho - splat(self.major);
         let value = splat(self.square) - off * off - z * z;
-        // On the axis any direction will do for the tangent, and none; nearby squares lose the direction's
-        // length.
+        // On the axis any direction, or none, serves for the tangent. Near it, squares underflow, and the
+        // length of the direction is lost.
         let share = rho.simd_gt(splat(NEAR)).select(off / rho, zero);
         let (slope_x, slope_y) = (x * share, y * share);
         let slopes = axes(|axis| {
@@ -148,7 +149,7 @@ impl PlacedTorus {
         (value - spread - splat(reach * reach * self.diagonal), value + spread + bend)
     }
 
-    /// What is known of f over a cube, as [`taylor_range`](Self::taylor_range) has it.
+    /// Returns linear bounds of f over a cube, as in [`taylor_range`](Self::taylor_range).
     pub(crate) fn tangent(&self, centre: [f64; 3], half: f64) -> Tangent {
         let [x, y, z] = self.lines.each_ref().map(|line| line.value(centre));
         let rho = sqrt(x * x + y * y);
@@ -166,13 +167,13 @@ impl PlacedTorus {
             true => (self.major / near - 1.0).max(0.0) * (across * across),
             false => f64::INFINITY,
         };
-        // On the axis the tangent of ρ may be any, and none is what the bound from below allows for; above,
-        // the bend is infinite there.
+        // On the axis the tangent of ρ may be any, and the bound from below allows for none. The bound from
+        // above is infinite there, since ρ has no bounded second derivative.
         Tangent::new(value, gradient, (-(half * half * self.diagonal), bend), self.error)
     }
 
-    /// f over a cube. All of it is quadratic but for ρ, whose third derivative along a line is at most 2 / √3
-    /// ρ².
+    /// Returns f to second order over a cube. Every term of f is quadratic except ρ, whose third derivative
+    /// along a line is at most 2 / √3 ρ².
     pub(crate) fn taylor(&self, centre: [f64; 3], half: f64) -> Taylor {
         let Tangent { gradient, low, high } = self.tangent(centre, half);
         let [x, y, z] = self.lines.each_ref().map(|line| line.value(centre));
@@ -186,7 +187,7 @@ impl PlacedTorus {
             return Taylor { f, bend: f64::INFINITY, degree: 4 };
         }
         let columns = axes(|axis| self.lines.each_ref().map(|line| half * line.c[axis]));
-        // Around the axis ρ bends.
+        // The second derivative of ρ acts around the axis.
         let around = columns.map(|[a, b, _]| (x * b - y * a) / rho);
         let share = self.major / rho;
         let squares = PAIRS.map(|(i, j)| {
@@ -196,14 +197,15 @@ impl PlacedTorus {
         let off = rho - self.major;
         let value = self.square - off * off - z * z;
         let rest = self.major * (0.3850 * (across / near) * (across / near)) * across;
-        // Along the radius and the axis f bends with 2, around the axis with 2 |1 − major / ρ|.
+        // The second derivative of f is 2 along the radius and the axis, and 2 |1 − major / ρ| around the
+        // axis.
         let most = (self.major / near - 1.0).max(1.0);
         let bend = (2.0 * most * (along * along) + self.error * half) * slack;
         let f = Quadratic { value, gradient, squares, error: (self.error + rest) * slack };
         Taylor { f, bend, degree: 4 }
     }
 
-    /// Decides exactly what rounding leaves open, if axes go to axes.
+    /// Decides exactly the cells that rounding leaves open, if the map takes axes to axes.
     #[cold]
     fn settle(&self, at: &Octants, mut sides: Sides, doubt: u8) -> Sides {
         for k in (0..8).filter(|k| doubt >> k & 1 != 0) {
@@ -237,12 +239,12 @@ impl PlacedTorus {
         sides
     }
 
-    /// Exact sign of f where ρ² and z² are given.
+    /// The exact sign of f for given ρ² and z².
     fn sign_of(&self, rho: &Dyadic, z: &Dyadic) -> i32 {
         sign_with_root(&-&(&(rho + z) + &self.gap), &self.exact_major.shifted(1), rho)
     }
 
-    /// Exact sign at a point of the universe.
+    /// The exact sign at a point of the universe.
     pub(crate) fn sign_at(&self, t: [f64; 3]) -> i32 {
         let [x, y, z] = self.lines.each_ref().map(|line| line.value(t));
         let off = sqrt(x * x + y * y) - self.major;
@@ -257,7 +259,7 @@ impl PlacedTorus {
         self.sign_of(&(&x + &y), &z)
     }
 
-    /// The sign that the shift (ε, ε², ε³) gives at a zero, to first order.
+    /// The sign to which the shift (ε, ε², ε³) moves a zero, to first order.
     #[cold]
     pub(crate) fn shifted_sign_at(&self, t: [f64; 3]) -> i32 {
         let t = t.map(Dyadic::new);
@@ -267,10 +269,10 @@ impl PlacedTorus {
             let [a, b, c] = self.lines.each_ref().map(|line| &line.exact[axis]);
             let (along, up) = (&(&x * a) + &(&y * b), &z * c);
             if rho.is_zero() {
-                // Off the axis ρ grows in every direction.
+                // At the axis ρ grows in every direction.
                 sign_with_root(&-&up, &self.exact_major, &(&a.pow(2) + &b.pow(2)))
             } else {
-                // Half the slope times ρ: major · along − ρ (along + up).
+                // Half the derivative times ρ: major · along − ρ (along + up).
                 sign_with_root(&(&self.exact_major * &along), &-&(&along + &up), &rho)
             }
         };
@@ -292,7 +294,7 @@ fn sign_with_root(a: &Dyadic, b: &Dyadic, s: &Dyadic) -> i32 {
     }
 }
 
-/// Square roots, correctly rounded.
+/// Correctly rounded square roots.
 #[inline(always)]
 fn roots(values: f64x4) -> f64x4 {
     f64x4::new(values.to_array().map(sqrt))

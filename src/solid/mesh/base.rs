@@ -1,4 +1,4 @@
-//! A point of a cell whose winding number is known, and which no triangle comes near.
+//! A point of a cell whose winding number is known, and from which all triangles keep away.
 
 use super::crossing::Projection;
 use super::local::{Point, Seen, View};
@@ -13,7 +13,8 @@ pub(super) struct Base {
 }
 
 impl View<'_> {
-    /// The lowest centre, or else one of two in the middle; `None` if triangles come near to all of them.
+    /// Returns the lowest centre, or one of two centres in the middle. `None` if triangles come near to all
+    /// three.
     pub(super) fn base(&self) -> Option<Base> {
         const EIGHTHS: [[i32; 3]; 3] = [[0, 0, 0], [5, 3, 2], [2, 7, 5]];
         EIGHTHS.into_iter().find_map(|eighths| {
@@ -24,8 +25,8 @@ impl View<'_> {
         })
     }
 
-    /// By how much the winding number changes on the way from the lowest centre along x, y and z to that of
-    /// `cell`.
+    /// The change of the winding number on the way from the lowest centre to the centre of `cell`, along x,
+    /// then y, then z.
     fn change(&self, cell: [i32; 3]) -> i32 {
         let mut from = self.at;
         let mut change = 0;
@@ -60,7 +61,7 @@ impl View<'_> {
 }
 
 impl Seen {
-    /// Whether a point in the cell surely lies so far from the triangle that nothing that is rounded matters.
+    /// Returns whether a point in the cell surely lies so far from the triangle that rounding cannot matter.
     pub(super) fn is_clear_of(&self, p: &Point) -> bool {
         let margin = 8.0 * self.slack();
         // A finest centre is no nearer to the cell's faces than 2^-20.

@@ -1,9 +1,9 @@
-//! Rays through cell centres: where they enter and leave.
+//! Rays through cell centres: their intervals inside the solid.
 //!
-//! Every triangle is scan-converted once for each direction. Between which centres a ray is pierced is exact;
-//! where in between is known to a small part of the universe's edge, of steep triangles by exact arithmetic.
-//! The winding numbers along a ray then say what is inside, so that a ray of a closed mesh has as many starts
-//! as ends, whatever it meets.
+//! Every triangle is scan-converted once for each direction. The two centres between which a ray pierces a
+//! triangle are exact. The place between them is known to a small part of the universe's edge; steep
+//! triangles take exact arithmetic. The winding numbers along a ray then say where it is inside. So a ray of
+//! a closed mesh always has as many starts as ends.
 
 use super::crossing::Projection;
 use super::placed::Placed;
@@ -14,13 +14,13 @@ use crate::mesh::FillRule;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// A ray that pierces a triangle.
+/// The crossing of a ray and a triangle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hit {
-    /// In finest cells from the universe's lower face.
+    /// The place along the ray, in finest cells from the universe's lower face.
     pub(super) at: f64,
     ray: u32,
-    /// The triangle, and in the lowest bit whether the winding number grows.
+    /// Twice the triangle's number, plus 1 if the winding number grows.
     triangle: u32,
 }
 
@@ -29,51 +29,51 @@ impl Hit {
         Hit { at, ray, triangle: triangle << 1 | u32::from(step > 0) }
     }
 
-    /// What is pierced.
+    /// The triangle that is pierced.
     pub(super) fn triangle(&self) -> u32 {
         self.triangle >> 1
     }
 
-    /// By how much the winding number changes.
+    /// The change of the winding number: 1 or −1.
     #[inline(always)]
     pub(super) fn step(&self) -> i32 {
         2 * (self.triangle & 1) as i32 - 1
     }
 }
 
-/// Rows of rays of a band: those of a tile of `dexelize`. Rows that lie in several bands are looked for in
-/// all triangles.
+/// Rows of rays in a band, as in a tile of `dexelize`. Rows that lie in several bands use all triangles.
 const BAND: i32 = 32;
 
-/// Fewer triangles than this are looked at one by one.
+/// With fewer triangles than this, a cell has no bands: each triangle is tested.
 const MANY: usize = 1 << 10;
 
-/// Memory that is kept from cell to cell.
+/// Scratch memory that is kept from cell to cell.
 #[derive(Default)]
 pub(super) struct Chords {
     floor: Vec<i32>,
     rows: Vec<i32>,
     hits: Vec<Hit>,
-    /// How many hits each ray has, two places behind it; then where those of each ray begin.
+    /// First the number of hits of each ray, stored two places behind the ray. Then the place where the hits
+    /// of each ray begin.
     starts: Vec<u32>,
     sorted: Vec<Hit>,
     bands: Bands,
 }
 
-/// The triangles of a cell by the bands of rows that they may be pierced in.
+/// The triangles of a cell, sorted by the bands of rows in which rays may pierce them.
 #[derive(Default)]
 struct Bands {
-    /// The cell's lowest finest cell, its number of triangles, and the axis of the rays. (Cells with one
-    /// lowest finest cell lie in each other, so that those with as many triangles have the same ones.)
+    /// The cell's lowest finest cell, its number of triangles, and the axis of the rays. (Cells with the same
+    /// lowest finest cell are nested, so that an equal number of triangles means the same triangles.)
     of: Option<([i32; 3], usize, usize)>,
     starts: Vec<u32>,
     triangles: Vec<u32>,
-    /// Those that lie about the layer of the lowest centres.
+    /// The triangles about the layer of the lowest centres.
     floor: Vec<u32>,
 }
 
 impl Bands {
-    /// The triangles that may change winding numbers within the layer of the lowest centres.
+    /// Returns the triangles that may change winding numbers within the layer of the lowest centres.
     fn floor<'l>(&'l mut self, rays: &Rays<'l>, bundle: &Bundle) -> Result<&'l [u32], Error> {
         if rays.triangles.len() < MANY {
             return Ok(rays.triangles);
@@ -100,7 +100,7 @@ impl Bands {
         Ok(())
     }
 
-    /// The triangles that may be pierced in rows, ascending.
+    /// Returns the triangles that rays of these rows may pierce, ascending.
     fn list<'l>(&'l mut self, rays: &Rays<'l>, bundle: &Bundle) -> Result<&'l [u32], Error> {
         let band = bundle.rows.start / BAND;
         if rays.triangles.len() < MANY || (bundle.rows.end - 1) / BAND != band {
@@ -160,7 +160,7 @@ pub(super) struct Rays<'t> {
 
 /// The rays of a beam in the mesh's integers.
 pub(super) struct Bundle {
-    /// The axis that rays run along, and the other two, ascending.
+    /// The axis along which the rays run, then the other two, ascending.
     pub(super) w: usize,
     pub(super) u: usize,
     pub(super) v: usize,
@@ -187,7 +187,7 @@ impl Bundle {
 }
 
 impl Chords {
-    /// Triangles of a mesh that can be told from each other with a bit left.
+    /// The most triangles that a hit can distinguish, with one bit left.
     pub(super) const MOST: u32 = 1 << 31;
 
     /// Adds the intervals of all rays of a beam in a cell.
@@ -197,21 +197,21 @@ impl Chords {
         self.walk(&rays, &bundle, beam)
     }
 
-    /// Finds out where all rays of a beam pierce triangles in a cell.
+    /// Finds all places where rays of a beam pierce triangles in a cell.
     pub(super) fn trace(&mut self, rays: &Rays<'_>, bundle: &Bundle) -> Result<(), Error> {
         self.wind_floor(rays, bundle)?;
         self.pierce(rays, bundle)?;
         self.sort()
     }
 
-    /// The winding number of a ray's lowest centre, and where the ray pierces triangles, in ascending order.
+    /// Returns the winding number of a ray's lowest centre, and the ray's hits in ascending order.
     pub(super) fn traced(&self, bundle: &Bundle, column: i32, row: i32) -> (i32, &[Hit]) {
         let index = bundle.index(column, row);
         (self.floor[index], &self.sorted[self.starts[index] as usize..self.starts[index + 1] as usize])
     }
 
-    /// Winding numbers of the lowest centres on all rays: from the cell's lowest centre along v, then along
-    /// u.
+    /// Computes the winding numbers of the lowest centres on all rays: from the cell's lowest centre along v,
+    /// then along u.
     fn wind_floor(&mut self, rays: &Rays<'_>, bundle: &Bundle) -> Result<(), Error> {
         let &Rays { placed, at, winding, .. } = rays;
         let &Bundle { w, u, v, ref columns, ref rows, .. } = bundle;
@@ -260,7 +260,7 @@ impl Chords {
         Ok(())
     }
 
-    /// All places where rays pierce triangles inside of the cell.
+    /// Finds all places where rays pierce triangles inside the cell.
     fn pierce(&mut self, rays: &Rays<'_>, bundle: &Bundle) -> Result<(), Error> {
         let &Rays { placed, .. } = rays;
         let &Bundle { w, u, v, ref columns, ref rows, ref span } = bundle;
@@ -304,13 +304,13 @@ impl Chords {
         Ok(())
     }
 
-    /// Sorts the hits by ray, and those of a ray by place.
+    /// Sorts the hits by ray, and the hits of a ray by place.
     fn sort(&mut self) -> Result<(), Error> {
         let Chords { hits, starts, sorted, .. } = self;
         for i in 2..starts.len() {
             starts[i] += starts[i - 1];
         }
-        // (What lies there of cells before is written over.)
+        // (Hits of earlier cells that are left there are overwritten.)
         if let Some(more) = hits.len().checked_sub(sorted.len()) {
             sorted.try_reserve(more)?;
             sorted.extend_from_slice(&hits[sorted.len()..]);
@@ -322,7 +322,7 @@ impl Chords {
         }
         for range in starts.windows(2) {
             if range[0] + 1 < range[1] {
-                // (Equal places are told apart, so that the order of triangles in a cell's list does not
+                // (Ties are broken by triangle, so that the order of triangles in a cell's list does not
                 // matter.)
                 sorted[range[0] as usize..range[1] as usize]
                     .sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then(a.triangle.cmp(&b.triangle)));
@@ -331,7 +331,7 @@ impl Chords {
         Ok(())
     }
 
-    /// Follows the winding number along each ray.
+    /// Follows the winding number along each ray, and adds its intervals to the beam.
     fn walk(&self, rays: &Rays<'_>, bundle: &Bundle, beam: &mut Beam) -> Result<(), Error> {
         let Bundle { columns, rows, span, .. } = bundle;
         let lowest = f64::from(span.start) + 0.5;
@@ -371,24 +371,25 @@ impl Chords {
     }
 }
 
-/// The end of an interval at a hit, which starts there or not.
+/// Returns the end of an interval at a hit. `starts` says whether the interval starts there.
 pub(super) fn end(placed: &Placed, hit: &Hit, starts: bool, marked: bool) -> BeamEnd {
     if !marked {
         return BeamEnd { at: hit.at, mark: Mark::NONE };
     }
     let triangle = hit.triangle();
     let mark = Mark { surface: triangle, normal: encoded(normal_of(placed, triangle)) };
-    // The normal of a triangle that is passed upward with step −1 leads up.
+    // With step −1, the ray passes the triangle upward along its normal: the normal points up.
     let leads_up = hit.step() < 0;
     BeamEnd { at: hit.at, mark: if starts == leads_up { mark.flipped() } else { mark } }
 }
 
-/// A projection's column and row from places on its two axes.
+/// A projection's column and row, from two axes and the places on them.
 fn ordered((a, at_a): (usize, i32), (b, at_b): (usize, i32)) -> (i32, i32) {
     if a < b { (at_a, at_b) } else { (at_b, at_a) }
 }
 
-/// The first centre above the triangle on a line, and by how much the line changes the winding number.
+/// The first centre above the triangle on a line, and the change of the winding number when the line passes
+/// it.
 fn pierced(seen: &mut Projection<'_>, column: i32, row: i32) -> Option<(i32, i32)> {
     let span = seen.span(row).filter(|span| span.first <= column && column < span.end)?;
     Some((seen.above(column, row, span.step), span.step))

@@ -1,14 +1,14 @@
-//! Where lines of cell centres pierce triangles, exactly.
+//! The exact places where lines of cell centres pierce triangles.
 //!
-//! The winding number of a cell centre against that of another one follows from the triangles that an
-//! axis-parallel line between them pierces. All centres are shifted by (ε, ε², ε³) in thought, ε → 0, so that
-//! no line ever meets an edge or a vertex and no centre lies on a triangle; the shift is the same for all
-//! lines, so that winding numbers do not depend on the way taken. (Simulation of simplicity: Edelsbrunner and
-//! Mücke 1990, with one perturbation for all points.)
+//! The difference of the winding numbers of two cell centres follows from the triangles that an axis-parallel
+//! line between them pierces. All centres are shifted symbolically by (ε, ε², ε³), ε → 0, so that no line
+//! ever meets an edge or a vertex and no centre lies on a triangle. The shift is the same for all lines, so
+//! that winding numbers do not depend on the path. (Simulation of simplicity: Edelsbrunner and Mücke 1990,
+//! with one perturbation for all points.)
 //!
-//! Everything is decided as an integer: which rows and columns of centres a triangle covers, and between
-//! which two centres of the line it is pierced. Doubles with an error bound decide nearly all of them, exact
-//! arithmetic on the original coordinates the rest.
+//! All results are integers: which rows and columns of centres a triangle covers, and between which two
+//! centres of the line it is pierced. Doubles with an error bound decide nearly all of these. Exact
+//! arithmetic on the original coordinates decides the rest.
 
 use super::placed::{Corners, Placed, accuracy, are_short, ranks};
 use crate::lattice::exact::{DoubleDouble, Expansion};
@@ -19,15 +19,15 @@ pub(super) struct Projection<'p> {
     triangle: u32,
     corners: Corners,
     axes: Axes,
-    /// Per edge (from corner i to corner i + 1) its advance along u per unit of v, and a bound of the error
-    /// of where a row meets it.
+    /// For each edge (from corner i to corner i + 1): its advance along u per unit of v, and an error bound
+    /// of the place where a row meets it.
     edges: [(f64, f64); 3],
-    /// The corners' accuracy: bound of a position's error with the roundings of a few sums.
+    /// The corners' accuracy: an error bound of a position, which includes the roundings of a few sums.
     error: f64,
     short: bool,
-    /// How far a crossing may be off: 2^-36 of the universe's edge.
+    /// The greatest allowed error of a crossing: 2^-36 of the universe's edge.
     fine: f64,
-    /// The triangle as a height over (u, v): made when it is first needed.
+    /// The triangle as a height over (u, v), computed on first use.
     height: Option<Height>,
 }
 
@@ -41,10 +41,10 @@ struct Axes {
 
 #[derive(Clone, Copy)]
 struct Height {
-    /// Planes of centres between which the triangle lies.
+    /// The planes of centres between which the triangle lies.
     first: i32,
     last: i32,
-    /// Slopes, and a bound of the height's error; infinite if the triangle is too steep to tell.
+    /// The slopes, and an error bound of the height; infinite if the triangle is too steep.
     du: f64,
     dv: f64,
     error: f64,
@@ -57,7 +57,8 @@ pub(super) struct Span {
     pub(super) first: i32,
     /// One past the last column.
     pub(super) end: i32,
-    /// What the winding number changes by when a line passes the triangle upward: −1 if it leaves the solid.
+    /// The change of the winding number when a line passes the triangle upward: −1 if the line leaves the
+    /// solid.
     pub(super) step: i32,
 }
 
@@ -69,7 +70,7 @@ impl<'p> Projection<'p> {
         let edges = [0, 1, 2].map(|i| {
             let (a, b) = (corners[i], corners[(i + 1) % 3]);
             let slope = (b.at[axes.u] - a.at[axes.u]) / (b.at[axes.v] - a.at[axes.v]);
-            // Three positions and a slope of two more go into the meeting point. (NaN and infinity, from
+            // Three positions and the slope of two more enter the meeting point. (NaN and infinity, from
             // edges along the row, make every comparison with this bound uncertain.)
             (slope, 8.0 * error * (1.0 + slope.abs()))
         });
@@ -92,7 +93,7 @@ impl<'p> Projection<'p> {
         ranks(&self.corners, self.axes.v)
     }
 
-    /// The centres of `row` that the triangle covers.
+    /// Returns the centres of `row` that the triangle covers.
     #[inline]
     pub(super) fn span(&self, row: i32) -> Option<Span> {
         let v = self.axes.v;
@@ -100,7 +101,7 @@ impl<'p> Projection<'p> {
         if above[0] == above[1] && above[1] == above[2] {
             return None;
         }
-        // The corner that lies alone on its side of the row: the two edges at it are met.
+        // The row meets the two edges at the corner that lies alone on its side of the row.
         let lone = if above[0] == above[1] {
             2
         } else if above[0] == above[2] {
@@ -125,8 +126,8 @@ impl<'p> Projection<'p> {
         })
     }
 
-    /// The first column whose centre lies to the right of edge `i` in `row`, which the edge crosses. A centre
-    /// on the edge lies to the right: the shift along u outweighs the one along v.
+    /// The first column whose centre lies to the right of edge `i` in `row`. The edge must cross the row. A
+    /// centre on the edge counts as on its right: the shift along u outweighs the shift along v.
     #[inline(always)]
     fn column(&self, i: usize, row: i32) -> i32 {
         let Axes { u, v, .. } = self.axes;
@@ -140,13 +141,13 @@ impl<'p> Projection<'p> {
         search(first, last, guess, error, |column| self.right_of(i, column, row))
     }
 
-    /// Exactly: whether the centre lies to the right of edge `i`.
+    /// Decides exactly whether the centre lies to the right of edge `i`.
     #[cold]
     fn right_of(&self, i: usize, column: i32, row: i32) -> bool {
         let Axes { u, v, .. } = self.axes;
         let j = (i + 1) % 3;
         let ascends = row >= self.corners[i].rank[v];
-        // The side of the edge on which the centre lies: positive on its left.
+        // The side of the edge on which the centre lies: positive if left.
         let side = if self.short {
             let (a, b) = (self.corners[i].at, self.corners[j].at);
             let (pu, pv) = (column as f64 + 0.5, row as f64 + 0.5);
@@ -163,7 +164,7 @@ impl<'p> Projection<'p> {
         if ascends { side <= 0 } else { side >= 0 }
     }
 
-    /// The first centre above the triangle on the line at (column, row), which must lie in a span.
+    /// Returns the first centre above the triangle on the line at (column, row), which must lie in a span.
     #[inline]
     pub(super) fn above(&mut self, column: i32, row: i32, step: i32) -> i32 {
         let height = match self.height {
@@ -180,8 +181,8 @@ impl<'p> Projection<'p> {
         search(height.first, height.last, guess, height.error, |k| self.is_above(column, row, k, step))
     }
 
-    /// The same, and where the line is pierced: in finest cells from the universe's lower face, off by less
-    /// than 2^-36 of the universe's edge.
+    /// Returns the first centre as [`above`](Self::above) does, and where the line pierces the triangle: in
+    /// finest cells from the universe's lower face, with an error below 2^-36 of the universe's edge.
     #[inline]
     pub(super) fn crossing(&mut self, column: i32, row: i32, step: i32) -> (i32, f64) {
         let height = match self.height {
@@ -193,7 +194,7 @@ impl<'p> Projection<'p> {
             let a = self.corners[0].at;
             let (pu, pv) = (column as f64 + 0.5 - a[u], row as f64 + 0.5 - a[v]);
             let at = a[w] + height.du * pu + height.dv * pv;
-            // Which centre is the first above it, unless one is too near.
+            // The first centre above, unless a centre is too near.
             let nearest = at.clamp(height.first as f64 - 1.0, height.last as f64 + 1.0);
             let k = (nearest - (height.first as f64 - 1.0)) as i32 + (height.first - 1);
             let behind = nearest - (k as f64 + 0.5);
@@ -211,8 +212,8 @@ impl<'p> Projection<'p> {
         )
     }
 
-    /// The same of a steep triangle from determinants of numbers with 106 bits, as seen from centre k of the
-    /// line; `None` if these are too few.
+    /// Computes the crossing with a steep triangle relative to centre k of the line, from determinants of
+    /// numbers with 106 bits. `None` if 106 bits are too few.
     fn near_crossing(&self, column: i32, row: i32, k: i32) -> Option<f64> {
         let Axes { u, v, w } = self.axes;
         let mut centre = [0; 3];
@@ -230,14 +231,15 @@ impl<'p> Projection<'p> {
         let minor = |i: usize, j: usize| b[i] * c[j] - b[j] * c[i];
         let det = a[u] * minor(v, w) + a[v] * minor(w, u) + a[w] * minor(u, v);
         let slope = (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
-        // The products of a determinant, and the greatest that the quotient can come to.
+        // The errors of both determinants' products, those of the divisor times the greatest possible
+        // quotient.
         let wrong = 64.0 * DoubleDouble::EPSILON * size * size * size;
         let cell = self.placed.frame.cell_size();
         (wrong < 0.25 * self.fine * cell * slope.high.abs())
             .then(|| k as f64 + 0.5 + det.quotient(slope) / cell)
     }
 
-    /// The same from exact determinants, as seen from centre k of the line.
+    /// Computes the crossing relative to centre k of the line from exact determinants.
     #[cold]
     fn exact_crossing(&self, column: i32, row: i32, k: i32) -> f64 {
         let Axes { u, v, w } = self.axes;
@@ -259,18 +261,20 @@ impl<'p> Projection<'p> {
         let [a, b, c] = self.corners.map(|corner| corner.at);
         let edge = |from: [f64; 3], to: [f64; 3]| [to[u] - from[u], to[v] - from[v], to[w] - from[w]];
         let (ab, ac) = (edge(a, b), edge(a, c));
-        // Normal in the order (u, v, w), up to its sign.
+        // The normal in the order (u, v, w), up to its sign.
         let nu = ab[1] * ac[2] - ab[2] * ac[1];
         let nv = ab[2] * ac[0] - ab[0] * ac[2];
         let nw = ab[0] * ac[1] - ab[1] * ac[0];
         let extent = ab.iter().chain(&ac).fold(0.0, |most: f64, x| most.max(x.abs()));
-        // Each product has two factors of at most `extent`, each off by at most twice a position's error.
+        // Each product has two factors of at most `extent`, each with an error of at most twice a position's
+        // error.
         let wrong = 16.0 * self.error * (extent + self.error);
         let (du, dv) = (-nu / nw, -nv / nw);
         let steep = 1.0 + du.abs() + dv.abs();
         let sure = nw.abs() - wrong;
         let error = if sure > 0.0 {
-            // Slopes are off by (their own size + 1) · wrong / |nw|, over a reach of the extent and a cell.
+            // The slopes have an error of (their own size + 1) · wrong / |nw|, over a reach of the extent and
+            // a cell.
             4.0 * steep * (wrong / sure * (extent + 2.0) + 4.0 * self.error)
         } else {
             f64::INFINITY
@@ -278,7 +282,7 @@ impl<'p> Projection<'p> {
         Height { first, last, du, dv, error }
     }
 
-    /// Exactly: whether centre k of the line lies above the triangle.
+    /// Decides exactly whether centre k of the line lies above the triangle.
     #[cold]
     fn is_above(&self, column: i32, row: i32, k: i32, step: i32) -> bool {
         let Axes { u, v, w } = self.axes;
@@ -308,8 +312,8 @@ impl<'p> Projection<'p> {
         }
     }
 
-    /// Sign of the first component of the normal that is not zero: where the shift leads from a centre that
-    /// lies on the triangle.
+    /// The sign of the first non-zero component of the normal: the side to which the shift moves a centre
+    /// that lies on the triangle.
     fn leading_normal(&self) -> i32 {
         let [a, b, c] = self.placed.original(self.triangle);
         let edge = |to: [f64; 3], axis: usize| Expansion::sum([to[axis], -a[axis]]);
@@ -323,14 +327,14 @@ impl<'p> Projection<'p> {
     }
 }
 
-/// The least k in `first..=last` that `holds` (which is monotone, and holds at `last`), given the real number
-/// that k is to be at least, up to an error.
+/// Returns the least k in `first..=last` that `holds`. `holds` is monotone and true at `last`. `guess` is the
+/// real lower limit of k, up to an error.
 #[inline(always)]
 fn search(first: i32, last: i32, guess: f64, error: f64, holds: impl Fn(i32) -> bool) -> i32 {
     let guess = guess.clamp(first as f64 - 1.0, last as f64 + 1.0);
     let nearest = (guess + 0.5 - (first as f64 - 1.0)) as i32 + (first - 1);
     let gap = guess - nearest as f64;
-    // Also false for NaN: then nothing is certain.
+    // This is false for NaN too: then nothing is certain.
     let k = if gap.abs() > error && error < 0.25 {
         nearest + (gap > 0.0) as i32
     } else if error < 0.25 {

@@ -1,19 +1,21 @@
 //! Rays, points and distances, answered for the whole mesh without a descent through cells.
 //!
-//! The winding number of a point of a half-line is what the triangles ahead of it take away until infinity,
-//! where it is zero. So what a half-line passes through (`mesh/pierce`) tells winding numbers all along it,
-//! and where the fill rule's answer changes is the boundary: facets inside of overlapping bodies are none.
-//! Between triangles that are passed within each other's rounding nothing is told.
+//! The winding number is zero at infinity. So the winding number of a point of a half-line follows from the
+//! triangles ahead of the point. The triangles that a half-line passes through (`mesh/pierce`) give the
+//! winding numbers all along it. The boundary is where the fill rule's answer changes: facets inside
+//! overlapping bodies are no boundary. Between triangles that are passed within each other's rounding, the
+//! order is not decided.
 //!
-//! Off the surface the shifted half-line's winding numbers are those of the half-line itself. Where that only
-//! touches the surface, its points belong to the solid if points on any side do: it is shifted into all
-//! octants. Where all of these run outside, next to a sharp corner, nothing is told.
+//! Off the surface, the winding numbers of the shifted half-line are those of the half-line itself. Where the
+//! half-line only touches the surface, its points belong to the solid if points on any side do; so it is
+//! shifted into all octants. Where all shifted half-lines run outside, next to a sharp corner, there is no
+//! answer.
 //!
-//! Of a point of an open mesh the triangles on the way to infinity count what the surface and cones over the
-//! rim of its holes, from the other end of that way, wind around it, and the cones' own winding number is
-//! taken off (`rim`). An open mesh bounds the solid beside its triangles, too, where its winding number is
-//! one half. A ball and a box without triangles in which the number cannot change by enough hold none of that
-//! boundary. (Rays of open meshes: `open_trace`.)
+//! For a point of an open mesh, the triangles on the way to infinity count the winding number of the surface
+//! closed by cones: cones over the rim of its holes, with their apex at the other end of that way. The cones'
+//! own winding number is then subtracted (`rim`). An open mesh also bounds the solid away from its triangles,
+//! where its winding number is one half. A ball or box without triangles holds none of that boundary if the
+//! winding number cannot change by enough in it. (Rays of open meshes: `open_trace`.)
 
 use super::rim::{Course, DIRECTIONS, Fraction, Rim};
 use super::rim_line::RimLine;
@@ -26,7 +28,7 @@ use crate::solid::{BoxContent, NearestSurface, RayCrossing, RayQuestion, RayTrac
 use alloc::vec::Vec;
 use glam::DVec3;
 
-/// Directions in which no edges between points of a lattice lie: square roots of 3, 5, 7 and 11.
+/// Directions along which no edges between points of a lattice lie: square roots of 3, 5, 7 and 11.
 const WAYS: [[f64; 3]; 4] = [
     [1.0, 1.732_050_807_568_877, 2.236_067_977_499_79],
     [-2.236_067_977_499_79, 1.0, -1.732_050_807_568_877],
@@ -34,19 +36,19 @@ const WAYS: [[f64; 3]; 4] = [
     [-1.0, -3.316_624_790_355_4, 2.236_067_977_499_79],
 ];
 
-/// Lists that are kept from question to question.
+/// Lists that are kept from query to query.
 #[derive(Default)]
 pub(super) struct Direct {
-    /// Triangles that are passed through.
+    /// The triangles that the ray passes through.
     pub(super) hits: Vec<Hit>,
-    /// Triangles that are touched.
+    /// The triangles that the ray touches.
     pub(super) touched: Vec<Hit>,
     /// The rim of an open mesh as a ray sees it.
     pub(super) line: RimLine,
 }
 
 impl Direct {
-    /// Takes the triangles that are only touched out of those that were hit, and orders both by time.
+    /// Moves the triangles that are only touched from the hits to their own list, and sorts both by time.
     pub(super) fn arrange(&mut self) -> Result<(), Error> {
         let Direct { hits, touched, .. } = self;
         touched.clear();
@@ -64,8 +66,8 @@ impl Direct {
     }
 }
 
-/// How many of some triangles that were hit, which are in order, are passed at the same time as the first
-/// one, as far as rounding tells, and until when.
+/// Returns how many hits have the same time as the first one, up to rounding, and the time at which they end.
+/// `hits` is sorted.
 pub(super) fn together(hits: &[Hit]) -> (usize, f64) {
     let mut until = hits.first().map_or(0.0, |hit| hit.t.upper);
     let met = hits.iter().take_while(|hit| {
@@ -81,11 +83,11 @@ pub(super) fn together(hits: &[Hit]) -> (usize, f64) {
 pub(super) struct Tracer<'m> {
     pub(super) tree: TriangleTree<'m>,
     pub(super) fill: FillRule,
-    /// Of an open mesh.
+    /// The rim, if the mesh is open.
     pub(super) rim: Option<&'m Rim>,
 }
 
-/// The rim of an open mesh in model units; a displacement counts as the error of its vertices.
+/// Returns the rim of an open mesh in model units; a displacement counts as the error of its vertices.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
@@ -103,14 +105,14 @@ pub(super) fn rim(mesh: &TriangleMesh, loops: &Loops) -> Result<Rim, Error> {
 }
 
 impl Tracer<'_> {
-    /// Where a ray goes in and out. Nothing is told where the surface may lie beside the mesh, and the ray
-    /// comes near to an edge.
+    /// Finds where a ray enters and leaves the solid. The trace stays unknown if the surface may deviate from
+    /// the mesh and the ray comes near to an edge.
     pub(super) fn trace(&self, direct: &mut Direct, question: RayQuestion<'_>) -> Result<(), Error> {
         let RayQuestion { ray, is_first_enough, trace } = question;
         trace.clear();
         let [first, others @ ..] = Shift::ALL;
-        // From outside the first triangle leads in, unless it leads to a negative winding number that does
-        // not count.
+        // From outside, the first triangle leads into the solid, unless it leads to a negative winding number
+        // that the fill rule does not count.
         if is_first_enough && self.fill != FillRule::Positive && self.tree.way_out(&ray.from).is_none() {
             let is_sure = self.tree.pierced(ray, Wanted::First, first, &mut direct.hits)?;
             if !is_sure || self.follow(direct, true, trace)? && !trace.has_touches() {
@@ -134,8 +136,8 @@ impl Tracer<'_> {
         Ok(())
     }
 
-    /// Follows the winding number along the triangles that were hit: all of them, or those up to the first
-    /// that is passed by a ray from outside. `false` if the trace is to go on behind these.
+    /// Follows the winding number along the hits: along all of them, or up to the first hit of a ray from
+    /// outside. Returns `false` if the trace must continue behind these hits.
     fn follow(
         &self,
         direct: &mut Direct,
@@ -147,14 +149,14 @@ impl Tracer<'_> {
         let steps = |hits: &[Hit]| hits.iter().map(|hit| hit.step).sum::<i32>();
         let mut winding = if is_first_enough { 0 } else { -steps(hits) };
         trace.begins_inside = self.fill.encloses(winding);
-        // (What begins on the surface touches it at 0.)
+        // (A ray that begins on the surface touches it at 0.)
         let (mut from, mut rest) = (-1.0, &hits[..]);
         let mut touched = Touched { hits: touched, tree: &self.tree };
         while let Some(first) = rest.first() {
             let (count, until) = together(rest);
             let (together, behind) = rest.split_at(count);
             rest = behind;
-            // Whatever their order is, the winding number does not leave this range.
+            // Whatever the order of the hits, the winding number stays in this range.
             let falls = together.iter().map(|hit| hit.step.min(0)).sum::<i32>();
             let rises = together.iter().map(|hit| hit.step.max(0)).sum::<i32>();
             let before = self.fill.encloses(winding);
@@ -171,7 +173,7 @@ impl Tracer<'_> {
             }
             let is_inside_after = self.fill.encloses(winding);
             let normal = self.tree.normal(first_changed.triangle);
-            // A way that leaves the solid and passes the triangle from behind leaves along its normal.
+            // A ray that leaves the solid through the back of a triangle leaves along the triangle's normal.
             let is_along = first_changed.step < 0;
             let normal = if is_along == before { normal } else { normal.map(|n| -n) };
             let is_met = before || is_inside_after || self.passes_within(together, first_winding);
@@ -193,8 +195,8 @@ impl Tracer<'_> {
         Ok(true)
     }
 
-    /// The first of some triangles at which the fill rule's answer changes, if they are passed in their
-    /// order.
+    /// Returns the first triangle at which the fill rule's answer changes, if the triangles are passed in
+    /// list order.
     pub(super) fn crossed(&self, together: &[Hit], mut winding: i32) -> Hit {
         let before = self.fill.encloses(winding);
         let found = together.iter().find(|hit| {
@@ -204,10 +206,11 @@ impl Tracer<'_> {
         *found.unwrap_or(&together[0])
     }
 
-    /// Whether a way is inside somewhere between triangles, in whatever order it passes them: if each first
-    /// step leads there. Those in one plane are one step, which leads nowhere where facets lie back to back.
+    /// Returns whether a ray is inside somewhere between triangles, in whatever order it passes them: true if
+    /// each possible first step leads inside. Triangles in one plane are one step, which cancels where facets
+    /// lie back to back.
     fn passes_within(&self, together: &[Hit], winding: i32) -> bool {
-        // Nobody knows what lies in one plane.
+        // With a displacement, it is unknown which triangles lie in one plane.
         if self.tree.displacement() > 0.0 {
             return false;
         }
@@ -217,8 +220,8 @@ impl Tracer<'_> {
         })
     }
 
-    /// Whether the solid holds a point; nothing of a point on the surface of the mesh, or nearer to it than
-    /// is known.
+    /// Returns whether the solid contains a point. `None` if the point lies on the surface of the mesh, or
+    /// nearer to it than the surface is known.
     #[inline]
     pub(super) fn is_inside(&self, direct: &mut Direct, point: &[f64; 3]) -> Result<Option<bool>, Error> {
         match self.rim {
@@ -233,7 +236,7 @@ impl Tracer<'_> {
         }
         let Some((axis, sign)) = self.tree.way_out(point) else { return Ok(Some(self.fill.encloses(0))) };
         if !point.iter().all(|&c| valid::is_moderate(c)) {
-            // The least coordinates become zero, if that leads across no surface.
+            // Replace tiny coordinates by zero, if no surface lies between.
             let at = point.map(|c| if valid::is_moderate(c) { c } else { 0.0 });
             let apart = 1e-76 + 2.0 * self.tree.displacement();
             let near = self.tree.nearest_of(&at, |_| true);
@@ -245,7 +248,8 @@ impl Tracer<'_> {
         if found.is_some() || self.tree.displacement() == 0.0 {
             return Ok(found);
         }
-        // Of a moved mesh nothing is known where a way out comes near to an edge. Another one may pass none.
+        // With a displacement, a ray that comes near to an edge decides nothing. Another direction may pass
+        // no edge.
         for way in WAYS {
             let ray = Ray { from: *point, direction: way.map(|c| [c, 0.0]), last: f64::INFINITY };
             let found = self.is_inside_by(direct, &ray)?;
@@ -256,8 +260,8 @@ impl Tracer<'_> {
         Ok(None)
     }
 
-    /// Whether the solid holds the point at which a ray begins; nothing if that may lie on the surface, or
-    /// the ray does not tell.
+    /// Returns whether the solid contains the point at which a ray begins. `None` if the point may lie on the
+    /// surface, or the ray decides nothing.
     fn is_inside_by(&self, direct: &mut Direct, ray: &Ray) -> Result<Option<bool>, Error> {
         let hits = &mut direct.hits;
         if !self.tree.pierced(ray, Wanted::All, Shift::ALL[0], hits)?
@@ -268,14 +272,14 @@ impl Tracer<'_> {
         Ok(Some(self.fill.encloses(-hits.iter().map(|hit| hit.step).sum::<i32>())))
     }
 
-    /// How a box lies to the solid. Nothing if triangles meet it, and no points on different sides of the
-    /// boundary are found in it.
+    /// Classifies a box. `None` if triangles meet the box and no points on different sides of the boundary
+    /// are found in it.
     pub(super) fn content_of(
         &self,
         direct: &mut Direct,
         bounds: &Bounds,
     ) -> Result<Option<BoxContent>, Error> {
-        /// Triangles next to which points are looked for.
+        /// The most triangles beside which points are tried.
         const MOST: usize = 8;
         let (mut met, mut count) = ([0; MOST], 0);
         self.tree.in_box(bounds, &mut |triangle| {
@@ -303,7 +307,7 @@ impl Tracer<'_> {
             return Ok(Some(BoxContent::Both));
         }
         if count > 0 || self.rim.is_some() {
-            // Next to a corner that lies on no triangle the box is on the corner's side.
+            // If a corner lies on no triangle, the box next to it is on the corner's side.
             for k in 0..8 {
                 let corner = axes(|axis| if k >> axis & 1 != 0 { max[axis] } else { min[axis] });
                 if look_at(direct, &corner)? {
@@ -311,8 +315,8 @@ impl Tracer<'_> {
                 }
             }
             for &triangle in &met[..count.min(MOST)] {
-                // Points of the box on both sides of the triangle, next to its point that is nearest to the
-                // centre.
+                // Points of the box on both sides of the triangle, beside the triangle's point that is
+                // nearest to the centre.
                 let near = self.tree.nearest_to(triangle, &centre);
                 let normal = self.tree.normal(triangle);
                 let size = normal.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
@@ -336,8 +340,8 @@ impl Tracer<'_> {
         })
     }
 
-    /// Whether the solid of an open mesh holds a point; nothing where its winding number may be one half, or
-    /// jumps.
+    /// Returns whether the solid of an open mesh contains a point. `None` where the winding number may be one
+    /// half, or jumps.
     fn is_inside_open(
         &self,
         direct: &mut Direct,
@@ -346,7 +350,7 @@ impl Tracer<'_> {
     ) -> Result<Option<bool>, Error> {
         let (mut at, mut radius) = (*point, 0.0);
         if point.iter().any(|c| c.abs() < valid::SMALLEST && *c != 0.0) {
-            // The least coordinates become zero, if that leads across no surface.
+            // Replace tiny coordinates by zero, if no surface lies between.
             at = point.map(|c| if c.abs() < valid::SMALLEST { 0.0 } else { c });
             radius = 1e-76;
             let apart = radius + 2.0 * self.tree.displacement();
@@ -359,15 +363,15 @@ impl Tracer<'_> {
         Ok(self.winding(direct, rim, (&at, radius))?.and_then(|winding| self.encloses_around(winding)))
     }
 
-    /// Whether the fill rule encloses all points of a winding number.
+    /// Returns whether the fill rule encloses the points of a winding number. `None` if the number's error
+    /// leaves both possible.
     fn encloses_around(&self, winding: Fraction) -> Option<bool> {
         let wide = winding.error + 1e-12;
         self.fill.encloses_all(winding.value - wide, winding.value + wide)
     }
 
-    /// The winding number of an open mesh at a point, and all around it in a ball of a radius in which no
-    /// triangles lie; nothing where it jumps. Where it is near to a whole number it may be told with an error
-    /// of nearly one half.
+    /// Returns the winding number of an open mesh at a point, valid all over a ball around the point in which
+    /// no triangles lie. `None` where the number jumps. Near an integer, the error may be nearly one half.
     fn winding(
         &self,
         direct: &mut Direct,
@@ -379,7 +383,7 @@ impl Tracer<'_> {
         }
         let at = DVec3::from(*point);
         for towards in DIRECTIONS {
-            // Away from where cones come from: there is none of them.
+            // The way leads away from the cones' apex: no cones lie there.
             let away = (-towards).to_array().map(|c| [c, 0.0]);
             let ray = Ray { from: *point, direction: away, last: f64::INFINITY };
             let hits = &mut direct.hits;
@@ -399,7 +403,8 @@ impl Tracer<'_> {
         Ok(None)
     }
 
-    /// On which side a box lies that no triangle meets: what is told of its middle, and of its parts.
+    /// Returns on which side a box without triangles lies, from the winding numbers of its middle and of its
+    /// parts.
     fn side_of_box(
         &self,
         direct: &mut Direct,
@@ -424,8 +429,8 @@ impl Tracer<'_> {
         Ok(self.side_of_box(direct, rim, &upper, parts)?.filter(|&other| other == side))
     }
 
-    /// On which side a ball without triangles lies, as far as it lies in a cube, of which the middle and half
-    /// the edge are given.
+    /// Returns on which side the part of a triangle-free ball in a cube lies. The cube is given by its middle
+    /// and half its edge.
     fn side_of_ball(
         &self,
         direct: &mut Direct,
@@ -434,8 +439,8 @@ impl Tracer<'_> {
         (middle, half): ([f64; 3], f64),
         parts: &mut usize,
     ) -> Result<Option<bool>, Error> {
-        // Seen from the ball's point that is nearest to the middle, no point of the ball in the cube is
-        // further away than it is from the middle, and the way there lies in the ball.
+        // `place` is the ball's point that is nearest to the cube's middle. No point of the ball in the cube
+        // is further from `place` than from the middle, and the segment from `place` to it lies in the ball.
         let away = DVec3::from(middle) - DVec3::from(*centre);
         let distance = sqrt(away.length_squared());
         let wide = half * sqrt(3.0) * (1.0 + 1e-9);
@@ -468,9 +473,9 @@ impl Tracer<'_> {
         Ok(all)
     }
 
-    /// The nearest point of the boundary of an open mesh: that of its triangles, if the winding number is
-    /// nowhere one half in the ball that they leave free. Nothing if that is not proven, or there may be no
-    /// boundary at the nearest triangle.
+    /// Returns the nearest point of the boundary of an open mesh: the nearest point of its triangles, if the
+    /// winding number is nowhere one half in the ball that the triangles leave free. `None` if this is not
+    /// proven, or if the nearest triangle may be no boundary.
     pub(super) fn nearest_open(
         &self,
         direct: &mut Direct,
@@ -492,7 +497,7 @@ impl Tracer<'_> {
         })
     }
 
-    /// What is told of a nearest point at a distance.
+    /// Assembles the result from a nearest point and its distance.
     fn surface_at(
         &self,
         near: &NearestPoint,
@@ -508,8 +513,8 @@ impl Tracer<'_> {
         NearestSurface { distance, is_inside, point: self.tree.point_of(near), surface }
     }
 
-    /// The nearest point of the boundary. Nothing if it is not found out whether the nearest triangle belongs
-    /// to it.
+    /// Returns the nearest point of the boundary. `None` if it stays open whether the nearest triangle
+    /// belongs to the boundary.
     pub(super) fn nearest(
         &self,
         direct: &mut Direct,
@@ -521,7 +526,7 @@ impl Tracer<'_> {
         let Some((mut near, mut distance)) = tree.nearest_of(point, may_bound) else { return Ok(None) };
         let is_inside = self.is_inside(direct, point)?;
         if sides.of(near.triangle).is_none() {
-            // It may lie within the solid, or outside of it.
+            // The triangle may lie within the solid, or outside it.
             let lower = distance.lower;
             (near, distance) = self.bounding(
                 direct,
@@ -542,8 +547,9 @@ impl Tracer<'_> {
         Ok(Some(self.surface_at(&near, distance, is_inside)))
     }
 
-    /// Of the triangles that are as near as the first one: the first that bounds the solid all over, or next
-    /// to which points on both sides of the boundary are found. If there is none, the first.
+    /// Among the triangles that are as near as the first one, returns the first triangle that is known to
+    /// bound the solid, or beside which points on both sides of the boundary are found. If there is none,
+    /// returns the first triangle.
     fn bounding(
         &self,
         direct: &mut Direct,
@@ -552,7 +558,7 @@ impl Tracer<'_> {
         may_bound: impl Fn(u32) -> bool,
         first: (NearestPoint, Interval),
     ) -> Result<(NearestPoint, Interval), Error> {
-        /// Triangles that are looked at.
+        /// The most triangles that are tried.
         const MOST: usize = 8;
         let (mut seen, mut found) = ([u32::MAX; MOST], first);
         for count in 0..MOST {
@@ -570,8 +576,8 @@ impl Tracer<'_> {
         Ok(first)
     }
 
-    /// Whether the solid surely lies on one side only of a triangle, next to one of its points, a little
-    /// towards its middle.
+    /// Returns whether the solid surely lies on exactly one side of a triangle, at a point slightly moved
+    /// from one of its points towards its middle.
     fn parts_the_solid(&self, direct: &mut Direct, near: &NearestPoint) -> Result<bool, Error> {
         let mut inner = *near;
         inner.weights = near.weights.map(|w| w + (1.0 / 3.0 - w) / 1024.0);
@@ -585,8 +591,9 @@ impl Tracer<'_> {
         Ok(matches!(sides, [Some(one), Some(other)] if one != other))
     }
 
-    /// A distance from a point within which there surely is a point on the other side of the boundary: hardly
-    /// more than that of the surface's point `near`. Nothing if none is found.
+    /// Returns a distance from a point within which there surely is a point on the other side of the
+    /// boundary: hardly more than the distance of the surface's point `near`. `None` if no such point is
+    /// found.
     fn across(
         &self,
         direct: &mut Direct,
@@ -603,8 +610,8 @@ impl Tracer<'_> {
             way.map(|c| c / length)
         };
         let onward = unit(axes(|axis| near[axis] - point[axis]));
-        // Straight on behind a sharp edge the solid has ended again: there it lies behind the triangle, or in
-        // front of it.
+        // Straight on behind a sharp edge, the point beyond may be outside the solid again. There the solid
+        // lies behind the triangle, or in front of it.
         let inward =
             unit(axes(|axis| (a[axis] - near[axis]) + (b[axis] - near[axis]) + (c[axis] - near[axis])));
         let normal = unit(normal);
@@ -626,15 +633,15 @@ impl Tracer<'_> {
     }
 }
 
-/// Triangles that are touched, in the order of time.
+/// The triangles that a ray touches, by time.
 pub(super) struct Touched<'t> {
     pub(super) hits: &'t [Hit],
     pub(super) tree: &'t TriangleTree<'t>,
 }
 
 impl Touched<'_> {
-    /// The time of a crossing with those that may be at the same time, as the triangle on the other side of
-    /// an edge. Where the ray runs in a triangle's plane for longer, that is for itself.
+    /// Widens the time of a crossing by touches that may happen at the same time, such as the triangle on the
+    /// other side of an edge. A touch that runs in a triangle's plane for longer stays separate.
     pub(super) fn joined(&self, crossing: Interval) -> Interval {
         let longest = 16.0 * crossing.width() + 1e-14 * crossing.upper;
         let met = self.hits.iter().take_while(|hit| hit.t.lower <= crossing.upper);
@@ -642,7 +649,7 @@ impl Touched<'_> {
         met.fold(crossing, |all, hit| all.joined(hit.t))
     }
 
-    /// Adds those between two times, during which the ray is outside.
+    /// Adds the touches between two times, during which the ray is outside.
     pub(super) fn note(&mut self, from: f64, to: f64, trace: &mut RayTrace) -> Result<(), Error> {
         let mut end = from;
         for hit in self.hits.iter().take_while(|hit| hit.t.lower < to) {

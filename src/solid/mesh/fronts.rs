@@ -1,9 +1,9 @@
-//! On which side of the triangles in a small cell the solid lies.
+//! The side of each triangle in a small cell on which the solid lies.
 //!
-//! What is known of whole triangles ([`Sides`](crate::mesh::Sides)) leaves out those that intersect others
-//! somewhere, and all of an open surface. In a cell in which no two triangles intersect, the winding number
-//! in front of each triangle is the same all over the cell. It is found at one of its points, on the way
-//! there from a base.
+//! The knowledge about whole triangles ([`Sides`](crate::mesh::Sides)) leaves out triangles that intersect
+//! others somewhere, and all triangles of an open surface. In a cell in which no two triangles intersect, the
+//! winding number in front of each triangle is constant within the cell. It is computed at one point in front
+//! of the triangle, on the way there from a base.
 
 use super::base::Base;
 use super::local::{Polygon, Seen, View};
@@ -21,9 +21,9 @@ struct Part {
 }
 
 impl View<'_> {
-    /// On which side of each triangle of the cell the solid lies: 1 if behind and not in front, −1 if the
-    /// other way round, 0 if on both sides or on neither, or if the triangle does not reach into the cell.
-    /// `None` if that is not found out. O(n²).
+    /// Returns on which side of each triangle of the cell the solid lies: 1 if only behind it, −1 if only in
+    /// front of it, 0 if on both sides or on neither, or if the triangle does not reach into the cell. `None`
+    /// if this stays undecided. O(n²).
     pub(super) fn senses(
         &self,
         sides: &Sides,
@@ -59,7 +59,7 @@ impl View<'_> {
     }
 }
 
-/// Whether it is sure that no two triangles intersect in the cell.
+/// Returns whether surely no two triangles intersect in the cell.
 fn are_apart(sides: &Sides, parts: &[Part]) -> bool {
     let mut unknown = parts.iter().enumerate().filter(|(_, part)| part.sense.is_none());
     unknown.all(|(k, a)| {
@@ -70,7 +70,7 @@ fn are_apart(sides: &Sides, parts: &[Part]) -> bool {
 }
 
 impl Part {
-    /// Whether the part of another triangle in the cell lies on one side of this one's plane.
+    /// Returns whether the part of another triangle in the cell lies on one side of this one's plane.
     fn is_beside(&self, other: &Part) -> bool {
         let error = other.seen.slack();
         let mut sides = other.polygon.points().iter().map(|p| self.seen.side(p, error));
@@ -79,11 +79,11 @@ impl Part {
     }
 }
 
-/// The winding number in front of a part.
+/// The winding number in front of a part. `None` if it stays undecided.
 fn front(parts: &[Part], own: usize, base: &Base) -> Option<i32> {
     let part = &parts[own];
     let middle = part.polygon.middle();
-    // The middle, and points nearer to three corners.
+    // The middle, and points towards three corners.
     let points = part.polygon.points();
     let tries = core::iter::once(middle)
         .chain(points.iter().take(3).map(|corner| axes(|k| 0.75 * middle[k] + 0.25 * corner[k])));
@@ -99,7 +99,7 @@ fn front(parts: &[Part], own: usize, base: &Base) -> Option<i32> {
         let number = others
             .into_iter()
             .try_fold(base.winding, |sum, k| Some(sum + parts[k].seen.pierced(&base.at, &p)?))?;
-        // A way that arrives from behind would have to pass the triangle itself.
+        // A way that arrives from behind would still have to pass the triangle itself.
         Some(if side > 0 { number } else { number - 1 })
     })
 }

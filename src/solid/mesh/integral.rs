@@ -1,21 +1,22 @@
-//! Moments of what a mesh encloses in a cell, without splitting it.
+//! Moments of the solid of a mesh in a cell, without splitting the cell.
 //!
-//! The solid's indicator changes only at triangles, and at each triangle in one way that is known. So it is
-//! known along every line from one of its values, and its moments are sums over triangles. From a *base*
-//! point b, a finest centre of which the winding number is known, lines lead along z, then along y, then
-//! along x to all points of the cell. What a polynomial p has along such a line, beyond what it would have if
-//! the indicator did not change, is a sum over the places ξ where the line meets triangles: of the change
-//! there times ∫ p from ξ to the end of the line that lies behind ξ, seen from b. Three integrals follow of
-//! each triangle: over its part in the cell, for lines along x; over the segment that it has in common with
-//! the plane x = b_x, for lines along y; and a value where it meets the line (b_x, b_y, ·). (The theorem of
-//! divergence, in the form that needs nothing but triangles.)
+//! The solid's indicator function changes only at triangles, and the change at each triangle is known. So one
+//! value on a line gives the indicator all along it, and the moments are sums over triangles. Lines lead from
+//! a *base* point b (a finest centre of known winding number) along z, then y, then x to all points of the
+//! cell. Along such a line, the integral of a polynomial p over the solid differs from the integral for a
+//! constant indicator by a sum over the places ξ where the line meets triangles: the change at ξ times ∫ p
+//! from ξ to the end of the line that lies behind ξ, seen from b. So each triangle contributes three
+//! integrals: over its part in the cell, for lines along x; over its segment in the plane x = b_x, for lines
+//! along y; and a value where it meets the line (b_x, b_y, ·). (This is the divergence theorem, in a form
+//! that needs only triangles.)
 //!
-//! **Rounding.** The vertices are rounded in the cell's coordinates, and then the points where edges meet the
-//! plane. Both leave a surface that is closed, the same for all triangles at a vertex and at an edge: on
-//! which side of the plane and of the line a point counts is a comparison of doubles. So the integrals are
-//! those of another solid, which differs from the true one by what is between the two surfaces. That has no
-//! part in b if all triangles keep away from b. Every triangle adds to the error in proportion to the extent
-//! of what of it may lie in the cell; those that meet the plane add as if they were as large as the cell.
+//! **Rounding.** The vertices are rounded in the cell's coordinates, and so are the points where edges meet
+//! the plane. The rounded surface is still closed, because triangles round shared vertices and edges alike:
+//! the side of the plane or of the line on which a point counts is a comparison of doubles. So the integrals
+//! are those of another solid, which differs from the true one by the region between the two surfaces. That
+//! region does not contain b if all triangles keep away from b. Every triangle adds to the error in
+//! proportion to the extent of its part that may lie in the cell. Triangles that meet the plane add as if
+//! they were as large as the cell.
 
 use super::base::Base;
 use super::local::{CLIPPING, Point, Polygon, Seen, UNIT, View, between, cross, minus};
@@ -25,11 +26,12 @@ use crate::lattice::exact::two_sum;
 use crate::lattice::{CellMoments, CubeMoments, Interval};
 use crate::mesh::{FillRule, Sides};
 
-/// Of more triangles in a cell it is not looked for on which sides of them the solid lies.
+/// In a cell with more triangles than this, the sides on which the solid lies are not computed.
 const MOST: usize = 48;
 
 impl View<'_> {
-    /// The moments of the solid in the cell. `None` if triangles intersect in it, or nothing comes of it.
+    /// Returns the moments of the solid in the cell. `None` if triangles intersect in the cell, or the error
+    /// is too large.
     pub(super) fn moments(&self, sides: &Sides, fill: FillRule) -> Result<Option<CellMoments>, Error> {
         if self.are_known(sides) {
             return Ok(self.base().and_then(|base| self.integral(&base, fill, self.known(sides))));
@@ -42,7 +44,7 @@ impl View<'_> {
         Ok(senses.and_then(|senses| self.integral(&base, fill, senses.into_iter())))
     }
 
-    /// The area of the boundary in the cell. `None` if the surface lies beside the mesh.
+    /// Returns the area of the boundary in the cell. `None` if the surface may deviate from the mesh.
     pub(super) fn area(&self, sides: &Sides, fill: FillRule) -> Result<Option<Interval>, Error> {
         if self.placed.displacement > 0.0 {
             return Ok(None);
@@ -69,14 +71,14 @@ impl View<'_> {
         self.triangles.iter().filter_map(|&triangle| sides.of(triangle))
     }
 
-    /// The area of triangles at which the solid ends. At others than those of a known sense it may or may
-    /// not.
+    /// Sums the area of the triangles at which the solid ends. A triangle of unknown sense counts in the
+    /// upper bound only.
     fn sum_areas(&self, senses: impl Iterator<Item = Option<i8>>) -> Option<Interval> {
         let (mut lower, mut upper) = (0.0, 0.0);
         for (&triangle, sense) in self.triangles.iter().zip(senses).filter(|(_, sense)| *sense != Some(0)) {
             let seen = self.seen(triangle);
             let (slack, extent) = (seen.slack(), seen.extent());
-            // Of a polygon whose corners are off by so much.
+            // The error of a polygon whose corners have errors of `slack`.
             let error = 16.0 * extent * slack + 64.0 * UNIT * extent * extent;
             let [inner, outer] = if seen.is_within(1.0 - 4.0 * slack) {
                 [seen.area(); 2]
@@ -92,7 +94,7 @@ impl View<'_> {
         Interval::new(lower * (1.0 - of_sums), upper * (1.0 + of_sums))
     }
 
-    /// An area that the boundary in the cell does not pass: cheap.
+    /// An upper bound of the boundary's area in the cell: cheap.
     fn most_area(&self, sides: &Sides) -> Interval {
         let ends = self.triangles.iter().filter(|&&triangle| sides.of(triangle) != Some(0));
         let areas = ends.map(|&triangle| {
@@ -106,7 +108,7 @@ impl View<'_> {
         Interval::between(0.0, upper * (1.0 + UNIT * self.triangles.len() as f64))
     }
 
-    /// The moments of the solid, of which `senses` tells on which side of each triangle it lies.
+    /// Returns the moments of the solid. `senses` says on which side of each triangle the solid lies.
     fn integral(&self, base: &Base, fill: FillRule, senses: impl Iterator<Item = i8>) -> Option<CellMoments> {
         let mut sums = Sums::default();
         let radius = self.radius();
@@ -118,12 +120,13 @@ impl View<'_> {
             }
         }
         let known = sums.finish(fill.encloses(base.winding));
-        // (What is no number does not pass.)
+        // (NaN does not pass.)
         (known.error < 1.0).then_some(known)
     }
 }
 
-/// The volume within a distance of what of a triangle may lie in the cell, with what is rounded here.
+/// The volume within distance `r` of the part of a triangle that may lie in the cell, with a margin for
+/// rounding here.
 fn tube(seen: &Seen, r: f64) -> f64 {
     // A plane section of a cube of edge 1 has an area of at most √2, and a perimeter below 5.
     let extent = seen.extent() + 2.0 * r;
@@ -133,11 +136,11 @@ fn tube(seen: &Seen, r: f64) -> f64 {
 /// Sums over triangles.
 #[derive(Default)]
 struct Sums {
-    /// Volume, first and second moments, in the order of [`CubeMoments`].
+    /// The volume, first and second moments, in the order of [`CubeMoments`].
     values: [f64; 10],
-    /// What was lost by rounding the sums.
+    /// The rounding errors of the sums.
     lost: [f64; 10],
-    /// A bound of the terms' magnitudes, and how many they are.
+    /// A bound of the terms' magnitudes, and their number.
     size: f64,
     count: f64,
     error: f64,
@@ -163,7 +166,7 @@ impl Sums {
         self.count += 1.0;
     }
 
-    /// Adds what a triangle contributes.
+    /// Adds the contribution of a triangle.
     fn add(&mut self, seen: &Seen, base: &Point, sense: f64) -> Option<()> {
         let polygon = seen.clipped(1.0)?;
         let above = seen.corners.map(|corner| corner[0] >= base[0]);
@@ -175,10 +178,10 @@ impl Sums {
         } else {
             self.add_polygon(&polygon, if above[0] { 1.0 } else { -1.0 }, sense);
         }
-        // A corner that moves by d along each axis moves the boundary of what is integrated over: that adds
-        // or takes, of each edge, an area below 1.5 times the extent times d, twice, and more at an edge of
-        // the cell. Integrands are at most 2. In the same way for the two corners that each plane cuts off.
-        // Of the terms 60 roundings and fewer are left, and 32 of areas.
+        // A corner that moves by d along each axis moves the boundary of the domain of integration: for each
+        // edge, an area below 1.5 times the extent times d is gained or lost, twice, and more at an edge of
+        // the cell. Integrands are at most 2. The same holds for the two corners that each plane cuts off.
+        // The terms carry at most 60 roundings, and areas 32.
         let extent = seen.extent();
         let planes = seen.planes(1.0) + if is_cut { 2.0 } else { 0.0 };
         let clipping = 2.0 * CLIPPING * UNIT * seen.reach * planes;
@@ -197,14 +200,14 @@ impl Sums {
         let [a, rest @ ..] = polygon.points() else { return };
         for ends in rest.windows(2) {
             let (b, c) = (&ends[0], &ends[1]);
-            // Twice the area, seen along x.
+            // Twice the area, projected along x.
             let area = cross(&minus(b, a), &minus(c, a))[0];
             if area == 0.0 {
                 continue;
             }
             let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
             let centre = axes(|k| (a[k] + b[k] + c[k]) * (1.0 / 3.0));
-            // Exact for polynomials of the third degree, as these are.
+            // Exact for polynomials of degree three, such as these.
             let mut terms = [0.0; 10];
             for (p, weight) in [
                 (a, 1.0 / 20.0),
@@ -226,8 +229,8 @@ impl Sums {
         }
     }
 
-    /// Adds the integral over a segment in the plane x = b_x, and the value where it meets the line (b_x,
-    /// b_y, ·).
+    /// Adds the integral over a segment in the plane x = b_x, and the value where the segment meets the line
+    /// (b_x, b_y, ·).
     fn add_segment(&mut self, [p, q]: &[Point; 2], base: &Point, sense: f64) {
         // The part in the cell: Liang and Barsky 1984.
         let (mut first, mut last) = (0.0f64, 1.0f64);
@@ -277,7 +280,7 @@ impl Sums {
             return;
         }
         let at = |t: f64| [1, 2].map(|axis| p[axis] + t * (q[axis] - p[axis]));
-        // Simpson's rule, exact for the third degree.
+        // Simpson's rule, exact for degree three.
         let mut terms = [0.0; 10];
         for (t, weight) in [(first, 1.0 / 6.0), (0.5 * (first + last), 2.0 / 3.0), (last, 1.0 / 6.0)] {
             let [y, z] = at(t);
@@ -297,7 +300,8 @@ impl Sums {
             first: [value(1), value(2), value(3)],
             second: [0, 1, 2, 3, 4, 5].map(|k| whole.second[k] + value(4 + k)),
         };
-        // What was lost was rounded when it was added up, and so are the results and the sum of errors.
+        // The lost parts were rounded when they were added up; the results and the sum of errors are rounded
+        // too.
         let of_sums = UNIT * self.count;
         let error = (self.error + 32.0 * UNIT + of_sums * of_sums * self.size) * (1.0 + of_sums);
         CellMoments { moments, error }
@@ -305,14 +309,14 @@ impl Sums {
 }
 
 impl Seen {
-    /// Where the triangle meets the plane x = `bound`, from where its boundary goes down to where it comes
-    /// up. `above` tells which corners lie above; two do not agree.
+    /// Returns where the triangle meets the plane x = `bound`, from where its boundary goes down to where it
+    /// comes up. `above` says which corners lie above the plane; one corner differs from the other two.
     fn segment(&self, above: [bool; 3], bound: f64) -> [Point; 2] {
         let mut ends = [[0.0; 3]; 2];
         for i in 0..3 {
             let j = (i + 1) % 3;
             if above[i] != above[j] {
-                // The same for both triangles at the edge.
+                // Both triangles at the edge compute the same point.
                 let (low, high) = if self.vertices[i] < self.vertices[j] { (i, j) } else { (j, i) };
                 let end = between(&self.corners[low], &self.corners[high], 0, bound);
                 ends[usize::from(above[j])] = end;

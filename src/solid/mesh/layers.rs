@@ -1,15 +1,16 @@
-//! Which planes bound the solid in a cell, and which function of their sides it is.
+//! The planes that bound the solid in a cell, and the Boolean function of their sides that the solid is.
 //!
-//! The triangles of a cell are divided into up to three groups, each of which lies in a layer: a plane with a
-//! width. Outside of the layers there are no triangles, so that in each of the up to eight regions between
-//! them the winding number is the same. It is found on the way from a base to a point there.
+//! The triangles of a cell are divided into up to three groups. Each group lies in a layer: a plane with a
+//! width. There are no triangles outside the layers, so that the winding number is constant in each of the up
+//! to eight regions between them. It is computed on the way from a base to a point in the region.
 //!
-//! The table of the regions says more than their values: where it has the same value for both sides of a
-//! layer, it says that within the layer too. So a rib that is thinner than its layer, with the same on both
-//! sides, must not have such a table. For each choice of layers, and of sides of the others, the table must
-//! either differ, or be proven: no triangle of these layers lies on those sides of the others; or all that do
-//! are crossed the same way by straight lines from a point before them to points within, and to these from a
-//! point behind them, so that the winding number lies between those of both.
+//! The table of the regions decides more than the regions: a table with the same value on both sides of a
+//! layer claims this value within the layer too. So a rib that is thinner than its layer, with the same value
+//! on both sides, must not have such a table. For each choice of layers, and of sides of the other layers,
+//! the table must either differ, or be proven. A proof is one of two: no triangle of these layers lies on
+//! those sides of the other layers; or straight lines from a point before the layers to points within, and
+//! from there to a point behind them, cross all such triangles in the same sense, so that the winding number
+//! within lies between the winding numbers of the two points.
 
 use super::base::Base;
 use super::local::{Point, Polygon, Seen, UNIT, View, cross, dot, minus};
@@ -25,25 +26,25 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::array::from_fn as array;
 
-/// Most layers of a cell.
+/// The most layers of a cell.
 const MOST: usize = 3;
 
-/// Cells of more triangles are split.
+/// Cells with more triangles than this are split.
 const MOST_TRIANGLES: usize = 256;
 
-/// The surface may lie that far from the mesh, in half edges.
+/// The greatest distance of the surface from the mesh, in half edges.
 const THICK: f64 = 0.25;
 
-/// More than the length of a way in the cell, with what is rounded.
+/// More than the length of any way in the cell, with a margin for rounding.
 const FAR: f64 = 3.5;
 
 /// The planes of a mesh on a frame: the list of layers.
 #[derive(Debug)]
 pub(super) struct Layers {
     planes: FacetPlanes,
-    /// The greatest magnitude of a coordinate of the mesh or the universe.
+    /// The greatest magnitude of a coordinate of the mesh or of the universe.
     reach: f64,
-    /// How far the surface may lie from the mesh along an axis.
+    /// The greatest distance of the surface from the mesh along an axis.
     displacement: f64,
 }
 
@@ -56,8 +57,8 @@ impl Layers {
         self.planes.bytes()
     }
 
-    /// What a layer is wider than its triangles: more than all that is rounded, and what the surface may lie
-    /// beside the mesh.
+    /// Returns by how much a layer is wider than its triangles: more than all roundings and the displacement
+    /// of the surface.
     fn margin(&self, plane: &FacetPlane) -> f64 {
         if self.is_exact(plane) {
             return 0.0;
@@ -80,7 +81,7 @@ impl Layers {
         HalfSpace::slab(plane.normal, plane.low - margin, plane.high + margin, None)
     }
 
-    /// All of them.
+    /// Returns the list of all layers.
     pub(super) fn list(&self) -> Result<Vec<PlacedHalfSpace>, Error> {
         let mut list = memory::with_capacity(self.planes.planes.len())?;
         let nowhere: Arc<[_]> = Arc::new([]);
@@ -91,11 +92,11 @@ impl Layers {
     }
 }
 
-/// A layer in a cell: points with n · x < `inner` lie behind it, with n · x > `outer` before it.
+/// A layer in a cell: points with n · x < `inner` lie behind it, points with n · x > `outer` before it.
 #[derive(Debug, Clone, Copy)]
 struct Layer {
     slab: Slab,
-    /// The plane of the mesh; of none it is a layer of the cell's own.
+    /// The number of the mesh's plane; `None` for a layer that belongs to the cell alone.
     plane: Option<u32>,
     is_exact: bool,
 }
@@ -108,30 +109,30 @@ struct Facet {
     triangle: u32,
     seen: Seen,
     polygon: Polygon,
-    /// As long as twice the area in the cell.
+    /// The normal, with the length of twice the area in the cell.
     area: Point,
 }
 
 /// A way to divide the triangles of a cell into layers.
 type Attempt<'v> = fn(&Layering<'v>, &mut [u8]) -> Option<Found>;
 
-/// What is asked of a cell.
+/// The query of one cell: its triangles, and the tolerance of its layers.
 pub(super) struct Layering<'v> {
     view: View<'v>,
     layers: &'v Layers,
     fill: FillRule,
-    /// In half edges.
+    /// The tolerance in half edges.
     tolerance: f64,
     facets: Vec<Facet>,
     centre: Point,
     half: f64,
-    /// More than what is rounded of offsets in the cell, and of points of polygons.
+    /// More than the rounding error of offsets in the cell, and of points of polygons.
     slop: f64,
     slack: f64,
 }
 
 impl<'v> Layering<'v> {
-    /// The triangles of a cell; `None` if they are too many.
+    /// Collects the triangles of a cell. `None` if they are too many.
     pub(super) fn new(
         view: View<'v>,
         layers: &'v Layers,
@@ -150,7 +151,7 @@ impl<'v> Layering<'v> {
             let seen = view.seen(triangle);
             let own = 4.0 * seen.slack() + 2.0 * view.displacement();
             slack = f64::max(slack, own);
-            // What of the surface lies in the cell lies that near to a point of the polygon.
+            // Every point of the surface in the cell lies that near to a point of the polygon.
             let Some(polygon) = seen.clipped(1.0 + own) else { return Ok(None) };
             let area = polygon.twice_area();
             facets.push(Facet { triangle, seen, polygon, area });
@@ -161,11 +162,12 @@ impl<'v> Layering<'v> {
         Ok(Some(Layering { view, layers, fill, tolerance, facets, centre, half, slop, slack }))
     }
 
-    /// The function that the solid is in the cell; layers of its own are added to `own`.
+    /// Returns the function of layers that the solid is in the cell. Layers that belong to the cell alone are
+    /// added to `own`.
     pub(super) fn function(&self, own: &mut Vec<PlacedHalfSpace>) -> Result<Option<OpenSurfaces>, Error> {
         let Some(base) = self.view.base() else { return Ok(None) };
         let mut groups = memory::filled(self.facets.len(), 0u8)?;
-        // Planes that are about as large as the cell, or larger, are worth to be shared with others.
+        // Planes that are about as large as the cell, or larger, are worth sharing with other cells.
         let large: Attempt<'_> = |own, groups| own.of_mesh(groups).filter(|found| own.are_large(found));
         for attempt in [large, Layering::as_one, Layering::of_mesh, Layering::fitted, Layering::as_two] {
             if let Some(found) = attempt(self, &mut groups)
@@ -177,7 +179,7 @@ impl<'v> Layering<'v> {
         Ok(None)
     }
 
-    /// The layers that planes of the mesh are.
+    /// Uses planes of the mesh as layers.
     fn of_mesh(&self, groups: &mut [u8]) -> Option<Found> {
         let mut found = Found::default();
         let planes = &self.layers.planes;
@@ -192,14 +194,14 @@ impl<'v> Layering<'v> {
         Some(found)
     }
 
-    /// Whether the planes of the mesh are not much smaller than a face of the cell.
+    /// Returns whether the planes of the mesh are not much smaller than a face of the cell.
     fn are_large(&self, found: &Found) -> bool {
         let face = 4.0 * self.half * self.half;
         let is_large = |plane: u32| self.layers.planes.planes[plane as usize].area >= 0.25 * face;
         found.each().iter().all(|layer| layer.plane.is_some_and(is_large))
     }
 
-    /// A plane of the mesh, seen in the cell; `None` if it is too wide.
+    /// A plane of the mesh as a layer of the cell; `None` if it is too wide.
     fn of_plane(&self, number: u32) -> Option<Layer> {
         let plane = &self.layers.planes.planes[number as usize];
         let (margin, along) = (self.layers.margin(plane), plane.along(self.centre));
@@ -209,7 +211,7 @@ impl<'v> Layering<'v> {
             outer: (plane.high + margin - along) / self.half,
         };
         let layer = Layer { slab, plane: Some(number), is_exact: self.layers.is_exact(plane) };
-        // A part of the cell that rounding makes is left to the layer.
+        // A sliver of the cell that rounding leaves belongs to the layer.
         let range = slab.normal.iter().map(|c| c.abs()).sum::<f64>();
         let is_near = |end: f64| (range - end).abs() < 4.0 * self.slop;
         let (opens_behind, opens_before) = (is_near(-slab.inner), is_near(slab.outer));
@@ -223,12 +225,12 @@ impl<'v> Layering<'v> {
         (self.width(&slab) <= LayersQuestion::SHARE * self.tolerance).then_some(layer)
     }
 
-    /// How wide a slab is; nothing of a side that is all open counts.
+    /// The width of a slab; an open side does not count.
     fn width(&self, slab: &Slab) -> f64 {
         (slab.outer - slab.inner) / sqrt(dot(&slab.normal, &slab.normal))
     }
 
-    /// One layer for all.
+    /// Uses one layer for all facets.
     fn as_one(&self, groups: &mut [u8]) -> Option<Found> {
         groups.fill(0);
         let mut found = Found::default();
@@ -236,8 +238,9 @@ impl<'v> Layering<'v> {
         Some(found)
     }
 
-    /// The same twice, for what has the same on both sides: within the layer either may be. So this is for
-    /// cells that are no larger than what may stay undecided around the surface.
+    /// Uses one layer twice, for a cell with the same value on both sides. Within the layer either value is
+    /// possible. So this is for cells that are no larger than the region that may stay undecided around the
+    /// surface.
     fn as_two(&self, groups: &mut [u8]) -> Option<Found> {
         const DIAGONAL: f64 = 1.732_050_807_568_877_3;
         if self.tolerance < DIAGONAL {
@@ -248,8 +251,8 @@ impl<'v> Layering<'v> {
         Some(found)
     }
 
-    /// The layer around some facets, which may be all that there are; `None` if it is too wide, or they have
-    /// no direction.
+    /// Returns the layer around some facets. `is_lone` says whether they are all facets of the cell. `None`
+    /// if the layer is too wide, or the facets have no common direction.
     fn around(&self, is_member: impl Fn(usize) -> bool, is_lone: bool) -> Option<Layer> {
         let members =
             || self.facets.iter().enumerate().filter(|(i, _)| is_member(*i)).map(|(_, facet)| facet);
@@ -266,19 +269,19 @@ impl<'v> Layering<'v> {
         }
         let margin = 4.0 * range * self.slack + 64.0 * UNIT;
         let slab = Slab { normal, inner: inner - margin, outer: outer + margin };
-        // (What is no number is not less.)
+        // (NaN does not compare as less.)
         let is_thin = self.width(&slab) <= LayersQuestion::SHARE * self.tolerance
             || is_lone && LayersQuestion::admits(&slab, self.tolerance);
         if !is_thin {
             return None;
         }
-        // Nothing lies beyond the cell's corners.
+        // Nothing of the cell lies beyond its corners.
         const NEARLY: f64 = 1.0 - 1e-9;
         let inner = if slab.inner <= -range * NEARLY { f64::NEG_INFINITY } else { slab.inner };
         let outer = if slab.outer >= range * NEARLY { f64::INFINITY } else { slab.outer };
         let layer = Layer { slab: Slab { inner, outer, ..slab }, plane: None, is_exact: false };
         let is_open = (inner == f64::NEG_INFINITY, outer == f64::INFINITY);
-        // Corners of the cell on an open side stay undecided, and so they must be near.
+        // Corners of the cell on an open side stay undecided, and so they must be near the surface.
         let is_left = |corner: &Point| {
             let along = dot(&normal, corner);
             is_open.0 && along <= slab.outer || is_open.1 && along >= slab.inner
@@ -288,7 +291,7 @@ impl<'v> Layering<'v> {
         CORNERS.iter().filter(|corner| is_left(corner)).all(is_near).then_some(layer)
     }
 
-    /// Layers around facets that lie near to the plane of a large one, and face the same side.
+    /// Makes layers around facets that lie near to the plane of a large facet and face the same side.
     fn fitted(&self, groups: &mut [u8]) -> Option<Found> {
         const FREE: u8 = u8::MAX;
         groups.fill(FREE);
@@ -305,7 +308,7 @@ impl<'v> Layering<'v> {
             let middle = offset(&self.facets[seed].polygon.middle());
             for (facet, own) in self.facets.iter().zip(&mut *groups).filter(|(_, own)| **own == FREE) {
                 let is_near = |p: &Point| (offset(p) - middle).abs() <= self.tolerance;
-                // (Beyond a steep facet the layer would go on where there is no surface.)
+                // (Beyond a steep facet, the layer would continue where there is no surface.)
                 let slope = dot(&facet.area, &normal);
                 if 4.0 * slope * slope.abs() >= size(facet) && facet.polygon.points().iter().all(is_near) {
                     *own = group;
@@ -317,7 +320,7 @@ impl<'v> Layering<'v> {
         groups.iter().all(|&group| group != FREE).then_some(found)
     }
 
-    /// The layer of a group: the plane of the mesh that they all lie in, or one around them.
+    /// The layer of a group: the plane of the mesh that holds all its facets, or a layer around them.
     fn of_group(&self, found: &Found, groups: &[u8], group: u8) -> Option<Layer> {
         let planes = &self.layers.planes;
         let mut own = self.facets.iter().zip(groups).filter(|(_, own)| **own == group);
@@ -332,8 +335,8 @@ impl<'v> Layering<'v> {
         self.around(|i| groups[i] == group, false)
     }
 
-    /// The winding number on these sides of layers; nothing if they have no point in common. `None` if that
-    /// is not found out.
+    /// Computes the winding number on these sides of layers; `Some(None)` if the sides have no point in
+    /// common. `None` if it stays undecided.
     fn region(&self, found: &Found, sides: Sides, base: &Base) -> Option<Option<Witness>> {
         let mut halves = [([0.0; 3], 0.0); MOST];
         let mut count = 0;
@@ -359,7 +362,7 @@ impl<'v> Layering<'v> {
         Some(Some(Witness { at, winding: self.view.winding_at(&at, base)? }))
     }
 
-    /// Whether a facet may reach to these sides of layers.
+    /// Returns whether a facet may reach to these sides of layers.
     fn reaches(&self, found: &Found, facet: &Facet, sides: Sides) -> bool {
         let corners = || self.view.placed.original(facet.triangle);
         for (layer, side) in found.each().iter().zip(sides) {
@@ -377,7 +380,7 @@ impl<'v> Layering<'v> {
             let range = normal.iter().map(|c| c.abs()).sum::<f64>();
             let room = range * self.slack + self.slop;
             let (normal, end) = if is_behind { (normal, inner) } else { (normal.map(|c| -c), -outer) };
-            // (Where too many corners are left, the facet may reach there.)
+            // (If clipping leaves too many corners, the facet may reach there.)
             let Some(clipped) = left.behind(&normal, end + room) else { return true };
             if clipped.points().is_empty() {
                 return false;
@@ -387,7 +390,7 @@ impl<'v> Layering<'v> {
         true
     }
 
-    /// The truth table of layers; `None` if it is not found out, or none says enough.
+    /// Returns the truth table of layers. `None` if it stays undecided, or no table says enough.
     fn table(&self, found: &Found, groups: &[u8], base: &Base) -> Option<Table> {
         let count = found.count;
         let mut witnesses = [None; 1 << MOST];
@@ -403,7 +406,7 @@ impl<'v> Layering<'v> {
         for of in (1..1usize << count).filter(|of| of & !widest == 0) {
             for others in (0..1usize << count).filter(|signs| signs & of == 0) {
                 let allowed = self.allowed(found, groups, (of, others), &witnesses)?;
-                // Where nothing that is known differs, all of the layers is undecided there.
+                // Where all known values agree, the whole of the layers is undecided.
                 let mut here = (0..1usize << count)
                     .filter(|signs| signs & !of == others)
                     .filter_map(|signs| known[signs]);
@@ -416,7 +419,7 @@ impl<'v> Layering<'v> {
                 rule_count += 1;
             }
         }
-        // Of tables of which what is known is true, the first that says most.
+        // Among the tables that agree with the known values, the first that decides most.
         let said = |table: usize| {
             let holds = |signs: usize| table >> signs & 1 != 0;
             let is_true = (0..1 << count).all(|signs| known[signs].is_none_or(|known| known == holds(signs)));
@@ -436,8 +439,8 @@ impl<'v> Layering<'v> {
         Some(Table((0..64).fold(0, |all, signs| all | wide(signs) << signs)))
     }
 
-    /// Whether all of the cell's own ones of the layers `of` lies near to a facet each: what is near to a
-    /// convex polygon is convex, so that it is enough that the corners of the layer are.
+    /// Returns whether each of the layers `of` that belongs to the cell alone lies wholly near one facet. The
+    /// points near a convex polygon form a convex set, so that testing the corners of the layer suffices.
     fn are_covered(&self, found: &Found, of: usize) -> bool {
         let is_own = |(i, layer): &(usize, &Layer)| of >> i & 1 != 0 && layer.plane.is_none();
         found.each().iter().enumerate().filter(is_own).all(|(_, layer)| {
@@ -448,7 +451,8 @@ impl<'v> Layering<'v> {
         })
     }
 
-    /// Which value a table may have for all sides of the layers `of` at these sides of the others.
+    /// Returns the constant value that a table may have for all sides of the layers `of`, at these sides of
+    /// the other layers.
     fn allowed(
         &self,
         found: &Found,
@@ -467,7 +471,7 @@ impl<'v> Layering<'v> {
             .peekable();
         let here = (0..1usize << count).filter(|signs| signs & !of == others);
         if reaching.peek().is_none() {
-            // All of it has one winding number.
+            // The whole region has one winding number.
             let mut windings = here.filter_map(|signs| witnesses[signs]).map(|witness| witness.winding);
             let Some(winding) = windings.next() else { return Some(None) };
             return windings.all(|other| other == winding).then_some(Some(self.fill.encloses(winding)));
@@ -475,7 +479,7 @@ impl<'v> Layering<'v> {
         let (Some(behind), Some(before)) = (witnesses[others | of], witnesses[others]) else {
             return Some(None);
         };
-        // From behind to before, each facet that is crossed takes one.
+        // From behind to before, each facet that is crossed subtracts one.
         let is_crossed_up = |facet: &Facet, group: u8, witness: &Witness, sign: f64| {
             let layer = &found.layers[usize::from(group)];
             let depth = match sign > 0.0 {
@@ -486,13 +490,13 @@ impl<'v> Layering<'v> {
             let [u, v] = [minus(b, a), minus(c, a)];
             let (area, room) = (cross(&u, &v), sqrt(dot(&u, &u) * dot(&v, &v)));
             let length = sqrt(dot(&area, &area));
-            // What the corners are off by turns the facet so far.
+            // The errors of the corners may turn the facet by this angle.
             let turned =
                 16.0 * (facet.seen.error + UNIT * facet.seen.reach) * sqrt(dot(&u, &u).max(dot(&v, &v)))
                     / length
                     + 16.0 * UNIT * room / length;
             let off: Point = array(|k| area[k] / length - layer.slab.normal[k]);
-            // (What is no number is not less.)
+            // (NaN does not compare as less.)
             (sqrt(dot(&off, &off)) + turned) * FAR < depth
         };
         let is_monotone = self.view.displacement() == 0.0
@@ -507,7 +511,8 @@ impl<'v> Layering<'v> {
         Some(is_one.then_some(value))
     }
 
-    /// The function by the numbers of the layers.
+    /// Returns the function in the numbers of the mesh's layers. Layers without a plane of the mesh are added
+    /// to `own`.
     fn named(
         &self,
         found: &Found,
@@ -527,7 +532,7 @@ impl<'v> Layering<'v> {
             };
         }
         let open = OpenSurfaces::new(numbers[..found.count].iter().copied(), table);
-        // (There are no more than three.)
+        // (There are at most three layers.)
         Ok(open.unwrap_or(OpenSurfaces::constant(false)))
     }
 }
@@ -550,7 +555,7 @@ impl Found {
         &self.layers[..self.count]
     }
 
-    /// Adds a layer, if there is room; returns its number.
+    /// Adds a layer, if there is room, and returns its place.
     fn push(&mut self, layer: Layer) -> Option<u8> {
         *self.layers.get_mut(self.count)? = layer;
         self.count += 1;
@@ -558,15 +563,16 @@ impl Found {
     }
 }
 
-/// A point between layers, and the winding number there.
+/// A point between layers, and its winding number.
 #[derive(Debug, Clone, Copy)]
 struct Witness {
     at: Point,
     winding: i32,
 }
 
-/// What must hold of a table for all sides of the layers `of`, at the sides `others` of the others: if its
-/// value is one, it is the one that is allowed.
+/// A condition on a table, for all sides of the layers `of` at the sides `others` of the other layers: if the
+/// table is constant there, its value must be the allowed one. Without an allowed value, the table must not
+/// be constant.
 #[derive(Debug, Clone, Copy, Default)]
 struct Rule {
     of: usize,
@@ -575,7 +581,7 @@ struct Rule {
 }
 
 impl Rule {
-    /// Whether a table tells something there; `None` if it must not.
+    /// Returns whether a table is constant there; `None` if it violates the rule.
     fn told(&self, holds: impl Fn(usize) -> bool, all: usize) -> Option<bool> {
         let value = holds(self.others);
         let is_one =
@@ -584,7 +590,7 @@ impl Rule {
     }
 }
 
-/// A slab with ends: beyond the cell those of an open side do not matter.
+/// Bounds a slab on both sides: an open side ends beyond the cell, where its place does not matter.
 fn ended(slab: &Slab) -> Slab {
     let far = 2.0 * slab.normal.iter().map(|c| c.abs()).sum::<f64>();
     Slab { inner: slab.inner.max(-far), outer: slab.outer.min(far), ..*slab }
@@ -605,7 +611,7 @@ const CORNERS: [Point; 8] = {
     corners
 };
 
-/// About how far a point lies from a polygon.
+/// The approximate distance of a point from a polygon.
 fn away(p: &Point, polygon: &Polygon) -> f64 {
     let points = polygon.points();
     let normal = unit(polygon.twice_area()).unwrap_or([0.0; 3]);
@@ -625,10 +631,10 @@ fn away(p: &Point, polygon: &Polygon) -> f64 {
     }
 }
 
-/// A direction of length one.
+/// The direction as a unit vector.
 fn unit(area: Point) -> Option<Point> {
     let most = area.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    // (What is no number is in no range.)
+    // (NaN is in no range.)
     if !(1e-30..1e30).contains(&most) {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Triangles in the coordinates of a cell.
 //!
-//! The cell is [-1, 1]³. Corners are rounded in these coordinates, and a vertex comes out the same for each
-//! triangle that has it. So the rounded surface hangs together as the true one does.
+//! The cell is [-1, 1]³. Corners are rounded in these coordinates, and a vertex is rounded alike for each of
+//! its triangles. So the rounded surface is connected as the true one is.
 
 use super::placed::Placed;
 use crate::lattice::exact::sqrt;
@@ -9,11 +9,11 @@ use core::array::from_fn as array;
 
 pub(super) type Point = [f64; 3];
 
-/// 2^-52: more than what a rounding adds, relative to the result.
+/// 2^-52: more than the relative error of one rounding.
 pub(super) const UNIT: f64 = f64::EPSILON;
 
-/// How far clipping moves points of a polygon at the most, in [`UNIT`]s of what its triangle reaches to: 6
-/// for each of seven planes.
+/// The farthest that clipping moves points of a polygon, in [`UNIT`]s of its triangle's reach: 6 for each of
+/// seven planes.
 pub(super) const CLIPPING: f64 = 42.0;
 
 /// A cell and the mesh that its triangles belong to.
@@ -34,27 +34,27 @@ pub(super) struct View<'a> {
 pub(super) struct Seen {
     pub(super) corners: [Point; 3],
     pub(super) vertices: [u32; 3],
-    /// How far the corners are off along an axis at the most.
+    /// The greatest error of the corners along an axis.
     pub(super) error: f64,
     /// The greatest magnitude of a coordinate, and at least 1.
     pub(super) reach: f64,
-    /// The box around it.
+    /// The bounding box.
     pub(super) low: Point,
     pub(super) high: Point,
 }
 
 impl View<'_> {
-    /// From finest cells to coordinates of the cell.
+    /// The factor from finest cells to coordinates of the cell.
     pub(super) fn scale(&self) -> f64 {
         2.0 / self.size as f64
     }
 
-    /// How far the surface may lie from the mesh along an axis, in the coordinates of the cell.
+    /// The greatest distance of the surface from the mesh along an axis, in the coordinates of the cell.
     pub(super) fn displacement(&self) -> f64 {
         self.placed.displacement * self.scale()
     }
 
-    /// How far it may lie from the mesh, straight on.
+    /// The greatest Euclidean distance of the surface from the mesh, in the coordinates of the cell.
     pub(super) fn radius(&self) -> f64 {
         self.placed.radius * self.scale()
     }
@@ -64,7 +64,7 @@ impl View<'_> {
         array(|axis| (2 * (cell[axis] - self.at[axis]) + 1 - self.size) as f64 / self.size as f64)
     }
 
-    /// A triangle of the mesh.
+    /// A triangle of the mesh in the coordinates of the cell.
     #[inline]
     pub(super) fn seen(&self, triangle: u32) -> Seen {
         let vertices = self.placed.mesh.triangles()[triangle as usize];
@@ -87,23 +87,23 @@ impl View<'_> {
 }
 
 impl Seen {
-    /// More than what corners and clipped points are off by.
+    /// More than the error of corners and of clipped points.
     pub(super) fn slack(&self) -> f64 {
         2.0 * self.error + CLIPPING * UNIT * self.reach
     }
 
-    /// The longest edge of what of its box lies in the cell, with all that is rounded.
+    /// The longest edge of the part of its bounding box in the cell, with a margin for all roundings.
     pub(super) fn extent(&self) -> f64 {
         let slack = self.slack();
         (0..3).fold(slack, |most: f64, k| most.max(self.high[k].min(1.0) - self.low[k].max(-1.0) + slack))
     }
 
-    /// Whether all of it lies within `limit` of the cell's centre along each axis.
+    /// Returns whether the triangle lies within `limit` of the cell's centre along each axis.
     pub(super) fn is_within(&self, limit: f64) -> bool {
         (0..3).all(|k| self.high[k] <= limit && -self.low[k] <= limit)
     }
 
-    /// How many of the cell's planes, or of those at `limit`, cut it or have it beyond them.
+    /// Returns how many of the six planes at `limit` cut the triangle, or have it beyond them.
     pub(super) fn planes(&self, limit: f64) -> f64 {
         (0..3).map(|k| f64::from((self.high[k] > limit) as u8 + (-self.low[k] > limit) as u8)).sum()
     }
@@ -114,8 +114,8 @@ impl Seen {
         0.5 * sqrt(dot(&twice, &twice))
     }
 
-    /// The part within `limit` of the cell's centre along each axis. `None` if it has more corners than there
-    /// is room for, which is possible only by rounding.
+    /// Returns the part within `limit` of the cell's centre along each axis. `None` if it has more corners
+    /// than fit, which only rounding can cause.
     #[inline]
     pub(super) fn clipped(&self, limit: f64) -> Option<Polygon> {
         let mut polygon = Polygon::new(&self.corners);
@@ -129,15 +129,15 @@ impl Seen {
         Some(polygon)
     }
 
-    /// On which side of the plane a point lies that is off by `error`: 1 in front, −1 behind, 0 if that is
-    /// not sure.
+    /// Returns on which side of the plane a point with an error of `error` lies: 1 in front, −1 behind, 0 if
+    /// unsure.
     pub(super) fn side(&self, p: &Point, error: f64) -> i32 {
         let [a, b, c] = &self.corners;
         volume_sign([&minus(b, a), &minus(c, a), &minus(p, a)], self.error + error)
     }
 
-    /// By how much the winding number changes on the way from a point to another: 1 if the way goes through
-    /// the triangle from its front, −1 from behind, 0 if it misses. `None` if that is not sure.
+    /// The change of the winding number on the way from one point to another: 1 if the way passes the
+    /// triangle from its front, −1 from behind, 0 if it misses. `None` if unsure.
     pub(super) fn pierced(&self, from: &Point, to: &Point) -> Option<i32> {
         let margin = 2.0 * self.error;
         let is_beside = (0..3).any(|axis| {
@@ -161,11 +161,11 @@ impl Seen {
     }
 }
 
-/// The sign of u × v · w for differences of points that are off by `error`; 0 if it is not sure.
+/// The sign of u × v · w for differences of points with errors of `error`; 0 if unsure.
 fn volume_sign([u, v, w]: [&Point; 3], error: f64) -> i32 {
     let size = [u, v, w].into_iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
     let value = dot(&cross(u, v), w);
-    // A factor is off by twice the error and a rounding; there are six products of three factors.
+    // The error of a factor is twice `error` and a rounding; there are six products of three factors.
     let sure = 64.0 * size * size * (error + UNIT * size);
     if value > sure {
         1
@@ -184,7 +184,7 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
-    /// A triangle that seven planes cut has ten corners; there is room for some that come of rounding.
+    /// A triangle cut by seven planes has ten corners. The rest is room for corners that rounding creates.
     const MOST: usize = 14;
 
     fn new([a, b, c]: &[Point; 3]) -> Polygon {
@@ -215,7 +215,7 @@ impl Polygon {
         Some(kept)
     }
 
-    /// The part where `normal` · p is at most `bound`. `None` as above.
+    /// The part where `normal` · p is at most `bound`. `None` if it has more corners than fit.
     pub(super) fn behind(&self, normal: &Point, bound: f64) -> Option<Polygon> {
         let mut kept = Polygon { points: [[0.0; 3]; Polygon::MOST], count: 0 };
         let points = self.points();
@@ -245,7 +245,7 @@ impl Polygon {
         0.5 * sqrt(dot(&twice, &twice))
     }
 
-    /// The normal, as long as twice the area.
+    /// The normal, with the length of twice the area.
     pub(super) fn twice_area(&self) -> Point {
         let mut sum = [0.0; 3];
         if let [a, rest @ ..] = self.points() {
@@ -264,7 +264,7 @@ impl Polygon {
     }
 }
 
-/// The point at `bound` on the way between two points on different sides of it.
+/// The point at coordinate `bound` on the segment between two points on different sides of it.
 pub(super) fn between(p: &Point, q: &Point, axis: usize, bound: f64) -> Point {
     let t = (bound - p[axis]) / (q[axis] - p[axis]);
     let mut point = array(|k| p[k] + t * (q[k] - p[k]));

@@ -1,4 +1,4 @@
-//! Splitting the cells of a mesh.
+//! A mesh as a solid: the splits of its cells, and all its answers.
 
 use super::chords::{Chords, Rays};
 use super::crossing::Projection;
@@ -34,27 +34,27 @@ use once_cell::race::OnceBox;
 
 /// A triangle mesh as a solid. Cheap to clone.
 ///
-/// Any mesh will do. Where it is closed, what it encloses is exact. Where it is not, [`FillRule`] says by
-/// which convention a point is inside; a cell is FULL or EMPTY if that is proven for all of its points, and
-/// around holes stay PARTIAL cells which no triangle cuts: [`TriangleMesh::report`] tells of holes.
+/// Any mesh is accepted. For a closed mesh, the inside is exact. For an open mesh, [`FillRule`] is the
+/// convention that says which points are inside. A cell is FULL or EMPTY only if this is proven for all of
+/// its points. Around holes, cells that no triangle cuts stay PARTIAL; [`TriangleMesh::report`] lists holes.
 ///
-/// # One question after the other
+/// # Single queries
 /// Rays ([`cast_rays`](crate::cast_rays), [`ray_spans`](crate::query::ray_spans)), points
 /// ([`contains`](crate::contains)), boxes ([`classify_box`](crate::query::classify_box)) and distances
-/// ([`distances`](crate::query::distances)) are answered without cells. The first such question makes what
-/// that takes: a tree over the triangles, which the mesh keeps for all solids that share it (O(t log t), 0.1
-/// to 0.3 µs a triangle; 36 bytes a triangle); for distances of closed meshes, on which sides of its
-/// triangles the solid lies (about twice that, and a byte); for open meshes, the rim of their holes (48 bytes
-/// an edge). A [placed](Self::placed) copy takes over the order of the tree, and makes its boxes anew.
-/// Threads that ask first at the same time may each make it once. A solid that is not
-/// [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer than the
-/// answer.
+/// ([`distances`](crate::query::distances)) are answered without cells. The first such query builds its data
+/// structures. These are: a tree over the triangles, which the mesh keeps for all solids that share it (O(t
+/// log t), 0.1 to 0.3 µs a triangle; 36 bytes a triangle); for distances of closed meshes, on which sides of
+/// its triangles the solid lies (about twice that time, and a byte a triangle); for open meshes, the rim of
+/// their holes (48 bytes an edge). A [placed](Self::placed) copy takes over the order of the tree, and
+/// recomputes its boxes. Threads whose first queries coincide may each build the structures once. A solid
+/// that is not [`Prepared`](crate::solid::Prepared) is put on its frame for every call, which takes longer
+/// than the answer.
 ///
-/// Where a hole is near, an open mesh looks at the edges of its rim for a question: once as a rule, and some
-/// dozen times where a ray passes through a hole. Where the winding number is one half away from triangles,
-/// ends of spans are as narrow as at triangles, and have no triangle. Cells are asked of rays that come very
-/// near to the rim, of boxes and points next to a hole for which the rim's bounds are too wide, and of rays,
-/// boxes and distances if the rim has more than 16 384 edges.
+/// Near a hole, a query of an open mesh looks at all edges of the rim: once as a rule, and some dozen times
+/// for a ray through a hole. Where the winding number is one half away from triangles, the ends of spans are
+/// as narrow as at triangles, but have no triangle. Some queries still take cells: rays that come very near
+/// to the rim; boxes and points next to a hole if the rim's bounds are too wide for them; and all rays, boxes
+/// and distances if the rim has more than 16 384 edges.
 ///
 /// ```
 /// use leafless::{Control, FillRule, Frame, MeshSolid, Rule, TriangleMesh, build};
@@ -72,32 +72,33 @@ pub struct MeshSolid {
     boundary: Arc<Boundary>,
 }
 
-/// What is known of a mesh's boundary, and of what it encloses.
+/// Lazily computed properties of a mesh's boundary, and of the solid that it encloses.
 struct Boundary {
     loops: Loops,
-    /// How far the solid may reach beyond the mesh's box, once somebody has asked.
+    /// The reach of the solid beyond the mesh's bounding box. Computed on first use.
     reach: OnceBox<[[f64; 3]; 2]>,
-    /// The same.
+    /// The moments of the solid. Computed on first use.
     moments: OnceBox<MeshMoments>,
-    /// The same; nothing if the triangles lie too close to each other.
+    /// The sides of the triangles on which the solid lies; `None` if triangles lie too close to each other.
+    /// Computed on first use.
     sides: OnceBox<Option<Sides>>,
-    /// The rim of an open mesh.
+    /// The rim of an open mesh. Computed on first use.
     rim: OnceBox<Rim>,
 }
 
-/// A mesh on a frame: the handle.
+/// A mesh on a frame: a cheap handle.
 #[derive(Clone)]
 pub struct MeshClassifier {
     mesh: Arc<MeshOnFrame>,
     solid: MeshSolid,
 }
 
-/// A worker on a mesh: lists of triangles, one for each cell on the way down, and what scans a block.
+/// A worker on a mesh: the lists of triangles of the cells on the way down, and scratch memory.
 pub struct MeshWorker {
     mesh: Arc<MeshOnFrame>,
     solid: MeshSolid,
     triangles: Vec<u32>,
-    /// Bit k: the triangle belongs to child k.
+    /// Per triangle: bit k is set if the triangle belongs to child k.
     masks: Vec<u8>,
     surroundings: Surroundings,
     scan: Option<Box<Scan>>,
@@ -107,17 +108,18 @@ pub struct MeshWorker {
 }
 
 impl MeshSolid {
-    /// What a mesh encloses; the mesh is shared (an `Arc`) or taken over. O(1) for a closed mesh whose edges
-    /// were analysed before, else O(t), and n log n in the edges of the boundary.
+    /// Makes a solid of the points that a mesh encloses. The mesh is shared (an `Arc`) or taken over. O(1)
+    /// for a closed mesh whose edges were analysed before. Otherwise O(t), and O(n log n) in the edges of the
+    /// boundary.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if the mesh is empty, for [`FillRule::EvenOdd`] if an odd number of triangles meet on
-    /// an edge, and if the mesh has a [deviation](TriangleMesh::with_deviation) and [is not
-    /// closed](TriangleMesh::check_closed) as the rule demands; [`Error::OutOfMemory`].
+    /// [`Error::Mesh`] in three cases: the mesh is empty; an odd number of triangles meet on an edge, for
+    /// [`FillRule::EvenOdd`]; the mesh has a [deviation](TriangleMesh::with_deviation) and [is not
+    /// closed](TriangleMesh::check_closed) as the rule demands. [`Error::OutOfMemory`].
     pub fn new(mesh: impl Into<Arc<TriangleMesh>>, fill: FillRule) -> Result<MeshSolid, Error> {
         let mesh = mesh.into();
         if mesh.deviation() > 0.0 {
-            // (A rim that bends may wind around a point in any way.)
+            // (A rim with a deviation may wind around a point in any way.)
             mesh.check_closed(fill)?;
         }
         let loops = match fill {
@@ -143,12 +145,12 @@ impl MeshSolid {
         })
     }
 
-    /// The mesh.
+    /// The mesh that bounds the solid.
     pub fn mesh(&self) -> &Arc<TriangleMesh> {
         &self.mesh
     }
 
-    /// The volume and the moments of the solid, or why they are not known without splitting cells:
+    /// Returns the volume and the moments of the solid, or the reason why they need a split of cells:
     /// [`TriangleMesh::moments`], kept for the solid and its clones.
     ///
     /// # Errors
@@ -158,15 +160,15 @@ impl MeshSolid {
         self.boundary.moments.get_or_try_init(find).copied()
     }
 
-    /// What answers without cells: of a mesh whose triangles have a tree, and whose rim is known if it is
-    /// open.
+    /// Returns the tracer that answers without cells. `None` before the triangles have a tree and, for an
+    /// open mesh, before its rim is computed.
     #[inline]
     fn tracer(&self) -> Option<Tracer<'_>> {
         let rim = if self.is_closed() { None } else { Some(self.boundary.rim.get()?) };
         Some(Tracer { tree: self.mesh.known_triangle_tree()?, fill: self.fill, rim })
     }
 
-    /// Whether the rim is short enough that rays, boxes and distances are worth a look at all of it.
+    /// Returns whether the rim is short enough for rays, boxes and distances to look at all of it.
     fn is_traced(&self) -> bool {
         self.boundary.loops.edges() <= MOST_EDGES
     }
@@ -175,13 +177,13 @@ impl MeshSolid {
         self.boundary.loops.caps() == 0
     }
 
-    /// On which side of each triangle the solid lies, as far as that is known.
+    /// Returns on which side of each triangle the solid lies, as far as this is known.
     fn sides(&self, control: &Control<'_>) -> Result<Option<&Sides>, Error> {
         let find = || self.mesh.sides(self.fill, control).map(Box::new);
         self.boundary.sides.get_or_try_init(find).map(Option::as_ref)
     }
 
-    /// The solid under an affine map: its vertices are moved, as [`TriangleMesh::placed`] says.
+    /// Returns the solid under an affine map. Its vertices are moved as [`TriangleMesh::placed`] says.
     ///
     /// # Errors
     /// As [`TriangleMesh::placed`].
@@ -202,7 +204,7 @@ impl MeshOnFrame {
         if within && self.is_empty_outside() { Tag::Empty } else { Tag::Partial }
     }
 
-    /// The planes of the mesh.
+    /// The planes of the mesh. Computed on first use.
     fn layers(&self, control: &Control<'_>) -> Result<&Layers, Error> {
         self.layers.get_or_try_init(|| {
             let Placed { mesh, frame, .. } = &self.placed;
@@ -215,7 +217,7 @@ impl MeshOnFrame {
         })
     }
 
-    /// What is known of a cell that these triangles cut.
+    /// The verdict of a cell that these triangles cut.
     #[inline]
     fn verdict(
         &self,
@@ -232,11 +234,11 @@ impl MeshOnFrame {
     }
 }
 
-/// Edges of a rim that are looked at for every ray, box or distance at the most: with more of them cells are
-/// no slower.
+/// The most edges of a rim for which every ray, box or distance looks at all edges. With more edges, cells
+/// are as fast.
 const MOST_EDGES: usize = 1 << 14;
 
-/// How many triangles are looked at together.
+/// The number of triangles that are processed together.
 const BATCH: usize = 64;
 
 /// The lowest finest cell of `cell`, and its edge in finest cells.
@@ -244,7 +246,7 @@ fn extent(cell: Cell, depth: u8) -> ([i32; 3], i32) {
     (cell.first_at(depth).at.map(|a| a as i32), 1 << (depth - cell.level))
 }
 
-/// The triangles of a part: the universe's are shared, others lie in the scratch memory.
+/// The triangles of a part: the universe's list is shared, the other lists lie in the scratch memory.
 #[inline(always)]
 fn list<'t>(roots: &'t [u32], own: &'t [u32], part: &MeshPart) -> &'t [u32] {
     match part.first.checked_sub(roots.len()) {
@@ -256,8 +258,8 @@ fn list<'t>(roots: &'t [u32], own: &'t [u32], part: &MeshPart) -> &'t [u32] {
 impl Solid for MeshSolid {
     type Classifier = MeshClassifier;
 
-    /// O(v + t); memory beyond the mesh 37 bytes a vertex, and 4 a triangle. A mesh that reaches beyond the
-    /// universe is clipped by it, which the exterior tells.
+    /// O(v + t); memory beyond the mesh: 37 bytes a vertex, and 4 a triangle. The universe clips a mesh that
+    /// reaches beyond it; the exterior reports this.
     fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<MeshClassifier, Error> {
         let mut placed = Placed::new(self.mesh.clone(), frame)?;
         let caps = Caps::close(&mut placed, &self.boundary.loops)?;
@@ -296,8 +298,8 @@ impl Solid for MeshSolid {
         Ok(MeshClassifier { mesh, solid: self.clone() })
     }
 
-    /// For a closed mesh, the box around it. An open one may enclose points beyond, and the box is larger by
-    /// as much; O(n) in the edges of the boundary, once.
+    /// The bounding box of a closed mesh. An open mesh may enclose points beyond its own bounding box, and
+    /// the box is larger by as much; this takes O(n) in the edges of the boundary, once.
     fn bounds(&self) -> Option<Bounds> {
         let (min, max) = self.mesh.bounds();
         let displacement = self.mesh.displacement();
@@ -307,7 +309,7 @@ impl Solid for MeshSolid {
             return Some(bounds);
         }
         let find = || reach::reach(&self.mesh, loops, displacement).map(Box::new);
-        // (Without memory to find out, nothing is known.)
+        // (Without the memory to compute the reach, there are no bounds.)
         let [below, above] = reach.get_or_try_init(find).ok()?;
         Bounds::new(
             axes(|axis| {
@@ -331,7 +333,7 @@ impl Solid for MeshSolid {
         Motion::Vertices
     }
 
-    /// The mesh, and what was found out about its boundary and what it encloses.
+    /// The bytes of the mesh, and of all properties computed so far.
     fn kept_bytes(&self) -> u64 {
         let Boundary { loops, reach, moments, sides, rim } = &*self.boundary;
         let found = reach.get().map_or(0, size_of_val)
@@ -341,7 +343,7 @@ impl Solid for MeshSolid {
         self.mesh.bytes() + (size_of::<Boundary>() + loops.bytes() + found) as u64
     }
 
-    /// Of the mesh. O(v + t).
+    /// The fingerprint of the mesh. O(v + t).
     fn fingerprint(&self) -> Option<Fingerprint> {
         let (vertices, triangles) =
             (self.mesh.vertices().as_flattened(), self.mesh.triangles().as_flattened());
@@ -350,7 +352,7 @@ impl Solid for MeshSolid {
             .numbers(&[self.mesh.displacement()])
             .numbers(vertices)
             .words(triangles.len() as u64, triangles.iter().map(|&index| index.into()));
-        // (So fingerprints of meshes without one are as they always were.)
+        // (So a deviation of zero does not change the fingerprint.)
         let deviation = self.mesh.deviation();
         Some(if deviation > 0.0 { all.numbers(&[deviation]) } else { all }.finish())
     }
@@ -392,14 +394,15 @@ impl Classifier for MeshClassifier {
         (size_of::<MeshOnFrame>() + placed.bytes() + caps.bytes() + memory::bytes_of(roots) + layers) as u64
     }
 
-    /// Moments and area are known if the mesh is closed and no two triangles intersect. O(t).
+    /// Moments and area are available if the mesh is closed and no two triangles intersect. O(t).
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         let solid = &self.solid;
         match question {
             WholeQuestion::Moments(known) => match solid.moments(control)? {
                 MeshMoments::Known(moments) => *known = Some(moments),
                 MeshMoments::Open | MeshMoments::Intersecting(_) | MeshMoments::Undecided => {
-                    // Whoever asks for moments goes on to those of cells.
+                    // A query of moments is usually followed by queries of cells' moments, which need the
+                    // sides.
                     solid.sides(control)?;
                 }
             },
@@ -465,7 +468,8 @@ impl Classifier for MeshClassifier {
     }
 }
 
-/// A cell that the surface cuts, and in which its winding number is an integer or near to one.
+/// The view of a cell that the surface cuts, if the surface's winding number in it is an integer or near to
+/// one.
 fn view<'a>(
     mesh: &'a MeshOnFrame,
     own: &'a [u32],
@@ -535,7 +539,7 @@ impl Worker for MeshWorker {
         let mut steps = [[0; 8]; 2];
         let mut boxes = [[[0; 3]; 2]; BATCH];
         for batch in list(&mesh.roots, triangles, part).chunks(BATCH) {
-            // Memory is slow: many are asked for before the first is looked at.
+            // Memory is slow: many loads are started before the first result is used.
             for (ranks, &triangle) in boxes.iter_mut().zip(batch) {
                 *ranks = mesh.placed.rank_box(triangle);
             }
@@ -591,7 +595,7 @@ impl Worker for MeshWorker {
         let (at, _) = extent(cell, mesh.placed.frame.depth());
         let triangles = list(&mesh.roots, triangles, part);
         if part.caps.is_some() {
-            // (Which cells the boundary of an open surface crosses is asked cell by cell.)
+            // (For an open surface, each cell is queried whether the boundary crosses it.)
             if block.planes_mut().is_some() {
                 return Ok(false);
             }
@@ -674,7 +678,7 @@ impl Batch for MeshWorker {
         sample_one_by_one(self, cells, control, inside)
     }
 
-    /// Once [`WholeQuestion::Direct`] was asked. A point on the surface gets no answer.
+    /// Answers once [`WholeQuestion::Direct`] was asked. A point on the surface gets no answer.
     fn inside(&mut self, points: &[[f64; 3]], answers: &mut [Option<bool>]) -> Result<(), Error> {
         let Some(tracer) = self.solid.tracer() else { return Ok(()) };
         for (point, answer) in points.iter().zip(answers) {
@@ -689,7 +693,7 @@ impl Batch for MeshWorker {
 }
 
 impl MeshWorker {
-    /// What is told of a cell by which sides of which triangles the solid lies on.
+    /// Evaluates a function of the sides of triangles on which the solid lies, in a cell.
     fn of_sides<T>(
         &mut self,
         cell: Cell,
@@ -703,7 +707,7 @@ impl MeshWorker {
         }
     }
 
-    /// Whether the centre of a finest cell lies inside: the lowest centre of such a cell is its only one.
+    /// Returns whether the centre of a finest cell lies inside: its only centre is its lowest centre.
     fn contains_centre(&mut self, cell: Cell, part: &MeshPart) -> bool {
         match part.caps {
             Some(_) => {
@@ -756,7 +760,7 @@ impl MeshWorker {
         if part.caps.is_some() {
             return mesh.open_chords(open_rays, (triangles, at, size), *part, beam);
         }
-        // Caps come last. They are not counted where the surface's own winding number is known.
+        // Caps come last in the list. They are not counted where the surface's own winding number is known.
         let triangles = &triangles[..triangles.partition_point(|&triangle| !mesh.placed.is_cap(triangle))];
         let rays = Rays { placed: &mesh.placed, at, triangles, winding: part.winding, fill: mesh.fill };
         chords.find(rays, beam)?;
@@ -764,8 +768,8 @@ impl MeshWorker {
     }
 }
 
-/// The child of edge `half` of the cell at `at` in whose interior a triangle lies, if its ranks tell: what
-/// [`children_cut`] would find, without a look at the corners.
+/// Returns the child of edge `half` of the cell at `at` in whose interior a triangle lies, if the triangle's
+/// ranks suffice: the result of [`children_cut`], without a look at the corners.
 #[inline(always)]
 fn only_child([low, high]: [[i32; 3]; 2], at: [i32; 3], half: i32) -> Option<u8> {
     let mut mask = 0xFFu8;
@@ -782,7 +786,7 @@ fn only_child([low, high]: [[i32; 3]; 2], at: [i32; 3], half: i32) -> Option<u8>
     Some(mask)
 }
 
-/// Which of the children of edge `half` of the cell at `at` a triangle cuts.
+/// Returns which children of edge `half` of the cell at `at` a triangle cuts, as a bit mask.
 fn children_cut(placed: &Placed, corners: &Corners, at: [i32; 3], half: i32, height: u8) -> u8 {
     let (min, max) = bounds(placed, corners);
     let mut candidates = 0xFFu8;
@@ -798,8 +802,8 @@ fn children_cut(placed: &Placed, corners: &Corners, at: [i32; 3], half: i32, hei
             strictly &= min[axis] > middle && max[axis] < high;
         }
     }
-    // A triangle well inside of the only child that its box reaches needs no further test. (A finest cell
-    // gets it all the same: of a triangle without area only the test knows that it cuts nothing.)
+    // A triangle well inside the only child that its box reaches needs no further test. (A finest cell needs
+    // the test all the same: only the test finds that a triangle without area cuts nothing.)
     if candidates.count_ones() == 1 && strictly && height > 0 {
         return candidates;
     }

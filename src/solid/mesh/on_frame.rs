@@ -1,4 +1,4 @@
-//! A mesh on a frame, and what is known of its cells.
+//! A mesh on a frame, and the state of its cells.
 
 use super::crossing::Projection;
 use super::layers::Layers;
@@ -11,7 +11,7 @@ use crate::solid::Verdict;
 use alloc::vec::Vec;
 use once_cell::race::OnceBox;
 
-/// A mesh on the lattice of a frame, with what is known of the universe.
+/// A mesh on the lattice of a frame, with properties of the universe.
 pub(super) struct MeshOnFrame {
     pub(super) placed: Placed,
     pub(super) caps: Caps,
@@ -19,58 +19,59 @@ pub(super) struct MeshOnFrame {
     /// The triangles that cut the universe, in ascending order, and the winding number of its lowest centre.
     pub(super) roots: Vec<u32>,
     pub(super) winding: i32,
-    /// What is known of the space around the universe, once somebody has asked.
+    /// The tag of the space around the universe. Computed on first use.
     pub(super) exterior: OnceBox<Tag>,
-    /// The planes of the mesh, once somebody has asked.
+    /// The planes of the mesh. Computed on first use.
     pub(super) layers: OnceBox<Layers>,
 }
 
-/// What is remembered of a cell: the triangles that cut it, and the winding number of its lowest centre.
+/// The state of a cell: the triangles that cut it, and the winding number of its lowest centre.
 #[derive(Debug, Clone, Copy)]
 pub struct MeshPart {
-    /// Where the triangles lie in the scratch memory.
+    /// The range of its triangles in the scratch memory.
     pub(super) first: usize,
     pub(super) count: usize,
-    /// Of the surface with its caps; of the surface alone if `caps` is None.
+    /// The winding number of the surface with its caps; of the surface alone if `caps` is `None`.
     pub(super) winding: i32,
-    /// What is known of the caps' winding number, which is not an integer. None if the surface's own rounds
-    /// to `winding` throughout the cell, but for what the triangles that cut it change: always without caps.
+    /// The branch of the caps' winding number, which is not an integer. `None` if the surface's own winding
+    /// number rounds to `winding` throughout the cell, except for the changes at the triangles that cut the
+    /// cell. Without caps, always `None`.
     pub(super) caps: Option<Branch>,
 }
 
-/// Which of its values the caps' winding number takes at a cell's lowest centre.
+/// The value of the caps' winding number at a cell's lowest centre: one branch of a multivalued function.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branch {
-    /// That of the expansion around the cell of this level which holds this one
+    /// The level of the enclosing cell whose expansion gives the value.
     pub(super) level: u8,
-    /// and so much more.
+    /// The integer to add to that value.
     pub(super) step: i32,
 }
 
 impl Branch {
-    /// Nothing is known.
+    /// No value is known.
     pub(super) const UNKNOWN: Branch = Branch { level: u8::MAX, step: 0 };
 
-    /// Beyond caps.
+    /// The branch beyond caps that change the number by `jump`.
     pub(super) fn plus(self, jump: i32) -> Branch {
         Branch { step: self.step + jump, ..self }
     }
 }
 
 impl MeshPart {
-    /// Of a cell of which nothing is known but the winding number of its lowest centre, of the surface with
-    /// its caps.
+    /// The part of a cell of which only one number is known: the winding number of its lowest centre, for the
+    /// surface with its caps.
     pub(super) fn unknown(winding: i32) -> MeshPart {
         MeshPart { first: 0, count: 0, winding, caps: Some(Branch::UNKNOWN) }
     }
 }
 
 impl MeshOnFrame {
-    /// Whether no triangle lies in a plane between cells, or in a face of the universe. Exact.
+    /// Decides exactly whether no triangle lies in a plane between cells, or in a face of the universe.
     pub(super) fn has_no_triangle_in_planes(&self) -> bool {
         let frame = &self.placed.frame;
         let near = -1..=i64::from(frame.cells()) + 1;
-        // Those in a face of the universe cross none of its cells.
+        // Triangles in a face of the universe cross none of its cells.
         (0..self.placed.count()).all(|triangle| {
             let corners = self.placed.original(triangle);
             (0..3).all(|axis| {
@@ -92,8 +93,9 @@ impl MeshOnFrame {
         }
     }
 
-    /// Adds to `steps` by how much a triangle changes the winding number on the ways along x, y and z to the
-    /// lowest centres of a cell's children of edge `half`, by the child that the way leads to.
+    /// Adds to `steps` the changes of the winding number by a triangle, on the ways along x, y and z to the
+    /// lowest centres of a cell's children of edge `half`. `steps` is indexed by the child to which a way
+    /// leads.
     #[inline]
     pub(super) fn pierce(
         &self,

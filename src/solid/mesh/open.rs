@@ -1,17 +1,18 @@
 //! Cells of an open surface.
 //!
-//! What is counted along lines is the winding number of the surface *and its caps*. Here the caps' own is
-//! taken off: around the middle of a cell it is known to second order, with bounds of what that neglects, and
-//! jumps by an integer on every cap. Three things follow for a cell:
+//! Lines count the winding number of the surface *and its caps*. This file subtracts the caps' own winding
+//! number. Around the middle of a cell, the caps' number is known to second order, with error bounds, and it
+//! jumps by an integer on every cap. Three cases follow for a cell:
 //!
-//! * If no cap cuts it, and the caps' winding number stays within one half of an integer, the surface's own
-//!   is what remains, an integer, up to less than one half. The cell and all below it are then as those of a
-//!   closed surface.
-//! * If the surface does not cut it, its winding number is continuous in the cell, caps or not, and may be
-//!   bounded away from what the fill rule asks for: FULL or EMPTY.
-//! * Else its children are asked. A finest cell near a hole, that nothing cuts, may stay PARTIAL.
+//! * If no cap cuts the cell, and the caps' winding number stays within one half of an integer, the surface's
+//!   own number is an integer up to less than one half. The cell and all cells below it are then treated as
+//!   cells of a closed surface.
+//! * If the surface does not cut the cell, its winding number is continuous in the cell, caps or not. If the
+//!   number is bounded away from the fill rule's threshold, the cell is FULL or EMPTY.
+//! * Otherwise the cell's children decide. A finest cell near a hole may stay PARTIAL although nothing cuts
+//!   it.
 //!
-//! Centres and rays are not asked cell by cell, but by pieces that are as large as expansions are good for
+//! Centres and rays are not computed cell by cell, but by pieces as large as an expansion is precise for
 //! (`open_rays`).
 
 use super::on_frame::{Branch, MeshOnFrame, MeshPart};
@@ -27,40 +28,40 @@ use alloc::vec::Vec;
 /// Half the diagonal of a cube of edge 1, rounded up.
 const HALF_DIAGONAL: f64 = 0.866_025_404;
 
-/// Two winding numbers that are known so well, both together to less than one half, differ by the nearest
-/// integer if they should differ by an integer.
+/// The greatest error of each of two winding numbers that differ by an integer, so that rounding their
+/// difference gives the integer: the two errors sum to less than one half.
 const SURE: f64 = 0.2;
 
-/// Error that a group of caps may add in a cell.
+/// The error that a group of caps may add in a cell.
 const ENOUGH: f64 = 1.0 / 4096.0;
 
-/// Error that a group of caps may add if a centre's side hangs on it.
+/// The error that a group of caps may add where a centre's side depends on it.
 const LEAST: f64 = 1.0 / 1073741824.0;
 
-/// How many squares of the universe's faces are divided at most to learn what is outside.
+/// The most squares of the universe's faces that are divided to prove that the outside is empty.
 const MOST_SQUARES: usize = 2048;
 
-/// How many caps are looked at for that at most, about.
+/// The approximate number of caps that this proof may evaluate in all.
 const MOST_CAPS: usize = 1 << 22;
 
-/// The caps' winding number around the latest cells of each level that it was asked for: a function of the
-/// cell alone, kept for those below it.
+/// The caps' winding number around the latest cells of each level: a function of the cell alone, kept for the
+/// cells below it.
 #[derive(Default)]
 pub(super) struct Surroundings {
-    /// Empty before a level's first cell; then one place for each grandchild of a cell, because builders
-    /// divide a cell twice before they ask for what is below the first of its grandchildren.
+    /// Empty before a level's first cell. Then one place for each grandchild of a cell, because builders
+    /// divide a cell twice before they go below the first of its grandchildren.
     levels: [Vec<Slot>; MAX_DEPTH as usize + 1],
 }
 
-/// A cell's lower corner, and what is known unless the boundary passes close by.
+/// A cell's lower corner, and its expansion; `None` if the boundary passes close by.
 type Slot = Option<([i32; 3], Option<Local>)>;
 
-/// Cells of a level that are kept along each axis: a power of two.
+/// The number of cells of a level that are kept along each axis: a power of two.
 const KEPT: i32 = 4;
 
 impl Surroundings {
-    /// The caps' winding number around the middle of the cell of `level` that holds `at`; of a finest cell on
-    /// that side of every cap on which its centre counts.
+    /// Returns the caps' winding number around the middle of the cell of `level` that contains `at`. For a
+    /// finest cell, the number holds on the side of every cap on which the cell's centre counts.
     fn local(&mut self, mesh: &MeshOnFrame, level: u8, at: [i32; 3]) -> Option<Local> {
         let size = 1 << (mesh.placed.frame.depth() - level);
         let corner = at.map(|a| a & -size);
@@ -80,7 +81,7 @@ impl Surroundings {
         {
             *slots = none;
         }
-        // (Without memory it is found anew each time.)
+        // (Without memory, the number is computed anew each time.)
         if let Some(slot) = slots.get_mut(place) {
             *slot = Some((corner, local));
         }
@@ -99,7 +100,7 @@ fn middle(corner: [i32; 3], size: i32) -> [f64; 3] {
 }
 
 impl MeshOnFrame {
-    /// What is known of a cell in which the caps' winding number is not known to be near one integer.
+    /// The verdict of a cell in which the caps' winding number is not known to be near one integer.
     #[cold]
     pub(super) fn open_verdict(
         &self,
@@ -127,11 +128,11 @@ impl MeshOnFrame {
                     return if excess > 0.0 { Verdict::Full } else { Verdict::Empty };
                 }
             }
-            // What is known from above is no worse than half of what a better sum could not tell either.
-            // (False for NaN.)
+            // If the inherited error is at most half the change, a better sum would not help much. (False for
+            // NaN.)
             let is_sharp = caps.error <= 0.5 * caps.change;
             if is_sharp || is_fresh {
-                // What only the error keeps open is worth a better sum.
+                // If only the error keeps the verdict open, a better sum may decide.
                 let excess = self.excess(part.winding as f64 - caps.value).abs();
                 let is_close = size == 1 && !is_cut && caps.error < 2.0 && excess > caps.change;
                 return if is_close { self.close_verdict(at, part) } else { Verdict::Partial(part) };
@@ -141,7 +142,7 @@ impl MeshOnFrame {
         }
     }
 
-    /// What is known of a finest cell that nothing cuts, of a better sum.
+    /// The verdict of a finest cell that nothing cuts, from a better sum.
     fn close_verdict(&self, at: [i32; 3], part: MeshPart) -> Verdict<MeshPart> {
         let local = self.caps.local(&self.placed, middle(at, 1), HALF_DIAGONAL, ENOUGH / 16.0, Some(at));
         let caps = local.map_or(Range::UNKNOWN, |local| local.over(at, 1));
@@ -153,7 +154,7 @@ impl MeshOnFrame {
         }
     }
 
-    /// Whether the centre of a finest cell is inside.
+    /// Returns whether the centre of a finest cell is inside.
     #[cold]
     pub(super) fn open_sample(&self, surroundings: &mut Surroundings, at: [i32; 3], part: MeshPart) -> bool {
         let excess = |caps: Range| self.excess(part.winding as f64 - caps.value);
@@ -167,9 +168,9 @@ impl MeshOnFrame {
         excess(caps) >= 0.0
     }
 
-    /// The integer next to the surface's own winding number all over a cell, but for what the triangles of
-    /// the surface change: what it is at the lowest centre. `None` if the number may come to one half more or
-    /// less.
+    /// Returns the integer nearest to the surface's own winding number throughout a cell, apart from the
+    /// changes at triangles of the surface; that is the integer at the lowest centre. `None` if the number
+    /// may differ from the integer by one half.
     pub(super) fn nearest_winding(
         &self,
         surroundings: &mut Surroundings,
@@ -185,8 +186,8 @@ impl MeshOnFrame {
         Some(part.winding - nearest)
     }
 
-    /// A slab that holds the boundary in a cell which the surface does not cut: where the winding number is
-    /// one half.
+    /// Returns a slab that contains the boundary in a cell that the surface does not cut: the points whose
+    /// winding number is one half.
     pub(super) fn open_slab(
         &self,
         surroundings: &mut Surroundings,
@@ -203,7 +204,7 @@ impl MeshOnFrame {
         }
         let Branch { level: level @ 0..=MAX_DEPTH, step } = part.caps? else { return None };
         let (value, slope, rest) = surroundings.local(self, level, at)?.tangent(at, size);
-        // The number is `middle` − slope · x, up to `rest`. More than what is rounded comes to that.
+        // The number is `middle` − slope · x, with an error of `rest`. This is more than all roundings.
         let middle = part.winding as f64 - (value + step as f64);
         let rest = rest * (1.0 + 1e-9) + 1e-12 * (1.0 + middle.abs());
         let range = slope.iter().map(|s| s.abs()).sum::<f64>() + rest;
@@ -215,37 +216,38 @@ impl MeshOnFrame {
         } else {
             return None;
         };
-        // (Of what is no number nothing is known.)
+        // (NaN decides nothing.)
         let is_known = range.is_finite() && normal != [0.0; 3];
         is_known.then(|| slab::enclosure(Slab { normal, inner: end - rest, outer: end + rest }))
     }
 
-    /// Whether triangles of the surface are among those that meet a cell: they come first.
+    /// Returns whether triangles of the surface are among those that meet a cell: they come first in the
+    /// list.
     fn is_cut(&self, triangles: &[u32]) -> bool {
         triangles.first().is_some_and(|&first| !self.placed.is_cap(first))
     }
 
-    /// Whether caps are among those that meet a cell: they come last.
+    /// Returns whether caps are among the triangles that meet a cell: caps come last in the list.
     fn is_capped(&self, triangles: &[u32]) -> bool {
         triangles.last().is_some_and(|&last| self.placed.is_cap(last))
     }
 
-    /// The level of cells that are so many finest cells wide.
+    /// The level of the cells with an edge of `size` finest cells.
     fn level(&self, size: i32) -> u8 {
         self.placed.frame.depth() - size.trailing_zeros() as u8
     }
 
-    /// By how much a winding number exceeds what the fill rule asks for.
+    /// Returns by how much a winding number exceeds the fill rule's threshold.
     pub(super) fn excess(&self, winding: f64) -> f64 {
         self.fill.excess(winding)
     }
 
-    /// The caps' winding number over a cell, continued from its lowest centre through caps.
+    /// Returns the caps' winding number over a cell, continued from its lowest centre through caps.
     fn caps_over(&self, surroundings: &mut Surroundings, at: [i32; 3], size: i32, part: MeshPart) -> Range {
         self.known(surroundings, at, part, |local| local.over(at, size))
     }
 
-    /// The caps' winding number at a cell's lowest centre.
+    /// Returns the caps' winding number at a cell's lowest centre.
     fn caps_at(&self, surroundings: &mut Surroundings, at: [i32; 3], part: MeshPart) -> Range {
         self.known(surroundings, at, part, |local| local.at_centre(at))
     }
@@ -264,7 +266,7 @@ impl MeshOnFrame {
         local.map_or(Range::UNKNOWN, |local| range(&local).plus(step))
     }
 
-    /// The branch of the caps' winding number as it is around this cell itself.
+    /// The branch of the caps' winding number relative to the expansion around this cell itself.
     fn branch(
         &self,
         surroundings: &mut Surroundings,
@@ -279,7 +281,7 @@ impl MeshOnFrame {
             return Branch { level, step: 0 };
         }
         if !is_capped {
-            // No cap between the middle, which is on none, and the lowest centre.
+            // No cap lies between the middle, which is on no cap, and the lowest centre.
             return Branch { level, step: 0 };
         }
         let here = here.at_centre(at);
@@ -295,9 +297,9 @@ impl MeshOnFrame {
         }
     }
 
-    /// Whether the winding number is proven less than one half in magnitude everywhere outside of the
-    /// universe, which holds the whole surface: a harmonic function that vanishes at infinity takes its
-    /// extremes on the faces.
+    /// Returns whether the winding number is proven less than one half in magnitude everywhere outside the
+    /// universe, which contains the whole surface. A harmonic function that vanishes at infinity takes its
+    /// extremes on the universe's faces.
     pub(super) fn is_empty_outside(&self) -> bool {
         if self.caps.is_empty() {
             return true;
@@ -309,7 +311,7 @@ impl MeshOnFrame {
             return false;
         }
         squares.extend((0..6).map(|face| (face, [0.0; 2], cells)));
-        // The more caps, the longer does each take.
+        // The time for each square grows with the number of caps.
         let most = (MOST_CAPS / self.placed.caps.len()).clamp(1, MOST_SQUARES);
         let mut divided = 0;
         while let Some((face, corner, size)) = squares.pop() {
@@ -324,7 +326,7 @@ impl MeshOnFrame {
                 continue;
             }
             divided += 1;
-            // In vain, too, if the middle shows the contrary.
+            // The proof also fails if the middle shows the contrary.
             if divided > most || seen.error < 0.5 && seen.value.abs() >= 0.5 {
                 return false;
             }

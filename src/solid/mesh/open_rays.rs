@@ -1,19 +1,19 @@
-//! Rays through an open surface: where they enter and leave its solid.
+//! Rays through an open surface: their intervals inside its solid.
 //!
-//! A cell is divided into pieces. For each, the winding number of the caps that are far from it is expanded
-//! around its middle, and serves all pieces below; the others are few, and are summed at each point that is
-//! asked for. In a piece that the boundary does not come near to, one expansion knows all caps. There the
-//! surface's winding number is M − c: M counts the triangles of the surface alone, and c is the caps' smooth
-//! continuation from the middle of the piece.
+//! A cell is divided into pieces. For each piece, the winding number of the caps that are far from it is
+//! expanded around its middle. The expansion serves all pieces below. The near caps are few, and are summed
+//! at each point. In a piece that the boundary does not come near to, one expansion covers all caps. There
+//! the surface's winding number is M − c: M counts the triangles of the surface alone, and c is the caps'
+//! smooth continuation from the middle of the piece.
 //!
-//! So a ray has ends where it pierces triangles, as through a closed surface, and between them where c passes
-//! one half of an integer. On which side centres lie is what sampling them would say: expansions tell it of
-//! most, and where they cannot, all caps are summed for that centre. Between two centres (or triangles, or
-//! faces of the piece) on different sides the crossing is found by sums over the rim, which have no error but
-//! that of rounding.
+//! So a ray's intervals end where the ray pierces triangles, as for a closed surface, and between the
+//! triangles where c passes one half of an integer. The sides of centres agree with sampling: expansions
+//! decide most of them, and where they cannot, all caps are summed for the centre. Between two centres (or
+//! triangles, or faces of the piece) on different sides, sums over the rim find the crossing. These sums have
+//! rounding errors only.
 //!
-//! Near the rim a ray is followed from centre to centre: between two on different sides, or with triangles
-//! between them, in steps in which the winding number changes by less than one half.
+//! Near the rim, a ray is followed from centre to centre. Between centres on different sides, or with
+//! triangles between them, it advances in steps in which the winding number changes by less than one half.
 
 use super::chords::{Bundle, Chords, Hit, Rays, end};
 use super::on_frame::{MeshOnFrame, MeshPart};
@@ -28,42 +28,43 @@ use crate::memory;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Rays are followed through cells of no more than so many finest cells to an edge,
+/// Rays are followed through cells of at most this edge, in finest cells.
 const MOST: i32 = 64;
 
-/// and pieces of so many are not divided further.
+/// Pieces of this edge are not divided further, in finest cells.
 const LEAST: i32 = 2;
 
 /// Half the diagonal of a cube of half edge 1, rounded up.
 const HALF_DIAGONAL: f64 = 1.732_051;
 
-/// An expansion is good enough if it is off by no more than the caps' winding number changes within so many
-/// cells,
+/// An expansion is good enough if its error is at most the change of the caps' winding number within this
+/// many cells.
 const BLUR: f64 = 0.5;
 
-/// or by no more than this, whatever that changes,
+/// An expansion with at most this error is good enough, whatever the change is.
 const GOOD: f64 = 1.0 / 16384.0;
 
-/// and in any case by less than this, so that it tells integers.
+/// Every expansion must have an error below this, so that it distinguishes integers.
 const SURE: f64 = 0.2;
 
-/// Steps that a ray is followed by from a finest cell's centre to its face at most.
+/// The most steps by which a ray is followed from a finest cell's centre to its face.
 const MOST_STEPS: usize = 256;
 
-/// The shortest of them, in finest cells: what the least model tells from nothing at the greatest depth.
+/// The shortest of these steps, in finest cells: at the greatest depth, still distinguishable from zero in
+/// the smallest model.
 const SHORTEST: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// Steps to a crossing at most; halving alone would take fewer than this.
+/// The most steps to a crossing; plain bisection would take fewer.
 const MOST_HALVES: usize = 64;
 
 /// A cell in which the caps' winding number is smooth.
 struct Smooth {
     local: Local,
-    /// Bound of the expansion's error anywhere in the cell.
+    /// A bound of the expansion's error anywhere in the cell.
     error: f64,
 }
 
-/// A ray in a piece that no boundary passes through.
+/// A ray in a piece through which no boundary passes.
 struct Ray<'r> {
     search: &'r Search<'r>,
     mesh: &'r MeshOnFrame,
@@ -73,21 +74,21 @@ struct Ray<'r> {
     /// The axis, and a point of the ray.
     w: usize,
     from: [f64; 3],
-    /// The coefficients of the caps' winding number along it, as seen from `from`.
+    /// The coefficients of the caps' winding number along the ray, relative to `from`.
     along: [f64; 3],
 }
 
-/// A finest cell by the rim, and the ray through its centre.
+/// A finest cell near the rim, and the ray through its centre.
 struct Walk<'m> {
     mesh: &'m MeshOnFrame,
     w: usize,
     at: [i32; 3],
-    /// The winding number of the centre, of the surface with its caps.
+    /// The winding number at the centre, for the surface with its caps.
     winding: i32,
     marked: bool,
 }
 
-/// A point of a ray, and on which side it lies.
+/// A point of a ray, with its side.
 #[derive(Clone, Copy)]
 struct Point {
     at: f64,
@@ -96,8 +97,8 @@ struct Point {
     inside: bool,
 }
 
-/// Between which points of a ray, the first of which may be the higher one, it crosses the boundary; the
-/// number of the surface with the caps that belongs to theirs; and the axis.
+/// Two points of a ray between which it crosses the boundary (the first may be the higher one), the ray's
+/// axis, and the winding number of the surface with its caps that belongs to the points' branch.
 struct Bracket {
     w: usize,
     winding: i32,
@@ -126,7 +127,7 @@ impl Intervals<'_> {
     }
 }
 
-/// Memory for a worker's rays, kept from cell to cell.
+/// Scratch memory for a worker's rays, kept from cell to cell.
 #[derive(Default)]
 pub(super) struct OpenRays {
     chords: Chords,
@@ -134,15 +135,15 @@ pub(super) struct OpenRays {
     passes: Vec<(BeamEnd, bool)>,
 }
 
-/// A cell whose rays are asked for, and what they pierce of the surface and its caps.
+/// A cell whose rays are computed, with their hits on the surface and its caps.
 struct Search<'s> {
     mesh: &'s MeshOnFrame,
     chords: &'s Chords,
     bundle: &'s Bundle,
 }
 
-/// A piece of the cell: of the caps that are near an exact sum is known, of the others an expansion; and of
-/// all together, if the boundary is not near.
+/// A piece of the cell. Caps near the piece are summed exactly, and an expansion covers the far caps. Another
+/// expansion covers all caps, if the boundary is not near.
 struct Piece<'p> {
     far: &'p Local,
     near: &'p [u32],
@@ -159,7 +160,7 @@ struct Part {
 }
 
 impl Search<'_> {
-    /// What of a cube the rays pass.
+    /// Returns the part of the rays that lies in a cube.
     fn part(&self, at: [i32; 3], size: i32) -> Part {
         let Bundle { w, u, v, .. } = *self.bundle;
         let cut = |range: &Range<i32>, axis: usize| range.start.max(at[axis])..range.end.min(at[axis] + size);
@@ -170,8 +171,8 @@ impl Search<'_> {
         }
     }
 
-    /// The cell's pieces, each as large as an expansion is good for, those on a ray in ascending order.
-    /// `known` tells of all caps but those of a list.
+    /// Visits the cell's pieces, each as large as an expansion is good for. Pieces on a ray come in ascending
+    /// order. `known` is the expansion of all caps except those in a list.
     fn pieces(
         &self,
         (at, size): ([i32; 3], i32),
@@ -221,8 +222,8 @@ impl Search<'_> {
         cell
     }
 
-    /// The winding number at the centre of cell k of a ray, of the surface with its caps, and what the ray
-    /// pierces above.
+    /// Returns the winding number at the centre of cell k of a ray, for the surface with its caps, and the
+    /// ray's hits above it.
     fn above(&self, [column, row]: [i32; 2], k: i32) -> (i32, &[Hit]) {
         let (floor, hits) = self.chords.traced(self.bundle, column, row);
         let start = hits.partition_point(|hit| hit.at <= f64::from(self.bundle.span.start) + 0.5);
@@ -230,7 +231,7 @@ impl Search<'_> {
         (floor + hits[start..below].iter().map(Hit::step).sum::<i32>(), &hits[below..])
     }
 
-    /// What a ray pierces of the surface itself.
+    /// The hits of a ray on the surface itself.
     fn surface(&self, [column, row]: [i32; 2]) -> impl DoubleEndedIterator<Item = &Hit> + Clone {
         let (_, hits) = self.chords.traced(self.bundle, column, row);
         hits.iter().filter(|hit| !self.mesh.placed.is_cap(hit.triangle()))
@@ -242,8 +243,8 @@ impl Search<'_> {
         caps.at(placed, (piece.far, piece.near), cell.map(|a| f64::from(a) + 0.5), Some(cell))
     }
 
-    /// By how much the caps' winding number at the lowest centre of a ray exceeds their smooth continuation.
-    /// `None` if the centre does not tell.
+    /// Returns by how much the caps' winding number at the lowest centre of a ray exceeds the smooth
+    /// continuation. `None` if the sum at the centre is not precise enough.
     fn step(&self, piece: &Piece<'_>, ray: [i32; 2], span: &Range<i32>) -> Option<i32> {
         let cell = self.cell(ray[0], ray[1], span.start);
         let (here, there) = (piece.smooth.as_ref()?.local.at_centre(cell), self.caps_at(piece, cell));
@@ -259,7 +260,7 @@ impl Search<'_> {
         mut visit: impl FnMut([i32; 2], Option<Ray<'_>>) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let Part { columns, rows, span } = part;
-        // Without caps it is the same everywhere.
+        // Without caps the step is the same everywhere.
         let common = if piece.is_capped { None } else { self.step(piece, [columns.start, rows.start], span) };
         for row in rows.clone() {
             for column in columns.clone() {
@@ -272,7 +273,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Whether a centre is inside, of whose surface with its caps the number is known.
+    /// Returns the caps' number at a centre, and whether the centre is inside. `winding` is the number of the
+    /// surface with its caps.
     fn centre(&self, piece: &Piece<'_>, cell: [i32; 3], winding: i32) -> (Known, bool) {
         let caps = self.caps_at(piece, cell);
         let excess = self.mesh.excess(f64::from(winding) - caps.value);
@@ -287,7 +289,7 @@ impl Search<'_> {
 }
 
 impl MeshOnFrame {
-    /// Adds the intervals of a beam's rays in a cell, or tells that it is to be divided first.
+    /// Adds the intervals of a beam's rays in a cell. Returns `false` if the cell must be divided first.
     pub(super) fn open_chords(
         &self,
         own: &mut OpenRays,
@@ -313,7 +315,7 @@ impl MeshOnFrame {
         Ok(true)
     }
 
-    /// Finds out what rays pierce.
+    /// Finds the hits of the rays.
     fn trace(
         &self,
         own: &mut OpenRays,
@@ -327,7 +329,7 @@ impl MeshOnFrame {
         self.caps.list(&mut own.near)
     }
 
-    /// Which centres of a block of 64³ cells are inside: bit k of word x + 64·y.
+    /// Finds the centres of a block of 64³ cells that are inside: bit k of word x + 64·y.
     pub(super) fn open_centres(
         &self,
         own: &mut OpenRays,
@@ -356,24 +358,25 @@ impl MeshOnFrame {
         })
     }
 
-    /// Whether a centre is inside that an expansion cannot tell, of whose surface with its caps the number is
-    /// known: what [`open_sample`](Self::open_sample) says in the end.
+    /// Returns whether a centre is inside that an expansion cannot decide: the final answer of
+    /// [`open_sample`](Self::open_sample). `winding` is the number of the surface with its caps.
     fn summed_sample(&self, at: [i32; 3], winding: i32) -> bool {
         self.open_sample(&mut Surroundings::default(), at, MeshPart::unknown(winding))
     }
 
-    /// Whether points of this winding number are inside.
+    /// Returns whether points with this winding number are inside.
     fn is_inside(&self, winding: f64) -> bool {
         self.excess(winding) >= 0.0
     }
 
-    /// The caps' winding number at a point, on the branch that comes near to a guess, which is the answer on
-    /// the rim.
+    /// Returns the caps' winding number at a point, on the branch nearest to `guess`. On the rim, returns
+    /// `guess`.
     fn caps_near(&self, point: [f64; 3], guess: f64) -> f64 {
         self.caps_told(point, guess).map_or(guess, |caps| caps.value)
     }
 
-    /// The same with a bound of its error, if the guess is less than one half off. `None` on the rim.
+    /// Returns the caps' number on the branch of `guess` with a bound of its error. The guess must be less
+    /// than one half off. `None` on the rim.
     fn caps_told(&self, point: [f64; 3], guess: f64) -> Option<Fraction> {
         let Fraction { value, error } = self.caps.rim.fraction(point)?;
         let off = value - guess;
@@ -381,8 +384,8 @@ impl MeshOnFrame {
         Some(Fraction { value: guess + off, error: error + f64::EPSILON * (1.0 + guess.abs()) })
     }
 
-    /// Whether a centre is inside at which the number that belongs to a guess of the caps' is `winding`, if a
-    /// sum over the rim tells. The guess is less than one half off.
+    /// Returns whether a centre is inside, if a sum over the rim decides. `winding` is the number that
+    /// belongs to the branch of `guess`. The guess must be less than one half off.
     fn told_centre(&self, cell: [i32; 3], winding: i32, guess: f64) -> Option<bool> {
         let caps = self.caps_told(cell.map(|a| f64::from(a) + 0.5), guess)?;
         let excess = self.excess(f64::from(winding) - caps.value);
@@ -390,9 +393,9 @@ impl MeshOnFrame {
         is_told.then_some(excess > 0.0)
     }
 
-    /// Where a ray through `from` crosses the boundary: the number that `guess` tells the branch of passes
-    /// one half, or minus one half. By the rule of false position, which halves the weight of an end that
-    /// stays (the Illinois method).
+    /// Returns where a ray through `from` crosses the boundary: where the winding number, on the branch that
+    /// `guess` gives, passes one half or minus one half. Uses false position in the Illinois form, which
+    /// halves the weight of an end that stays.
     fn crossing(&self, from: [f64; 3], bracket: &Bracket, guess: impl Fn(f64) -> f64) -> BeamEnd {
         let &Bracket { w, winding, ends: [first, last] } = bracket;
         let excess = |caps: f64| self.excess(f64::from(winding) - caps);
@@ -402,7 +405,7 @@ impl MeshOnFrame {
         let fine = f64::from(cells) / (1u64 << 40) as f64;
         let mut found = if fa.abs() < fb.abs() { a } else { b };
         let mut kept = 0;
-        // (What contradicts the sides, by rounding, lies next to the crossing.)
+        // (Ends whose values contradict their sides, by rounding, lie next to the crossing.)
         if (fa < 0.0) != (fb < 0.0) {
             for step in 0..MOST_HALVES {
                 let width = b - a;
@@ -442,7 +445,8 @@ impl MeshOnFrame {
                 }
             }
         }
-        // Below the centre that is the higher end, or above the one that is the lower.
+        // The result lies below the centre if that is the higher end, above the centre if that is the lower
+        // end.
         let gap = first_above(first.at.max(last.at)) as i32;
         BeamEnd { at: within(found, gap, f64::from(cells)), mark: Mark::NONE }
     }
@@ -457,18 +461,18 @@ impl<'r> Ray<'r> {
         Ray { search, mesh: search.mesh, smooth, ray, step, w, from, along }
     }
 
-    /// The caps' winding number by the expansion.
+    /// The caps' winding number from the expansion.
     fn caps(&self, at: f64) -> f64 {
         let x = at - self.from[self.w];
         self.along[0] + (self.along[1] + self.along[2] * x) * x
     }
 
-    /// On which side all points lie whose winding number is in a range, give or take the expansion's error;
-    /// `None` if they may lie on both.
+    /// Returns the side of all points whose winding number is in a range, widened by the expansion's error.
+    /// `None` if the points may lie on both sides.
     fn side(&self, low: f64, high: f64) -> Option<bool> {
         let (low, high) = (low - self.smooth.error, high + self.smooth.error);
         let (first, last) = (self.mesh.excess(low), self.mesh.excess(high));
-        // Of a range around zero the ends are the farthest from it.
+        // For a range around zero, the ends are the farthest from zero.
         let is_through = low < 0.0 && high > 0.0;
         match (first > 0.0, last > 0.0) {
             (true, true) if !is_through => Some(true),
@@ -477,7 +481,7 @@ impl<'r> Ray<'r> {
         }
     }
 
-    /// A point at which the expansion tells the side, or a sum over the rim.
+    /// A point whose side the expansion decides, or else a sum over the rim.
     fn point(&self, at: f64, winding: i32) -> Point {
         let guess = self.caps(at);
         let number = f64::from(winding) - guess;
@@ -490,17 +494,18 @@ impl<'r> Ray<'r> {
         Point { at, caps, inside: self.mesh.is_inside(f64::from(winding) - caps) }
     }
 
-    /// The side of the whole way from one point to another, if it is told without a look at each centre.
+    /// Returns the side of the whole way between two points, if the expansion decides it without a test of
+    /// each centre.
     fn whole(&self, from: f64, to: f64, winding: i32) -> Option<bool> {
         let (first, last) = (self.caps(from), self.caps(to));
         let (mut low, mut high) = (first.min(last), first.max(last));
-        // A parabola's height over its chord.
+        // The height of a parabola over its chord.
         let bend = 0.25 * self.along[2].abs() * (to - from) * (to - from);
         (low, high) = (low - bend, high + bend);
         self.side(f64::from(winding) - high, f64::from(winding) - low)
     }
 
-    /// What sums say of centre k that the expansion is too coarse for.
+    /// Decides by sums whether centre k is inside, where the expansion is too coarse.
     fn sample(&self, k: i32, number: i32, caps: f64) -> bool {
         let cell = self.search.cell(self.ray[0], self.ray[1], k);
         self.mesh.told_centre(cell, number, caps).unwrap_or_else(|| {
@@ -509,7 +514,7 @@ impl<'r> Ray<'r> {
         })
     }
 
-    /// The surface's number at the lowest centre of a span, and what the ray pierces of the surface in it.
+    /// The surface's number at the lowest centre of a span, and the ray's hits on the surface in the span.
     fn hits(&self, span: &Range<i32>) -> (i32, impl Iterator<Item = &'r Hit> + Clone) {
         let (winding, _) = self.search.above(self.ray, span.start);
         let (bottom, top) = (f64::from(span.start), f64::from(span.end));
@@ -517,7 +522,7 @@ impl<'r> Ray<'r> {
         (winding - self.step, hits.take_while(move |hit| hit.at < top))
     }
 
-    /// Which centres of a span are inside.
+    /// Returns which centres of a span are inside.
     fn centres(&self, span: &Range<i32>) -> u64 {
         let (mut winding, hits) = self.hits(span);
         let (mut from, mut bits) = (span.start, 0);
@@ -543,7 +548,7 @@ impl<'r> Ray<'r> {
         bits
     }
 
-    /// A centre.
+    /// The point at a centre.
     fn centre(&self, k: i32, winding: i32) -> Point {
         let at = f64::from(k) + 0.5;
         let caps = self.caps(at);
@@ -556,7 +561,7 @@ impl<'r> Ray<'r> {
         let (number, hits) = self.hits(span);
         let marked = beam.is_marked();
         let mut intervals = Intervals { beam, ray: self.ray.map(|a| a as u32), start: None };
-        // Back from the lowest centre to the face.
+        // Go back from the lowest centre to the face.
         let lowest = f64::from(span.start) + 0.5;
         let mut winding =
             number - hits.clone().take_while(|hit| hit.at <= lowest).map(Hit::step).sum::<i32>();
@@ -596,7 +601,7 @@ impl<'r> Ray<'r> {
         intervals: &mut Intervals<'_>,
     ) -> Result<(), Error> {
         let mut point = first;
-        // A centre lies above a triangle that it lies on.
+        // A centre that lies on a triangle counts as above it.
         let centres = first_above(first.at)..first_above(last.at);
         for next in centres.map(Some).chain([None]) {
             let next = match next {
@@ -614,7 +619,7 @@ impl<'r> Ray<'r> {
         Ok(())
     }
 
-    /// A point with a sum over the rim.
+    /// The point with the caps' number from a sum over the rim.
     fn sharp(&self, point: Point) -> Point {
         let mut place = self.from;
         place[self.w] = point.at;
@@ -623,7 +628,7 @@ impl<'r> Ray<'r> {
 }
 
 impl Search<'_> {
-    /// Which centres of a span are inside.
+    /// Returns which centres of a span are inside.
     fn centres(&self, piece: &Piece<'_>, ray: [i32; 2], span: &Range<i32>) -> u64 {
         let (mut winding, hits) = self.above(ray, span.start);
         let (mut hits, mut bits) = (hits.iter().peekable(), 0);
@@ -649,7 +654,7 @@ impl Search<'_> {
         let marked = beam.is_marked();
         let mut intervals = Intervals { beam, ray: ray.map(|a| a as u32), start: None };
         let mut before: Option<(Walk<'_>, Point)> = None;
-        // (Behind the last centre is the upper face.)
+        // (The upper face follows the last centre.)
         for k in span.start..=span.end {
             let next = (k < span.end).then(|| {
                 let cell = self.cell(ray[0], ray[1], k);
@@ -660,7 +665,7 @@ impl Search<'_> {
             });
             let low = before.as_ref().map_or(f64::from(span.start), |(_, point)| point.at);
             let high = next.as_ref().map_or(f64::from(span.end), |(_, point)| point.at);
-            // A centre lies above a triangle that it lies on; on a face lies none.
+            // A centre that lies on a triangle counts as above it; no triangle counts as on a face.
             let is_between = |hit: &&Hit| hit.at > low && hit.at <= high && hit.at < f64::from(span.end);
             let hits = self.surface(ray).filter(is_between);
             let is_pierced = hits.clone().next().is_some();
@@ -682,7 +687,7 @@ impl Search<'_> {
                 (Some((walk, point)), Some((_, next))) => {
                     let last = walk.lead(walk.sharp(*point), hits, high, passes)?;
                     if last.inside != next.inside {
-                        // What rounding puts on the other side of the centre.
+                        // Rounding has put the crossing on the other side of the centre.
                         memory::push(passes, (BeamEnd { at: next.at, mark: Mark::NONE }, next.inside))?;
                     }
                 }
@@ -702,8 +707,8 @@ impl Search<'_> {
         intervals.pass(BeamEnd::between(span.end as u32), false)
     }
 
-    /// On which side a face lies half a cell from a centre, with no triangle of the surface between them, if
-    /// that is told.
+    /// Returns on which side a face half a cell from a centre lies, with no triangle of the surface between
+    /// them. `None` if the sum does not decide.
     fn side_of_face(&self, piece: &Piece<'_>, walk: &Walk<'_>, centre: &Point, at: f64) -> Option<bool> {
         let ray = [walk.at[self.bundle.u], walk.at[self.bundle.v]];
         let (_, hits) = self.chords.traced(self.bundle, ray[0], ray[1]);
@@ -720,7 +725,7 @@ impl Search<'_> {
 }
 
 impl Walk<'_> {
-    /// A point, its winding number without an error but that of rounding.
+    /// The point with the caps' number from a sum over the rim, with rounding errors only.
     fn sharp(&self, point: Point) -> Point {
         Point { caps: self.mesh.caps_near(self.place(point.at), point.caps), ..point }
     }
@@ -731,8 +736,8 @@ impl Walk<'_> {
         place
     }
 
-    /// Goes from the centre to a face through triangles, and notes where the ray passes the boundary, and
-    /// whether it lies inside above. Returns the face's point.
+    /// Goes from the centre to a face through triangles. Notes where the ray passes the boundary, and whether
+    /// it is inside above that place. Returns the point on the face.
     fn lead<'h>(
         &self,
         mut point: Point,
@@ -755,7 +760,7 @@ impl Walk<'_> {
         self.advance(point, face, winding, passes)
     }
 
-    /// Goes from a point to another one between which lies no triangle, by steps in which the winding number
+    /// Goes from a point to another one without a triangle between them, by steps in which the winding number
     /// changes by less than one half.
     fn advance(
         &self,
@@ -768,7 +773,7 @@ impl Walk<'_> {
         while point.at != to {
             let slope = self.mesh.caps.rim.slope(self.place(point.at));
             let step = (0.5 * slope.distance).min(0.25 / slope.most);
-            // (Also where nothing is known, on the rim.)
+            // (This step is last, too, where nothing is known, on the rim.)
             let is_last = steps == MOST_STEPS || (to - point.at).abs() <= step;
             let at = if is_last { to } else { point.at + step.max(SHORTEST) * (to - point.at).signum() };
             let at = if to > point.at { at.min(to) } else { at.max(to) };

@@ -1,10 +1,11 @@
 //! Rays of open meshes, without a descent through cells.
 //!
-//! An open mesh bounds the solid where its triangles do, and where its winding number is one half. Triangles
-//! ahead of a point of the ray count what the surface and cones over the rim wind around it, and the cones'
-//! own number (`rim_line`) is taken off. Where that is less than one half in magnitude all along the ray, the
-//! ray is that of a closed mesh. Else the number is bounded from triangle to triangle: by the sums at both
-//! ends, by its change around the middle (an interval's Newton step), and by halves.
+//! An open mesh bounds the solid at its triangles, and where its winding number is one half. The triangles
+//! ahead of a point of the ray count the winding number of the surface with cones over the rim. The cones'
+//! own number (`rim_line`) is subtracted. Where the cones' number is less than one half in magnitude all
+//! along the ray, the ray is traced as for a closed mesh. Otherwise the number is bounded from triangle to
+//! triangle: by the sums at both ends, by its change around the middle (an interval Newton step), and by
+//! bisection.
 
 use super::direct::{Direct, Touched, Tracer, together};
 use super::rim::{self, Rim};
@@ -15,15 +16,15 @@ use crate::mesh::{FillRule, Hit, Shift, Wanted};
 use crate::solid::{RayCrossing, RayQuestion, RayTrace};
 use glam::DVec3;
 
-/// How often the rim is looked at for a ray.
+/// The most evaluations of the rim for one ray.
 const MOST_LOOKS: usize = 256;
 
-/// A stretch of which so small a part of the rim's distance is left is not divided further.
+/// A stretch shorter than this fraction of the distance to the rim is not divided further.
 const SHORTEST: f64 = 1.0 / (1 << 20) as f64;
 
 impl Tracer<'_> {
-    /// Where a ray goes in and out of the solid of an open mesh. Nothing is told if it comes very near to the
-    /// rim, or if the winding number is not told after many looks.
+    /// Finds where a ray enters and leaves the solid of an open mesh. The trace stays unknown if the ray
+    /// comes very near to the rim, or if many evaluations leave the winding number open.
     pub(super) fn trace_open(
         &self,
         direct: &mut Direct,
@@ -32,11 +33,12 @@ impl Tracer<'_> {
     ) -> Result<(), Error> {
         let RayQuestion { ray, is_first_enough, trace } = question;
         trace.clear();
-        // Of a ray from outside the winding number is zero long before, and does not change until the mesh.
+        // For a ray from outside, the winding number is zero far back on its line, and does not change until
+        // the mesh.
         let is_outside = self.tree.way_out(&ray.from).is_none();
         let way = DVec3::from(ray.direction.map(|[high, _]| high));
         let course = rim::Course::new(DVec3::from(ray.from), way, is_outside);
-        // Loops that are far away are not looked at, unless they matter.
+        // Far loops are skipped, unless they matter.
         let mut is_plain = rim.most_along(&course) < 0.49;
         for least in [0.05, 0.0] {
             if is_plain {
@@ -73,10 +75,10 @@ impl Tracer<'_> {
         if !follow(direct, is_first_enough, trace)? || !trace.has_touches() {
             return Ok(());
         }
-        // As of closed meshes: what it only touches may be inside on another side.
+        // A closed mesh takes the same path: points that the ray only touches may be inside on another side.
         if trace.until < f64::INFINITY {
             trace.clear();
-            // (Those that are touched were taken out.)
+            // (The touches were moved to their own list.)
             self.tree.pierced(ray, Wanted::All, Shift::ALL[0], &mut direct.hits)?;
             if !follow(direct, false, trace)? {
                 return Ok(());
@@ -97,20 +99,20 @@ impl Tracer<'_> {
     }
 }
 
-/// What was found of a ray so far.
+/// The result for a ray so far.
 struct Found<'t> {
     trace: &'t mut RayTrace,
     touched: Touched<'t>,
-    /// Whether it was inside when that was known last.
+    /// The side on which the ray was last known to be: whether inside.
     before: Option<bool>,
-    /// Since when it has been known to be inside, or outside.
+    /// The time since which this side has been known.
     since: f64,
-    /// A time during which it may be either.
+    /// A crossing during which the ray may be on either side.
     open: Option<RayCrossing>,
 }
 
 impl Found<'_> {
-    /// The ray is on one side from a time on.
+    /// Notes that the ray is on one side from a time on.
     fn known(&mut self, from: f64, is_inside: bool) -> Result<(), Error> {
         if self.open.is_none() {
             match self.before {
@@ -136,18 +138,18 @@ impl Found<'_> {
         Ok(())
     }
 
-    /// Ends the trace when the ray has just gone in, or where it begins.
+    /// Ends the trace where the ray has just entered the solid, or where it begins.
     fn end(&mut self) {
         self.trace.until = self.trace.crossings.last().map_or(0.0, |crossing| crossing.t.upper);
     }
 
-    /// The ray may be on either side during the time of a crossing.
+    /// Notes that the ray may be on either side during the time of a crossing.
     fn unknown(&mut self, crossing: RayCrossing) -> Result<(), Error> {
         let t = Interval::between(crossing.t.lower.max(0.0), crossing.t.upper.max(0.0));
         match &mut self.open {
             Some(open) => {
                 let (t, is_met) = (open.t.joined(t), open.is_met || crossing.is_met);
-                // What it began with may only be a touch, unless the ray came from inside.
+                // The first crossing of the time may only be a touch, unless the ray came from inside.
                 let kept = if self.before == Some(true) { *open } else { crossing };
                 *open = RayCrossing { t, is_met, ..kept };
             }
@@ -162,7 +164,7 @@ impl Found<'_> {
     }
 }
 
-/// A ray on its way, from triangle to triangle.
+/// A ray that is followed from triangle to triangle.
 struct Course<'c> {
     tracer: &'c Tracer<'c>,
     rim: &'c Rim,
@@ -173,18 +175,18 @@ struct Course<'c> {
     found: Found<'c>,
 }
 
-/// What to do after a stretch.
+/// The outcome of a stretch.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Next {
     GoOn,
-    /// Enough is known.
+    /// The rest of the ray is not needed.
     Enough,
-    /// It took too many looks.
+    /// The stretch took too many evaluations.
     GiveUp,
 }
 
 impl Course<'_> {
-    /// Follows the winding number along triangles that are passed, in order. `false` if it cannot tell.
+    /// Follows the winding number along the hits, in order. Returns `false` if the number stays undecided.
     fn follow(&mut self, hits: &[Hit]) -> Result<bool, Error> {
         let mut winding = -hits.iter().map(|hit| hit.step).sum::<i32>();
         let (mut now, mut rest) = (self.look(0.0), hits);
@@ -193,8 +195,8 @@ impl Course<'_> {
                 Some(hit) => self.look(hit.t.lower.max(now.at)),
                 None => Sums::END,
             };
-            // (No time passes before a triangle on which the ray begins. What it is off the triangle it is
-            // there.)
+            // (No time passes before a triangle on which the ray begins: an error of its time belongs to the
+            // hit.)
             match self.stretch(winding, &now, &next)? {
                 Next::GoOn => {}
                 Next::Enough => return Ok(true),
@@ -226,15 +228,15 @@ impl Course<'_> {
         self.line.sums(at)
     }
 
-    /// On which side the ray is between two times, with no triangle between them, or some that add so much;
-    /// nothing if that is not sure.
+    /// Returns the side of the ray between two times. Triangles between them may change the number by `falls`
+    /// to `rises`. `None` if unsure.
     fn side(&self, winding: i32, [falls, rises]: [i32; 2], from: &Sums, to: &Sums) -> Option<bool> {
         let [least, most] = from.until(to);
         let (low, high) = (f64::from(winding + falls) - most, f64::from(winding + rises) - least);
         self.tracer.fill.encloses_all(low, high)
     }
 
-    /// Passes triangles, all at the same time as far as rounding tells.
+    /// Passes triangles that have the same time, up to rounding.
     fn pass(&mut self, winding: i32, met: &[Hit], from: &Sums, to: &Sums) -> Result<(), Error> {
         let falls = met.iter().map(|hit| hit.step.min(0)).sum::<i32>();
         let rises = met.iter().map(|hit| hit.step.max(0)).sum::<i32>();
@@ -251,10 +253,11 @@ impl Course<'_> {
         });
         let first = first.unwrap_or(&met[0]);
         let normal = self.tracer.tree.normal(first.triangle);
-        // A way that leaves the solid and passes the triangle from behind leaves along its normal.
+        // A ray that leaves the solid through the back of a triangle leaves along the triangle's normal.
         let normal = if (first.step < 0) == before { normal } else { normal.map(|n| -n) };
         let tree = &self.tracer.tree;
-        // Each first step leads inside. (Nobody knows what lies in one plane of a moved mesh.)
+        // Each first step leads inside. (With a displacement, it is unknown which triangles lie in one
+        // plane.)
         let is_met = tree.displacement() == 0.0
             && met.iter().all(|first| {
                 let plane = met.iter().filter(|hit| tree.are_coplanar(first.triangle, hit.triangle));
@@ -266,7 +269,7 @@ impl Course<'_> {
         self.found.unknown(RayCrossing { t, is_inside_after: false, is_met, normal, surface })
     }
 
-    /// Goes from one time to another with no triangle between them.
+    /// Goes from one time to another without a triangle between them.
     fn stretch(&mut self, winding: i32, from: &Sums, to: &Sums) -> Result<Next, Error> {
         if let Some(is_inside) = self.side(winding, [0; 2], from, to) {
             self.found.known(from.at, is_inside)?;
@@ -290,7 +293,7 @@ impl Course<'_> {
             return self.halves(winding, [from, &middle, to]);
         };
         let Some(mut root) = self.root(winding, threshold, Interval::between(from.at, to.at), &middle) else {
-            // It is no use to divide what is told no better by halves.
+            // Bisection is useless where it would not narrow the number.
             let is_short = to.at - from.at <= 4.0 * f64::EPSILON * to.at || {
                 let reach = (to.at - from.at) * self.line.speed();
                 reach <= SHORTEST * self.line.change(middle.at).distance()
@@ -304,12 +307,12 @@ impl Course<'_> {
         while self.looks < MOST_LOOKS {
             let middle = self.look(0.5 * root.t.lower + 0.5 * root.t.upper);
             match self.root(winding, threshold, root.t, &middle) {
-                // (By halves, where its change is not known well.)
+                // (Bisect instead where the change is not known well.)
                 Some(next) if next.t.width() < 0.75 * root.t.width() => root.t = next.t,
                 _ => break,
             }
         }
-        // Positive numbers are inside above one half, and negative ones below minus one half.
+        // Positive numbers are inside above one half, negative ones below minus one half.
         let is_inside_after = root.rises == (threshold > 0.0);
         if root.t.lower > from.at {
             self.found.known(from.at, !is_inside_after)?;
@@ -338,8 +341,8 @@ impl Course<'_> {
         }
     }
 
-    /// The only number that parts inside from outside which may be passed between two times; nothing if both
-    /// may be.
+    /// Returns the only threshold between inside and outside that the number may pass between two times.
+    /// `None` if it may pass both.
     fn threshold(&self, winding: i32, from: &Sums, to: &Sums) -> Option<f64> {
         let [least, most] = from.until(to);
         let (low, high) = (f64::from(winding) - most, f64::from(winding) - least);
@@ -352,20 +355,21 @@ impl Course<'_> {
         }
     }
 
-    /// When the winding number passes a threshold in a stretch around a look, through which it surely rises
-    /// or falls all the way: an interval beside which it is on either side. Nothing if that is not sure.
+    /// Returns when the winding number passes a threshold in a stretch around a look. The number must surely
+    /// rise, or surely fall, in the whole stretch. The result is an interval with different sides before and
+    /// behind it. `None` if unsure.
     fn root(&self, winding: i32, threshold: f64, stretch: Interval, middle: &Sums) -> Option<Root> {
         let speed = self.line.speed();
         let reach = (middle.at - stretch.lower).max(stretch.upper - middle.at) * speed;
         let reach = reach * (1.0 + 1e-12) + f64::EPSILON;
         let change = self.line.change(middle.at);
-        // (Also false for NaN.)
+        // (This is false for NaN, too.)
         let is_near = reach < 0.5 * change.distance();
         if !is_near {
             return None;
         }
         let [least, most] = change.within(reach);
-        // That of the winding number in a unit of time.
+        // The change of the winding number per unit of time.
         let slope = Interval::new(-most, -least)?.times(Interval::exactly(speed));
         let slope = slope.times(Interval::new(1.0 - 1e-12, 1.0 + 1e-12)?);
         if slope.contains(0.0) {
@@ -377,29 +381,29 @@ impl Course<'_> {
         let rises = slope.lower > 0.0;
         let (fallen, steepness) = if rises { (excess, slope) } else { (excess.negated(), slope.negated()) };
         let t = Interval::exactly(middle.at).minus(fallen.over(steepness));
-        // (If it is passed before or after, all of the stretch is on one side.)
+        // (If the threshold is passed before or after the stretch, the whole stretch is on one side.)
         let lower = t.lower.clamp(stretch.lower, stretch.upper);
         let upper = t.upper.clamp(stretch.lower, stretch.upper);
         Some(Root { t: Interval::new(lower, upper)?, rises })
     }
 
-    /// The ray may pass the surface where the winding number is a threshold.
+    /// Notes that the ray may pass the surface where the winding number is a threshold.
     fn unknown(&mut self, threshold: f64, t: Interval) -> Result<(), Error> {
         let middle = 0.5 * t.lower + 0.5 * t.upper;
         let at = axes(|axis| {
             let [high, low] = self.ray.direction[axis];
             self.ray.from[axis] + middle * high + middle * low
         });
-        // The surface's own number changes against the caps'.
+        // The surface's own number changes opposite to the caps'.
         let normal = self.rim.gradient(at).to_array();
         let normal = if threshold > 0.0 { normal } else { normal.map(|n| -n) };
         self.found.unknown(RayCrossing { t, is_inside_after: false, is_met: false, normal, surface: None })
     }
 }
 
-/// Where a winding number passes a threshold.
+/// The time at which a winding number passes a threshold.
 struct Root {
     t: Interval,
-    /// Whether it rises.
+    /// Whether the number rises.
     rises: bool,
 }

@@ -14,22 +14,22 @@ use core::ops::Range;
 /// Bits that are kept at a time: 16 MiB.
 const BITS: u64 = 1 << 27;
 
-/// Triangles between two looks at whether to go on.
+/// The number of triangles that are processed between two checks for cancellation.
 const TRIANGLES: usize = 1 << 12;
 
 impl MeshSolid {
-    /// How many of the rays along x, along y and along z pierce the triangles of the mesh an odd number of
-    /// times: those on which an open mesh contradicts itself. Of a closed mesh, as [`FillRule::EvenOdd`]
-    /// demands it, there are none.
+    /// Returns how many rays along x, along y and along z pierce the triangles of the mesh an odd number of
+    /// times. On these rays an open mesh contradicts itself. A mesh that is closed as [`FillRule::EvenOdd`]
+    /// demands has none.
     ///
-    /// The rays are the 4^depth lines along each axis through the centres of the frame's finest cells, in
-    /// thought shifted by (ε, ε², ε³), so that they meet no edge of a triangle, as those of
-    /// [`dexelize`](crate::dexelize). A ray is the whole line: what it pierces outside of the universe
-    /// counts, too. What closes the holes for winding numbers does not.
+    /// The rays are the 4^depth lines along each axis through the centres of the frame's finest cells. As in
+    /// [`dexelize`](crate::dexelize), they are shifted symbolically by (ε, ε², ε³), so that they meet no edge
+    /// of a triangle. A ray is the whole line: triangles outside the universe count, too. The caps that close
+    /// holes for winding numbers do not count.
     ///
-    /// O(1) for a closed mesh whose edges were analysed before. Else O(rays / 64 + t + rows), where each
-    /// triangle has so many rows as rays beside each other meet it, with a bit for each ray, but 16 MiB at
-    /// the most. For frames of more than 8192 cells to an axis all triangles are looked at several times.
+    /// O(1) for a closed mesh whose edges were analysed before. Otherwise O(rays / 64 + t + rows), where the
+    /// rows of a triangle are the rows of rays that meet it. Memory: a bit a ray, at most 16 MiB. For frames
+    /// of more than 8192 cells along an axis, all triangles are processed several times.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]; [`Error::Cancelled`].
@@ -61,7 +61,7 @@ impl MeshSolid {
     }
 }
 
-/// How many rays along an axis pierce an odd number of triangles.
+/// Returns how many rays along an axis pierce an odd number of triangles.
 fn count(placed: &Placed, axis: usize, job: &Job<'_>) -> Result<u64, Error> {
     let [u, v] = OTHERS[axis];
     let mut hull = [[i32::MAX, i32::MIN]; 3];
@@ -77,7 +77,7 @@ fn count(placed: &Placed, axis: usize, job: &Job<'_>) -> Result<u64, Error> {
     if columns.is_empty() || rows.is_empty() {
         return Ok(0);
     }
-    // A bit more than there are columns: one past the last of a span is noted, too.
+    // One bit more than there are columns: the end of a span is one past its last column.
     let words = columns.len() / 64 + 1;
     let most = (BITS / 64 / words as u64).max(1) as usize;
     let mut bits = memory::filled(words * most.min(rows.len()), 0u64)?;
@@ -91,7 +91,7 @@ fn count(placed: &Placed, axis: usize, job: &Job<'_>) -> Result<u64, Error> {
     Ok(odd)
 }
 
-/// Turns over the bits where, in each row of a band, the columns of a triangle begin and end.
+/// Flips the bits where, in each row of a band, the columns of a triangle begin and end.
 fn mark(
     placed: &Placed,
     axis: usize,
@@ -126,7 +126,7 @@ fn mark(
     Ok(())
 }
 
-/// How many columns of a row are odd, whose bits say where this changes.
+/// Returns how many columns of a row are odd. The row's bits say where the parity changes.
 fn odd_columns(row: &[u64]) -> u64 {
     let (mut odd, mut before) = (0, 0);
     for &word in row {

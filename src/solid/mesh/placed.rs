@@ -1,8 +1,8 @@
 //! A mesh on a lattice.
 //!
-//! Vertices become lattice coordinates in doubles, each with a bound of its error (zero where the position is
-//! a double, as lattice-aligned parts have it), and with its exact *ranks* among the planes of cell centres.
-//! Bulk work is done on these; whatever they leave open is decided exactly on the original coordinates.
+//! Vertices become lattice coordinates in doubles, each with a bound of its error (zero if the position is a
+//! double, as in lattice-aligned parts), and with its exact *ranks* among the planes of cell centres. Bulk
+//! work uses these coordinates and ranks. Exact arithmetic on the original coordinates decides the rest.
 
 use crate::error::{Error, MeshError};
 use crate::lattice::Frame;
@@ -12,22 +12,23 @@ use crate::mesh::TriangleMesh;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-/// Bound of the relative error of one rounded subtraction and one rounded division: 2^-52 and some more.
+/// A bound of the relative error of one rounded subtraction and one rounded division: slightly more than
+/// 2^-52.
 const UNIT: f32 = f32::EPSILON * f32::EPSILON / 32.0;
 
-/// A vertex in finest cells from the frame's origin.
+/// A vertex in finest cells, from the frame's origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
-    /// Position.
+    /// The position.
     pub(super) at: [f64; 3],
-    /// Bound of the position's error, per axis.
+    /// A bound of the position's error along each axis.
     pub(super) error: [f32; 3],
-    /// Per axis the first plane of cell centres that counts as above the vertex: the least k with
-    /// k + ½ ≥ position. Exact. (All centres are shifted by (ε, ε², ε³), so a centre at the vertex's own
-    /// height lies above it.) Outside of the universe's neighbourhood only the side is right.
+    /// For each axis, the first plane of cell centres that counts as above the vertex: the least k with k + ½
+    /// ≥ position. Exact. (All centres are shifted by (ε, ε², ε³), so that a centre at the vertex's own
+    /// height lies above it.) Far outside the universe only the side is right.
     pub(super) rank: [i32; 3],
-    /// The position is exact and short enough that determinants of such vertices and cell centres are
-    /// computed without rounding.
+    /// Whether the position is exact and has so few bits that determinants of such vertices and cell centres
+    /// are computed without rounding.
     pub(super) short: bool,
 }
 
@@ -35,22 +36,22 @@ pub(super) struct Vertex {
 pub(super) struct Placed {
     pub(super) frame: Frame,
     pub(super) mesh: Arc<TriangleMesh>,
-    /// How far the surface may lie from the mesh along an axis, in finest cells: what was moved to close hair
-    /// cracks, and what deviation was stated.
+    /// The greatest distance of the surface from the mesh along an axis, in finest cells: moves that closed
+    /// hair cracks, and the stated deviation.
     pub(super) displacement: f64,
-    /// How far it may lie from the mesh, straight on.
+    /// The greatest Euclidean distance of the surface from the mesh, in finest cells.
     pub(super) radius: f64,
     vertices: Vertices,
-    /// The triangles that close the surface, numbered on from the mesh's.
+    /// The triangles that close the surface. Their numbers follow the numbers of the mesh's triangles.
     pub(super) caps: Vec<[u32; 3]>,
 }
 
-/// The vertices, field by field: of most triangles only the ranks are looked at. 37 bytes each.
+/// The vertices as one array per field, because most triangles need only the ranks. 37 bytes a vertex.
 #[derive(Default)]
 struct Vertices {
     at: Vec<[f64; 3]>,
     ranks: Vec<[i32; 3]>,
-    /// Bit of an axis: the position is exact. Bit 3: it is short.
+    /// Bit k < 3: the position is exact along axis k. Bit 3: the vertex is short.
     flags: Vec<u8>,
 }
 
@@ -81,7 +82,7 @@ impl Vertices {
     }
 }
 
-/// Bound of the error of a position that was rounded.
+/// A bound of the error of a rounded position.
 #[inline(always)]
 fn error_of(at: f64) -> f32 {
     (at.abs() as f32 * UNIT).max(UNIT)
@@ -91,7 +92,7 @@ fn error_of(at: f64) -> f32 {
 pub(super) type Corners = [Vertex; 3];
 
 impl Placed {
-    /// Bytes that the vertices and caps take.
+    /// The bytes of the vertices and caps.
     pub(super) fn bytes(&self) -> usize {
         let Vertices { at, ranks, flags } = &self.vertices;
         memory::bytes_of(at)
@@ -100,7 +101,7 @@ impl Placed {
             + memory::bytes_of(&self.caps)
     }
 
-    /// The mesh without caps.
+    /// Places a mesh, without caps.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -123,7 +124,7 @@ impl Placed {
         Ok(())
     }
 
-    /// How many triangles the surface and its caps have.
+    /// The number of triangles of the surface and its caps.
     pub(super) fn count(&self) -> u32 {
         (self.mesh.triangles().len() + self.caps.len()) as u32
     }
@@ -142,7 +143,7 @@ impl Placed {
         self.vertices.get(vertex)
     }
 
-    /// A vertex's position.
+    /// The position of a vertex.
     #[inline(always)]
     pub(super) fn at(&self, vertex: u32) -> [f64; 3] {
         self.vertices.at[vertex as usize]
@@ -162,7 +163,7 @@ impl Placed {
         self.triangle(triangle).map(|vertex| self.vertex(vertex))
     }
 
-    /// The lowest and the highest ranks of a triangle's corners.
+    /// The lowest and the highest rank of a triangle's corners along each axis.
     #[inline(always)]
     pub(super) fn rank_box(&self, triangle: u32) -> [[i32; 3]; 2] {
         let [a, b, c] = self.triangle(triangle).map(|vertex| self.vertices.ranks[vertex as usize]);
@@ -171,13 +172,13 @@ impl Placed {
         [[least(0), least(1), least(2)], [most(0), most(1), most(2)]]
     }
 
-    /// Whether the surface lies less than half a cell from the mesh: a vertex of a lower rank than k is then
-    /// below the plane k, one of a higher rank above it.
+    /// Returns whether the surface lies less than half a cell from the mesh. A vertex of a rank below k is
+    /// then below the plane k, a vertex of a rank above k is above it.
     pub(super) fn ranks_tell(&self) -> bool {
         self.displacement < 0.25
     }
 
-    /// The corners as the mesh has them, in model units.
+    /// The corners as the mesh stores them, in model units.
     pub(super) fn original(&self, triangle: u32) -> [[f64; 3]; 3] {
         self.triangle(triangle).map(|vertex| self.mesh.vertices()[vertex as usize])
     }
@@ -186,13 +187,13 @@ impl Placed {
 /// A vertex's position, ranks and flags.
 fn place(frame: &Frame, vertex: [f64; 3]) -> ([f64; 3], [i32; 3], u8) {
     let depth = frame.depth() as i32;
-    // With `grain` bits behind the point, a 3 × 3 determinant of differences needs 3·(depth + grain + 1) + 3
-    // bits: 51.
+    // With `grain` bits behind the binary point, a 3 × 3 determinant of differences needs 51 bits: 3·(depth +
+    // grain + 1) + 3.
     let grain = (1u64 << (15 - depth.min(14))) as f64;
     let (mut position, mut ranks, mut exact, mut short) = ([0.0; 3], [0; 3], 0, depth <= 14);
     for axis in 0..3 {
         let (offset, lost) = two_diff(vertex[axis], frame.origin()[axis]);
-        // Division finds the exact quotient if it is a double; a product with the reciprocal may miss it.
+        // A division returns the exact quotient if it is a double; a product with the reciprocal may miss it.
         let at = offset / frame.cell_size();
         let is_exact = two_product(at, frame.cell_size()) == (offset, lost);
         let error = if is_exact { 0.0 } else { error_of(at) };
@@ -207,26 +208,26 @@ fn place(frame: &Frame, vertex: [f64; 3]) -> ([f64; 3], [i32; 3], u8) {
 
 /// The least k with k + ½ ≥ position, exactly.
 fn rank(frame: &Frame, axis: usize, original: f64, at: f64, error: f64) -> i32 {
-    // One more or less than any centre of the universe says no more than "outside".
+    // Positions beyond all centres of the universe are clamped: they only count as outside.
     let far = frame.cells() as f64 + 1.0;
     let below = (at - 0.5).clamp(-far, far);
     let nearest = floor(below + 0.5);
     if (below - nearest as f64).abs() > error + f64::EPSILON * far.min(at.abs() + 1.0) {
         return -floor(-below) as i32;
     }
-    // The position is a hair's breadth from a plane of centres, or on it.
+    // The position is extremely near to a plane of centres, or on it.
     (nearest + (frame.side(axis, original, 2 * nearest + 1) > 0) as i64) as i32
 }
 
-/// The range of plane indices `first..end` between the lowest and the highest corner along `axis`: a line of
-/// centres at k can meet the triangle only if k lies in it.
+/// The range of planes `first..end` between the lowest and the highest corner along `axis`: a line of centres
+/// at k can meet the triangle only if k lies in the range.
 #[inline(always)]
 pub(super) fn ranks(corners: &Corners, axis: usize) -> (i32, i32) {
     let [a, b, c] = [corners[0].rank[axis], corners[1].rank[axis], corners[2].rank[axis]];
     (a.min(b).min(c), a.max(b).max(c))
 }
 
-/// The box around a triangle, outward by what its corners may be off; exact where that is zero.
+/// The bounding box of a triangle, widened by its corners' errors; exact if these are zero.
 #[inline(always)]
 pub(super) fn bounds(placed: &Placed, corners: &Corners) -> ([f64; 3], [f64; 3]) {
     let mut min = [f64::INFINITY; 3];
@@ -239,13 +240,13 @@ pub(super) fn bounds(placed: &Placed, corners: &Corners) -> ([f64; 3], [f64; 3])
         }
     }
     if placed.displacement > 0.0 {
-        // The sums were rounded too.
+        // The sums were rounded, too.
         (min, max) = (min.map(f64::next_down), max.map(f64::next_up));
     }
     (min, max)
 }
 
-/// The largest error among the corners' positions, and the largest magnitude that goes into their arithmetic.
+/// The largest error of the corners' positions, and the largest magnitude in computations with them.
 pub(super) fn accuracy(placed: &Placed, corners: &Corners) -> (f64, f64) {
     let mut error = 0f32;
     let mut magnitude = placed.frame.cells() as f64;
@@ -258,13 +259,13 @@ pub(super) fn accuracy(placed: &Placed, corners: &Corners) -> (f64, f64) {
     (error as f64, magnitude)
 }
 
-/// Whether determinants of the corners and lattice points are the surface's, without rounding.
+/// Returns whether determinants of the corners and lattice points are those of the surface, without rounding.
 #[inline(always)]
 pub(super) fn is_exact(placed: &Placed, corners: &Corners) -> bool {
     placed.displacement == 0.0 && are_short(corners)
 }
 
-/// Whether determinants of the corners and cell centres come out without rounding.
+/// Returns whether determinants of the corners and cell centres are computed without rounding.
 #[inline(always)]
 pub(super) fn are_short(corners: &Corners) -> bool {
     corners.iter().all(|corner| corner.short)

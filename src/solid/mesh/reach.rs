@@ -1,14 +1,14 @@
-//! How far the solid of an open surface may reach beyond the surface.
+//! Bounds of the distance by which the solid of an open surface may reach beyond the surface.
 //!
-//! The surface and caps over the loops of its boundary are closed, and all of them lie in the box around the
-//! vertices. At a point outside of the box the surface and caps together have winding number 0, so the
-//! surface's own is that of the caps alone, with the other sign. It is less than ½ in magnitude if the caps
-//! are seen at solid angles of less than 2π together: then every rule leaves the point out.
+//! The surface and caps over the loops of its boundary form a closed surface within the bounding box of the
+//! vertices. At a point outside the box, the surface and the caps together have winding number 0. So the
+//! surface's own number is the caps' number with the opposite sign. It is less than ½ in magnitude if the
+//! solid angles of the caps at the point sum to less than 2π: then every rule leaves the point out.
 //!
-//! A flat, convex cap is seen at less than 2π from everywhere off its plane, and at no more than its area
-//! over the square of the distance. So a surface with one such hole does not reach out of its box at all.
-//! With more holes it may: seen from a point close to a facet that is turned over, the hole that the facet
-//! leaves and the facet's own wrong side come to nearly 4π.
+//! The solid angle of a flat, convex cap is less than 2π from everywhere off its plane, and at most its area
+//! over the square of the distance. So a surface with one such hole does not reach beyond its box at all.
+//! With more holes it may: seen from a point close to an inverted facet, the hole that the facet leaves and
+//! the facet's own wrong side together have a solid angle of nearly 4π.
 
 use crate::error::Error;
 use crate::lattice::axes;
@@ -21,22 +21,23 @@ use glam::DVec3;
 
 use super::winding::halve;
 
-/// Halvings of a distance.
+/// The number of bisection steps for a distance.
 const STEPS: usize = 24;
 
-/// Outweighs what is rounded in sums of areas and solid angles, of which there are fewer than 2^32.
+/// A margin for rounding in sums of areas and solid angles, which have fewer than 2^32 terms.
 const SLACK: f64 = 1.0 + 1e-6;
 
-/// A flat, convex cap, in units of the longest side of the box around the surface, from the box's lower
-/// corner.
+/// A flat, convex cap. The unit is the longest side of the bounding box of the surface, the origin the box's
+/// lower corner.
 struct Patch {
     area: f64,
     min: DVec3,
     max: DVec3,
 }
 
-/// How far the solid may reach beyond the box around the vertices: beyond its lower and its upper side on
-/// each axis. `displacement` is how far, along each axis, the surface may lie from the mesh; it comes on top.
+/// Returns how far the solid may reach beyond the bounding box of the vertices: beyond its lower and its
+/// upper side on each axis. `displacement` is the greatest distance of the surface from the mesh along each
+/// axis; it is added.
 ///
 /// O(n) in the edges of the boundary.
 ///
@@ -57,7 +58,7 @@ pub(super) fn reach(mesh: &TriangleMesh, loops: &Loops, displacement: f64) -> Re
     let total: f64 = patches.iter().map(|patch| patch.area).sum();
     let most = sqrt(total / TAU) * SLACK;
     let beyond = |gap: &dyn Fn(&Patch) -> f64| {
-        // Whether all caps together are seen at less than 2π from `distance` beyond the side.
+        // Whether the solid angles of all caps sum to less than 2π at `distance` beyond the side.
         let is_enough = |distance: f64| {
             let angle = |patch: &Patch| {
                 let away = gap(patch) + distance;
@@ -81,7 +82,7 @@ pub(super) fn reach(mesh: &TriangleMesh, loops: &Loops, displacement: f64) -> Re
     ])
 }
 
-/// Caps over the loops: one for a loop that is flat and convex, and else triangles.
+/// Returns caps over the loops: one cap for a flat and convex loop, otherwise triangles.
 fn patches(loops: &Loops, place: &impl Fn(u32) -> DVec3, displacement: f64) -> Result<Vec<Patch>, Error> {
     let mut patches: Vec<Patch> = memory::with_capacity(loops.caps())?;
     for walk in loops.iter() {
@@ -91,10 +92,10 @@ fn patches(loops: &Loops, place: &impl Fn(u32) -> DVec3, displacement: f64) -> R
             let [a, b, c] = corners.map(at);
             let (u, v) = (b - a, c - a);
             let product = length(u) * length(v);
-            // Each edge may be longer than it seems, by a diagonal at both ends.
+            // Displaced ends may make each edge longer than computed, by a diagonal at both ends.
             let longer = 4.0 * displacement;
             let excess = longer * (length(u) + length(v) + longer) / 2.0;
-            // (A needle's area may be all rounding.)
+            // (The computed area of a needle may be all rounding.)
             let area = length(u.cross(v)) / 2.0 * SLACK + excess + 1e-15 * product + 1e-200;
             patches.push(Patch { area, min: a.min(b).min(c), max: a.max(b).max(c) });
         });
@@ -114,7 +115,7 @@ fn length(v: DVec3) -> f64 {
     sqrt(v.length_squared())
 }
 
-/// Whether a loop surely is a convex polygon in a plane across an axis.
+/// Returns whether a loop surely is a convex polygon in a plane across an axis.
 fn is_flat_and_convex(count: usize, at: &impl Fn(usize) -> DVec3) -> bool {
     let Some(across) = (0..3).find(|&axis| (1..count).all(|i| at(i)[axis] == at(0)[axis])) else {
         return false;
@@ -127,7 +128,7 @@ fn is_flat_and_convex(count: usize, at: &impl Fn(usize) -> DVec3) -> bool {
         let is_sure = (p - q).abs() > 8.0 * f64::EPSILON * (p.abs() + q.abs());
         left += usize::from(is_sure && p > q);
         right += usize::from(is_sure && p < q);
-        // In lexicographic order a convex polygon goes forth and back once.
+        // In lexicographic order, a convex polygon goes forth and back once.
         let is_forth = |step: DVec3| step[x] > 0.0 || step[x] == 0.0 && step[y] > 0.0;
         reversals += usize::from(is_forth(a) != is_forth(b));
     }

@@ -1,9 +1,9 @@
-//! Winding numbers of caps from the rim alone.
+//! Winding numbers of caps, from the rim alone.
 //!
-//! All surfaces over the same loops have one winding number, but for integers. Of cones from a point
-//! infinitely far away it is a sum over the loops' edges, as smooth beside the caps as anywhere else. It has
-//! no error but that of rounding, so that it tells where a winding number passes one half, however slowly it
-//! changes.
+//! The winding numbers of all surfaces over the same loops differ by integers only. For cones from a point at
+//! infinity, the winding number is a sum over the loops' edges that is smooth near the caps, too. The sum has
+//! rounding errors only, so that it locates the place where a winding number passes one half, however slowly
+//! the number changes.
 
 use crate::error::Error;
 use crate::lattice::exact::sqrt;
@@ -12,50 +12,51 @@ use alloc::vec::Vec;
 use core::f64::consts::PI;
 use glam::DVec3;
 
-/// Whence cones come: directions that hardly any model has. The second is for points that an edge hides from
-/// the first.
+/// The directions of the cones' apexes: directions that hardly any model contains. The others serve points
+/// that an edge hides from the first.
 pub(super) const DIRECTIONS: [DVec3; 3] = [
     DVec3::new(0.267_261_241_912_424_4, 0.534_522_483_824_848_8, 0.801_783_725_737_273_2),
     DVec3::new(-0.811_107_105_653_812_7, 0.324_442_842_261_525_1, 0.486_664_263_392_287_6),
     DVec3::new(0.455_842_305_838_551_8, -0.569_802_882_298_189_7, -0.683_763_458_757_827_6),
 ];
 
-/// Of a point that an edge hides, the modulus is less.
+/// A cone of smaller modulus than this belongs to a point that an edge hides.
 const HIDDEN: f64 = 1e-6;
 
-/// The edges of a surface's boundary, backward, as its caps have them.
+/// The edges of a surface's boundary, reversed, in the orientation that its caps have.
 #[derive(Default)]
 pub(super) struct Rim {
     edges: Vec<[DVec3; 2]>,
-    /// The loops of edges that were closed.
+    /// One ball for each closed loop.
     loops: Vec<Patch>,
-    /// Bound of the error of a vertex's position per axis.
+    /// A bound of the error of a vertex's position along each axis.
     pub(super) vertex_error: f64,
 }
 
-/// A ball around a loop. In it lies a cap: cones from the middle over the edges.
+/// A ball around a loop. It contains a cap: cones from the middle over the edges.
 struct Patch {
     middle: DVec3,
     radius: f64,
-    /// Its edges.
+    /// The loop's edges are `first..end`.
     first: usize,
     end: usize,
-    /// The cap's area is no larger than the loop is long, times half the radius. This is a 4π-th of that.
+    /// The cap's area is at most the loop's length times half the radius. This is that bound over 4π.
     area: f64,
 }
 
 impl Patch {
-    /// A bound of the cap's winding number at this distance from the ball's middle, and further away.
+    /// A bound of the cap's winding number at this distance from the ball's middle, and at any greater
+    /// distance.
     #[inline(always)]
     fn most(&self, distance: f64) -> f64 {
         let gap = distance - self.radius;
-        // (Also of NaN.)
+        // (False for NaN, too.)
         let is_clear = gap > 0.0;
         if is_clear { self.area / (gap * gap) } else { f64::INFINITY }
     }
 }
 
-/// A half-line, or all of its line.
+/// A half-line, or its whole line.
 pub(super) struct Course {
     from: DVec3,
     way: DVec3,
@@ -67,7 +68,7 @@ impl Course {
         Course { from, way: way / sqrt(way.length_squared()), is_line }
     }
 
-    /// How far a point is from it, at the least.
+    /// A lower bound of the distance of a point from the course.
     #[inline(always)]
     fn gap(&self, point: DVec3) -> f64 {
         let to = point - self.from;
@@ -77,10 +78,10 @@ impl Course {
     }
 }
 
-/// Outweighs what is rounded in lengths.
+/// A margin for rounding in lengths.
 const SLACK: f64 = 1.0 + 1e-9;
 
-/// The distance of a point from an edge, both ends of which are seen from there.
+/// The distance of the origin from an edge whose ends are given relative to it.
 #[inline(always)]
 fn distance([from, to]: [DVec3; 2]) -> f64 {
     let edge = to - from;
@@ -89,7 +90,7 @@ fn distance([from, to]: [DVec3; 2]) -> f64 {
     sqrt((from + along * edge).length_squared())
 }
 
-/// A winding number but for an integer, and a bound of its error.
+/// A winding number modulo 1, with a bound of its error.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fraction {
     pub(super) value: f64,
@@ -103,12 +104,12 @@ struct Cone {
     error: f64,
 }
 
-/// How the caps' winding number may change around a point.
+/// Bounds of the change of the caps' winding number around a point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slope {
     /// The distance to the rim.
     pub(super) distance: f64,
-    /// The change per distance is nowhere greater within half of that.
+    /// The greatest magnitude of the gradient within half that distance.
     pub(super) most: f64,
 }
 
@@ -123,7 +124,7 @@ impl Rim {
         memory::push(&mut self.edges, edge)
     }
 
-    /// Closes a loop of all edges from `first` on.
+    /// Closes a loop that consists of all edges from `first` on.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -141,22 +142,23 @@ impl Rim {
         memory::push(&mut self.loops, Patch { middle, radius, first, end, area })
     }
 
-    /// A bound of the winding number of caps that lie in balls around their loops, wherever `gap` tells how
-    /// far such a ball's middle is, at the least; infinite if that may be in one of the balls. O(n) in the
-    /// loops.
+    /// Returns a bound of the winding number of caps that lie in balls around their loops, for a place whose
+    /// least distance to a ball's middle is given by `gap`. Infinite if the place may meet one of the balls.
+    /// O(n) in the loops.
     fn most(&self, gap: impl Fn(DVec3) -> f64) -> f64 {
         let most = self.loops.iter().map(|patch| patch.most(gap(patch.middle))).sum::<f64>();
         if most.is_nan() { f64::INFINITY } else { most * SLACK }
     }
 
-    /// That bound on a half-line, or on all of its line. The half-line meets none of these caps if the bound
-    /// is finite, so that the winding number of cones back along the line is that of the caps.
+    /// Returns the bound of [`most`](Self::most) on a half-line, or on its whole line. If the bound is
+    /// finite, the half-line meets none of these caps, so that the winding number of cones back along the
+    /// line is the caps' number.
     pub(super) fn most_along(&self, course: &Course) -> f64 {
         self.most(|middle| course.gap(middle))
     }
 
-    /// Calls `visit` with the edges of each loop for which that bound is no less than `least`. Returns the
-    /// bound of the others.
+    /// Calls `visit` with the edges of each loop whose bound is at least `least`. Returns the bound of the
+    /// other loops.
     pub(super) fn near_loops<'r>(
         &'r self,
         course: &Course,
@@ -175,7 +177,7 @@ impl Rim {
         most * SLACK
     }
 
-    /// That bound in a ball.
+    /// Returns the bound of [`most`](Self::most) in a ball.
     pub(super) fn most_within(&self, point: [f64; 3], radius: f64) -> f64 {
         self.most(|middle| {
             let to = middle - DVec3::from(point);
@@ -183,15 +185,15 @@ impl Rim {
         })
     }
 
-    /// The caps' winding number at a point (in finest cells from the frame's origin), but for an integer.
-    /// `None` on the rim itself. O(n) in the edges.
+    /// Returns the caps' winding number modulo 1 at a point (in finest cells from the frame's origin). `None`
+    /// on the rim itself. O(n) in the edges.
     pub(super) fn fraction(&self, point: [f64; 3]) -> Option<Fraction> {
         let point = DVec3::from(point);
         DIRECTIONS.into_iter().find_map(|towards| self.fraction_of_cones(point, towards))
     }
 
-    /// The same by cones from one direction: the product of their complex numbers has the argument of the
-    /// sum.
+    /// Computes the fraction with cones from one direction: the product of their complex numbers has the sum
+    /// of their angles as its argument.
     fn fraction_of_cones(&self, point: DVec3, towards: DVec3) -> Option<Fraction> {
         let (mut real, mut imaginary, mut error) = (1.0f64, 0.0f64, 0.0);
         for &[from, to] in &self.edges {
@@ -205,14 +207,14 @@ impl Rim {
         Some(Fraction { value: libm::atan2(imaginary, real) / (2.0 * PI), error: error + 4.0 * f64::EPSILON })
     }
 
-    /// The winding number of the cones from one of the [`DIRECTIONS`] at a point, the whole of it: what the
-    /// surface's own lacks of the integer that triangles on the way to the other side count. `None` if the
-    /// point may lie on a cone, or the rim. O(n) in the edges.
+    /// Returns the full winding number, integers included, of the cones from one of the [`DIRECTIONS`] at a
+    /// point. The surface's own number is the integer count of triangles on the way to the opposite side,
+    /// minus this number. `None` if the point may lie on a cone or on the rim. O(n) in the edges.
     pub(super) fn of_cones(&self, point: DVec3, towards: DVec3) -> Option<Fraction> {
         let (mut real, mut imaginary, mut error, mut turns) = (1.0f64, 0.0f64, 0.0, 0.0);
         for &[from, to] in &self.edges {
             let cone = self.cone([from - point, to - point], towards)?;
-            // Beside a cone its angle is nearly half a turn to one side or to the other.
+            // Beside a cone, its angle is nearly half a turn to one side or to the other.
             if cone.real < 0.0 && cone.imaginary.abs() <= 4.0 * cone.error {
                 return None;
             }
@@ -222,7 +224,8 @@ impl Rim {
                 real * cone.real - imaginary * cone.imaginary,
                 real * cone.imaginary + imaginary * cone.real,
             );
-            // An angle of less than half a turn was added to one: beyond half a turn signs tell.
+            // Adding an angle of less than half a turn: a change of sign shows that the sum has passed half a
+            // turn.
             if cone.imaginary > 0.0 && was_up.0 && imaginary < 0.0 {
                 turns += 1.0;
             } else if cone.imaginary < 0.0 && was_up.1 && imaginary > 0.0 {
@@ -233,42 +236,42 @@ impl Rim {
         Some(Fraction { value, error: error + 4.0 * f64::EPSILON * (1.0 + turns.abs()) })
     }
 
-    /// Half the solid angle of an edge's triangle, one corner of which is infinitely far away, as a complex
-    /// number of modulus 1 (van Oosterom and Strackee 1983). `None` of a point that the edge hides.
+    /// Half the solid angle of an edge's triangle with its third corner at infinity, as a complex number of
+    /// modulus 1 (van Oosterom and Strackee 1983). `None` if the edge hides the point.
     #[inline(always)]
     fn cone(&self, [a, b]: [DVec3; 2], towards: DVec3) -> Option<Cone> {
         let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
-        // Over the product of both distances, so that it takes one division.
+        // Multiplied by the product of both distances, so that one division suffices.
         let (x, y) = (
             far * farther + a.dot(b) + b.dot(towards) * far + a.dot(towards) * farther,
             towards.dot(a.cross(b)),
         );
         let size = sqrt(x * x + y * y);
-        // Also false for NaN.
+        // This is false for NaN, too.
         let is_seen = size > HIDDEN * (far * farther);
         let inverse = 1.0 / size;
-        // As of a cap (`add_cap`), two of whose corners are that near.
+        // The same bound as for a cap (`Angle::undivided`) with two corners at these distances.
         let wrong = 64.0 * f64::EPSILON * (far * farther) + 8.0 * self.vertex_error * (far + farther);
         is_seen.then_some(Cone { real: x * inverse, imaginary: y * inverse, error: wrong * inverse })
     }
 
-    /// How far the rim is, and a bound of the slope: the gradient is the magnetic field of a current along
-    /// the rim. O(n) in the edges.
+    /// Returns the distance to the rim, and a bound of the gradient: the gradient is the magnetic field of a
+    /// current along the rim. O(n) in the edges.
     pub(super) fn slope(&self, point: [f64; 3]) -> Slope {
         let point = DVec3::from(point);
         let (mut least, mut most) = (f64::INFINITY, 0.0);
         for &[from, to] in &self.edges {
             let distance = distance([from - point, to - point]);
             least = distance.min(least);
-            // ∫ ds / distance², at half the distance, is at most that of the edge's whole line.
+            // ∫ ds / distance², at half the distance, is at most the integral along the edge's whole line.
             let inverse = 2.0 / distance;
             most += (sqrt((to - from).length_squared()) * inverse).min(PI) * inverse;
         }
         Slope { distance: least, most: most / (4.0 * PI) }
     }
 
-    /// By how much the caps' winding number may differ from that at a point within `radius` of it, caps not
-    /// counted: infinitely much if the rim may be as near. O(n) in the edges.
+    /// Returns by how much the caps' winding number may change within `radius` of a point, jumps on caps
+    /// excluded. Infinite if the rim may be as near. O(n) in the edges.
     pub(super) fn change_within(&self, point: [f64; 3], radius: f64) -> f64 {
         let point = DVec3::from(point);
         let reach = radius * SLACK + 2.0 * self.vertex_error;
@@ -287,8 +290,8 @@ impl Rim {
         if most.is_nan() { f64::INFINITY } else { most }
     }
 
-    /// The gradient of the caps' winding number, but for rounding: the magnetic field of a current along the
-    /// rim. O(n) in the edges.
+    /// Returns the gradient of the caps' winding number, with rounding errors: the magnetic field of a
+    /// current along the rim. O(n) in the edges.
     pub(super) fn gradient(&self, point: [f64; 3]) -> DVec3 {
         let point = DVec3::from(point);
         let mut sum = DVec3::ZERO;
@@ -296,7 +299,8 @@ impl Rim {
             let (a, b) = (from - point, to - point);
             let (far, farther) = (sqrt(a.length_squared()), sqrt(b.length_squared()));
             let field = a.cross(b) * ((1.0 / far + 1.0 / farther) / (far * farther + a.dot(b)));
-            // (On the edge itself there is none. Where loops run to and fro, the others tell.)
+            // (On an edge itself its field is undefined. Where loops run to and fro, the other edges give the
+            // field.)
             if field.is_finite() {
                 sum += field;
             }
@@ -304,7 +308,7 @@ impl Rim {
         if sum.is_finite() { sum / (4.0 * PI) } else { DVec3::ZERO }
     }
 
-    /// The edges, each from its beginning to its end.
+    /// The edges, each from its start to its end.
     pub(super) fn edges(&self) -> &[[DVec3; 2]] {
         &self.edges
     }

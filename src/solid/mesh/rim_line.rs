@@ -1,18 +1,19 @@
 //! The winding number of caps along a line, from the rim alone.
 //!
-//! Cones over the rim that all lead back along the line, to a point infinitely far behind, meet the line only
-//! where it passes the rim itself. So their winding number changes smoothly along the line, and it is zero
-//! infinitely far ahead. Nothing is added to it or taken off but what triangles ahead count.
+//! Consider cones over the rim that lead back along the line, to a point at infinity behind it. They meet the
+//! line only where it passes the rim itself. So their winding number changes smoothly along the line, and it
+//! is zero infinitely far ahead. The surface's number differs from it only by the count of the triangles
+//! ahead.
 //!
-//! Seen along the line a corner of the rim lies at the complex number ρ across it, and at a height. With r
-//! its distance from a point of the line, and s how far it lies behind, half the solid angle of an edge's
-//! cone is the argument of g g' + ρ̄ ρ', where g = r + s. Along the line g grows and ρ stays, so that each
-//! angle tends to zero and never turns back. The angles that are positive and those that are negative, summed
-//! apart, therefore bound the winding number between any two points of the line.
+//! Seen along the line, a corner of the rim lies at the complex number ρ across it, and at a height. Let r be
+//! its distance from a point of the line, and s the distance by which it lies behind. Then half the solid
+//! angle of an edge's cone is the argument of g g' + ρ̄ ρ', where g = r + s. Along the line g grows and ρ
+//! stays constant, so that each angle tends monotonically to zero. Therefore the sum of the positive angles
+//! and the sum of the negative angles bound the winding number between any two points of the line.
 //!
-//! **Errors.** A corner that is off by δ changes g by less than 2δ and the angle by δ (|ρ| + |ρ'|) / |g g' +
-//! ρ̄ ρ'| to the first order. All corners lie much further from the line than δ, and twice that bound
-//! outweighs what is of higher order.
+//! **Errors.** A corner with an error of δ changes g by less than 2δ. To first order, it changes the angle by
+//! δ (|ρ| + |ρ'|) / |g g' + ρ̄ ρ'|. All corners lie much further from the line than δ, and twice that bound
+//! covers the higher orders.
 
 use super::rim::{Course, Rim};
 use crate::error::Error;
@@ -23,25 +24,25 @@ use alloc::vec::Vec;
 use core::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 
-/// What positions are off by, as a part of the distance from where the line begins.
+/// The error of positions, as a fraction of the distance from the line's start.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// How many errors corners lie from the line at least.
+/// The least distance of corners from the line, in errors of a corner.
 const APART: f64 = 64.0;
 
-/// Beyond so many times the rim's distance the winding number is zero.
+/// Beyond this many times the rim's distance, the winding number is zero.
 const FAR: f64 = 1e60;
 
-/// On which side the line passes an edge.
+/// The side on which the line passes an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
-    /// The corner is the first of a walk, or the edge's angle is as good as zero.
+    /// The corner is the first of a walk, or the edge's angle is negligible.
     None,
     Left,
     Right,
 }
 
-/// A corner of the rim as seen along the line, and its edge from the corner before.
+/// A corner of the rim as seen along the line, with its edge from the corner before.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     across: DVec2,
@@ -51,45 +52,46 @@ struct Corner {
     /// ρ̄ ρ' of the edge.
     real: f64,
     imaginary: f64,
-    /// |ρ| + |ρ'| and |ρ| |ρ'|, or somewhat more.
+    /// |ρ| + |ρ'| and |ρ| |ρ'|, or slightly more.
     sum: f64,
     product: f64,
 }
 
-/// The rim of a mesh along a line. Lengths are such that its corners lie within about 1 of where the line
-/// begins.
+/// The rim of a mesh along a line. The unit of length is such that its corners lie within about 1 of the
+/// line's start.
 #[derive(Default)]
 pub(super) struct RimLine {
     corners: Vec<Corner>,
-    /// What corners are off by.
+    /// The error of corners.
     error: f64,
-    /// What edges add that are in the line's plane, in turns.
+    /// The contribution of edges in the line's plane, in turns.
     unsure: f64,
-    /// Lengths in a unit of time.
+    /// Lengths per unit of time.
     speed: f64,
-    /// When the line has passed all corners.
+    /// The time when the line has passed all corners.
     end: f64,
-    /// A bound of what loops add that are not looked at.
+    /// A bound of the contribution of loops that are skipped.
     others: f64,
 }
 
-/// Sums of angles at a time, in turns.
+/// The sums of the angles at one time, in turns.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sums {
     pub(super) at: f64,
-    /// That of the positive ones, which only falls with time, and of the negative ones, which only rises.
+    /// The sum of the positive angles, which only falls with time, and the sum of the negative angles, which
+    /// only rises.
     pub(super) left: f64,
     pub(super) right: f64,
     pub(super) error: f64,
 }
 
-/// How the sums change.
+/// The rate of change of the sums.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Change {
     left: f64,
     right: f64,
     error: f64,
-    /// How far the rim is.
+    /// The distance to the rim.
     distance: f64,
 }
 
@@ -109,7 +111,7 @@ impl Angles {
         let Angles { real: x, imaginary: y, .. } = *self;
         self.real = x * real - y * imaginary;
         self.imaginary = x * imaginary + y * real;
-        // Beyond half a turn. (Near to no turn rounding may change the sign, too.)
+        // Beyond half a turn. (Near zero turns, rounding may change the sign, too.)
         if self.imaginary < 0.0 && y >= 0.0 && (x < 0.0 || self.real < 0.0) {
             self.turns += 1.0;
         }
@@ -121,7 +123,7 @@ impl Angles {
 }
 
 impl Sums {
-    /// Infinitely far ahead.
+    /// The sums infinitely far ahead.
     pub(super) const END: Sums = Sums { at: f64::INFINITY, left: 0.0, right: 0.0, error: 0.0 };
 
     /// The caps' winding number.
@@ -129,7 +131,7 @@ impl Sums {
         self.left + self.right
     }
 
-    /// What it is at the least and at the most, from then until the time of `later`.
+    /// Returns the least and the greatest winding number from this time until the time of `later`.
     pub(super) fn until(&self, later: &Sums) -> [f64; 2] {
         let error = self.error + later.error;
         [later.left + self.right - error, self.left + later.right + error]
@@ -137,8 +139,9 @@ impl Sums {
 }
 
 impl RimLine {
-    /// Looks along a ray at the loops of a rim of which the caps' winding number may come to `least` on its
-    /// course. `false` if the ray comes too near to such a loop, or numbers are too large. O(n) in the edges.
+    /// Prepares a ray: projects the loops of a rim whose caps' winding number may reach `least` on the ray's
+    /// course. Returns `false` if the ray comes too near to such a loop, or numbers are too large. O(n) in
+    /// the edges.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -154,7 +157,7 @@ impl RimLine {
             (self.error, self.unsure, self.speed, self.end) = (0.0, 0.0, 1.0, 0.0);
             return Ok(true);
         }
-        // The next power of two, about.
+        // About the next power of two.
         let scale = f64::from_bits((2045 - (reach.to_bits() >> 52 & 0x7FF).clamp(1, 2044)) << 52);
         let way = DVec3::from(ray.direction.map(|[high, _]| high));
         let length = sqrt(way.length_squared());
@@ -239,26 +242,27 @@ impl RimLine {
             return Ok(false);
         }
         self.end = end.max(0.0) / speed;
-        // (In turns that would be a sixth of it.)
+        // (In turns, the limit would be a sixth of this.)
         Ok(self.unsure < 0.25)
     }
 
-    /// A bound of what loops add that are not looked at.
+    /// A bound of the contribution of loops that are skipped.
     pub(super) fn others(&self) -> f64 {
         self.others
     }
 
-    /// When the ray has passed all corners.
+    /// The time when the ray has passed all corners.
     pub(super) fn end(&self) -> f64 {
         self.end
     }
 
-    /// Lengths in a unit of time.
+    /// Lengths per unit of time.
     pub(super) fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// How far a corner lies behind a point, its distance, and their sum.
+    /// Returns g of a corner at a point of the line (the corner's distance plus the length by which it lies
+    /// behind), and its distance.
     #[inline(always)]
     fn seen(corner: &Corner, at: f64) -> [f64; 2] {
         let behind = at - corner.height;
@@ -267,12 +271,13 @@ impl RimLine {
         [if behind >= 0.0 { sum } else { corner.square / sum }, distance]
     }
 
-    /// What positions along the ray are off by.
+    /// The error of positions along the ray.
     fn error_at(&self, at: f64) -> f64 {
         self.error + ROUNDING * at
     }
 
-    /// The sums at a time, which is not negative, or long before. O(n) in the edges.
+    /// Returns the sums at a time, which must not be negative unless the ray is far before the rim. O(n) in
+    /// the edges.
     pub(super) fn sums(&self, time: f64) -> Sums {
         let at = time * self.speed;
         if at > FAR {
@@ -298,12 +303,12 @@ impl RimLine {
         }
         let count = self.corners.len() as f64;
         let error = (error + 16.0 * f64::EPSILON * count + self.unsure) / TAU;
-        // (Bounds of larger errors would be no bounds.)
+        // (For larger errors the bounds would not hold.)
         let error = if error < 0.02 { error } else { f64::INFINITY };
         Sums { at: time, left: left.in_turns(), right: -right.in_turns(), error }
     }
 
-    /// How fast the sums change with the length at a time. O(n) in the edges.
+    /// Returns the rates of change of the sums with the length, at a time. O(n) in the edges.
     pub(super) fn change(&self, time: f64) -> Change {
         let at = time * self.speed;
         let off = 2.0 * self.error_at(at);
@@ -312,7 +317,7 @@ impl RimLine {
         for (k, corner) in self.corners.iter().enumerate() {
             let seen = RimLine::seen(corner, at);
             let here = corner.across.extend(corner.height - at);
-            // (The first corner of all begins a walk.)
+            // (The very first corner begins a walk.)
             if k > 0 && corner.sum > 0.0 {
                 let edge = here - place;
                 let part = (-place.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
@@ -340,14 +345,14 @@ impl RimLine {
 }
 
 impl Change {
-    /// How far the rim is.
+    /// The distance to the rim.
     pub(super) fn distance(&self) -> f64 {
         self.distance
     }
 
-    /// The least and the greatest change of the winding number with the length, within `reach`, which is less
-    /// than half the rim's distance. (Each angle's is an integral of one sign over the inverse cubes of
-    /// distances, none of which changes by more than `reach`.)
+    /// Returns the least and the greatest rate of change of the winding number with the length, within
+    /// `reach`, which must be less than half the rim's distance. (The rate of each angle is an integral of
+    /// constant sign over the inverse cubes of distances, which change by at most `reach`.)
     pub(super) fn within(&self, reach: f64) -> [f64; 2] {
         let part = reach / self.distance;
         let cube = |x: f64| 1.0 / (x * x * x);
@@ -369,7 +374,7 @@ mod tests {
     struct Random(u64);
 
     impl Random {
-        /// A number from −1 to 1.
+        /// A number in −1..1.
         fn number(&mut self) -> f64 {
             self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
@@ -439,7 +444,7 @@ mod tests {
                     assert!(least - 1e-12 <= value && value <= most + 1e-12, "{round} {pair:?} {value}");
                 }
             }
-            // Newton's bounds of the change around a time.
+            // The interval Newton bounds of the change around a time.
             let t = 2.0 + random.number() * 2.0;
             let change = line.change(t);
             let value = line.sums(t).value();

@@ -1,8 +1,8 @@
-//! Blocks of 64³ cells, scan-converted.
+//! Scan conversion of blocks of 64³ cells.
 //!
-//! Two bitmaps say everything: which cells a triangle cuts, and which cell centres lie inside. A cell that
-//! nothing cuts is wholly on its centre's side, so certified bounds are the centres without and with the
-//! cut cells; the sampled rule is the centres alone.
+//! Two bitmaps suffice: the cells that a triangle cuts, and the cell centres that lie inside. A cell that
+//! nothing cuts is wholly on its centre's side. So the certified inner bound is the centres without the cut
+//! cells, the outer bound the centres with the cut cells, and the sampled rule the centres alone.
 
 use super::crossing::Projection;
 use super::overlap::Overlap;
@@ -19,15 +19,15 @@ const COLUMNS: usize = SIZE * SIZE;
 
 /// Bitmaps and counters of one block, kept from block to block.
 pub(super) struct Scan {
-    /// Cells that a triangle cuts: columns along z.
+    /// The cells that a triangle cuts: columns along z.
     cut: Box<[u64; COLUMNS]>,
     /// Winding numbers of the centres, modulo 4 in two's complement: −1 to 2.
     low: Box<[u64; COLUMNS]>,
     high: Box<[u64; COLUMNS]>,
-    /// Winding numbers of the centres of the lowest layer.
+    /// The winding numbers of the centres of the lowest layer.
     floor: Box<[i32; COLUMNS]>,
-    /// Changes of the winding number along columns, for the blocks
-    /// where it leaves the range of the bitmaps.
+    /// The changes of the winding number along columns, for blocks in which it leaves the range of the
+    /// bitmaps.
     changes: Vec<i32>,
 }
 
@@ -52,14 +52,14 @@ impl Scan {
         })
     }
 
-    /// Fills what `block` asks for.
+    /// Fills the planes that `block` requests.
     pub(super) fn fill(&mut self, task: Task<'_>, block: &mut Block) -> Result<(), Error> {
         self.wind_floor(&task);
         if self.wind(&task) {
             let columns = self.low.iter_mut().zip(self.high.iter());
             match task.fill {
                 FillRule::NonZero => columns.for_each(|(low, high)| *low |= high),
-                // Of −1, 0, 1, 2 those with different bits.
+                // Among −1, 0, 1 and 2: the numbers whose two bits differ.
                 FillRule::Positive => columns.for_each(|(low, high)| *low ^= high),
                 FillRule::EvenOdd => {}
             }
@@ -79,7 +79,8 @@ impl Scan {
         Ok(())
     }
 
-    /// Winding numbers of the lowest layer: from the block's lowest centre along x, then along y.
+    /// Computes the winding numbers of the lowest layer: from the block's lowest centre along x, then along
+    /// y.
     fn wind_floor(&mut self, task: &Task<'_>) {
         let Task { placed, at, triangles, winding, .. } = *task;
         self.floor.fill(0);
@@ -121,7 +122,7 @@ impl Scan {
         }
     }
 
-    /// Winding numbers of all centres in the bitmaps; `false` if they do not fit.
+    /// Computes the winding numbers of all centres in the bitmaps. Returns `false` if they do not fit.
     fn wind(&mut self, task: &Task<'_>) -> bool {
         let mut misfit = 0;
         for (column, &winding) in self.floor.iter().enumerate() {
@@ -132,7 +133,7 @@ impl Scan {
         for_crossings(task, |column, z, step| {
             let above = !0 << z;
             let (low, high) = (self.low[column], self.high[column]);
-            // Up from 2 and down from −1 leave the range.
+            // Steps up from 2 and down from −1 leave the range.
             if step > 0 {
                 misfit |= high & !low & above;
                 self.high[column] = high ^ (low & above);
@@ -145,8 +146,8 @@ impl Scan {
         misfit == 0
     }
 
-    /// The same with full counters, for blocks where shells overlap several times; the lower bits are then
-    /// what lies inside.
+    /// Computes the winding numbers with full counters, for blocks in which shells overlap several times. The
+    /// lower bits then say whether a centre is inside.
     #[cold]
     fn wind_counting(&mut self, task: &Task<'_>) -> Result<(), Error> {
         self.changes.clear();
@@ -168,7 +169,7 @@ impl Scan {
 }
 
 /// Calls `cross(column, z, step)` for every triangle that a column of the block pierces above its lowest
-/// centre: z (1 to 63) is the first centre above.
+/// centre: z (1 to 63) is the first centre above the triangle.
 #[inline(always)]
 fn for_crossings(task: &Task<'_>, mut cross: impl FnMut(usize, u32, i32)) {
     let Task { placed, at, triangles, .. } = *task;
@@ -233,7 +234,7 @@ fn mark_cut(task: &Task<'_>, cut: &mut [u64; COLUMNS]) {
     }
 }
 
-/// First and last cell of the 64 from `at` on whose open interval meets `(min, max)`; a flat range that lies
+/// The first and the last of the 64 cells from `at` on whose open interval meets `(min, max)`. A flat range
 /// on a lattice plane meets none.
 fn cells(min: f64, max: f64, at: i32) -> (i32, i32) {
     use crate::lattice::exact::floor;

@@ -1,33 +1,35 @@
-//! Where a segment first crosses the boundary of what a mesh encloses.
+//! The first crossing of a segment with the boundary of a mesh's solid.
 //!
-//! The winding number at the segment's beginning is found on the way from a base. From there on it changes at
-//! each triangle that the segment passes through, and where the fill rule's answer changes is the boundary.
-//! Whether the segment passes through a triangle is decided with the bounds of all that is rounded; where
-//! that is not sure, as next to edges of triangles, there is no answer.
+//! The winding number at the segment's start is computed on the way from a base. From there on, it changes at
+//! each triangle that the segment passes through. The boundary is where the fill rule's answer changes. Error
+//! bounds decide whether the segment passes through a triangle. Where this stays unsure, as next to edges of
+//! triangles, there is no answer.
 
 use super::local::{Point, UNIT, View, cross, dot, minus};
 use crate::mesh::FillRule;
 use crate::solid::{Crossing, Segment};
 
-/// A segment that passes through more triangles in one cell gets no answer.
+/// A segment that passes through more triangles than this in one cell gets no answer.
 const MOST: usize = 16;
 
 /// A triangle that a segment passes through.
 #[derive(Clone, Copy)]
 struct Hit {
     t: f64,
-    /// What the winding number changes by.
+    /// The change of the winding number.
     step: i32,
     normal: Point,
 }
 
 impl View<'_> {
-    /// Where a segment in the cell first crosses the boundary; `None` if it does not, or that is not sure.
+    /// Returns where a segment in the cell first crosses the boundary. `None` if it does not, or if this is
+    /// unsure.
     pub(super) fn first_crossing(&self, segment: &Segment, fill: FillRule) -> Option<Crossing> {
         let base = self.base()?;
         let [from, to] = [segment.from, segment.to].map(|p| self.local(p));
-        // What the ends are off by: two roundings of lattice coordinates, and one here. Where the surface may
-        // lie beside the mesh, it is passed through if the mesh is that far from the triangle's edges.
+        // The error of the ends: two roundings of lattice coordinates, and one here. Where the surface may
+        // deviate from the mesh, the segment passes through it if the mesh's crossing is that far from the
+        // triangle's edges.
         let frame = &self.placed.frame;
         let error = 4.0 * UNIT * f64::from(frame.cells()) * self.scale() + 2.0 * self.displacement();
         let mut winding = base.winding;
@@ -39,7 +41,7 @@ impl View<'_> {
             winding += seen.pierced(&base.at, &from)?;
             let step = seen.pierced(&from, &to)?;
             if step != 0 {
-                // In model space, so that the bits do not depend on the cell.
+                // Computed in model space, so that the bits do not depend on the cell.
                 let [a, b, c] = self.placed.original(triangle);
                 let normal = cross(&minus(&b, &a), &minus(&c, &a));
                 let way = dot(&normal, &minus(&segment.to, &segment.from));
@@ -57,7 +59,8 @@ impl View<'_> {
             let before = fill.encloses(winding);
             winding += hit.step;
             if fill.encloses(winding) != before {
-                // A way that leaves the solid and passes the triangle from behind leaves along its normal.
+                // A way that leaves the solid through the back of a triangle leaves along the triangle's
+                // normal.
                 let is_along = hit.step < 0;
                 let normal = if is_along == before { hit.normal } else { hit.normal.map(|n| -n) };
                 return Some(Crossing { t: hit.t, normal });
@@ -66,7 +69,7 @@ impl View<'_> {
         None
     }
 
-    /// A point of model space in coordinates of the cell.
+    /// A point of model space in the coordinates of the cell.
     fn local(&self, p: Point) -> Point {
         let half = f64::from(self.size) / 2.0;
         core::array::from_fn(|axis| {

@@ -1,21 +1,23 @@
-//! The slab of a cell: how far triangles reach to either side along their mean normal, and what lies beyond.
+//! The slab of a cell: how far triangles reach along their mean normal to either side, and which sides are
+//! solid.
 //!
-//! No triangle reaches beyond the slab's ends, so that on each side the winding number is the same. It is
-//! found on the way from a base to a point there.
+//! No triangle reaches beyond the slab's ends, so that the winding number is constant on each side. It is
+//! computed on the way from a base to a point on that side.
 
 use super::base::Base;
 use super::local::{Point, UNIT, View, dot};
 use crate::mesh::FillRule;
 use crate::solid::{Enclosure, Slab, SlabJoin};
 
-/// Of more triangles a slab would be as thick as the cell.
+/// With more triangles than this, a slab would be as thick as the cell.
 const MOST: usize = 256;
 
-/// So is one whose surface may lie that far from the mesh, in half edges.
+/// With a greatest distance between surface and mesh of more than this, a slab would be too thick; in half
+/// edges.
 const THICK: f64 = 0.25;
 
 impl View<'_> {
-    /// A slab that holds the boundary. `None` if the same lies on both sides, or what does is not found out.
+    /// Returns a slab that contains the boundary. `None` if both sides are equal, or one stays undecided.
     pub(super) fn slab(&self, fill: FillRule) -> Option<Enclosure> {
         if self.triangles.len() > MOST || self.displacement() > THICK {
             return None;
@@ -27,7 +29,7 @@ impl View<'_> {
             (0..3).for_each(|k| normal[k] += area[k]);
         }
         let size = normal.iter().fold(0.0, |most: f64, n| most.max(n.abs()));
-        // (What is no number is in no range.)
+        // (NaN is in no range.)
         if !(1e-30..1e30).contains(&size) {
             return None;
         }
@@ -37,7 +39,7 @@ impl View<'_> {
         for &triangle in self.triangles {
             let seen = self.seen(triangle);
             let slack = 4.0 * seen.slack() + 2.0 * self.displacement();
-            // What of the surface lies in the cell lies that near to a point of the polygon.
+            // Every point of the surface in the cell lies that near to a point of the polygon.
             let polygon = seen.clipped(1.0 + slack)?;
             let margin = range * slack + 16.0 * UNIT;
             for p in polygon.points() {
@@ -49,7 +51,7 @@ impl View<'_> {
         if !is_known {
             return None;
         }
-        // What lies in front, and what behind; nothing does where the slab reaches to the cell's corner.
+        // The side in front, and the side behind; a side is empty if the slab reaches to the cell's corner.
         const NEARLY: f64 = 1.0 - 1e-9;
         let beyond = |sign: f64, end: f64| -> Option<Option<bool>> {
             if end >= range * NEARLY {
@@ -66,7 +68,7 @@ impl View<'_> {
             (Some(front), None) => !front,
             (None, None) => return None,
         };
-        // Where there is no point beyond, anything is true of all of them.
+        // If no point lies beyond an end, any claim about the points beyond is true.
         if front.is_none() {
             outer = f64::INFINITY;
         }
@@ -78,10 +80,10 @@ impl View<'_> {
         Some(enclosure(slab))
     }
 
-    /// The winding number at a point of the cell that no triangle comes near.
+    /// Returns the winding number at a point of the cell that keeps away from all triangles.
     pub(super) fn winding_at(&self, p: &Point, base: &Base) -> Option<i32> {
-        /// Points by way of which to go where the straight way comes near to an edge, as in cubes, where base
-        /// and point lie alike.
+        /// Intermediate points for a detour where the straight way comes near to an edge. This happens in
+        /// cubes, where base and point lie symmetrically.
         const DETOURS: [Point; 3] = [[-0.61, 0.37, 0.83], [0.53, -0.71, 0.29], [0.19, 0.67, -0.43]];
         let change = |from: &Point, to: &Point| {
             let mut triangles = self.triangles.iter();

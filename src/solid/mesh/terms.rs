@@ -1,8 +1,8 @@
-//! What caps and their edges add to winding numbers and derivatives, many at a time.
+//! The contributions of caps and their edges to winding numbers and derivatives, many at a time.
 //!
-//! Loops over arrays find the terms, which compilers make vector instructions of if nothing in them is a call
-//! (so do arrays without `map`). Whoever sums takes the terms in turn, so that sums are those of one term
-//! after the other, bit for bit.
+//! Loops over arrays compute the terms. Compilers turn such loops into vector instructions if they contain no
+//! call (so the arrays do without `map`). The caller sums the terms in order, so that the sums are bit for
+//! bit those of one term after the other.
 
 use crate::lattice::exact::sqrt;
 use core::f64::consts::PI;
@@ -10,10 +10,10 @@ use glam::DVec3;
 
 pub(super) const SCALE: f64 = 1.0 / (4.0 * PI);
 
-/// Terms that are found at a time, at most.
+/// The most terms that are computed at a time.
 pub(super) const MOST: usize = 16;
 
-/// Loops go over whole vectors: beyond the last term are others that nobody asks for.
+/// Loops go over whole vectors: values beyond the last term are computed and ignored.
 const WIDTH: usize = 4;
 
 /// One coordinate of all terms.
@@ -38,7 +38,7 @@ impl End {
     }
 }
 
-/// Half a cap's solid angle: the argument of (real, imaginary), and a bound of how far that may be off.
+/// Half a cap's solid angle: the argument of (real, imaginary), and a bound of its error.
 #[derive(Clone, Copy)]
 pub(super) struct Angle {
     pub(super) real: f64,
@@ -60,7 +60,7 @@ impl Angle {
         Angle { real, imaginary, modulus, wrong }
     }
 
-    /// The same, of numbers that are not divided by the corners' distances.
+    /// Computes the angle from numbers that are not divided by the corners' distances.
     #[inline(always)]
     fn undivided([a, b, c]: [DVec3; 3], vertex_error: f64) -> Angle {
         let [far, farther, farthest] = [length(a), length(b), length(c)];
@@ -95,7 +95,7 @@ impl CapTerms {
         self.count = 0;
     }
 
-    /// Appends a cap by its corners; how large it is matters only to derivatives.
+    /// Appends a cap by its corners; its size matters only to derivatives.
     #[inline(always)]
     pub(super) fn push(&mut self, corners: &[DVec3; 3], area: f64, longest: f64) {
         let i = self.count;
@@ -106,7 +106,7 @@ impl CapTerms {
         self.count += 1;
     }
 
-    /// Finds the terms as seen from a point; derivatives in the ball of `radius`.
+    /// Computes the terms as seen from a point; derivatives are valid in the ball of `radius`.
     #[inline(always)]
     pub(super) fn find(&mut self, point: DVec3, vertex_error: f64, radius: f64) {
         let CapTerms { count, corners, area, longest, angles, third } = self;
@@ -116,7 +116,8 @@ impl CapTerms {
             let angle = Angle::new(ends, vertex_error);
             (angles[0][i], angles[1][i], angles[2][i], angles[3][i]) =
                 (angle.real, angle.imaginary, angle.modulus, angle.wrong);
-            // A triangle is nowhere farther from its farthest corner than its longest edge.
+            // The distance of any point of the triangle is at least that of its farthest corner minus its
+            // longest edge.
             let farthest = 0f64.max(ends[0].distance).max(ends[1].distance).max(ends[2].distance);
             let inverse = 1.0 / (farthest * (1.0 - 1e-9) - longest[i] - radius);
             let square = inverse * inverse;
@@ -128,7 +129,7 @@ impl CapTerms {
         }
     }
 
-    /// Finds the angles alone, of numbers that are not divided by the corners' distances.
+    /// Computes the angles alone, from numbers that are not divided by the corners' distances.
     #[inline(always)]
     pub(super) fn find_undivided(&mut self, point: DVec3, vertex_error: f64) {
         let CapTerms { count, corners, angles, .. } = self;
@@ -153,15 +154,16 @@ impl CapTerms {
     }
 }
 
-/// What an edge does to the derivatives. The gradient is the magnetic field of a current along it.
+/// The contribution of an edge to the derivatives. The gradient is the magnetic field of a current along the
+/// edge.
 #[derive(Clone, Copy)]
 pub(super) struct Edge {
-    /// Whether it is known: the edge does not pass through the ball.
+    /// Whether the contribution is known: the edge does not pass through the ball.
     pub(super) is_known: bool,
     pub(super) gradient: DVec3,
-    /// Columns.
+    /// The columns of the second derivative.
     pub(super) hessian: [DVec3; 3],
-    /// Bounds of what is rounded in them.
+    /// Bounds of the rounding errors of gradient and second derivative.
     pub(super) gradient_error: f64,
     pub(super) hessian_error: f64,
     /// As in [`Local`](super::winding::Local).
@@ -179,23 +181,23 @@ impl Edge {
         let along = if length > 0.0 { (-from.at.dot(edge) / (length * length)).clamp(0.0, 1.0) } else { 0.0 };
         let nearest = self::length(from.at + along * edge);
         let distance = nearest * (1.0 - 1e-9) - 8.0 * f64::EPSILON * both - radius;
-        // What is no number fails such a test, too.
+        // NaN fails this test, too.
         let is_apart = distance > 0.0;
         let field = a.cross(b);
         let square = field.length_squared();
         let sine = sqrt(square);
-        // 1 + cosine, also of an edge so close by that its ends lie in opposite directions.
+        // 1 + cosine, precise also for an edge so near that its ends lie in opposite directions.
         let open = if cosine < 0.0 { square / (1.0 - cosine) } else { 1.0 + cosine };
         let is_told = (cosine >= 0.0) | (sine > 1e-12);
         let inverse_open = 1.0 / open;
         let strength = SCALE * both * inverse_product * inverse_open;
-        // Along v the derivative of from × to is edge × v, that of `strength` over both distances is
-        // `weaker` · v.
+        // Along v, the derivative of from × to is edge × v, and the derivative of `strength` over both
+        // distances is `weaker` · v.
         let mixed = (a * to.distance + b * from.distance) * inverse_product;
         let weaker =
             strength * (mixed + (a + b) * (both * inverse_product * inverse_open) - (a + b) * (1.0 / both));
         let turning = edge * (strength * inverse_product);
-        // Of the field's direction, and of `open`.
+        // The rounding of the field's direction, and of `open`.
         let rounding = 256.0 * f64::EPSILON * strength * if cosine < 0.0 { 2.0 } else { 1.0 + sine };
         // ∫ 6 ds / distance⁴ along the edge, and at most along its whole line.
         let inverse = 1.0 / distance;
@@ -221,7 +223,7 @@ pub(super) struct EdgeTerms {
     count: usize,
     ends: [[Row; 3]; 2],
     length: Row,
-    /// One if the edge is known, gradient, and columns of the second derivative.
+    /// One if the edge is known; the gradient; the columns of the second derivative.
     known: Row,
     gradient: [Row; 3],
     hessian: [[Row; 3]; 3],
@@ -248,7 +250,7 @@ impl EdgeTerms {
         self.count = 0;
     }
 
-    /// How many more there is room for.
+    /// Returns how many more edges fit.
     pub(super) fn room(&self) -> usize {
         MOST - self.count
     }
@@ -263,7 +265,7 @@ impl EdgeTerms {
         self.count += 1;
     }
 
-    /// Finds the terms as seen from a point, for the ball of `radius`.
+    /// Computes the terms as seen from a point, for the ball of `radius`.
     #[inline(always)]
     pub(super) fn find(&mut self, point: DVec3, radius: f64) {
         let EdgeTerms { count, ends, length, known, gradient, hessian, bounds } = self;

@@ -1,21 +1,22 @@
 //! Winding numbers of open surfaces.
 //!
-//! The *winding number* of a surface at a point is the solid angle at which it is seen from there, with a
-//! sign, over 4π (Jacobson, Kavan and Sorkine-Hornung 2013). Of a closed surface it is an integer. What an
-//! open one lacks are surfaces over the loops of its boundary, *caps*. Surface and caps together are closed,
-//! so that their winding number N is found exactly, as an integer, by counting what lines pierce. The
-//! surface's own is then N − c with c the winding number of the caps alone: a sum over as many triangles as
-//! the boundary has edges, and not over the whole surface. Which caps are chosen does not matter, because
-//! their jumps cancel.
+//! The *winding number* of a surface at a point is the signed solid angle at which it is seen from there,
+//! over 4π (Jacobson, Kavan and Sorkine-Hornung 2013). For a closed surface it is an integer. An open surface
+//! is closed by *caps*: surfaces over the loops of its boundary. The winding number N of surface and caps
+//! together is found exactly, as an integer, by counting the triangles that lines pierce. The surface's own
+//! number is N − c, where c is the winding number of the caps alone: a sum over as many triangles as the
+//! boundary has edges, and not over the whole surface. The choice of caps does not matter, because their
+//! jumps cancel.
 //!
-//! The caps' winding number is a sum of solid angles (van Oosterom and Strackee 1983), in which a far group
-//! of triangles is replaced by the first two terms of its expansion (Barill, Dickson, Schmidt, Levin and
-//! Jacobson 2018), here with a bound of what that leaves out. The distance at which a group is far is a
-//! parameter: whoever needs a smaller error asks again.
+//! The caps' winding number is a sum of solid angles (van Oosterom and Strackee 1983). The first two terms of
+//! an expansion replace a far group of triangles (Barill, Dickson, Schmidt, Levin and Jacobson 2018), here
+//! with a bound of the remainder. The distance at which a group counts as far is a parameter: a caller that
+//! needs a smaller error calls again.
 //!
 //! Away from the surface the winding number is smooth. Its gradient is the magnetic field of a current along
-//! the *boundary* (the law of Biot and Savart), so that derivatives are sums over the boundary's edges; the
-//! third is at most Σ ∫ 6 ds / (4π·distance⁴). One expansion bounds it on a cell and serves many cells below.
+//! the *boundary* (the law of Biot and Savart), so that derivatives are sums over the boundary's edges. The
+//! third derivative is at most Σ ∫ 6 ds / (4π·distance⁴). One expansion bounds the winding number on a cell
+//! and serves many cells below.
 
 use super::crossing::Projection;
 use super::placed::{Placed, ranks};
@@ -31,48 +32,48 @@ use alloc::vec::Vec;
 use core::f64::consts::PI;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Triangles that are summed one by one.
+/// The most triangles in a leaf, which are summed one by one.
 const LEAF: usize = 4;
 
-/// A cap is far from a ball if it is so many radii from its middle.
+/// A cap is far from a ball if its distance from the ball's middle is more than this many radii.
 const APART: f64 = 6.0;
 
-/// A rim is close to a ball if it is so many radii from its middle.
+/// A rim is close to a ball if its distance from the ball's middle is less than this many radii.
 const CLOSE: f64 = 1.5;
 
-/// A tree of bounding spheres over the caps of a surface, which are in the tree's order.
+/// A tree of bounding spheres over the caps of a surface. The caps are in the tree's order.
 #[derive(Default)]
 pub(super) struct Caps {
-    /// Bit i: the edge from corner i to corner i + 1 is one of the surface's boundary.
+    /// Bit i: the edge from corner i to corner i + 1 belongs to the surface's boundary.
     rims: Vec<u8>,
     corners: Vec<[DVec3; 3]>,
     sizes: Vec<Size>,
-    /// Which cap lies beyond each edge that is none of the boundary.
+    /// For each edge that does not belong to the boundary, the cap beyond it.
     beyond: Vec<[u32; 3]>,
     nodes: Vec<Node>,
     pub(super) rim: Rim,
-    /// How far the boundary may lie from where its vertices are placed, in finest cells.
+    /// The greatest distance of the boundary from its vertices' placed positions, in finest cells.
     boundary_error: f64,
-    /// Bound of the error of a vertex's position per axis.
+    /// A bound of the error of a vertex's position along each axis.
     vertex_error: f64,
 }
 
-/// What does not depend on where a cap is seen from.
+/// The properties of a cap that do not depend on the point of view.
 #[derive(Clone, Copy)]
 struct Size {
     area: f64,
     edges: [f64; 3],
-    /// Of the edges, rounded up.
+    /// The longest edge, rounded up.
     longest: f64,
 }
 
 /// A cap and its rims.
 type Slot = ([u32; 3], u8);
 
-/// A group of caps, all that the tree has below it.
+/// A group of caps: all caps below a node of the tree.
 #[derive(Clone, Copy)]
 struct Node {
-    /// A sphere around them.
+    /// The bounding sphere.
     centre: DVec3,
     radius: f64,
     /// ∫ dA.
@@ -82,29 +83,29 @@ struct Node {
     /// ∫ |dA|, and ∫ |y − centre|² |dA|.
     size: f64,
     second_moment: f64,
-    /// Bound of what is rounded in the sums over caps, as an area.
+    /// A bound of the rounding errors in the sums over caps, as an area.
     rounding: f64,
-    /// The same for the sums over edges of the boundary, as a length.
+    /// A bound of the rounding errors in the sums over edges of the boundary, as a length.
     rim_rounding: f64,
-    /// ∫ |ds| of the boundary's edges, ∫ ds, and ∫ ds ⊗ (y − centre).
+    /// The integrals ∫ |ds|, ∫ ds, and ∫ ds ⊗ (y − centre) over the boundary's edges.
     rim: f64,
     current: DVec3,
     currents: DMat3,
     first: u32,
     end: u32,
-    /// The node after the last one below this; the next one if this is a leaf.
+    /// The node after the last one below this node; the next node if this is a leaf.
     skip: u32,
 }
 
-/// A group of caps as seen from afar, from a point and in a ball around it.
+/// A group of caps as seen from afar, from a point and from a ball around it.
 #[derive(Clone, Copy)]
 struct Seen {
-    /// From the point to the group's middle.
+    /// The vector from the point to the group's centre.
     towards: DVec3,
     distance: f64,
-    /// How far from the ball the group is at least.
+    /// The least distance of the group from the ball.
     clear: f64,
-    /// Bounds of what it adds, as in [`Local`].
+    /// Bounds of the group's contributions, as in [`Local`].
     error: f64,
     gradient_error: f64,
     hessian_error: f64,
@@ -112,8 +113,8 @@ struct Seen {
     third_by_areas: f64,
 }
 
-/// The caps' winding number in a ball around a point, to second order. It jumps by an integer on every cap;
-/// this is its smooth continuation from the point.
+/// The caps' winding number in a ball around a point, to second order. The number jumps by an integer on
+/// every cap; this is its smooth continuation from the point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Local {
     point: DVec3,
@@ -125,45 +126,46 @@ pub(super) struct Local {
     value_error: f64,
     gradient_error: f64,
     hessian_error: f64,
-    /// Two bounds of the third derivative anywhere in the ball: by what the boundary's edges add, and by what
-    /// the caps add. Of wide holes the first is the smaller, of hair cracks the second.
+    /// Two bounds of the third derivative anywhere in the ball: from the boundary's edges, and from the caps'
+    /// areas. For wide holes the first is the smaller, for hair cracks the second.
     third_by_edges: f64,
     third_by_areas: f64,
-    /// Bound of the change, anywhere in the ball, per distance by which every vertex of the boundary may be
-    /// misplaced, each in a direction of its own.
+    /// A bound of the change, anywhere in the ball, per distance by which every vertex of the boundary may be
+    /// misplaced, each in its own direction.
     position_sensitivity: f64,
 }
 
 /// A range of winding numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Range {
-    /// Around this,
+    /// The middle of the range.
     pub(super) value: f64,
-    /// that much off for its slope, and
+    /// The greatest change that the model predicts from the middle.
     pub(super) change: f64,
-    /// that much more at most for what is not known.
+    /// A bound of the further error.
     pub(super) error: f64,
 }
 
 impl Range {
-    /// Nothing is known.
+    /// The range of an unknown number.
     pub(super) const UNKNOWN: Range = Range { value: 0.0, change: 0.0, error: f64::INFINITY };
 
     pub(super) fn plus(self, step: i32) -> Range {
         Range { value: self.value + step as f64, ..self }
     }
 
-    /// The integer that all numbers of the range are nearest to; `None` if one may be half way to the next.
+    /// Returns the nearest integer of all numbers in the range. `None` if one may be half way to the next.
     pub(super) fn nearest(self) -> Option<i32> {
         let change = self.change + self.error;
-        // (What is not known may be no number at all.)
+        // (An unknown value may be NaN.)
         let nearest = if change < 0.5 { floor(self.value + 0.5) } else { return None };
         ((self.value - nearest as f64).abs() + change < 0.5).then_some(nearest as i32)
     }
 }
 
-/// For each edge of each cap that is none of the boundary the cap beyond it: one that has the same edge
-/// backward. (There may be several, of different loops. They lie in one place, and each is taken once.)
+/// Returns, for each edge of each cap that does not belong to the boundary, the cap beyond it: a cap with the
+/// same edge reversed. (Several caps of different loops may have it. They lie in one place, and each is used
+/// once.)
 fn neighbours(slots: &[Slot]) -> Result<Vec<[u32; 3]>, Error> {
     let mut edges = memory::with_capacity(3 * slots.len())?;
     for (cap, (corners, rims)) in slots.iter().enumerate() {
@@ -184,7 +186,7 @@ fn neighbours(slots: &[Slot]) -> Result<Vec<[u32; 3]>, Error> {
     Ok(beyond)
 }
 
-/// How far the origin is from a segment.
+/// The distance of the origin from a segment.
 fn segment_distance(a: DVec3, b: DVec3) -> f64 {
     let edge = b - a;
     let along = -a.dot(edge) / edge.length_squared();
@@ -193,7 +195,7 @@ fn segment_distance(a: DVec3, b: DVec3) -> f64 {
 }
 
 impl Local {
-    /// Of no caps.
+    /// The expansion for no caps.
     pub(super) fn nothing(point: [f64; 3]) -> Local {
         Local {
             point: DVec3::from(point),
@@ -209,8 +211,8 @@ impl Local {
         }
     }
 
-    /// The same function as seen from another point, good for a ball around that which lies in the one it is
-    /// of.
+    /// Returns the same function expanded around another point, valid for a ball around that point within the
+    /// present ball.
     fn moved(&self, point: [f64; 3], radius: f64) -> Local {
         let to = DVec3::from(point) - self.point;
         let Range { value, .. } = self.at(point);
@@ -219,13 +221,13 @@ impl Local {
         Local { value, gradient: self.gradient + hessian * to, hessian, value_error, ..Local::nothing(point) }
     }
 
-    /// In the ball of the given radius around the point it was made for.
+    /// Returns the range in the ball of the given radius around the expansion's point.
     pub(super) fn within(&self, radius: f64) -> Range {
         let change = (length(self.gradient) + 0.5 * sum_of_magnitudes(self.hessian) * radius) * radius;
         Range { value: self.value, change, error: self.error_at(radius) }
     }
 
-    /// In a cube with the lower corner `at`, which must lie in the ball it was made for.
+    /// Returns the range in a cube with the lower corner `at`, which must lie in the expansion's ball.
     pub(super) fn over(&self, at: [i32; 3], size: i32) -> Range {
         let half = size as f64 / 2.0;
         let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
@@ -240,8 +242,8 @@ impl Local {
         }
     }
 
-    /// In such a cube, as a linear function of where a point lies, from the middle in half edges: its value
-    /// in the middle, its slope, and how much further off the winding number may be.
+    /// Returns a linear model in a cube as for [`over`](Self::over), in half edges from the cube's middle:
+    /// the value in the middle, the gradient, and a bound of the remaining error.
     pub(super) fn tangent(&self, at: [i32; 3], size: i32) -> (f64, [f64; 3], f64) {
         let half = size as f64 / 2.0;
         let middle = DVec3::from(at.map(|a| a as f64 + half)) - self.point;
@@ -253,24 +255,25 @@ impl Local {
         (value, slope.to_array(), bend + self.error_at(length(middle.abs() + half)))
     }
 
-    /// At the centre of a cell.
+    /// Returns the range at the centre of a cell.
     pub(super) fn at_centre(&self, cell: [i32; 3]) -> Range {
         self.at(cell.map(|a| a as f64 + 0.5))
     }
 
-    /// At a point.
+    /// Returns the range at a point.
     pub(super) fn at(&self, point: [f64; 3]) -> Range {
         let to = DVec3::from(point) - self.point;
         let value = self.value + (self.gradient + 0.5 * (self.hessian * to)).dot(to);
         Range { value, change: 0.0, error: self.error_at(length(to)) }
     }
 
-    /// By how much the winding number changes on a finest cell's length, about.
+    /// The approximate change of the winding number over the length of a finest cell.
     pub(super) fn steepness(&self) -> f64 {
         length(self.gradient)
     }
 
-    /// Along an axis, as a function of how far a point lies from `from`: the coefficients of 1, x and x².
+    /// Returns the expansion along an axis, as a function of the distance from `from`: the coefficients of 1,
+    /// x and x².
     pub(super) fn along(&self, axis: usize, from: [f64; 3]) -> [f64; 3] {
         let to = DVec3::from(from) - self.point;
         let symmetric = (self.hessian + self.hessian.transpose()) * 0.5;
@@ -282,14 +285,14 @@ impl Local {
     fn error_at(&self, distance: f64) -> f64 {
         let third = self.third_by_edges.min(self.third_by_areas);
         let (first, second) = (self.gradient_error, 0.5 * self.hessian_error * distance);
-        // The factor outweighs the roundings of all these bounds.
+        // The factor covers the roundings of all these bounds.
         (self.value_error + (first + second + third / 6.0 * distance * distance) * distance) * (1.0 + 1e-6)
             + 1e-12
     }
 }
 
 impl Caps {
-    /// Bytes that the lists take.
+    /// The bytes of the lists.
     pub(super) fn bytes(&self) -> usize {
         memory::bytes_of(&self.rims)
             + memory::bytes_of(&self.corners)
@@ -301,7 +304,7 @@ impl Caps {
 
     /// Closes `placed` by caps over the loops of its boundary.
     ///
-    /// O(n log n) in the boundary's edges, of which there are never fewer than caps; some 400 bytes a cap.
+    /// O(n log n) in the boundary's edges, which are never fewer than the caps; some 400 bytes a cap.
     pub(super) fn close(placed: &mut Placed, loops: &Loops) -> Result<Caps, Error> {
         let count = loops.caps();
         let mut caps = Caps::default();
@@ -313,8 +316,9 @@ impl Caps {
             for &vertex in walk {
                 error = placed.vertex(vertex).error.into_iter().fold(error, f32::max);
             }
-            // The loop backward, so that its edges cancel those of the surface. By halves, not as a fan: most
-            // caps are then as small as the edges that they lie at, and groups of them are far from most.
+            // The loop reversed, so that its edges cancel those of the surface. Halving instead of a fan
+            // makes most caps as small as the edges at which they lie, so that groups of caps are far from
+            // most points.
             halve(walk.len(), &mut |[a, b, c], rims| {
                 slots.push((([a, b, c]).map(|corner| walk[corner]), rims));
             });
@@ -349,14 +353,16 @@ impl Caps {
         Ok(caps)
     }
 
-    /// Adds the subtree of `slots`, the first of which is number `first`, and puts them in its order.
+    /// Adds the subtree of `slots`, whose first slot has the number `first`, and sorts the slots into its
+    /// order.
     fn grow(&mut self, slots: &mut [Slot], first: usize, at: &impl Fn(u32) -> DVec3) -> Result<(), Error> {
         let node = Node::around(slots, first, at);
         let index = self.nodes.len();
         memory::push(&mut self.nodes, node)?;
         if slots.len() > LEAF {
-            // Halves, so that the depth is the logarithm whatever the coordinates are: of near and far ones
-            // along the longest extent, or, where the largest are larger than that, of small and large ones.
+            // Halves, so that the depth is logarithmic for all coordinates. The halves are near and far caps
+            // along the longest extent, or small and large caps if the largest caps are larger than that
+            // extent.
             let centroid = |slot: &Slot| slot.0.iter().map(|&v| at(v)).sum::<DVec3>() / 3.0;
             let size = |slot: &Slot| {
                 let [a, b, c] = slot.0.map(at);
@@ -371,7 +377,7 @@ impl Caps {
             let key = |slot: &Slot| if is_mixed { size(slot) } else { centroid(slot)[axis] };
             let middle = slots.len() / 2;
             slots.select_nth_unstable_by(middle, |a, b| {
-                // Equal ones are told apart by their corners: the halves are the same on every machine.
+                // Ties are broken by corners, so that the halves are the same on every machine.
                 key(a).total_cmp(&key(b)).then(a.cmp(b))
             });
             let (low, high) = slots.split_at_mut(middle);
@@ -386,12 +392,14 @@ impl Caps {
         self.nodes.is_empty()
     }
 
-    /// The winding number around `point` to second order, within `radius` of it (both in finest cells from
-    /// the frame's origin). A group of caps that is taken together adds at most `enough` to the error. `None`
-    /// if the boundary passes through the ball. Of a ball without radius there is only the value.
+    /// Returns the winding number around `point` to second order, within `radius` of it (both in finest cells
+    /// from the frame's origin). A group of caps that is expanded as a whole adds at most `enough` to the
+    /// error. `None` if the boundary passes through the ball. For a ball of radius 0, only the value is
+    /// computed.
     ///
-    /// If the point is a cell's centre, `cell` says so, and the value is the one on that side of every cap on
-    /// which the symbolic shift puts the centre. Otherwise a point on a cap may get the value of either side.
+    /// If the point is a cell's centre, `cell` must name the cell. The value is then the one on the side of
+    /// every cap to which the symbolic shift moves the centre. Otherwise, a point on a cap may get the value
+    /// of either side.
     pub(super) fn local(
         &self,
         placed: &Placed,
@@ -403,7 +411,7 @@ impl Caps {
         with_vectors(Around { caps: self, placed, point, radius, enough, cell })
     }
 
-    /// All caps, as a list.
+    /// Lists all caps.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -413,13 +421,12 @@ impl Caps {
         Ok(())
     }
 
-    /// The winding number of the caps that are not `near`, in the ball of `radius` around a point, which lies
-    /// in the ball that `known` is of. That tells of all caps but those of a list; those of them that are far
-    /// from the ball are added, and the others are appended to `near`.
+    /// Returns the winding number of the caps that are not `near`, in the ball of `radius` around a point.
+    /// The ball must lie in the ball of `known`, which covers all caps except those of a list. Caps of the
+    /// list that are far from the ball are added to `known`. The other caps are appended to `near`.
     ///
-    /// Lists are ascending. A cap that is far from the ball has all its edges far from it, so that
-    /// derivatives of its own winding number are sums over these. Edges between two caps that are added
-    /// cancel.
+    /// Lists are ascending. All edges of a far cap are far from the ball, so that derivatives of the cap's
+    /// own winding number are sums over its edges. Edges between two added caps cancel.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -439,7 +446,7 @@ impl Caps {
             let cap = near[i];
             let corners = self.corners[cap as usize].map(|corner| corner - local.point);
             let farthest = sqrt(corners.iter().fold(0.0, |most: f64, at| most.max(at.length_squared())));
-            // (Of what is no number nothing is known.)
+            // (NaN counts as near.)
             let is_far = farthest - self.sizes[cap as usize].longest > APART * reach;
             if !is_far {
                 near.push(cap);
@@ -449,9 +456,9 @@ impl Caps {
         Ok(with_vectors(Far { caps: self, placed, list, near, reach, known: local }))
     }
 
-    /// The winding number of all caps in the ball of `radius` around the point that `far` is of, which tells
-    /// of all that are not `near`. `None` if the boundary passes through the ball, or comes so near to it
-    /// that one expansion says little.
+    /// Returns the winding number of all caps in the ball of `radius` around the point of `far`, which covers
+    /// all caps that are not `near`. `None` if the boundary passes through the ball, or comes so near that
+    /// one expansion is useless.
     pub(super) fn whole(&self, placed: &Placed, far: &Local, near: &[u32], radius: f64) -> Option<Local> {
         let reach = radius + self.boundary_error;
         let is_close = |&cap: &u32| {
@@ -467,8 +474,8 @@ impl Caps {
         with_vectors(Whole { caps: self, placed, near, reach, far: *far })
     }
 
-    /// The winding number at a point of the ball that `far` is of, which tells of all caps that are not
-    /// `near`. If the point is a cell's centre, `cell` says so, as for [`local`](Self::local).
+    /// Returns the winding number at a point of the ball of `far`, which covers all caps that are not `near`.
+    /// If the point is a cell's centre, `cell` must name the cell, as for [`local`](Self::local).
     pub(super) fn at(
         &self,
         placed: &Placed,
@@ -481,15 +488,15 @@ impl Caps {
         Range { value: near.value + far.value, change: 0.0, error: near.error_at(0.0) + far.error }
     }
 
-    /// Those edges of a cap that are none of the boundary, as bits, but for edges beyond which lies a cap
-    /// that is added, too.
+    /// Returns as bits the edges of a cap that do not belong to the boundary, except for edges whose cap
+    /// beyond is added, too.
     #[inline(always)]
     fn inner_edges(&self, cap: u32, is_added: impl Fn(u32) -> bool) -> u8 {
         let (rims, beyond) = (self.rims[cap as usize], self.beyond[cap as usize]);
         (0..3).filter(|i| rims >> i & 1 == 0 && !is_added(beyond[*i])).fold(0, |mask, i| mask | 1 << i)
     }
 
-    /// Adds half a cap's solid angle to the value or to the argument of `turned`, of modulus 1.
+    /// Adds half a cap's solid angle to the value, or to the argument of `turned`, which has modulus 1.
     #[inline(always)]
     fn add_angle(
         &self,
@@ -499,12 +506,13 @@ impl Caps {
         turned: &mut DVec2,
     ) {
         let Angle { real, imaginary, modulus, wrong } = angle;
-        // Also false for NaN.
+        // This is false for NaN, too.
         if modulus >= 2.0 * wrong {
             let inverse = 1.0 / modulus;
             let direction = DVec2::new(real, imaginary) * inverse;
             if real > 0.0 && turned.x > 0.0 {
-                // Two angles of less than a right one: their sum is told by the product of the directions.
+                // Both angles are less than a right angle, so that the product of the directions gives their
+                // sum.
                 *turned = turned.rotate(direction);
             } else if real > 0.0 {
                 sum.value += libm::atan2(turned.y, turned.x) / (2.0 * PI);
@@ -525,22 +533,23 @@ impl Caps {
         } else {
             sum.value_error += 1.0;
             if let Some(cell) = cell {
-                // No proof, because the centre may lie beside the edge; but the best guess, and exact on it.
+                // No proof, because the centre may lie beside the edge. But it is the best guess, and exact
+                // on the edge.
                 let corners = self.corners[cap].map(|corner| corner - sum.point);
                 sum.value += self.on_edge(placed, cap, cell, corners) / (2.0 * PI);
             }
         }
     }
 
-    /// Half the solid angle of a cap on whose edge or corner the centre of a cell lies, as seen from where
-    /// the symbolic shift puts the centre: that of a half-plane or of a sector. `corners` are relative to it.
+    /// Half the solid angle of a cap on whose edge or corner a cell's centre lies, as seen from the centre's
+    /// symbolic shift: the angle of a half-plane or of a sector. `corners` are relative to the centre.
     #[cold]
     fn on_edge(&self, placed: &Placed, cap: usize, cell: [i32; 3], corners: [DVec3; 3]) -> f64 {
         let units = corners.map(DVec3::normalize_or_zero);
         let i = if let Some(apex) = units.iter().position(|unit| *unit == DVec3::ZERO) {
             let (first, last) = ((apex + 1) % 3, (apex + 2) % 3);
             let (u, v) = (units[first], units[last]);
-            // The shift is along x, so that the apex is seen along −x, and the rest where it is.
+            // The shift is along x, so that the apex appears along −x, and the other corners stay.
             let (imaginary, real) = (-u.cross(v).x, 1.0 - u.x + u.dot(v) - v.x);
             if sqrt(real * real + imaginary * imaginary) > 1e-12 {
                 let angle = libm::atan2(imaginary, real);
@@ -548,10 +557,10 @@ impl Caps {
                 let side = if is_over { self.side(placed, cap, cell) } else { None };
                 return side.map_or(angle, |side| side * angle.abs());
             }
-            // Unless an edge leads along x: then the shifted centre is on that.
+            // An edge leads along x: then the shifted centre is on that edge.
             if u.x > v.x { apex } else { last }
         } else {
-            // Of that edge the ends lie in opposite directions.
+            // The ends of the edge through the centre lie in opposite directions.
             let cosines = axes(|i| units[i].dot(units[(i + 1) % 3]));
             let i = (0..3).fold(0, |least, i| if cosines[i] < cosines[least] { i } else { least });
             if cosines[i] >= -0.99 {
@@ -561,7 +570,7 @@ impl Caps {
         };
         let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
         let inward = corners[(i + 2) % 3].reject_from_normalized(along).normalize_or_zero();
-        // Along x first; along y if that leads along the edge.
+        // Shift along x first; along y if x leads along the edge.
         let shift = DVec3::AXES.map(|axis| axis.reject_from_normalized(along));
         let Some(shift) = shift.into_iter().find(|shift| shift.length() > 1e-9) else {
             return 0.0;
@@ -570,12 +579,12 @@ impl Caps {
         if sine.abs() > 1e-9 * shift.length() {
             return -sine.signum() * (PI - libm::atan2(sine.abs(), cosine));
         }
-        // Within the cap's plane; out of the cap nothing of it is seen.
+        // The shift stays in the cap's plane. If it leads out of the cap, the solid angle is zero.
         let side = if cosine > 0.0 { self.side(placed, cap, cell) } else { None };
         side.unwrap_or(0.0) * PI
     }
 
-    /// On which side of a cap the centre of a cell lies that is over it: 1 if the cap faces away from it.
+    /// Returns on which side of a cap a cell's centre over it lies: 1 if the cap faces away from the centre.
     #[cold]
     fn side(&self, placed: &Placed, cap: usize, cell: [i32; 3]) -> Option<f64> {
         let triangle = (placed.mesh.triangles().len() + cap) as u32;
@@ -589,7 +598,7 @@ impl Caps {
             let over = span.first <= cell[u] && cell[u] < span.end;
             over.then(|| {
                 let is_above = cell[w] >= seen.above(cell[u], cell[v], span.step);
-                // A step of −1: the cap faces up.
+                // With a step of −1, the cap faces up.
                 if is_above == (span.step < 0) { -1.0 } else { 1.0 }
             })
         })
@@ -624,7 +633,7 @@ impl Node {
             let size = length(area);
             let middle = a + b + c;
             node.area += area;
-            // Columns are area · s.x, area · s.y, area · s.z.
+            // The columns are area · s.x, area · s.y, area · s.z.
             node.moment += DMat3::from_cols(area * middle.x, area * middle.y, area * middle.z) * (1.0 / 3.0);
             node.size += size;
             node.second_moment += size / 12.0
@@ -638,46 +647,47 @@ impl Node {
                 }
             }
         }
-        // `rounding` covers all that is rounded in what `add_from_afar` adds to the value, and in its bound.
-        // Let n be the number of caps, u = ε/2, r the radius and |y| > 2 r the distance; errors are in units
-        // of SCALE/(|y| − r)². A sum of n terms is off by n·u times their magnitudes, and each term has fewer
-        // than 100 roundings of its own; the terms of value and second moment are at most 4·size: that makes
-        // 4·(n + 100)·u·size. A corner relative to the centre is off by u·r, so a cap's area by 11·u·r²,
-        // however thin the cap is: that makes 17·n·u·r² in value and second moment. 16·ε = 32·u is more than
-        // either needs. Nothing else is rounded, so the bound counts once; with it, `size` bounds the area.
+        // `rounding` covers all roundings of the value that `Node::add` adds, and of its bound. Let n be the
+        // number of caps, u = ε/2, r the radius and |y| > 2 r the distance; errors are in units of SCALE/(|y|
+        // − r)². A sum of n terms has an error of n·u times their magnitudes, and each term has fewer than
+        // 100 roundings of its own. The terms of value and second moment are at most 4·size: this gives
+        // 4·(n + 100)·u·size. A corner relative to the centre has an error of u·r, so a cap's area has an
+        // error of 11·u·r², however thin the cap is: this gives 17·n·u·r² in value and second moment. The
+        // factor 16·ε, which is 32·u, exceeds the need of both. Nothing else is rounded, so the bound counts
+        // once; with it, `size` bounds the area.
         let count = slots.len() as f64;
         let slivers = count * node.radius * node.radius;
         node.rounding = 16.0 * f64::EPSILON * ((count + 16.0) * node.size + slivers);
         node.size += node.rounding;
-        // The sums over the boundary's n edges are off by 5·((n + 3)·rim + 2·n·r)·u in the gradient, in units
-        // of SCALE/(|y| − r)²: n roundings of sums, and corners that are off by u·r. 10^-11 of the boundary's
-        // length covers what else is rounded.
+        // The sums over the boundary's n edges have an error of 5·((n + 3)·rim + 2·n·r)·u in the gradient, in
+        // units of SCALE/(|y| − r)²: n roundings of sums, and corners with an error of u·r. 10^-11 of the
+        // boundary's length covers all other roundings.
         let edges = slots.iter().map(|slot| slot.1.count_ones() as f64).sum::<f64>();
         let sums = 16.0 * f64::EPSILON * ((edges + 16.0) * node.rim + edges * node.radius);
         node.rim_rounding = sums.max(1e-11 * node.rim);
         node
     }
 
-    /// The group as seen from afar, in the ball of `radius` around a point, if taking it together adds at
-    /// most `enough` to the error anywhere in it.
+    /// Returns the group as seen from afar, in the ball of `radius` around a point, if expanding it as a
+    /// whole adds at most `enough` to the error anywhere in the ball.
     #[inline(always)]
     fn seen(&self, point: DVec3, radius: f64, enough: f64) -> Option<Seen> {
         let towards = self.centre - point;
-        // Most that are not apart are seen to be that without a root.
+        // Most groups that are not far are rejected without a square root.
         let (square, least) = (towards.length_squared(), 2.0 * self.radius + radius);
         if square < least * least * (1.0 - 1e-9) {
             return None;
         }
         let distance = sqrt(square);
         let (gap, clear) = (distance - self.radius, distance - self.radius - radius);
-        // (What is no number fails this and all tests below.)
+        // (NaN fails this and all tests below.)
         let is_apart = clear > self.radius;
         if !is_apart {
             return None;
         }
-        // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is one of 1/|y|, which is
-        // harmonic, so that it is largest along y. (`rounding` and `rim_rounding` are for what is
-        // rounded.)
+        // The n-th derivative of the kernel y/|y|³ is at most (n + 1)!/|y|ⁿ⁺²: it is a derivative of 1/|y|,
+        // which is harmonic, so that it is largest along y. (`rounding` and `rim_rounding` cover the
+        // roundings.)
         let per_gap = 1.0 / gap;
         let near = SCALE * per_gap * per_gap;
         let error = (3.0 * self.second_moment * per_gap * per_gap + self.rounding) * near;
@@ -724,7 +734,7 @@ impl Node {
         let along_direction = self.currents * direction;
         sum.gradient +=
             direction.cross(self.current) * square + (turned - 3.0 * direction.cross(along_direction)) * cube;
-        // The first of them once more differentiated: −(v − 3 d (d·v))/|y|³ × ds for a step v.
+        // The first of these terms, differentiated once more: −(v − 3 d (d·v))/|y|³ × ds for a step v.
         let column = |v: DVec3| (3.0 * direction.dot(v) * direction - v).cross(self.current) * cube;
         let columns = [column(DVec3::X), column(DVec3::Y), column(DVec3::Z)];
         sum.hessian += DMat3::from_cols(columns[0], columns[1], columns[2]);
@@ -739,7 +749,7 @@ impl Node {
 }
 
 impl Local {
-    /// Adds what an edge does to the derivatives. `None` if it passes through the ball.
+    /// Adds the contribution of an edge to the derivatives. `None` if the edge passes through the ball.
     #[inline(always)]
     fn add_edge(&mut self, edge: &Edge) -> Option<()> {
         if !edge.is_known {
@@ -755,7 +765,7 @@ impl Local {
         Some(())
     }
 
-    /// Accounts for the rounding of the sums to which something was just added.
+    /// Accounts for the rounding of the sums to which a term was just added.
     #[inline(always)]
     fn round_derivatives(&mut self) {
         self.gradient_error += f64::EPSILON * self.gradient.abs().element_sum();
@@ -763,28 +773,27 @@ impl Local {
     }
 }
 
-/// What is summed.
+/// A term of the sum.
 #[derive(Clone, Copy)]
 enum Item {
-    /// A cap, and which of its edges do something to the derivatives besides those of the boundary.
+    /// A cap, and its edges that contribute to the derivatives besides the boundary's edges.
     Cap(u32, u8),
     Group(u32, Seen),
 }
 
-/// A sum over caps and groups of them, in the order in which they are given. Terms are found for many at a
-/// time.
+/// A sum over caps and groups, in the given order. Terms are computed for many items at a time.
 struct Summing<'c> {
     caps: &'c Caps,
     placed: &'c Placed,
     cell: Option<[i32; 3]>,
-    /// Of the ball; without a radius there is only the value.
+    /// The radius of the ball; 0 if only the value is needed.
     reach: f64,
     sum: Local,
-    /// Of modulus 1: half its argument is part of the sum.
+    /// A complex number of modulus 1. Its argument over 2π is a part of the sum.
     turned: DVec2,
     /// False if an edge passes through the ball.
     is_known: bool,
-    /// Those that are not summed yet, and the terms of theirs.
+    /// The items that are not summed yet, and their terms.
     items: [Item; terms::MOST],
     count: usize,
     cap_terms: CapTerms,
@@ -809,7 +818,7 @@ impl<'c> Summing<'c> {
         }
     }
 
-    /// Adds items, all of them or until one is not known if that is `enough`.
+    /// Adds items: all of them, or if that is `enough`, until one is not known.
     #[inline(always)]
     fn add(&mut self, mut items: impl Iterator<Item = Item>, enough: bool) {
         loop {
@@ -890,13 +899,13 @@ impl<'c> Summing<'c> {
     }
 }
 
-/// All groups that are far from a ball, as large as may be, and the caps between them, in the tree's order.
+/// All groups that are far from a ball, as large as possible, and the caps between them, in the tree's order.
 struct Items<'c> {
     caps: &'c Caps,
     point: DVec3,
     reach: f64,
     enough: f64,
-    /// The node that comes next, and what is left of the latest leaf.
+    /// The next node, and the rest of the latest leaf.
     next: usize,
     leaf: core::ops::Range<u32>,
 }
@@ -925,7 +934,7 @@ impl Iterator for Items<'_> {
     }
 }
 
-/// [`Caps::local`].
+/// The computation of [`Caps::local`].
 struct Around<'c> {
     caps: &'c Caps,
     placed: &'c Placed,
@@ -950,7 +959,7 @@ impl Hot for Around<'_> {
     }
 }
 
-/// What [`Caps::far`] adds: the caps of a list that are not `near`.
+/// The additions of [`Caps::far`]: the caps of a list that are not `near`.
 struct Far<'c> {
     caps: &'c Caps,
     placed: &'c Placed,
@@ -980,7 +989,7 @@ impl Hot for Far<'_> {
     }
 }
 
-/// What [`Caps::whole`] adds.
+/// The additions of [`Caps::whole`].
 struct Whole<'c> {
     caps: &'c Caps,
     placed: &'c Placed,
@@ -1002,7 +1011,7 @@ impl Hot for Whole<'_> {
     }
 }
 
-/// The value of the caps that [`Caps::at`] sums one by one.
+/// The caps that [`Caps::at`] sums one by one.
 struct Near<'c> {
     caps: &'c Caps,
     placed: &'c Placed,
@@ -1014,8 +1023,8 @@ struct Near<'c> {
 impl Hot for Near<'_> {
     type Output = Local;
 
-    /// Most half angles are less than a right one and well told: then numbers do that are not divided by the
-    /// corners' distances.
+    /// Sums the angles. Most half angles are less than a right angle and precise. For these, numbers that are
+    /// not divided by the corners' distances suffice.
     #[inline(always)]
     fn run(self) -> Local {
         let Near { caps, placed, near, point, cell } = self;
@@ -1052,7 +1061,7 @@ fn trace(m: DMat3) -> f64 {
     m.x_axis.x + m.y_axis.y + m.z_axis.z
 }
 
-/// ∫ s × ds of ∫ ds ⊗ s.
+/// ∫ s × ds, from ∫ ds ⊗ s.
 fn curl(m: DMat3) -> DVec3 {
     DVec3::new(m.y_axis.z - m.z_axis.y, m.z_axis.x - m.x_axis.z, m.x_axis.y - m.y_axis.x)
 }
@@ -1062,8 +1071,8 @@ fn sum_of_magnitudes(m: DMat3) -> f64 {
     sums.x + sums.y + sums.z
 }
 
-/// The triangles of a polygon with `corners` corners, by halves; `found` gets the corners of each,
-/// descending, and which edges are the polygon's.
+/// Divides a polygon with `corners` corners into triangles, by halves. `found` gets the corners of each
+/// triangle, descending, and the bits of its edges that are the polygon's.
 pub(super) fn halve(corners: usize, found: &mut impl FnMut([usize; 3], u8)) {
     fn part(first: usize, last: usize, closing: bool, found: &mut impl FnMut([usize; 3], u8)) {
         if last - first < 2 {
@@ -1088,8 +1097,8 @@ mod tests {
     use crate::mesh::TriangleMesh;
     use alloc::sync::Arc;
 
-    /// A cone without its base: `corners` corners at height 3 around the axis through (8, 8), of about radius
-    /// 5, its top at height 13. In a frame of 16 cells.
+    /// A cone without its base: `corners` corners at height 3 around the axis through (8, 8), at a radius of
+    /// about 5, and the top at height 13. The frame has 16 cells along an axis.
     fn cone(corners: u32) -> (Placed, Caps) {
         let mut vertices = alloc::vec![[8.0, 8.0, 13.0]];
         for i in 0..corners {
@@ -1148,7 +1157,7 @@ mod tests {
     fn far_away_a_hole_is_a_dipole() {
         let solid = cone(100);
         let above = local(&solid, DVec3::new(8.0, 8.0, 1000.0), 1.0, 1e-9).unwrap();
-        // Its cap faces down: seen from above the inner side.
+        // The hole's cap faces down: its inner side is seen from above.
         let expected = 1e-6 * PI * 25.0 / (4.0 * PI);
         assert!((above.value - expected).abs() < 0.02 * expected, "{} {expected}", above.value);
         assert!((above.gradient.z + 2e-3 * expected).abs() < 1e-4 * expected, "{}", above.gradient);

@@ -1,6 +1,6 @@
-//! Polygons in place of circles, as OpenSCAD draws them.
+//! Polygons that replace circles, as OpenSCAD draws them.
 //!
-//! The corners of the polygon of radius 1 are doubles, and everything else is exact over those: a polygon of
+//! The corners of the polygon of radius 1 are doubles, and all computations with them are exact: a polygon of
 //! another radius has each corner times the radius.
 
 use crate::error::Error;
@@ -19,8 +19,8 @@ pub(crate) struct Fan {
 }
 
 impl Fan {
-    /// The regular polygon of radius 1 with `count` corners, the first of them at the angle `start` in
-    /// degrees; `None` if there are less than three.
+    /// Returns the regular polygon of radius 1 with `count` corners. The first corner is at the angle `start`
+    /// in degrees. `None` if there are fewer than three corners.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -29,9 +29,8 @@ impl Fan {
         Fan::of((0..count).map(angle).map(direction), true)
     }
 
-    /// The corners at `count` + 1 angles from `start` on, `angle` degrees apart together; `None` if two
-    /// neighbours are half a turn or more apart, or so close that the corners are no convex polygon in
-    /// doubles.
+    /// Returns the corners at `count` + 1 angles from `start` on, over `angle` degrees in all. `None` if two
+    /// neighbours are half a turn or more apart, or so close that the corners in doubles are not convex.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -58,7 +57,7 @@ impl Fan {
         &self.corners
     }
 
-    /// The same, turned by half a turn.
+    /// Returns the fan turned by half a turn.
     pub(crate) fn opposite(mut self) -> Fan {
         self.corners.iter_mut().for_each(|corner| *corner = corner.map(|c| 0.0 - c));
         self
@@ -69,11 +68,12 @@ impl Fan {
         self.corners.iter().zip(next).map(|(&a, &b)| [a, b])
     }
 
-    /// What a half-plane x ρ + y z + 1 ≥ 0 sweeps, ρ being how many times a point is as far out as the
-    /// polygon in its direction. Only what is in the fan's directions is meant.
+    /// Returns the solid that a half-plane x ρ + y z + 1 ≥ 0 sweeps. ρ is a point's distance from the axis,
+    /// relative to the polygon's radius in the point's direction. The result is valid only within the fan's
+    /// directions.
     ///
-    /// In each triangle of the fan ρ is linear, and because the polygon is convex it is the greatest of those
-    /// linear functions. So the swept half-plane is an intersection of half-spaces, or a union, and the sides
+    /// In each triangle of the fan ρ is linear. Because the polygon is convex, ρ is the maximum of those
+    /// linear functions. So the swept half-plane is an intersection or a union of half-spaces, and the sides
     /// of the triangles do not occur.
     pub(crate) fn sweep(&self, [x, y, one]: [Dyadic; 3]) -> Result<Csg, Error> {
         if x.is_zero() {
@@ -90,7 +90,7 @@ impl Fan {
         let mut parts = memory::with_capacity(self.corners.len())?;
         parts.extend(self.edges().map(|[a, b]| {
             let [[ax, ay], [bx, by]] = [a, b].map(|corner| corner.map(Dyadic::new));
-            // ρ times this is p × (b − a).
+            // ρ times this scale is p × (b − a).
             let scale = &(&ax * &by) - &(&ay * &bx);
             let (along_x, along_y) = (&bx - &ax, &by - &ay);
             let plane = [&x * &along_y, -&(&x * &along_x), &y * &scale, &one * &scale];
@@ -99,7 +99,7 @@ impl Fan {
         if is_inward { Csg::intersection_of(parts) } else { Csg::union_of(parts) }
     }
 
-    /// The directions of the fan, from the z axis on; `None` if these are all.
+    /// Returns the wedge of the fan's directions around the z axis; `None` if the fan covers all directions.
     pub(crate) fn wedge(&self) -> Result<Option<Csg>, Error> {
         let (Some(&first), Some(&last), false) = (self.corners.first(), self.corners.last(), self.is_closed)
         else {
@@ -116,24 +116,24 @@ impl Fan {
     }
 }
 
-/// The exact sign of a × b.
+/// Returns the exact sign of a × b.
 fn side(a: [f64; 2], b: [f64; 2]) -> i32 {
     sign_of_products(&[(a[0], b[1]), (-a[1], b[0])])
 }
 
-/// 1 if the way from a over b to c turns to the left, −1 to the right; exact.
+/// Returns 1 if the way from a over b to c turns left, −1 if it turns right; exact.
 fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> i32 {
     let cross = |p: [f64; 2], q: [f64; 2]| [(p[0], q[1]), (-p[1], q[0])];
     sign_of_products([cross(a, b), cross(b, c), cross(c, a)].as_flattened())
 }
 
-/// The point of the unit circle at an angle in degrees.
+/// Returns the point of the unit circle at an angle in degrees.
 fn direction(degrees: f64) -> [f64; 2] {
     [cos_degrees(degrees), sin_degrees(degrees)]
 }
 
-/// The sine of an angle in degrees, by the reductions of OpenSCAD: 30°, 45°, 60° and their mirror images have
-/// equal sines to the last bit.
+/// Returns the sine of an angle in degrees, by the reductions of OpenSCAD: 30°, 45°, 60° and their mirror
+/// images have equal sines to the last bit.
 pub(crate) fn sin_degrees(degrees: f64) -> f64 {
     let mut x = turned(degrees);
     let is_below = x >= 180.0;
@@ -144,7 +144,7 @@ pub(crate) fn sin_degrees(degrees: f64) -> f64 {
     if is_below { 0.0 - sine } else { sine }
 }
 
-/// The cosine of an angle in degrees, as [`sin_degrees`].
+/// Returns the cosine of an angle in degrees, with the reductions of [`sin_degrees`].
 pub(crate) fn cos_degrees(degrees: f64) -> f64 {
     let mut x = turned(degrees);
     let mut is_left = x >= 180.0;
@@ -169,7 +169,7 @@ pub(crate) fn cos_degrees(degrees: f64) -> f64 {
 
 const HALF_SQRT_3: f64 = 0.866_025_403_784_438_6;
 
-/// An angle from 0 on and less than a turn.
+/// Returns the angle reduced to 0 ≤ angle < 360.
 fn turned(degrees: f64) -> f64 {
     if (0.0..360.0).contains(&degrees) { degrees } else { degrees - 360.0 * libm::floor(degrees / 360.0) }
 }

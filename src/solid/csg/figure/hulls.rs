@@ -1,31 +1,31 @@
-//! The farthest of consecutive corners in a direction.
+//! A search structure for the farthest of consecutive corners in a direction.
 //!
-//! A tree of convex hulls over halves of halves of the corners. A question about a range of corners goes to
-//! the few nodes that make it up, and is answered on each hull by bisection.
+//! The structure is a tree of convex hulls over repeated halves of the corners. A query for a range of
+//! corners visits the few nodes that make up the range, and is answered on each hull by bisection.
 
 use super::segment::{before, turn};
 use crate::error::Error;
 use crate::memory;
 use alloc::vec::Vec;
 
-/// Corners that are looked at one by one.
+/// The number of corners that are tested one by one.
 const LEAF: usize = 32;
 
 /// The hulls of all blocks of 2^k times [`LEAF`] corners.
 pub(crate) struct Hulls {
-    /// By level, from the smallest blocks on.
+    /// The levels, from the smallest blocks on.
     levels: Vec<Level>,
 }
 
 /// The upper and the lower hulls of the blocks of one size.
 struct Level {
     corners: [Vec<u32>; 2],
-    /// Where each block's begins, and where the last one ends.
+    /// The places where each block's hull begins, and where the last hull ends.
     starts: [Vec<usize>; 2],
 }
 
 impl Hulls {
-    /// O(n log² n) time, O(n log n) memory.
+    /// Builds the tree. O(n log² n) time, O(n log n) memory.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -67,7 +67,7 @@ impl Hulls {
         Ok(Hulls { levels })
     }
 
-    /// A corner of the range that is not empty which is farthest to the left of the direction of `base`.
+    /// Returns the corner of a non-empty range that is farthest to the left of the direction of `base`.
     ///
     /// O(log² n).
     pub(crate) fn farthest(
@@ -84,7 +84,7 @@ impl Hulls {
             }
         };
         while from < to {
-            // The largest block that begins here and is in the range.
+            // The largest block that begins here and lies in the range.
             let fits = |level: &usize| {
                 let size = LEAF << level;
                 from.is_multiple_of(size) && from + size <= to
@@ -111,7 +111,7 @@ impl Level {
         // The upper hull, if left is up.
         let side = usize::from(before(base[1], base[0]));
         let hull = &self.corners[side][self.starts[side][block]..self.starts[side][block + 1]];
-        // First the corners get farther, then nearer.
+        // Along the hull the corners get farther first, then nearer.
         let (mut low, mut high) = (0, hull.len() - 1);
         while low < high {
             let middle = low.midpoint(high);

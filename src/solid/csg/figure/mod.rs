@@ -1,4 +1,4 @@
-//! Plane figures: simple polygons as formulas of half-planes, and what scenes draw and sweep.
+//! Plane figures: simple polygons as formulas of half-planes, and the figures that scenes draw and sweep.
 
 #[cfg(feature = "scene")]
 mod fan;

@@ -2,16 +2,16 @@
 //!
 //! Every simple polygon is a monotone formula (unions and intersections, no complements) in which the
 //! half-plane of each edge occurs once (Peterson, *Halfspace representation of extrusions, solids of
-//! revolution, and pyramids*, 1984). A three-valued evaluation needs that each edge decides in one place:
-//! where the line of one edge runs on through the interior, the rest of the formula decides without it. A
-//! triangulation and a convex decomposition leave seams at their cuts, and differences of convex hulls (Tor
-//! and Middleditch 1984) have such cuts at the edges of the hulls.
+//! revolution, and pyramids*, 1984). A three-valued evaluation needs such a formula: where the line of an
+//! edge continues through the interior, the rest of the formula must decide without that edge. A
+//! triangulation and a convex decomposition leave seams at their cuts. Differences of convex hulls (Tor and
+//! Middleditch 1984) have such cuts at the edges of the hulls.
 //!
 //! The formula is found as in the proof of Dobkin, Guibas, Hershberger and Snoeyink, *An efficient algorithm
 //! for finding the CSG representation of a simple polygon* (SIGGRAPH 1988; Algorithmica 1993). The polygon is
-//! cut at its first and last corner in lexicographic order, into chains of edges whose end edges go on for
-//! ever. A chain may be cut at any corner on its convex hull. At a corner that turns to the left, the chain's
-//! side is the intersection of the sides of both parts; at one that turns to the right, it is their union.
+//! cut at its first and last corner in lexicographic order, into chains of edges whose end edges are extended
+//! to infinity. A chain may be cut at any corner on its convex hull. At a corner that turns left, the chain's
+//! side is the intersection of the sides of both parts; at a corner that turns right, it is their union.
 //! Their algorithm finds all cuts in O(n log n) with a structure for hulls of paths; here each cut takes
 //! O(log² n), with a tree of hulls. All decisions are signs of exact arithmetic.
 
@@ -24,25 +24,26 @@ use crate::error::Error;
 use crate::lattice::valid;
 use crate::memory;
 
-/// One term of a formula in postfix order: operators combine the terms right before them.
+/// One term of a formula in postfix order: operators combine the terms directly before them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Term {
     /// The half-plane to the left of the line from one point to the other (indices into the points).
     Edge([usize; 2]),
-    /// The intersection of so many (two or more) terms.
+    /// The intersection of this number of terms (two or more).
     All(usize),
-    /// The union of so many terms.
+    /// The union of this number of terms (two or more).
     Any(usize),
 }
 
-/// The formula of the polygon with these corners, in order, in either direction of rotation. The last corner
-/// is joined to the first. Corners that repeat the one before, and those straight between their neighbours,
-/// are left out, so that there may be fewer edges than points; every other edge occurs once.
+/// Returns the formula of the polygon with these corners, in order, in either direction of rotation. The last
+/// corner is joined to the first. Corners that repeat the one before, and corners on the straight line
+/// between their neighbours, are left out, so that there may be fewer edges than points. Every other edge
+/// occurs once.
 ///
 /// O(n log² n) time, O(n log n) memory.
 ///
 /// # Errors
-/// [`Error::Argument`] if a coordinate is not zero and not of a magnitude between 2^-256 and 2^256, or if the
+/// [`Error::Argument`] if a coordinate is neither zero nor of a magnitude between 2^-256 and 2^256, or if the
 /// outline touches or crosses itself or encloses nothing; [`Error::OutOfMemory`].
 pub(crate) fn monotone_formula(points: &[[f64; 2]]) -> Result<Vec<Term>, Error> {
     valid::numbers("polygon", points.as_flattened())?;
@@ -72,7 +73,7 @@ struct Outline<'a> {
 }
 
 impl Outline<'_> {
-    /// Corner `i`, counted around.
+    /// The point of corner `i`, counted cyclically.
     fn at(&self, i: usize) -> [f64; 2] {
         self.points[self.corners[i % self.corners.len()]]
     }
@@ -81,7 +82,7 @@ impl Outline<'_> {
         [self.at(i), self.at(i + 1)]
     }
 
-    /// Whether corner `i` (≥ 1) turns to the left (1), to the right (−1) or not.
+    /// Returns whether corner `i` (≥ 1) turns left (1), right (−1) or not (0).
     fn turn_at(&self, i: usize) -> i32 {
         turn(self.edge(i - 1), self.edge(i))
     }
@@ -103,7 +104,7 @@ impl Outline<'_> {
         if simple::is_simple(&corners)? { Ok(()) } else { refuse("the outline touches or crosses itself") }
     }
 
-    /// Makes the outline counter-clockwise, starting at the corner with the smallest coordinates, without
+    /// Makes the outline counter-clockwise, with the lexicographically smallest corner first, and without
     /// corners that do not turn.
     fn normalise(&mut self) -> Result<(), Error> {
         let n = self.corners.len();
@@ -120,7 +121,7 @@ impl Outline<'_> {
         Ok(())
     }
 
-    /// Index of the corner whose point is preferred to all others.
+    /// Returns the index of the corner whose point is preferred to all others.
     fn extreme(&self, preferred: impl Fn(usize, usize) -> bool) -> usize {
         let mut best = 0;
         for i in 1..self.corners.len() {
@@ -131,18 +132,18 @@ impl Outline<'_> {
         best
     }
 
-    /// The formula of a normalised outline.
+    /// Returns the formula of a normalised outline.
     fn formula(&self) -> Result<Vec<Term>, Error> {
         enum Task {
             /// The side of the chain of the edges `from..to`, as an operand of `parent`.
             Chain { from: usize, to: usize, parent: Operator },
-            /// The operands of an operator are written.
+            /// The operands of an operator are written: write the operator.
             Close(Operator),
         }
         let n = self.corners.len();
         let points = self.points;
         let last = self.extreme(|new, old| before(points[old], points[new]));
-        // There are fewer operators than edges, and at most one of them, and one chain, waits for each cut.
+        // There are fewer operators than edges. At most one operator and one chain wait for each cut.
         let mut terms = memory::with_capacity(2 * n)?;
         let mut counts = memory::with_capacity(n + 1)?;
         let mut tasks = memory::with_capacity(2 * n + 2)?;
@@ -181,11 +182,11 @@ impl Outline<'_> {
         Ok(terms)
     }
 
-    /// A corner within the chain of the edges `from..to` (two or more) that lies on the hull of the chain
-    /// with its first and last edge prolonged for ever.
+    /// Returns a corner within the chain of the edges `from..to` (two or more) that lies on the hull of the
+    /// chain with its first and last edge extended to infinity.
     ///
-    /// It is the farthest in a direction in which neither ray goes on: across the chord of the chain, which
-    /// cuts an arc in halves, or else across the first edge.
+    /// The corner is the farthest one in a direction in which neither extension continues: across the chord
+    /// of the chain, which halves an arc, or otherwise across the first edge.
     fn cut(&self, hulls: &Hulls, from: usize, to: usize) -> usize {
         let (first, last) = (self.edge(from), self.edge(to - 1));
         let mut base = [self.at(from), self.at(to)];
@@ -219,7 +220,7 @@ mod tests {
     use super::*;
     use crate::solid::csg::figure::segment::meet;
 
-    /// Kleene evaluation with the sides of the edges: 1, −1 or 0.
+    /// Kleene evaluation from the sides of the edges: 1, −1 or 0.
     fn value(terms: &[Term], side: impl Fn([usize; 2]) -> i32) -> i32 {
         let mut stack: Vec<i32> = Vec::new();
         for &term in terms {
@@ -234,7 +235,8 @@ mod tests {
         stack[0]
     }
 
-    /// 1 inside, −1 outside, 0 on the outline: crossings of the ray to the right, in exact arithmetic.
+    /// Returns 1 inside, −1 outside, 0 on the outline, from the crossings of the ray to the right, in exact
+    /// arithmetic.
     fn truth(points: &[[f64; 2]], p: [f64; 2]) -> i32 {
         let mut inside = -1;
         for i in 0..points.len() {
@@ -269,7 +271,8 @@ mod tests {
         assert_eq!(starts.len(), edges.len(), "every edge occurs once");
         for x in -2..=4 * size {
             for y in -2..=4 * size {
-                // Off the quarters by little, so that edges rarely pass through; both kinds are wanted.
+                // Slightly off the quarters, so that edges rarely pass through a point; both kinds of points
+                // are tested.
                 for shift in [0.0, 0.015625] {
                     let p = [f64::from(x) / 4.0 + shift, f64::from(y) / 4.0];
                     let side = |[a, b]: [usize; 2]| turn([points[a], points[b]], [points[a], p]);
@@ -277,7 +280,7 @@ mod tests {
                     let expected = truth(points, p);
                     let on = edges.iter().filter(|&&edge| side(edge) == 0).count();
                     match on {
-                        // Where the line of one edge runs on, nothing may be undecided.
+                        // Where only the line of one edge continues, nothing may be undecided.
                         0 | 1 => assert_eq!(found, expected, "{points:?} at {p:?}: {terms:?}"),
                         _ => assert!(found == expected || found == 0, "{points:?} at {p:?}"),
                     }
@@ -291,7 +294,7 @@ mod tests {
         let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
         check(&square, 5);
         assert_eq!(monotone_formula(&square).unwrap().last(), Some(&Term::All(4)));
-        // Repeated corners, straight corners, the other direction.
+        // Repeated corners, straight corners, and the other direction.
         let repeated = [[0.0, 4.0], [4.0, 4.0], [4.0, 4.0], [4.0, 2.0], [4.0, 0.0], [0.0, 0.0], [0.0, 4.0]];
         check(&repeated, 5);
         assert_eq!(monotone_formula(&repeated).unwrap().len(), 5);
@@ -316,7 +319,7 @@ mod tests {
             let n = 3 + (random(&mut state) % 9) as usize;
             let point = |state: &mut u64| [0, 1].map(|_| (random(state) % 7) as f64);
             let mut points: Vec<_> = (0..n).map(|_| point(&mut state)).collect();
-            // Uncross by turning parts around, as far as it goes.
+            // Remove crossings by reversing parts, as far as this works.
             for _ in 0..50 {
                 let (i, j) = ((random(&mut state) as usize) % n, (random(&mut state) as usize) % n);
                 let (i, j) = (i.min(j), i.max(j));
@@ -350,7 +353,7 @@ mod tests {
         assert_eq!(monotone_formula(&disc).unwrap().last(), Some(&Term::All(n)));
     }
 
-    /// Outlines of which each cut takes off one corner, and of which a sweep line meets every edge.
+    /// Outlines in which each cut removes one corner, and outlines in which a sweep line meets every edge.
     #[test]
     #[cfg(feature = "std")]
     fn outlines_that_spiral_and_combs_take_little_time() {

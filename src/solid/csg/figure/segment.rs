@@ -2,12 +2,12 @@
 
 use crate::lattice::exact::{sign, sign_of_products, two_diff};
 
-/// The exact sign of (b − a) × (d − c): 1 if the second direction is to the left of the first.
+/// Returns the exact sign of (b − a) × (d − c): 1 if the second direction is to the left of the first.
 pub(crate) fn turn([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> i32 {
     let left = (b[0] - a[0]) * (d[1] - c[1]);
     let right = (b[1] - a[1]) * (d[0] - c[0]);
     let cross = left - right;
-    // Five roundings, each of at most 2^-53 of the magnitude; the bound has room for its own.
+    // Five roundings, each of at most 2^-53 of the magnitude; the bound has room for its own roundings.
     if cross.abs() > 4.0 * f64::EPSILON * (left.abs() + right.abs()) {
         return sign(cross);
     }
@@ -16,12 +16,12 @@ pub(crate) fn turn([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> i32 {
     sign_of_products(&[(x, y), (x, q), (p, y), (p, q), (u, v), (u, s), (r, v), (r, s)])
 }
 
-/// Whether one point comes before the other in lexicographic order.
+/// Returns whether one point comes before the other in lexicographic order.
 pub(crate) fn before(a: [f64; 2], b: [f64; 2]) -> bool {
     a[0] < b[0] || a[0] == b[0] && a[1] < b[1]
 }
 
-/// Whether two edges have a point in common.
+/// Returns whether two edges have a point in common.
 pub(crate) fn meet(e: [[f64; 2]; 2], f: [[f64; 2]; 2]) -> bool {
     let boxes_meet = (0..2).all(|axis| {
         let [[a, b], [c, d]] = [e, f].map(|edge| edge.map(|end| end[axis]));

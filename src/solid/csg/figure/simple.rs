@@ -1,9 +1,9 @@
-//! Is a closed polygon simple?
+//! A test of whether a closed polygon is simple.
 //!
-//! A sweep over the corners in lexicographic order, as Shamos and Hoey (*Geometric intersection problems*, 1976)
-//! describe it: the edges over the sweep line are kept in their order from below, and only neighbours are
-//! compared. Before two edges meet for the first time, they have been neighbours. All decisions are signs of
-//! exact arithmetic.
+//! The test is a sweep over the corners in lexicographic order, as Shamos and Hoey (*Geometric intersection
+//! problems*, 1976) describe it. The edges over the sweep line are kept in their order from below, and only
+//! neighbours are compared: two edges are neighbours before they meet for the first time. All decisions are
+//! signs of exact arithmetic.
 
 use super::segment::{before, meet, turn};
 use crate::error::Error;
@@ -22,20 +22,20 @@ struct Edge {
 }
 
 impl Edge {
-    /// On which side of the edge's line a point is: 1 above.
+    /// Returns on which side of the edge's line a point lies: 1 above.
     fn side(&self, point: [f64; 2]) -> i32 {
         turn([self.low, self.high], [self.low, point])
     }
 }
 
-/// The order from below of edges that some sweep line meets both. It does not depend on the sweep line as
-/// long as the edges do not meet.
+/// The order from below of edges that a common sweep line meets. It does not depend on the sweep line as long
+/// as the edges do not meet.
 impl Ord for Edge {
     fn cmp(&self, other: &Edge) -> Ordering {
         if self.index == other.index {
             return Ordering::Equal;
         }
-        // The ends of the one that begins later, beside the other.
+        // Compare the ends of the edge that begins later with the other edge.
         let (first, second, sense) =
             if before(other.low, self.low) { (other, self, 1) } else { (self, other, -1) };
         let side = match first.side(second.low) {
@@ -60,11 +60,11 @@ impl PartialEq for Edge {
 
 impl Eq for Edge {}
 
-/// What an edge takes in the sorted set, at most.
+/// The most memory of an edge in the sorted set, in bytes.
 const BYTES: usize = 2 * size_of::<Edge>() + 32;
 
-/// Whether no two edges of a closed polygon have a point in common, but for the corners of edges that follow
-/// each other. No two consecutive corners may be equal, and no edge go back along the one before.
+/// Returns whether no two edges of a closed polygon have a point in common, except for the corners of
+/// consecutive edges. No two consecutive corners may be equal, and no edge may go back along the one before.
 ///
 /// O(n log n).
 ///
@@ -72,8 +72,8 @@ const BYTES: usize = 2 * size_of::<Edge>() + 32;
 /// [`Error::OutOfMemory`].
 pub(crate) fn is_simple(corners: &[[f64; 2]]) -> Result<bool, Error> {
     let count = corners.len();
-    // The set asks for memory in small pieces, which cannot be refused: so much is asked for, and given back,
-    // before.
+    // The set allocates memory in small pieces, and such an allocation cannot fail gracefully. So the same
+    // amount is reserved and released first, which makes a shortage an error.
     memory::with_capacity::<u8>(count.saturating_mul(BYTES))?;
     let mut order: Vec<usize> = memory::with_capacity(count)?;
     order.extend(0..count);
@@ -98,7 +98,7 @@ pub(crate) fn is_simple(corners: &[[f64; 2]]) -> Result<bool, Error> {
         let both = [edge((corner + count - 1) % count), edge(corner)];
         let begins = both.map(|edge| edge.low == corners[corner]);
         for (edge, _) in both.iter().zip(begins).filter(|(_, begins)| !begins) {
-            // (An edge that is not found has changed its order with another one.)
+            // (An edge that is not found has changed its order with another edge.)
             if !open.remove(edge) {
                 return Ok(false);
             }
@@ -126,7 +126,7 @@ pub(crate) fn is_simple(corners: &[[f64; 2]]) -> Result<bool, Error> {
 mod tests {
     use super::*;
 
-    /// All pairs.
+    /// Compares all pairs of edges.
     fn oracle(corners: &[[f64; 2]]) -> bool {
         let count = corners.len();
         let edge = |i: usize| [corners[i], corners[(i + 1) % count]];
@@ -150,8 +150,8 @@ mod tests {
         z ^ (z >> 31)
     }
 
-    /// Polygons of small integers, which touch and cross in all ways, mended by turning parts around, so that
-    /// many are simple.
+    /// Polygons of small integers, which touch and cross in all ways. Reversing parts makes many of them
+    /// simple.
     #[test]
     fn random_polygons_against_all_pairs() {
         let mut state = 11;
@@ -179,7 +179,7 @@ mod tests {
         assert!(counts.iter().all(|&count| count > 3000), "{counts:?}");
     }
 
-    /// Long outlines that are simple but for one corner, which touches or crosses another edge by a hair.
+    /// Long outlines that are simple except for one corner, which barely touches or crosses another edge.
     #[test]
     fn a_hair_in_a_long_outline() {
         let zigzag = |shift: f64| -> Vec<[f64; 2]> {

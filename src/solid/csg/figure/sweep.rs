@@ -1,8 +1,8 @@
 //! Plane figures, and the solids that they sweep: prisms, tapered prisms and solids of revolution.
 //!
 //! A figure is an expression of half-planes and conics in x and y. As a solid it is the cylinder over itself
-//! along z, so that placements and set operations in the plane are those of space. The swept solids replace
-//! each of its half-planes and conics by what that sweeps; nothing is rounded.
+//! along z, so that placements and set operations in the plane are those of space. A swept solid replaces
+//! each half-plane and each conic by the solid that it sweeps; nothing is rounded.
 
 use super::fan::Fan;
 use crate::error::Error;
@@ -21,15 +21,15 @@ use alloc::vec::Vec;
 /// A set of points in the plane.
 #[derive(Clone)]
 pub(crate) struct Figure {
-    /// The cylinder over it.
+    /// The cylinder over the figure along z.
     csg: Csg,
-    /// A rectangle that it does not leave; `None` if it is empty.
+    /// A rectangle that contains the figure; `None` if the figure is empty.
     extent: Option<Rectangle>,
-    /// A rectangle that it contains, if one is known.
+    /// A rectangle that the figure contains, if one is known.
     core: Option<Rectangle>,
 }
 
-/// Lower and upper corner.
+/// A rectangle by its lower and upper corner.
 #[derive(Clone)]
 struct Rectangle {
     min: [Dyadic; 2],
@@ -38,7 +38,7 @@ struct Rectangle {
 
 const ONE_SIDE: &str = "must lie on one side of the axis, x ≥ 0 or x ≤ 0";
 
-/// Coefficients of a x² + b y² + c xy + d x + e y + f.
+/// The coefficients of a x² + b y² + c xy + d x + e y + f.
 type Conic = [Dyadic; 6];
 
 fn refuse<T>(name: &'static str, problem: &'static str) -> Result<T, Error> {
@@ -50,15 +50,15 @@ impl Figure {
         Figure { csg: Csg::empty(), extent: None, core: None }
     }
 
-    /// The rectangle between two corners. Coordinates are zero or of a magnitude between 2^-256 and 2^256,
-    /// `min` is less than `max`.
+    /// Returns the rectangle between two corners. Coordinates must be zero or of a magnitude between 2^-256
+    /// and 2^256, and `min` less than `max`.
     pub(crate) fn rectangle(min: [f64; 2], max: [f64; 2]) -> Result<Figure, Error> {
         let sides = (0..2).flat_map(|axis| slab(axis, min[axis], max[axis]));
         let extent = Some(Rectangle { min: min.map(Dyadic::new), max: max.map(Dyadic::new) });
         Ok(Figure { csg: Csg::intersection_of(sides)?, core: extent.clone(), extent })
     }
 
-    /// The disc of a radius between 2^-256 and 2^256 around the origin.
+    /// Returns the disc of a radius between 2^-256 and 2^256 around the origin.
     pub(crate) fn disc(radius: f64) -> Figure {
         let [squares, linear] = [[-1.0, -1.0, 0.0], [0.0; 3]].map(|c| c.map(Dyadic::new));
         let disc = HalfSpace::separable(squares, linear, Dyadic::new(radius).pow(2));
@@ -67,7 +67,7 @@ impl Figure {
         Figure { csg: disc.into(), extent, core: None }
     }
 
-    /// The polygon of a radius between 2^-256 and 2^256, which takes the place of a disc.
+    /// Returns the polygon that replaces a disc of a radius between 2^-256 and 2^256.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -77,7 +77,7 @@ impl Figure {
         Ok(Figure { csg, extent: Rectangle::around(fan, &radius), core: None })
     }
 
-    /// The simple polygon with these corners, in either direction.
+    /// Returns the simple polygon with these corners, in either direction.
     ///
     /// # Errors
     /// As [`Csg::prism`].
@@ -106,20 +106,20 @@ impl Figure {
         Figure::join(Join::Union, figures, extent)
     }
 
-    /// What an odd number of figures contain.
+    /// Returns the symmetric difference: the points in an odd number of figures.
     pub(crate) fn xor_of(figures: Vec<Figure>) -> Result<Figure, Error> {
         let extent = hull(&figures);
         Figure::join(Join::Parity, figures, extent)
     }
 
-    /// What all figures contain, of which there must be one.
+    /// Returns the intersection of the figures; there must be at least one.
     pub(crate) fn intersection_of(figures: Vec<Figure>) -> Result<Figure, Error> {
         let extents = figures.iter().map(|figure| figure.extent.clone());
         let extent = extents.reduce(|a, b| a?.common(&b?)).flatten();
         Figure::join(Join::Intersection, figures, extent)
     }
 
-    /// What this contains and none of `others` does.
+    /// Returns the points of this figure that lie in none of `others`.
     pub(crate) fn difference(&self, others: Vec<Figure>) -> Result<Figure, Error> {
         let cores = others.iter().filter_map(|other| other.core.as_ref());
         let extent = cores.fold(self.extent.clone(), |extent, core| extent?.without(core));
@@ -127,7 +127,8 @@ impl Figure {
         Ok(Figure { csg, extent, core: None })
     }
 
-    /// The figure under the map of the plane with the rows of `[M | t]`; nothing, if it maps onto a line.
+    /// Returns the figure under the map of the plane with the rows of `[M | t]`. The result is empty if the
+    /// map takes the plane to a line.
     ///
     /// # Errors
     /// As [`Affine::new`]; [`Error::Limit`] if exact coordinates become too long.
@@ -146,22 +147,23 @@ impl Figure {
         Ok(Figure { csg: self.csg.placed(&placement)?, extent, core })
     }
 
-    /// The prism over the figure between two heights, `low` less than `high`.
+    /// Returns the prism over the figure between two heights, `low` less than `high`.
     pub(crate) fn prism(&self, low: f64, high: f64) -> Result<Csg, Error> {
         let Some(extent) = &self.extent else { return Ok(Csg::empty()) };
         extent.between(self.csg.clone(), low, high)
     }
 
-    /// The solid between two heights, `low` less than `high`, whose section is the figure at `low` and is
-    /// scaled about the z axis linearly with the height, to `scale` ≥ 0 (along x and y) at `high`.
+    /// Returns the tapered prism between two heights, `low` less than `high`. Its section at `low` is the
+    /// figure. The section is scaled about the z axis linearly with the height, to `scale` ≥ 0 (along x and
+    /// y) at `high`.
     ///
     /// # Errors
     /// [`Error::Argument`] if the scales differ and the figure has curves.
     pub(crate) fn tapered(&self, low: f64, high: f64, scale: [f64; 2]) -> Result<Csg, Error> {
         let Some(extent) = &self.extent else { return Ok(Csg::empty()) };
         let (bottom, height) = (Dyadic::new(low), &Dyadic::new(high) - &Dyadic::new(low));
-        // The scale at z times the height, [constant, factor of z], along both axes. Not negative where it
-        // counts.
+        // The scale at z times the height, [constant, factor of z], along both axes. It is not negative
+        // between the heights.
         let scales = scale.map(|scale| {
             let slope = &Dyadic::new(scale) - &Dyadic::new(1.0);
             [&height - &(&slope * &bottom), slope]
@@ -172,17 +174,17 @@ impl Figure {
         extent.hull(&end).between(sides, low, high)
     }
 
-    /// Whether it lies where x ≤ 0.
+    /// Returns whether the figure lies where x ≤ 0.
     pub(crate) fn is_mirrored(&self) -> bool {
         self.extent.as_ref().is_some_and(|extent| extent.max[0].sign() <= 0)
     }
 
-    /// The solid that the figure sweeps when it is put into the plane of x and z, x to x and y to z, and
-    /// turned around the z axis.
+    /// Returns the solid of revolution: the figure is put into the plane of x and z, with x to x and y to z,
+    /// and turned around the z axis.
     ///
     /// # Errors
     /// [`Error::Argument`] if the figure is not known to lie on one side of its y axis, or if it has curves
-    /// that are no circles.
+    /// other than circles.
     pub(crate) fn revolved(&self) -> Result<Csg, Error> {
         let Some(Rectangle { min, max }) = &self.extent else { return Ok(Csg::empty()) };
         let is_mirrored = self.is_mirrored();
@@ -200,17 +202,17 @@ impl Figure {
         Ok(Csg::intersection_of([solid])?.within([-radius, -radius, low], [radius, radius, high]))
     }
 
-    /// How far it is from the y axis at most; 0 for nothing.
+    /// The greatest distance of the figure from the y axis; 0 for an empty figure.
     pub(crate) fn reach(&self) -> f64 {
         let Some(extent) = &self.extent else { return 0.0 };
         (-down(&extent.min[0])).max(up(extent.max[0].clone())).max(0.0)
     }
 
-    /// The solid that [`revolved`](Self::revolved) makes, with polygons for circles; a part of it, if the fan
-    /// is open. The fan begins where points with x > 0 begin.
+    /// Returns the solid of [`revolved`](Self::revolved) with polygons instead of circles; only a part of it
+    /// if the fan is open. The fan begins where points with x > 0 begin.
     ///
     /// # Errors
-    /// As [`revolved`](Self::revolved), and if the figure has any curves.
+    /// As [`revolved`](Self::revolved), and [`Error::Argument`] if the figure has any curves.
     pub(crate) fn turned(&self, fan: Fan) -> Result<Csg, Error> {
         let Some(Rectangle { min, max }) = &self.extent else { return Ok(Csg::empty()) };
         let is_mirrored = self.is_mirrored();
@@ -231,7 +233,7 @@ impl Figure {
         Ok(Csg::intersection_of([solid, wedge])?.within([a, b, down(&min[1])], [c, d, up(max[1].clone())]))
     }
 
-    /// Whether a curve is part of it.
+    /// Returns whether the figure contains a curve.
     pub(crate) fn has_curves(&self) -> Result<bool, Error> {
         let mut found = false;
         self.with_half_planes(|[xx, yy, xy, ..]| {
@@ -241,7 +243,7 @@ impl Figure {
         Ok(found)
     }
 
-    /// The same expression with other operands: of each half-plane or conic its image.
+    /// Returns the same expression with each half-plane or conic replaced by its image.
     fn with_half_planes(&self, mut image: impl FnMut(Conic) -> Result<Csg, Error>) -> Result<Csg, Error> {
         enum Task<'a> {
             Map(&'a Node, Arc<ExactMap>),
@@ -257,7 +259,7 @@ impl Figure {
                     Kind::HalfSpace(half_space) => {
                         let conic = match &*half_space.0 {
                             Surface::Plane(plane) => {
-                                // As of a conic, times w².
+                                // Like a conic, times w².
                                 let [x, y, _, one] = map.linear(plane).map(|c| &c * &map.w);
                                 [Dyadic::zero(), Dyadic::zero(), Dyadic::zero(), x, y, one]
                             }
@@ -299,8 +301,8 @@ impl Figure {
     }
 }
 
-/// What a half-plane or conic becomes if x and y are divided by the two scales (each the `height`-th part of
-/// a linear function of z, which is not negative).
+/// Returns the image of a half-plane or conic if x and y are divided by the two scales. Each scale is a
+/// linear function of z, which is not negative, over `height`.
 fn taper([xx, yy, xy, x, y, one]: Conic, height: &Dyadic, scales: &[[Dyadic; 2]; 2]) -> Result<Csg, Error> {
     let zero = Dyadic::zero;
     let [p, q] = scales;
@@ -334,7 +336,7 @@ fn taper([xx, yy, xy, x, y, one]: Conic, height: &Dyadic, scales: &[[Dyadic; 2];
     Ok(HalfSpace::exactly(c).into())
 }
 
-/// What a half-plane or circle becomes if x is the distance from the z axis, and y is z.
+/// Returns the image of a half-plane or circle if x is the distance from the z axis, and y is z.
 fn revolve([xx, yy, xy, x, y, one]: Conic) -> Result<Csg, Error> {
     let zero = Dyadic::zero;
     if !xy.is_zero() || xx != yy {
@@ -347,7 +349,7 @@ fn revolve([xx, yy, xy, x, y, one]: Conic) -> Result<Csg, Error> {
     if x.is_zero() {
         return Ok(HalfSpace::linear([zero(), zero(), y, one]).into());
     }
-    // Where L has the sign of x or is 0 the sum has it; elsewhere the squares tell.
+    // Where L has the sign of x or is 0, the sum has that sign; elsewhere the squares decide.
     let square = x.pow(2);
     let inward = x.sign() < 0;
     let signed = |c: Dyadic| if inward { -&c } else { c };
@@ -366,7 +368,7 @@ fn revolve([xx, yy, xy, x, y, one]: Conic) -> Result<Csg, Error> {
     if inward { Csg::intersection_of([linear, squares]) } else { Csg::union_of([linear, squares]) }
 }
 
-/// The body of revolution of the disc with `square` (x² + y²) + `x` x + `y` y + `one` ≥ 0.
+/// Returns the solid of revolution of the disc with `square` (x² + y²) + `x` x + `y` y + `one` ≥ 0.
 fn ring(square: Dyadic, x: Dyadic, y: Dyadic, one: Dyadic) -> Result<Csg, Error> {
     if x.is_zero() {
         let squares = [square.clone(), square.clone(), square];
@@ -375,14 +377,14 @@ fn ring(square: Dyadic, x: Dyadic, y: Dyadic, one: Dyadic) -> Result<Csg, Error>
     if x.sign() < 0 {
         return refuse("figure", "has a circle whose centre lies beyond the axis");
     }
-    // With A = −square > 0, and ρ² = x² + y², A (ρ² + z²) ≤ x ρ + y z + 1. That is, times 4 A and with each
-    // square completed, (2 A ρ − x)² + (2 A z − y)² ≤ x² + y² + 4 A.
+    // With A = −square > 0 and ρ² = x² + y²: A (ρ² + z²) ≤ x ρ + y z + 1. Times 4 A, with each square
+    // completed: (2 A ρ − x)² + (2 A z − y)² ≤ x² + y² + 4 A.
     let scale = -&square.shifted(1);
     let square = &(&x.pow(2) + &y.pow(2)) + &(&scale * &one).shifted(1);
     Ok(HalfSpace::ring(Torus { major: x, square, scale, shift: -&y }).into())
 }
 
-/// The smallest rectangle around figures.
+/// Returns the bounding rectangle of figures.
 fn hull(figures: &[Figure]) -> Option<Rectangle> {
     let extents = figures.iter().filter_map(|figure| figure.extent.as_ref());
     extents.fold(None, |hull: Option<Rectangle>, extent| match hull {
@@ -391,18 +393,18 @@ fn hull(figures: &[Figure]) -> Option<Rectangle> {
     })
 }
 
-/// The largest double that is known not to be greater.
+/// Returns a double that is not greater: the value itself if it is a double.
 fn down(value: &Dyadic) -> f64 {
     value.exactly().unwrap_or_else(|| value.rounded().next_down())
 }
 
-/// The smallest double that is known not to be less.
+/// Returns a double that is not less: the value itself if it is a double.
 fn up(value: Dyadic) -> f64 {
     -down(&-&value)
 }
 
 impl Rectangle {
-    /// The smallest rectangle around the origin and the corners of a fan, times a radius.
+    /// Returns the bounding rectangle of the origin and the corners of a fan, times a radius.
     fn around(fan: &Fan, radius: &Dyadic) -> Option<Rectangle> {
         let end = |axis: usize, pick: fn(f64, f64) -> f64| {
             &Dyadic::new(fan.corners().iter().map(|corner| corner[axis]).fold(0.0, pick)) * radius
@@ -426,12 +428,12 @@ impl Rectangle {
         .proper()
     }
 
-    /// Nothing, if it has no inside.
+    /// Returns the rectangle; `None` if its interior is empty.
     fn proper(self) -> Option<Rectangle> {
         (0..2).all(|axis| self.min[axis] < self.max[axis]).then_some(self)
     }
 
-    /// The smallest rectangle around what is not in another one.
+    /// Returns the bounding rectangle of the part outside another rectangle.
     fn without(mut self, other: &Rectangle) -> Option<Rectangle> {
         for (axis, across) in [(0, 1), (1, 0)] {
             let covers = other.min[across] <= self.min[across] && other.max[across] >= self.max[across];
@@ -446,12 +448,12 @@ impl Rectangle {
         Some(self)
     }
 
-    /// Bits of the longest coordinate.
+    /// The bits of the longest coordinate.
     fn bits(&self) -> u64 {
         self.min.iter().chain(&self.max).map(Dyadic::bits).max().unwrap_or(0)
     }
 
-    /// The smallest rectangle around the image under `[M | t]`.
+    /// Returns the bounding rectangle of the image under `[M | t]`.
     fn placed(&self, rows: [[f64; 3]; 2]) -> Rectangle {
         let limit = |row: [f64; 3], most: bool| {
             let mut sum = Dyadic::new(row[2]);
@@ -465,7 +467,7 @@ impl Rectangle {
         Rectangle { min: rows.map(|row| limit(row, false)), max: rows.map(|row| limit(row, true)) }
     }
 
-    /// What lies between two heights of a solid that does not leave the rectangle there.
+    /// Returns the part of a solid between two heights. Between them the solid must lie over the rectangle.
     fn between(&self, solid: Csg, low: f64, high: f64) -> Result<Csg, Error> {
         let [floor, ceiling] = slab(2, low, high);
         let [[x, y], [u, v]] =
@@ -474,9 +476,9 @@ impl Rectangle {
     }
 }
 
-/// The wedge of directions around the z axis from `start` on, counter-clockwise by `angle` degrees (between 0
-/// and 360, both exclusive). Its two planes have the directions of the angles' cosines and sines, rounded to
-/// doubles, and exact ones at multiples of 45°.
+/// Returns the wedge of directions around the z axis from `start` on, counter-clockwise by `angle` degrees
+/// (between 0 and 360, both exclusive). Its two planes have the directions of the angles' cosines and sines,
+/// rounded to doubles. At multiples of 45° the directions are exact.
 pub(crate) fn wedge(start: f64, angle: f64) -> Result<Csg, Error> {
     let side = |degrees: f64, sense: f64| {
         let [cos, sin] = direction(degrees);
@@ -489,7 +491,7 @@ pub(crate) fn wedge(start: f64, angle: f64) -> Result<Csg, Error> {
     if angle < 180.0 { Csg::intersection_of(sides) } else { Csg::union_of(sides) }
 }
 
-/// Cosine and sine of an angle in degrees, times something positive.
+/// Returns cosine and sine of an angle in degrees, up to a positive factor.
 fn direction(degrees: f64) -> [f64; 2] {
     let turned = libm::fmod(degrees, 360.0);
     let eighths = turned / 45.0;

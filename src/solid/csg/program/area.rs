@@ -1,4 +1,4 @@
-//! The area that half-spaces and other solids bound in a cell.
+//! The area of the boundary that half-spaces and other solids form in a cell.
 
 use super::Program;
 use super::word::Op;
@@ -10,8 +10,8 @@ use crate::solid::Ask;
 use crate::solid::half_space::function;
 
 impl Scratch {
-    /// Bounds of the area of the boundary in a cell; `None` if too little is known of an operand that is open
-    /// there.
+    /// Returns bounds of the area of the boundary in a cell; `None` if too little is known of an operand that
+    /// is open there.
     pub(crate) fn area(
         &mut self,
         program: &Program,

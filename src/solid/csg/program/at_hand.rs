@@ -1,32 +1,32 @@
-//! Answers of other solids to questions that were asked together.
+//! Answers of other solids to queries that were asked together.
 
 use crate::solid::Verdict;
 use crate::solid::erased::ErasedPart;
 use alloc::vec::{IntoIter, Vec};
 
-/// Answers of the other solids that are at hand, one queue for each solid; none while no batch is under way.
+/// The answers of the other solids at hand: one queue for each solid, and no queues outside a batch.
 #[derive(Default)]
 pub(crate) struct AtHand {
     pub(super) splits: Vec<Splits>,
     pub(super) samples: Vec<IntoIter<Option<bool>>>,
 }
 
-/// Splits of one solid in the order in which they will be asked for.
+/// The splits of one solid, in the order in which they will be used.
 #[derive(Default)]
 pub(super) struct Splits {
-    /// Height of the solid's scratch memory before all of them.
+    /// The height of the solid's scratch memory before all these splits.
     pub(super) height: usize,
     pub(super) verdicts: IntoIter<[Verdict<ErasedPart>; 8]>,
 }
 
 impl AtHand {
-    /// The next split of a solid that is at hand, and the height of its scratch memory before.
+    /// Takes the next split of a solid, and the height of its scratch memory before.
     pub(crate) fn split(&mut self, solid: u32) -> Option<(usize, [Verdict<ErasedPart>; 8])> {
         let splits = self.splits.get_mut(solid as usize)?;
         Some((splits.height, splits.verdicts.next()?))
     }
 
-    /// The next sample of a solid that is at hand.
+    /// Takes the next sample of a solid.
     pub(crate) fn sample(&mut self, solid: u32) -> Option<Option<bool>> {
         self.samples.get_mut(solid as usize)?.next()
     }

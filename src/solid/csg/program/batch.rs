@@ -1,7 +1,7 @@
-//! Many cells or points at once, where the other solids of an expression like that.
+//! Batches of cells or points, for expressions whose other solids prefer them.
 //!
-//! What the other solids are asked about all cells is gathered first, and asked at once. Then the cells are
-//! split or sampled one by one, as ever, with those answers at hand.
+//! The queries of all cells to the other solids are gathered first, and asked together. Then the cells are
+//! split or sampled one by one, as usual, with these answers at hand.
 
 use super::Program;
 use super::at_hand::{AtHand, Splits};
@@ -17,11 +17,12 @@ use crate::solid::half_space::bounds::Octants;
 use crate::solid::{Batch, Parts, Verdict};
 use alloc::vec::{IntoIter, Vec};
 
-/// Most words of an expression that are looked at for a point, or for a part without the way to its cell.
+/// The most words of an expression that are evaluated for a point, or for a part without the way to its cell.
 const MOST_WORDS: usize = 64;
 
 impl Scratch {
-    /// The questions for each of the other solids that splitting or sampling cells will ask, in that order.
+    /// Lists for each of the other solids the queries that splitting or sampling cells will make, in that
+    /// order.
     fn questions(
         &mut self,
         program: &Program,
@@ -36,7 +37,7 @@ impl Scratch {
         Ok(questions)
     }
 
-    /// Shows the other solids that are open in a cell, with their parts.
+    /// Visits the other solids that are open in a cell, with their parts.
     fn open_solids(
         &mut self,
         program: &Program,
@@ -56,7 +57,7 @@ impl Scratch {
         Ok(())
     }
 
-    /// How many answers of each kind a cell needs that are not at hand: none, unless a solid ended early.
+    /// Returns whether a cell needs answers that are not at hand. It does only if a solid ended early.
     fn lacks(
         &mut self,
         program: &Program,
@@ -71,8 +72,9 @@ impl Scratch {
         Ok((0..).zip(needed).any(|(solid, needed)| needed > left(&self.at_hand, solid)))
     }
 
-    /// Of which of the other solids, all of which have been asked for the universe, it is PARTIAL with a part
-    /// that is had without asking: a worker of a host's function would ask once more.
+    /// Returns for which of the other solids the universe is PARTIAL with a part that is available without
+    /// another query (a worker of a host's function would query again). All solids must have been queried for
+    /// the universe.
     pub(crate) fn recalls(&mut self) -> Result<Vec<bool>, Error> {
         memory::collected(self.workers.iter_mut().map(|other| match other {
             Some(Other { worker, root: Verdict::Partial(_) }) => {
@@ -106,7 +108,7 @@ impl Scratch {
         }
         self.at_hand.splits = splits;
         for &(cell, part) in cells {
-            // (Without memory to find out, it is not known.)
+            // (Without memory to find out, the answer is true.)
             if done.is_err()
                 && self.lacks(program, part, |at_hand, i| at_hand.splits[i].verdicts.len()).unwrap_or(true)
             {
@@ -163,8 +165,8 @@ impl Scratch {
         done
     }
 
-    /// Whether points lie inside: by what the other solids know of them, and what half-spaces say of their
-    /// finest cells. See [`Batch::inside`].
+    /// Answers whether points lie inside, from the other solids' answers, and from the half-spaces in the
+    /// points' finest cells. See [`Batch::inside`].
     pub(crate) fn inside(
         &mut self,
         program: &Program,
@@ -172,9 +174,9 @@ impl Scratch {
         points: &[[f64; 3]],
         answers: &mut [Option<bool>],
     ) -> Result<(), Error> {
-        // (Half-spaces alone are as fast by cells.) Two solids may both say that a point is outside on which
-        // their faces meet, and which their union holds: where there are several, cells decide. The words of
-        // a table are no operations.
+        // (Half-spaces alone are as fast by cells.) Two solids may both say that a point on a common face is
+        // outside, although their union contains it. So with several solids, cells decide. The words of a
+        // table are no operations.
         if program.solids.len() != 1 || program.paper || part.is_table() || part.words() > MOST_WORDS {
             return Ok(());
         }
@@ -227,9 +229,10 @@ impl Scratch {
         Ok(())
     }
 
-    /// The part of a cell without the way to it, if there is one other solid and that has its own so: the
-    /// words of the whole expression, which say of the cell what its own words would. (Of several solids all
-    /// would be asked, also those that are decided there.) See [`Batch::recall`].
+    /// Returns the part of a cell without the way to it, if there is one other solid and it can recall its
+    /// own part. The part has the words of the whole expression, which give the same answers in the cell as
+    /// the cell's own words. (With several solids, all would be queried, decided ones included.) See
+    /// [`Batch::recall`].
     pub(crate) fn recall(
         &mut self,
         program: &Program,

@@ -1,4 +1,4 @@
-//! Which centres of finest cells lie inside.
+//! The centres of finest cells that lie inside.
 
 use super::Program;
 use super::kleene::Kleene;
@@ -12,7 +12,8 @@ use crate::solid::half_space::table::Table;
 use crate::solid::{Ask, Verdict, Worker};
 
 impl Scratch {
-    /// Which of the given grandchildren of a cell have their centre inside; `None` if that cannot be told.
+    /// Returns which of the given grandchildren of a cell have their centre inside; `None` if this stays
+    /// undecided.
     pub(crate) fn contained(
         &mut self,
         program: &Program,
@@ -25,7 +26,7 @@ impl Scratch {
         let mut all = 0;
         for octant in parts.chunk_by(|a, b| a.0 >> 3 == b.0 >> 3) {
             let child = cell.child(octant[0].0 >> 3);
-            // The centres of cells that one half-space cuts are had at once.
+            // The centres of cells that one half-space cuts are decided together.
             let first = octant[0].1;
             let (mut inside, mut outside) = (0, 0);
             if first.len == 1
@@ -55,7 +56,7 @@ impl Scratch {
         Ok(Some(all))
     }
 
-    /// The same, if the same operand is the only one that is open in all of them.
+    /// Answers [`contained`](Self::contained), if the same operand is the only open one in all grandchildren.
     fn lone_contained(
         &mut self,
         program: &Program,
@@ -91,7 +92,8 @@ impl Scratch {
         Ok(answer)
     }
 
-    /// Whether the centre of a cell lies inside, by the cell's words; `None` if that cannot be told.
+    /// Returns whether the centre of a cell lies inside, from the cell's words; `None` if this stays
+    /// undecided.
     pub(crate) fn contains(
         &mut self,
         program: &Program,
@@ -105,7 +107,7 @@ impl Scratch {
             let (half_spaces, mut table) = Scratch::table_of(words);
             for word in half_spaces {
                 let (i, index) = word.variable();
-                // What was found before may make it not matter.
+                // Earlier answers may make this one irrelevant.
                 if table.depends_on(i) {
                     *evaluations += 1;
                     table = table.at(i, program.half_spaces[index as usize].contains(centre)?);
@@ -117,7 +119,7 @@ impl Scratch {
                 _ => None,
             });
         }
-        // A word of one cell: the others say the same.
+        // One cell needs one bit, but all bits are set alike.
         let all = |inside: bool| if inside { Kleene::FULL } else { Kleene::EMPTY };
         operands.clear();
         operands.try_reserve(words.len())?;

@@ -1,4 +1,4 @@
-//! Rays through cell centres: where they enter and leave what a cell's words say.
+//! Rays through cell centres: their intervals inside the solid of a cell's words.
 
 use super::Program;
 use super::word::Op;
@@ -11,13 +11,13 @@ use crate::solid::csg::Join;
 use crate::solid::half_space::sweep::Sweep;
 use alloc::vec::Vec;
 
-/// Most half-spaces that are evaluated on every ray of a large cell; one with more is split first.
+/// The most half-spaces that are evaluated on every ray of a large cell. A cell with more is split first.
 const FEW: usize = 8;
 
-/// Levels of a cell that is not split for that any more.
+/// The height in levels up to which a cell is not split for that reason.
 const SMALL: u8 = 3;
 
-/// Memory that is kept from cell to cell.
+/// Scratch memory that is kept from cell to cell.
 #[derive(Default)]
 pub(crate) struct Rays {
     sweep: Sweep,
@@ -27,8 +27,8 @@ pub(crate) struct Rays {
 }
 
 impl Rays {
-    /// Adds the intervals of all rays of a beam in a cell. `false` if the cell is better split, or some word
-    /// is not a half-space.
+    /// Adds the intervals of all rays of a beam in a cell. Returns `false` if the cell should be split, or if
+    /// some word is not a half-space.
     pub(crate) fn find(
         &mut self,
         program: &Program,
@@ -49,7 +49,8 @@ impl Rays {
         Ok(true)
     }
 
-    /// Takes the words of a part apart; `false` if there are others than half-spaces and operations on them.
+    /// Decodes the words of a part. Returns `false` if there are words other than half-spaces and operations
+    /// on them.
     fn gather(&mut self, program: &Program, scratch: &Scratch, part: CsgPart) -> Result<bool, Error> {
         let half_spaces = &mut self.sweep.half_spaces;
         half_spaces.clear();
@@ -91,7 +92,8 @@ impl Rays {
     }
 }
 
-/// What the words, or the table, say where half-spaces are `inside`.
+/// Returns the value of the words, or of the table, at a point. `inside` says in which half-spaces the point
+/// lies.
 #[inline]
 fn value(words: &[Op], table: Option<u64>, inside: &[bool], stack: &mut Vec<bool>) -> Result<bool, Error> {
     if let Some(table) = table {

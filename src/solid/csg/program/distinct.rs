@@ -1,6 +1,6 @@
-//! Operands that are one: in a union or an intersection the same operand twice is that operand, and in a
-//! parity it is nothing. A scene of thousands of equal parts costs as much as one of them, and coincident
-//! faces leave no doubt.
+//! Removal of equal operands: in a union or an intersection, the same operand twice is that operand; in a
+//! parity, it cancels. So a scene of thousands of equal parts costs as much as one of them, and coincident
+//! faces leave nothing undecided.
 
 use super::hierarchy::Operand;
 use super::word::Word;
@@ -12,12 +12,12 @@ use core::ops::Range;
 use hashbrown::HashMap;
 use hashbrown::hash_map::Entry;
 
-/// Takes away those of the operands from `first` on that change nothing, because an equal one stands before
-/// them.
+/// Removes the operands from `first` on that change nothing because an equal operand comes before them. In a
+/// parity, pairs of equal operands are removed.
 ///
-/// O(operands) where no two are of one length. Otherwise those are read that are as long as another one: what
-/// they are joined to is twice as long at least, so that no word of an expression is read more often than the
-/// logarithm of its length, however deep it is nested.
+/// O(operands) if all operands have different lengths. Otherwise, only operands that are as long as another
+/// one are read. The joined result is at least twice as long as such an operand. So no word of an expression
+/// is read more often than the logarithm of the expression's length, however deep it is nested.
 pub(crate) fn reduce(
     join: Join,
     first: usize,
@@ -39,7 +39,7 @@ pub(crate) fn reduce(
         return Ok(());
     }
     let like_others = || (0..own.len()).filter(|&i| lengths[&range(i).len()] > 1);
-    // For each operand how often it occurs, at the place of the first one.
+    // The number of occurrences of each operand, at the place of the first occurrence.
     let mut counts: Vec<u32> = memory::filled(own.len(), 1)?;
     let mut seen: HashMap<&[Word], usize> = HashMap::new();
     seen.try_reserve(own.len())?;
@@ -98,13 +98,13 @@ mod tests {
         assert_eq!(words(&Csg::xor_of(many(101)).unwrap()), one);
         // An empty join.
         assert_eq!(words(&Csg::xor_of(many(100)).unwrap()), 1);
-        // However they came to stand there.
+        // Equal operands are found however they were placed.
         let there = Affine::translation([0.25, 0.0, 0.0]).unwrap();
         let back = Affine::translation([-0.25, 0.0, 0.0]).unwrap();
         let moved = cube().placed(&there).unwrap().placed(&back).unwrap();
         assert_eq!(words(&Csg::union_of([cube(), moved]).unwrap()), one);
         assert_eq!(words(&Csg::union_of([cube(), cube().placed(&there).unwrap()]).unwrap()), 2 * one + 1);
-        // A complement is another operand.
+        // A complement is a different operand.
         let plane = |scale: f64| Csg::half_space([scale, 0.0, 0.0], scale).unwrap();
         assert_eq!(words(&Csg::union_of([plane(1.0), plane(1.0)]).unwrap()), 1);
         assert_eq!(words(&Csg::union_of([plane(1.0), plane(1.0).complement()]).unwrap()), 3);

@@ -1,11 +1,11 @@
-//! Operands of a large operation, grouped by where they lie.
+//! The operands of a large operation, grouped by place.
 //!
-//! An operand of a union is nothing outside of its box, and one of an intersection is everything outside of
-//! the box around its complement. So of thousands of operands a cell needs to know only those whose boxes it
-//! meets; and of those that are smaller than its children only that they are there, until cells are as small
-//! as they: no such operand covers a child, and whether it is empty there is found out below. So a cell's
-//! words hold groups, which are taken apart on the way down, and the first split does not look at all
-//! operands. (Finest cells are decided by every operand that they meet, as without groups.)
+//! An operand of a union is empty outside its box, and an operand of an intersection is full outside the box
+//! of its complement. So among thousands of operands, a cell needs only those whose boxes it meets. Operands
+//! smaller than the cell's children only need to be known to be there: no such operand covers a child, and
+//! the levels below decide whether it is empty there. So a cell's words contain groups, which are taken apart
+//! on the way down, and the first split does not visit all operands. (Finest cells are decided by every
+//! operand that they meet, as without groups.)
 
 use super::kleene::Kleene;
 use super::word::{Op, Word};
@@ -19,42 +19,43 @@ use core::ops::Range;
 
 /// An operand of an operation that is being written.
 pub(crate) struct Operand {
-    /// Where its words begin; they end where those of the next do.
+    /// Where its words begin. They end where the words of the next operand begin.
     pub(crate) start: usize,
-    /// Boxes around it and around its complement, if there are any.
+    /// The bounding boxes of the operand and of its complement, if known.
     pub(crate) extent: Option<UnitBox>,
     pub(crate) opposite: Option<UnitBox>,
 }
 
-/// Operands, or a single one.
+/// A group of operands, or a single operand.
 struct Group {
-    /// The box outside of which they change nothing.
+    /// The box outside which the members change nothing.
     low: [f64; 3],
     high: [f64; 3],
-    /// Its longest edge.
+    /// The longest edge of the box.
     size: f64,
-    /// What joins them; outside of the box the result is FULL for an intersection, else EMPTY.
+    /// The operation that joins the members. Outside the box, the result of an intersection is FULL, any
+    /// other result EMPTY.
     join: Join,
     members: Members,
 }
 
 enum Members {
-    /// Words of a single operand.
+    /// The words of a single operand.
     Words(Range<usize>),
     Groups(Range<usize>),
 }
 
-/// Fewer operands are not grouped: they are looked at in no more time.
+/// Operations with fewer operands are not grouped, because groups would save no time.
 const FEW: usize = 16;
 
-/// Members of a group.
+/// The number of members of a group.
 const MEMBERS: usize = 8;
 
 impl Group {
-    /// What is known of the eight cells `at`.
+    /// Returns the verdicts of the group in the eight cells `at`.
     #[inline]
     fn kleene(&self, at: &Octants) -> Kleene {
-        // Bits of the children in the lower and in the upper half of each axis.
+        // The bits of the children in the lower and in the upper half of each axis.
         const LOWER: [u8; 3] = [0x55, 0x33, 0x0F];
         let mut met = 0xFF;
         for axis in 0..3 {
@@ -78,11 +79,11 @@ impl Group {
     }
 }
 
-/// How the words of a group came out in a cell.
+/// The outcome of a group in a cell.
 pub(crate) enum Taken {
-    /// None of its operands changes anything there.
+    /// No operand of the group changes anything in the cell.
     Nothing,
-    /// The words of one operand were written.
+    /// Words of one operand were written.
     Written,
 }
 
@@ -90,18 +91,18 @@ pub(crate) enum Taken {
 #[derive(Default)]
 pub(crate) struct Groups {
     groups: Vec<Group>,
-    /// The words of operands that are in groups.
+    /// The words of the grouped operands.
     grouped: Vec<Word>,
 }
 
 impl Groups {
-    /// Bytes that the lists take.
+    /// The bytes of the lists.
     pub(crate) fn bytes(&self) -> usize {
         memory::bytes_of(&self.groups) + memory::bytes_of(&self.grouped)
     }
 
-    /// Puts those of the operands at the end of `words` that are small into groups, and writes what takes
-    /// their place; returns how many operands there then are.
+    /// Moves the small operands at the end of `words` into groups, and writes the groups' words instead.
+    /// Returns the new number of operands.
     pub(crate) fn gather(
         &mut self,
         join: Join,
@@ -125,9 +126,9 @@ impl Groups {
             let longest =
                 |(low, high): &UnitBox| (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
             match unit {
-                // Those that do not meet the universe change nothing there.
+                // Operands that do not meet the universe change nothing there.
                 Some((low, high)) if (0..3).any(|axis| high[axis] <= 0.0 || low[axis] >= 1.0) => {}
-                // Those that could cover it are worth a look.
+                // Operands that could cover the universe are evaluated themselves, not grouped.
                 Some(unit) if longest(&unit) < 0.5 => {
                     let start = self.grouped.len();
                     self.grouped.try_reserve(own.len())?;
@@ -146,11 +147,11 @@ impl Groups {
         words.truncate(first);
         words.try_reserve(rest.len() + MEMBERS)?;
         words.extend_from_slice(&rest);
-        // Neighbours in Morton order of their middles lie together.
+        // In the Morton order of their middles, neighbours come together.
         found.sort_by_cached_key(|group| {
             let middle = |axis: usize| {
                 let at = 0.5 * (group.low[axis] + group.high[axis]);
-                // Ten bits, two zeros before each.
+                // Ten bits, with two zeros before each.
                 let bits = (at.clamp(0.0, 1.0) * 1023.0) as u32;
                 (0..10).fold(0, |spread, bit| spread | (bits >> bit & 1) << (3 * bit))
             };
@@ -188,9 +189,9 @@ impl Groups {
         Group { low, high, size, join, members: Members::Groups(members) }
     }
 
-    /// Writes the words of a group in a cell (lower and upper corner): the group itself, if it is smaller
-    /// than the cell's children and these are not the finest, or what of it the cell meets. The recursion is
-    /// as deep as the hierarchy.
+    /// Writes the words of a group in a cell (lower and upper corner): the group itself if it is smaller than
+    /// the cell's children and the children are not finest cells, otherwise the members that the cell meets.
+    /// The recursion is as deep as the hierarchy.
     pub(crate) fn take_apart(
         &self,
         group: usize,
@@ -227,12 +228,12 @@ impl Groups {
         }
     }
 
-    /// What is known of a group in the eight cells `at`.
+    /// Returns the verdicts of a group in the eight cells `at`.
     pub(crate) fn kleene(&self, group: usize, at: &Octants) -> Kleene {
         self.groups[group].kleene(at)
     }
 
-    /// What nothing of a group comes to.
+    /// The value of an empty group.
     pub(crate) fn neutral(&self, group: usize) -> bool {
         self.groups[group].join == Join::Intersection
     }

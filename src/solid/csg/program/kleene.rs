@@ -5,8 +5,8 @@ use crate::solid::csg::Join;
 use crate::solid::half_space::bounds::Sides;
 use alloc::vec::Vec;
 
-/// The verdicts of eight cells: bit k of `lower` says that cell k is surely solid, of `upper` that it is
-/// possibly.
+/// The verdicts of eight cells: bit k of `lower` is set if cell k is surely solid, bit k of `upper` if it is
+/// possibly solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Kleene {
     pub(crate) lower: u8,
@@ -50,7 +50,7 @@ impl Kleene {
         self.upper & !self.lower
     }
 
-    /// Takes the last `count` operands, and joins them.
+    /// Removes the last `count` operands, and returns their join.
     pub(crate) fn join_last(operands: &mut Vec<Kleene>, join: Join, count: u32) -> Kleene {
         let first = operands.len() - count as usize;
         let kleene = Kleene::join(join, &operands[first..]);

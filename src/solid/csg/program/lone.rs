@@ -1,5 +1,5 @@
-//! Cells in which only one operand is open, a solid of another kind: all questions go on to it, bulk forms
-//! included.
+//! Cells in which a solid of another kind is the only open operand: all queries are passed on to it, bulk
+//! forms included.
 
 use super::Program;
 use super::word::{Op, Word};
@@ -13,7 +13,7 @@ use crate::solid::erased::ErasedPart;
 use crate::solid::{AnyWorker, AskWhole, Direct, Parts, Question, RayQuestion, RayTrace, Verdict, Worker};
 use alloc::vec::Vec;
 
-/// The only operand that is open in a cell: a part of another solid, or of its complement.
+/// The only open operand of a cell: a part of another solid, or of its complement.
 #[derive(Clone, Copy)]
 pub(crate) struct Lone {
     pub(crate) solid: u32,
@@ -21,16 +21,16 @@ pub(crate) struct Lone {
     pub(crate) complement: bool,
 }
 
-/// The trace that was asked for last. Cells along a ray ask for the same one.
+/// The latest trace. Cells along a ray ask for the same trace.
 #[derive(Default)]
 pub(crate) struct LastTrace {
-    /// Of which operand, along which ray, and whether until its first way in.
+    /// The operand, the ray, and whether the trace ends at the first entry.
     of: Option<(u32, Ray, bool)>,
     trace: Option<RayTrace>,
 }
 
 impl Scratch {
-    /// Where a ray goes in and out of the only operand that is open, if there is only one and it tells that.
+    /// Returns the trace of a ray through the only open operand, if there is only one and it answers.
     #[inline(never)]
     pub(crate) fn trace_of_lone(
         &mut self,
@@ -48,8 +48,8 @@ impl Scratch {
             known.clear();
             let worker = &mut Scratch::other(&mut self.workers, program, solid)?.worker;
             worker.answer(cell, &part, Question::Ray(RayQuestion { ray, is_first_enough, trace: known }))?;
-            // What tells of the whole universe says the same in all cells. (An expression in this one may
-            // not.)
+            // A solid that answers for the whole universe gives the same trace in all cells. (A nested
+            // expression may not.)
             if known.is_known()
                 && program.solids[solid as usize].is_direct(Direct::Rays, &Control::threads(1))?
             {
@@ -66,7 +66,7 @@ impl Scratch {
         Ok(())
     }
 
-    /// Whether it is worth asking for the only operand that is open.
+    /// Returns whether a look for a lone operand is worthwhile.
     #[inline(always)]
     pub(crate) fn may_be_lone(&self, program: &Program, part: CsgPart) -> bool {
         part.len == 1 && !program.solids.is_empty()
@@ -82,8 +82,8 @@ impl Scratch {
         Ok(self.slot(program, index)?.map(|(solid, part)| Lone { solid, part, complement }))
     }
 
-    /// Runs `ask` with the worker and the part of the only operand that is open, if there is only one: what
-    /// it says, and whether the complement is meant.
+    /// Runs `ask` with the worker and the part of the only open operand, if there is only one. Returns the
+    /// answer, and whether the complement is meant.
     pub(crate) fn ask_lone<T>(
         &mut self,
         program: &Program,
@@ -95,7 +95,7 @@ impl Scratch {
         Ok(Some((ask(&mut other.worker, &part)?, complement)))
     }
 
-    /// Has the only operand that is open answer a question, if there is only one; `false` if not.
+    /// Passes a question on to the only open operand. Returns `false` if there is not exactly one.
     #[inline(never)]
     pub(crate) fn answer_of_lone(
         &mut self,
@@ -112,7 +112,7 @@ impl Scratch {
         Ok(answered.is_some())
     }
 
-    /// The worker and the part of the only operand that is open, if its worker has been asked before.
+    /// Returns the worker and the part of the only open operand, if its worker exists already.
     pub(crate) fn look_at_lone(
         &self,
         program: &Program,
@@ -129,7 +129,7 @@ impl Scratch {
         Some((&other.worker, slot.part, complement))
     }
 
-    /// Two levels of the only operand that is open, if there is only one.
+    /// Splits the only open operand by two levels, if there is only one.
     #[inline(never)]
     pub(crate) fn lone64(
         &mut self,
@@ -152,7 +152,7 @@ impl Scratch {
         Ok(Some(if complement { planes.complement() } else { planes }))
     }
 
-    /// The part of a cell in which only one operand is open.
+    /// Makes the part of a cell in which only one operand is open.
     fn lone_part(
         &mut self,
         program: &Program,
@@ -167,7 +167,7 @@ impl Scratch {
         Ok(CsgPart { start, len: 1 })
     }
 
-    /// The eight cells of the only operand that is open, if there is only one.
+    /// Returns the eight cells of the only open operand, if there is only one.
     #[inline(never)]
     pub(crate) fn lone8(
         &mut self,

@@ -1,5 +1,5 @@
-//! An expression on a universe: placements applied, complements pushed down to the half-spaces, and the whole
-//! written as words in postfix order, so that a cell's share of it is an array of words again.
+//! An expression on a universe. Placements are applied, complements are pushed down to the half-spaces, and
+//! the whole is written as words in postfix order, so that a cell's share of it is an array of words, too.
 
 mod area;
 mod at_hand;
@@ -41,33 +41,34 @@ pub(crate) struct Program {
     /// Whether [`Touch::Paper`] holds.
     pub(crate) paper: bool,
     pub(crate) half_spaces: Vec<Placed>,
-    /// Each half-space as it was given, and which placements it stands under.
+    /// Each half-space as it was given, and the number of its chain of placements.
     sources: Vec<(HalfSpace, u32)>,
-    /// Chains of placements: the last map, and the chain before it, which is one less than its number says; 0
-    /// is none.
+    /// Chains of placements: the number of the chain before, and the last map. Chains are numbered from 1; 0
+    /// is the empty chain.
     chains: Vec<(u32, Affine)>,
-    /// For each of the other solids where its surfaces begin, behind the half-spaces; in the list without
-    /// layers, and in that with them. (Known once asked for.)
+    /// For each of the other solids, where its surfaces begin behind the half-spaces: in the list without
+    /// layers, and in the list with them. (Set on first use.)
     surfaces: [OnceBox<Vec<Start>>; 2],
     pub(crate) solids: Vec<AnyClassifier>,
-    /// Operands of large operations by where they lie.
+    /// The operands of large operations, grouped by place.
     pub(crate) groups: Groups,
     pub(crate) words: Vec<Word>,
-    /// What is known of the space around the universe.
+    /// The tag of the space around the universe.
     pub(crate) exterior: Tag,
-    /// What the verdicts prove: all that the other solids do.
+    /// The proof of the verdicts: the other solids' proofs combined.
     pub(crate) proof: Proof,
-    /// Whether one of the other solids is better asked about many cells at once.
+    /// Whether one of the other solids prefers queries about many cells at once.
     pub(crate) likes_many: bool,
-    /// Of which of the other solids the universe is PARTIAL, with a part that is had without asking.
+    /// For each of the other solids, whether the universe is PARTIAL with a part that is available without
+    /// another query.
     pub(crate) recalls: Vec<bool>,
-    /// Counts the evaluations of workers that are gone.
+    /// The node that counts the evaluations of dropped workers.
     pub(crate) root: Arc<Node>,
 }
 
-/// What is left to be written.
+/// A task that is left for writing.
 enum Task<'a> {
-    /// `shared`: it, or what it is a part of, may occur again.
+    /// `shared`: the node, or a node that contains it, may occur again.
     Write {
         node: &'a Arc<Node>,
         complement: bool,
@@ -81,8 +82,8 @@ enum Task<'a> {
     },
 }
 
-/// The space that a node is given in: the exact map into it from the universe, and the map back to model
-/// space for boxes, if that is not the identity.
+/// The space in which a node is given: the exact map into it from the universe, and the map back to model
+/// space for boxes, if this is not the identity.
 #[derive(Clone)]
 struct Space {
     map: Arc<ExactMap>,
@@ -95,21 +96,21 @@ struct Space {
 struct Writer<'c> {
     program: Program,
     control: &'c Control<'c>,
-    /// Operands of the joins that are pending.
+    /// The operands of the pending joins.
     operands: Vec<Operand>,
-    /// Half-spaces that may occur again, each with whether it is the complement of the one with its number;
-    /// and other solids: they are written once.
+    /// Half-spaces and other solids that may occur again, because they are written once. A half-space comes
+    /// with whether it is the complement of the numbered one.
     seen_half_spaces: HashMap<(usize, usize), (u32, bool)>,
     seen_solids: HashMap<usize, u32>,
-    /// Half-spaces that are one, wherever they come from.
+    /// The half-spaces by identity, wherever they come from.
     identities: Identities,
     /// The spaces of placements that may occur again.
     spaces: HashMap<(usize, usize), Space>,
 }
 
 impl Program {
-    /// Time and memory are linear in the expression, written out: a node that occurs twice counts twice.
-    /// (Operations of many operands sort them.)
+    /// Writes an expression as a program. Time and memory are linear in the expression written out: a node
+    /// that occurs twice counts twice. (Operations with many operands sort them.)
     pub(crate) fn new(csg: &Csg, frame: &Frame, control: &Control<'_>) -> Result<Program, Error> {
         if csg.root.size > MOST {
             return Err(Error::Limit { what: "half-spaces, operations and placements", limit: MOST });
@@ -151,7 +152,8 @@ impl Program {
 }
 
 impl Program {
-    /// About how many bytes it takes beyond the expression, with what the other solids keep for the universe.
+    /// The approximate bytes of the program beyond the expression, including the other solids' memory for the
+    /// universe.
     pub(crate) fn bytes(&self) -> u64 {
         let lists = memory::bytes_of(&self.half_spaces)
             + memory::bytes_of(&self.sources)
@@ -171,7 +173,7 @@ impl Program {
         (size_of::<Program>() + lists + placed) as u64 + others
     }
 
-    /// The solid that this is another name of, if it is.
+    /// Returns the only solid, if the program is nothing but one solid.
     pub(crate) fn sole(&self) -> Option<&AnyClassifier> {
         let [word] = &*self.words else { return None };
         match word.op() {
@@ -184,7 +186,7 @@ impl Program {
 impl Writer<'_> {
     fn write(&mut self, root: &Arc<Node>) -> Result<(), Error> {
         let mut tasks = Vec::new();
-        // Which joins are pending, and whether their complements are meant.
+        // The pending joins, and whether their complements are meant.
         let mut joins: Vec<(Join, bool)> = Vec::new();
         let map = Arc::new(ExactMap::from_universe(&self.program.frame));
         let space = Space { map, outward: None, chain: 0 };
@@ -241,7 +243,7 @@ impl Writer<'_> {
                         Kind::Solid(solid) => {
                             self.begin(node, complement, &space)?;
                             let index = self.solid(solid, complement)?;
-                            // Under a parity both sides are asked for, whatever stands in between.
+                            // Under a parity, both sides are needed, whatever stands between.
                             let proof = self.program.solids[index as usize].proof();
                             let proof = match joins.iter().any(|&(join, _)| join == Join::Parity) {
                                 true => proof.xor(proof),
@@ -258,14 +260,14 @@ impl Writer<'_> {
                             self.primitive(half_spaces, complement, shared, &space)?;
                         }
                         Kind::Join(join, parts) => {
-                            // By De Morgan; of a parity the complement remains.
+                            // By De Morgan's laws; the complement of a parity stays.
                             let (join, inner, outer) = match (join, complement) {
                                 (Join::Parity, _) => (Join::Parity, false, complement),
                                 (Join::Intersection, true) => (Join::Union, true, false),
                                 (Join::Union, true) => (Join::Intersection, true, false),
                                 (&join, false) => (join, false, false),
                             };
-                            // An operand of the same operation joins its operands to ours.
+                            // An operand of the same operation hands its operands on to this one.
                             let flat = !outer
                                 && !self.program.paper
                                 && !parts.is_empty()
@@ -293,7 +295,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// Notes that the next words are those of an operand.
+    /// Notes that the next words belong to an operand.
     fn begin(&mut self, node: &Node, complement: bool, space: &Space) -> Result<(), Error> {
         let unit = |extent: Extent| into_universe(extent, space.outward.as_deref(), &self.program.frame);
         let (extent, opposite) =
@@ -313,7 +315,7 @@ impl Writer<'_> {
         let operands = &self.operands[first..];
         let count = if *paper { operands.len() } else { groups.gather(join, operands, words)? };
         self.operands.truncate(first);
-        // One operand is itself.
+        // A join of one operand is that operand.
         if count != 1 || (join == Join::Parity && complement) {
             self.write_join(join, complement, count)?;
         }

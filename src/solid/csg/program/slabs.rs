@@ -1,4 +1,4 @@
-//! Slabs and moments of a cell: what those half-spaces and other solids know of it that are open there.
+//! Slabs and moments of a cell, from the half-spaces and other solids that are open there.
 
 use super::Program;
 use super::word::{Op, Word};
@@ -13,14 +13,14 @@ use crate::solid::{Ask, Enclosure};
 use alloc::vec::Vec;
 
 impl Scratch {
-    /// What the half-spaces that are open in a cell know of it. One to three that are joined by one operation
-    /// give a slab each; of other expressions those that the solid lies in, or that lie in the solid, bound
-    /// it from one side.
+    /// Returns the enclosure from the half-spaces that are open in a cell. One to three half-spaces under one
+    /// operation give a slab each. In other expressions, the half-spaces that contain the solid, or lie in
+    /// it, bound it from one side.
     fn slabs_of_half_spaces(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<Enclosure> {
         self.literals(program, part)?.enclosure(&program.half_spaces, cell)
     }
 
-    /// The moments of the solid in a cell, if more is known of them than slabs tell.
+    /// Returns the moments of the solid in a cell, if more is known of them than slabs give.
     pub(crate) fn moments(&self, program: &Program, cell: Cell, part: CsgPart) -> Option<CellMoments> {
         if program.paper || !part.is_table() {
             return self.literals(program, part)?.moments(&program.half_spaces, cell);
@@ -30,8 +30,8 @@ impl Scratch {
         function::moments(variables, table, &program.half_spaces, cell)
     }
 
-    /// What the open operands of a cell know of it, whatever they are, joined by the cell's words. Operands
-    /// of which nothing is known leave one side open, and so do more slabs than there is room for.
+    /// Returns the enclosure from the open operands of a cell, of any kind, joined by the cell's words. An
+    /// operand without an enclosure leaves one side open, and so do more slabs than there is room for.
     #[inline]
     pub(crate) fn slabs(
         &mut self,
@@ -57,7 +57,8 @@ impl Scratch {
         if program.paper || part.is_table() || !words.iter().any(is_solid) {
             return Ok(self.slabs_of_half_spaces(program, cell, part));
         }
-        // An operand that stays undecided leaves most of the cell in doubt, whatever the others know.
+        // An operand that stays undecided leaves most of the cell undecided, whatever the other operands
+        // give.
         if words.len() > MOST_JOINED || words.iter().any(|word| matches!(word.op(), Op::Unknown)) {
             return Ok(None);
         }
@@ -84,7 +85,7 @@ impl Scratch {
                             let others = operands.iter().map(|known| known.map(|known| known.complement()));
                             Enclosure::of_intersection(others).map(|known| known.complement())
                         }
-                        // The boundary of one operand may lie on either side of the other's.
+                        // The boundary of one operand may lie on either side of the other operand's boundary.
                         Join::Parity => (count == 1).then(|| operands[0]).flatten(),
                     };
                     stack.truncate(stack.len() - count as usize);
@@ -97,7 +98,7 @@ impl Scratch {
         Ok(stack.pop().flatten())
     }
 
-    /// The half-spaces that are a part, or bound it.
+    /// Returns the half-spaces that are a part, or that bound it.
     pub(crate) fn literals(&self, program: &Program, part: CsgPart) -> Option<Literals> {
         if program.paper || part.len == 0 {
             return None;
@@ -113,5 +114,5 @@ impl Scratch {
     }
 }
 
-/// Most words whose operands are asked for slabs one by one.
+/// The most words whose operands are queried for slabs one by one.
 const MOST_JOINED: usize = 64;

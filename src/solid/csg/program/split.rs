@@ -1,4 +1,4 @@
-//! A CSG expression as a solid.
+//! A CSG expression as a solid: its classifier and its workers.
 
 use super::Program;
 use super::chords::Rays;
@@ -19,7 +19,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::sync::atomic::Ordering::Relaxed;
 
-/// An expression on a frame: the handle.
+/// An expression on a frame: a cheap handle.
 #[derive(Clone)]
 pub struct CsgClassifier {
     program: Arc<Program>,
@@ -38,8 +38,8 @@ pub struct CsgWorker {
 impl Solid for Csg {
     type Classifier = CsgClassifier;
 
-    /// O(n) in the expression written out, but for operations of many operands, which sort them; and what the
-    /// other solids in it take.
+    /// O(n) in the expression written out, plus the sorting of operations with many operands, plus the time
+    /// for the other solids.
     fn on(&self, frame: &Frame, control: &Control<'_>) -> Result<CsgClassifier, Error> {
         let mut program = Program::new(self, frame, control)?;
         let mut scratch = Scratch::new(&program)?;
@@ -116,8 +116,8 @@ impl Classifier for CsgClassifier {
         self.program.bytes()
     }
 
-    /// What is known of the solid that the expression is another name of, if it is; and what of its
-    /// half-spaces lies in planes of the lattice.
+    /// Answers for the whole of the only solid, if the expression is nothing but that solid. Also answers for
+    /// half-spaces in planes of the lattice.
     fn answer_whole(&self, question: WholeQuestion<'_>, control: &Control<'_>) -> Result<(), Error> {
         let program = &*self.program;
         match question {
@@ -139,8 +139,8 @@ impl Classifier for CsgClassifier {
                 if let Some(solid) = program.sole() {
                     return solid.answer_whole(question, control);
                 }
-                // The universe is not told of, but cells are in which one of the solids is open alone, and
-                // points that one knows.
+                // The question stays unanswered for the whole universe. But it is passed on, for cells in
+                // which one solid alone is open, and for points that one solid knows.
                 if let WholeQuestion::Direct(kind @ (Direct::Rays | Direct::Points), _) = question {
                     for solid in &program.solids {
                         solid.is_direct(kind, control)?;

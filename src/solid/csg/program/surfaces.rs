@@ -1,4 +1,4 @@
-//! Which surfaces are open in a cell, and which function of them its words are.
+//! The surfaces that are open in a cell, and the function of them that the cell's words are.
 
 use super::Program;
 use super::word::Op;
@@ -15,7 +15,8 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 
 impl Program {
-    /// All half-spaces, and behind them the surfaces of the other solids; if so said, with their layers.
+    /// Lists all half-spaces, and behind them the surfaces of the other solids; `with_layers` adds their
+    /// layers.
     pub(crate) fn surfaces(
         &self,
         with_layers: bool,
@@ -43,25 +44,25 @@ impl Program {
             all.try_reserve(own.len())?;
             all.extend(own);
         }
-        // (Every list that is made has the same starts.)
+        // (Every list has the same starts.)
         _ = self.surfaces[usize::from(with_layers)].set(Box::new(starts));
         Ok(all)
     }
 }
 
-/// Where the surfaces of a solid begin in the program's list, and whether layers are among them.
+/// The place where the surfaces of a solid begin in the program's list, and whether layers are among them.
 pub(super) struct Start {
     first: u32,
     has_layers: bool,
 }
 
-/// How thick layers may be, and the place for those of a cell.
+/// The greatest thickness of layers, and the list for layers of the cell.
 pub(crate) type Layers<'l> = (f64, &'l mut Vec<PlacedHalfSpace>);
 
 impl Scratch {
-    /// The surfaces that are open in a cell, and the function of them that the part is; `None` if they are
-    /// too many, something is open that is not made of surfaces, or the list of the surfaces has not been
-    /// asked for. With `layers` the list is that with layers.
+    /// Returns the surfaces that are open in a cell, and the function of them that the part is. `None` if the
+    /// surfaces are too many, if an open operand is not made of surfaces, or if the list of the surfaces does
+    /// not exist yet. With `layers`, the list with layers is meant.
     pub(crate) fn open_surfaces(
         &mut self,
         program: &Program,
@@ -120,7 +121,7 @@ impl Scratch {
         Ok(Some(open.with_table(stack[0])))
     }
 
-    /// What another solid that is open in a cell tells, by the numbers of the program's list.
+    /// Returns the surfaces of another solid that is open in a cell, in the numbers of the program's list.
     fn surfaces_of_solid(
         &mut self,
         program: &Program,
@@ -141,11 +142,11 @@ impl Scratch {
     }
 }
 
-/// Most words of a part that are looked at.
+/// The most words of a part that are evaluated.
 const MOST_WORDS: usize = 64;
 
-/// The function of surfaces in the numbering of `open`, to which those are added that are not there yet.
-/// `None` if they are too many.
+/// Returns the function of surfaces in the numbering of `open`, and adds new surfaces to `open`. `None` if
+/// they are too many.
 fn joined(open: &mut OpenSurfaces, own: &OpenSurfaces) -> Option<Table> {
     let mut numbers = [0; OpenSurfaces::MOST];
     for (number, &index) in numbers.iter_mut().zip(own.indices()) {

@@ -1,26 +1,27 @@
-//! What a cell's share of an expression is written in: words in postfix order.
+//! The words, in postfix order, of a cell's share of an expression.
 
 use crate::solid::csg::Join;
 
-/// One word: an operand, or what joins the operands before it.
+/// One word: an operand, or an operator that joins the operands before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct Word(u32);
 
-/// A word taken apart.
+/// A decoded word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Op {
     /// Half-space `index`, or its complement.
     HalfSpace { index: u32, complement: bool },
-    /// Another solid, or its complement. `index` counts the parts that a worker keeps, of which the first are
+    /// Another solid, or its complement. `index` counts the parts that a worker keeps; the first of these are
     /// the universe's parts of the program's solids.
     Solid { index: u32, complement: bool },
-    /// Nothing is known, and splitting does not help.
+    /// An undecided operand that splitting does not decide.
     Unknown,
-    /// The operation on the `count` operands before; or its complement.
+    /// The operation on the `count` operands before it; or the operation's complement.
     Join { join: Join, complement: bool, count: u32 },
-    /// Operands that are not looked at one by one: group `index` of the program's.
+    /// A group of operands that are not evaluated one by one: number `index` of the program's groups.
     Group { index: u32 },
-    /// The intersection of the `count` half-spaces before, which are classified together by [`Touch::Paper`].
+    /// The intersection of the `count` half-spaces before it, which are classified together by
+    /// [`Touch::Paper`].
     Primitive { count: u32 },
 }
 
@@ -42,12 +43,12 @@ impl Word {
         })
     }
 
-    /// Half of a number that lies among words.
+    /// Stores half of a number as a word.
     pub(crate) fn raw(bits: u32) -> Word {
         Word(bits)
     }
 
-    /// The bits of such a half.
+    /// Returns the bits of such a half.
     pub(crate) fn bits(self) -> u32 {
         self.0
     }
@@ -70,15 +71,15 @@ impl Word {
 }
 
 impl Word {
-    /// Bits of a half-space's index, of which there are no more than [`MOST`](crate::solid::csg::MOST).
+    /// The bits of a half-space's index; there are at most [`MOST`](crate::solid::csg::MOST) half-spaces.
     const VARIABLE: u32 = 25;
 
-    /// A half-space with its number in a truth table.
+    /// Makes the word of a half-space with its number in a truth table.
     pub(crate) fn of_variable(i: usize, index: u32) -> Word {
         Word(index | (i as u32) << Word::VARIABLE)
     }
 
-    /// The number of a half-space in a truth table, and which one it is.
+    /// Returns the number of a half-space in a truth table, and its index.
     #[inline(always)]
     pub(crate) fn variable(self) -> (usize, u32) {
         ((self.0 >> Word::VARIABLE) as usize, self.0 & ((1 << Word::VARIABLE) - 1))
@@ -86,7 +87,7 @@ impl Word {
 }
 
 impl Op {
-    /// The value of an operand that decides the operation.
+    /// The value of an operand that decides the operation, if there is such a value.
     pub(crate) fn absorbs(self) -> Option<bool> {
         match self {
             Op::Join { join: Join::Union, .. } => Some(true),
@@ -95,8 +96,8 @@ impl Op {
         }
     }
 
-    /// The value of an operation of which `open` operands are not decided, if it has one: one that decides it
-    /// was `absorbed`, or none is open.
+    /// Returns the value of an operation with `open` undecided operands, if it has one. It has a value if an
+    /// operand that decides the operation was `absorbed`, or if no operand is open.
     pub(crate) fn decided(self, open: u32, parity: bool, absorbed: bool) -> Option<bool> {
         let (none, complement) = match self {
             Op::Join { join: Join::Union, complement, .. } => (false, complement),
@@ -111,9 +112,9 @@ impl Op {
         }
     }
 
-    /// What remains of an operation of which `open` operands are not decided; `None` if one operand is all
-    /// that remains. Those of unions and intersections that are decided say nothing, those of parities their
-    /// `parity`.
+    /// Returns the remainder of an operation with `open` undecided operands; `None` if it is a single
+    /// operand. Decided operands of unions and intersections do not matter, decided operands of a parity
+    /// contribute their `parity`.
     pub(crate) fn of_open(self, open: u32, parity: bool) -> Option<Op> {
         match self {
             Op::Join { join: Join::Parity, complement, .. } => {

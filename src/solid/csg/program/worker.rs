@@ -1,4 +1,4 @@
-//! What a cell's words say of its children, and the words that each child keeps.
+//! The split of a cell by its words, and the words that each child keeps.
 
 use super::Program;
 use super::at_hand::AtHand;
@@ -18,8 +18,8 @@ use crate::solid::half_space::table::Table;
 use crate::solid::{AnyWorker, Batch, Classifier, OCTANTS, Parts, Verdict, Worker};
 use alloc::vec::Vec;
 
-/// What a [`Csg`](crate::solid::csg::Csg) remembers about a cell: the words of its expression that are still
-/// open there.
+/// The state of a cell for a [`Csg`](crate::solid::csg::Csg): the words of the expression that are still open
+/// in the cell.
 #[derive(Debug, Clone, Copy)]
 pub struct CsgPart {
     pub(crate) start: u32,
@@ -27,14 +27,14 @@ pub struct CsgPart {
 }
 
 impl CsgPart {
-    /// Of a cell that cannot be split.
+    /// The part of a cell that cannot be split.
     const HOPELESS: CsgPart = CsgPart { start: 0, len: 0 };
 
-    /// Set in the length: so many words of half-spaces, each with its number in the table, are followed by
-    /// the two halves of a truth table.
+    /// A flag in the length: the part has that number of words of half-spaces, each with its number in the
+    /// table, followed by the two halves of a truth table.
     const TABLE: u32 = 1 << 31;
 
-    /// Words that the part takes.
+    /// The number of words of the part.
     #[inline(always)]
     pub(crate) fn words(self) -> usize {
         match self.len & CsgPart::TABLE {
@@ -53,23 +53,23 @@ impl CsgPart {
 #[derive(Default)]
 pub(crate) struct Scratch {
     pub(crate) words: Vec<Word>,
-    /// Parts of other solids that words refer to, numbered on from those of the universe.
+    /// Parts of other solids that words refer to. Their numbers follow those of the universe's parts.
     pub(crate) slots: Vec<Slot>,
-    /// One for each other solid, made when it is first asked.
+    /// One worker for each other solid, made on first use.
     pub(crate) workers: Vec<Option<Other>>,
     pub(crate) evaluations: u64,
-    /// Of the split under way: verdicts by each word, those of the operands that wait, what other solids
-    /// answered, and the operands of a child.
+    /// The state of the current split: the verdicts by each word, the verdicts of the waiting operands, the
+    /// answers of other solids, and the operands of a child.
     masks: Vec<Kleene>,
     pub(crate) operands: Vec<Kleene>,
     answers: Vec<Answer>,
     open: Vec<Operand>,
-    /// Parts of another solid on their way in or out.
+    /// Parts of another solid that are being copied in or out.
     pub(crate) passing: Vec<(u8, ErasedPart)>,
     pub(crate) at_hand: AtHand,
 }
 
-/// A worker on another solid, and the part of the universe.
+/// A worker on another solid, and its part of the universe.
 pub(crate) struct Other {
     pub(crate) worker: AnyWorker,
     pub(crate) root: Verdict<ErasedPart>,
@@ -80,20 +80,20 @@ pub(crate) struct Other {
 pub(crate) struct Slot {
     pub(crate) solid: u32,
     pub(crate) part: ErasedPart,
-    /// The number of words when its cell's were begun, and the height of the solid's own scratch memory
-    /// before. Once the cell's words are complete, there are more.
+    /// The number of words when the words of the slot's cell were begun, and the height of the solid's own
+    /// scratch memory before. Once the cell's words are complete, there are more words.
     pub(crate) words: usize,
     pub(crate) height: usize,
 }
 
-/// What another solid says of eight cells, and the height of its scratch memory before.
+/// The answer of another solid for eight cells, and the height of its scratch memory before.
 struct Answer {
     solid: u32,
     height: usize,
     verdicts: [Verdict<ErasedPart>; 8],
 }
 
-/// Eight cells: their verdicts and the parts of those that are PARTIAL.
+/// The verdicts of eight cells, and the parts of the PARTIAL ones.
 pub(crate) struct Cells {
     pub(crate) kleene: Kleene,
     pub(crate) parts: [CsgPart; 8],
@@ -107,20 +107,20 @@ impl Cells {
     }
 }
 
-/// An operand while the words of a child are written: decided there, or written from a word on.
+/// An operand while the words of a child are written: decided in the child, or written from a word on.
 #[derive(Clone, Copy)]
 enum Operand {
     Decided(bool),
     Open(usize),
 }
 
-/// How a child's words come out.
+/// The outcome of writing a child's words.
 enum Reduced {
     Decided(bool),
     Part(CsgPart),
 }
 
-/// What is asked: about the universe, or about the children of a cell.
+/// The target of a query: the universe, or the children of a cell.
 #[derive(Clone, Copy)]
 pub(crate) enum Ask {
     Root,
@@ -138,7 +138,7 @@ impl Ask {
 }
 
 impl Scratch {
-    /// For a program: nothing is remembered yet.
+    /// Makes empty scratch memory for a program.
     pub(crate) fn new(program: &Program) -> Result<Scratch, Error> {
         let mut scratch = Scratch::default();
         scratch.workers.try_reserve_exact(program.solids.len())?;
@@ -150,7 +150,7 @@ impl Scratch {
         self.words.len()
     }
 
-    /// Bytes of the parts, and of those of other solids.
+    /// The bytes of the parts, and of the other solids' parts.
     pub(crate) fn bytes(&self) -> usize {
         let others = self.workers.iter().flatten().map(|other| other.worker.scratch_bytes()).sum::<usize>();
         size_of_val(&*self.words) + size_of_val(&*self.slots) + others
@@ -165,7 +165,7 @@ impl Scratch {
         }
     }
 
-    /// The verdict of the universe, from the words of the whole program; what is open there remains as its
+    /// Computes the verdict of the universe from the words of the whole program. The open words remain as its
     /// part.
     pub(crate) fn begin(&mut self, program: &Program) -> Result<Verdict<CsgPart>, Error> {
         let len = u32::try_from(program.words.len()).map_err(|_| Error::OutOfMemory)?;
@@ -173,14 +173,15 @@ impl Scratch {
         Ok(cells.kleene.verdict(0, cells.parts[0]))
     }
 
-    /// What is open in the universe, for a program to have in place of its own words.
+    /// Returns the words that are open in the universe, with which a program replaces its own words.
     pub(crate) fn into_words(self, program: &Program, part: CsgPart) -> Result<(Vec<Word>, CsgPart), Error> {
         let mut words = memory::with_capacity(part.words())?;
         words.extend_from_slice(Scratch::list(program, &self.words, part));
         Ok((words, CsgPart { start: 0, ..part }))
     }
 
-    /// The words of a part: the universe's are the program's, others lie here.
+    /// Returns the words of a part. The universe's words are the program's, the others lie in the scratch
+    /// memory.
     #[inline(always)]
     pub(crate) fn list<'w>(program: &'w Program, words: &'w [Word], part: CsgPart) -> &'w [Word] {
         match (part.start as usize).checked_sub(program.words.len()) {
@@ -189,7 +190,7 @@ impl Scratch {
         }
     }
 
-    /// The word of a part that has one.
+    /// Returns the word of a part with one word.
     #[inline(always)]
     fn only_word(&self, program: &Program, part: CsgPart) -> Word {
         let start = part.start as usize;
@@ -199,12 +200,12 @@ impl Scratch {
         }
     }
 
-    /// Where the next part begins.
+    /// The place where the next part begins.
     pub(crate) fn start(&self, program: &Program) -> Result<u32, Error> {
         u32::try_from(program.words.len() + self.words.len()).map_err(|_| Error::OutOfMemory)
     }
 
-    /// The worker on a solid, which is made when it is first asked.
+    /// Returns the worker on a solid, made on first use.
     pub(crate) fn other<'w>(
         workers: &'w mut [Option<Other>],
         program: &Program,
@@ -229,8 +230,8 @@ impl Scratch {
         })
     }
 
-    /// Splits a cell of another solid, unless the answer is at hand; with the height of the solid's scratch
-    /// memory before.
+    /// Splits a cell of another solid, or takes the answer at hand. Also returns the height of the solid's
+    /// scratch memory before.
     pub(crate) fn split_other(
         workers: &mut [Option<Other>],
         at_hand: &mut AtHand,
@@ -247,7 +248,7 @@ impl Scratch {
         Ok((height, worker.split(cell, part)?))
     }
 
-    /// The solid and the part behind an index in a word.
+    /// Returns the solid and the part for an index in a word.
     #[inline]
     pub(crate) fn slot(&mut self, program: &Program, index: u32) -> Result<Option<(u32, ErasedPart)>, Error> {
         match (index as usize).checked_sub(program.solids.len()) {
@@ -259,14 +260,14 @@ impl Scratch {
         }
     }
 
-    /// Keeps a slot; returns its index, which a word can hold.
+    /// Keeps a slot, and returns its index, which fits into a word.
     pub(crate) fn keep(&mut self, program: &Program, slot: Slot) -> Result<u32, Error> {
         let index = u32::try_from(program.solids.len() + self.slots.len()).ok();
         memory::push(&mut self.slots, slot)?;
         index.filter(|&index| index <= Word::MOST).ok_or(Error::OutOfMemory)
     }
 
-    /// Copies a part with what it refers to out of another scratch memory.
+    /// Copies a part with everything that it refers to from another scratch memory.
     pub(crate) fn copy(
         &mut self,
         program: &Program,
@@ -303,7 +304,7 @@ impl Scratch {
         Ok(CsgPart { start, ..part })
     }
 
-    /// The children of a cell, by the words of its part.
+    /// Returns the children of a cell, from the words of its part.
     #[inline]
     pub(crate) fn split(
         &mut self,
@@ -320,10 +321,10 @@ impl Scratch {
         Ok(OCTANTS.map(|k| cells.kleene.verdict(k.into(), cells.parts[k as usize])))
     }
 
-    /// The eight cells that are asked for, by the words of a part.
+    /// Returns the eight cells of the query, from the words of a part.
     #[inline(always)]
     pub(crate) fn cells(&mut self, program: &Program, part: CsgPart, ask: Ask) -> Result<Cells, Error> {
-        // Most cells are cut by one half-space: they share its word.
+        // Most cells are cut by one half-space, and their children share its word.
         if part.len == 1
             && !program.paper
             && let Op::HalfSpace { index, complement } = self.only_word(program, part).op()
@@ -362,8 +363,8 @@ impl Scratch {
                     self.tabulate(program, &mut cells, k, true)?;
                 }
             }
-            // A child without words has no slots: they would be released as what comes after its siblings.
-            // What other solids remember of it goes with the siblings' or the parent's.
+            // A child without words has no slots, because they would be released as slots of words after its
+            // siblings. The other solids' memory for it is released with the siblings' or the parent's.
             if self.words.len() == words {
                 self.slots.truncate(slots);
             }
@@ -371,9 +372,9 @@ impl Scratch {
         Ok(cells)
     }
 
-    /// Replaces the words of child `k` by a truth table, if it has few half-spaces and nothing else: if that
-    /// is the same for all combinations, the child is decided. `fresh` words are the last, and the child's
-    /// own.
+    /// Replaces the words of child `k` by a truth table, if it has few half-spaces and no other operands. If
+    /// the table is constant, the child is decided. `fresh` means that the words are the last ones, and
+    /// belong to this child alone.
     fn tabulate(&mut self, program: &Program, cells: &mut Cells, k: u32, fresh: bool) -> Result<(), Error> {
         let part = cells.parts[k as usize];
         if part.len < 2 || part.len > 64 || program.paper {
@@ -457,7 +458,7 @@ impl Scratch {
         Ok(())
     }
 
-    /// The half-spaces and the truth table of a part: each half-space at its number.
+    /// Returns the half-spaces and the truth table of a part. Each half-space has its number in the table.
     #[inline(always)]
     pub(crate) fn table_of(words: &[Word]) -> (&[Word], Table) {
         let (half_spaces, halves) = words.split_at(words.len() - 2);
@@ -488,7 +489,8 @@ impl Scratch {
         Ok(cells)
     }
 
-    /// The verdicts of the eight cells, those by each word being kept; and in which cells a word is decided.
+    /// Returns the verdicts of the eight cells, and in which cells a word is decided. The verdicts by each
+    /// word are kept.
     fn verdicts(&mut self, program: &Program, part: CsgPart, ask: Ask) -> Result<(Kleene, u8), Error> {
         let at = &ask.octants();
         let Scratch { words, masks, operands, answers, workers, slots, evaluations, at_hand, .. } = self;
@@ -501,7 +503,7 @@ impl Scratch {
         let mut somewhere = 0;
         for (i, word) in words.iter().enumerate() {
             let kleene = match word.op() {
-                // Their primitive classifies them.
+                // The primitive classifies its half-spaces.
                 Op::HalfSpace { .. } if program.paper => Kleene::UNKNOWN,
                 Op::HalfSpace { index, complement } => {
                     Kleene::of(program.half_spaces[index as usize].sides(at, 0xFF, evaluations)?, complement)
@@ -543,7 +545,7 @@ impl Scratch {
         Ok((operands.pop().unwrap_or(Kleene::UNKNOWN), somewhere))
     }
 
-    /// Writes the words that are open in child `k`; returns the child's part.
+    /// Writes the words that are open in child `k`, and returns the child's part.
     fn reduced(&mut self, program: &Program, part: CsgPart, at: &Octants, k: u32) -> Result<Reduced, Error> {
         let start = self.words.len();
         let begin = self.start(program)?;
@@ -582,7 +584,7 @@ impl Scratch {
                     Some(match verdicts[k as usize] {
                         Verdict::Partial(part) => {
                             let index = if at.half == 1.0 {
-                                // The universe's part is known to all.
+                                // The universe's part is available to all.
                                 solid
                             } else {
                                 self.keep(program, Slot { solid, part, words: start, height })?
@@ -606,7 +608,7 @@ impl Scratch {
                             }
                         }
                     }
-                    // Groups that turned out to hold nothing may decide what was open.
+                    // Groups that turned out empty may decide an operation that was open.
                     if let Some(value) = op.decided(open, parity, absorbed) {
                         self.words.truncate(first);
                         self.open.push(Operand::Decided(value));
@@ -630,14 +632,14 @@ impl Scratch {
         if !hopeful {
             return Ok(Reduced::Part(CsgPart::HOPELESS));
         }
-        // More words than that take seventeen gigabytes.
+        // More words than this take seventeen gigabytes.
         let len = u32::try_from(self.words.len() - start).ok().filter(|&len| len < CsgPart::TABLE);
         Ok(Reduced::Part(CsgPart { start: begin, len: len.ok_or(Error::OutOfMemory)? }))
     }
 }
 
-/// A primitive as the method was published: the vertices of the children first, a vertex on the surface being
-/// inside; then half-space by half-space the children whose vertices agree.
+/// Classifies a primitive by the published method: first the vertices of the children, where a vertex on the
+/// surface is inside; then, half-space by half-space, the children whose vertices agree.
 fn primitive_by_paper(
     program: &Program,
     words: &[Word],
