@@ -129,34 +129,35 @@ impl From<f64> for Tolerance {
 /// The maximal number of splits of a measurement if `max_splits` sets no other limit: about a minute.
 pub const MEASURE_SPLITS: u64 = 1 << 26;
 
-/// Measures `solid` in the universe of `frame`, without building a tree: the cells of which most is in doubt
-/// are split first, until the width of the volume's interval is within `tolerance` (a number is relative to
-/// the middle of the interval), `max_splits` of `control` ([`MEASURE_SPLITS`] if there is none) are spent, or
-/// nothing is left to split at the frame's depth. With a tolerance of 0 only the latter two end it, or that
-/// nothing is in doubt.
+/// Measures `solid` in the universe of `frame`, without building a tree. The cells with the greatest doubt
+/// are split first. The measurement ends when the width of the volume's interval is within `tolerance` (a
+/// plain number is relative to the middle of the interval), when `max_splits` of `control`
+/// ([`MEASURE_SPLITS`] if that is `None`) are spent, or when nothing is left to split at the frame's depth.
+/// With a tolerance of 0 it ends for one of the latter two reasons, or when nothing is in doubt.
 ///
-/// Where the solid knows the slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), the cell contributes
-/// what the slabs cut off, and only the rest is in doubt; where it knows the moments
-/// ([`Question::Moments`](crate::solid::Question::Moments)), nothing is but their error. With N splits the
-/// width goes down with N^-1.5 where one curved half-space cuts a cell, with 1/N at other curved surfaces,
-/// with 1/N² at plane ones, and with N^-½ for solids that know no slabs.
+/// Where the solid provides slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), the cell contributes
+/// the part that the slabs cut off, and only the rest is in doubt. Where it provides the moments
+/// ([`Question::Moments`](crate::solid::Question::Moments)), only their error is in doubt. With N splits the
+/// width decreases with N^-1.5 where one curved half-space cuts a cell, with 1/N at other curved surfaces,
+/// with 1/N² at plane surfaces, and with N^-½ for solids without slabs.
 ///
-/// A solid that knows its moments is not split, if it lies in the universe: a mesh that is closed and whose
-/// triangles do not intersect ([`TriangleMesh::moments`](crate::TriangleMesh::moments)). It is known up to
-/// rounding, whatever the tolerance.
+/// A solid in the universe that provides its moments is not split. This is so for a closed mesh whose
+/// triangles do not intersect ([`TriangleMesh::moments`](crate::TriangleMesh::moments)). Its properties are
+/// known up to rounding, whatever the tolerance.
 ///
-/// The result depends on the solid, the frame, the tolerance and `max_splits` only: it is the same bit for
-/// bit for any number of threads. Work goes in passes, and under a budget the last whole pass counts. Time is
-/// linear in the splits; memory is that of some ten thousand parts at the most, since from a number of
-/// undecided cells on the levels below are walked through again and again, each time deeper, and not kept;
-/// with a `max_bytes` of `control` from fewer cells on. Other limits are not heeded.
+/// The result depends only on the solid, the frame, the tolerance and `max_splits`: it is bitwise the same
+/// for any number of threads. The work is done in passes. Under a budget the last complete pass counts. Time
+/// is linear in the splits. Memory is limited to about ten thousand parts: from a certain number of undecided
+/// cells on, the levels below are walked again and again, each time deeper, and not kept. A `max_bytes` of
+/// `control` lowers this number. The measurement ignores other limits.
 ///
-/// Of what is in doubt any part may belong to the solid, and the intervals contain what comes of each choice.
-/// Volume and the diagonals of the tensors cannot be told better from the cells; products of inertia and the
-/// centroid are bounded by means of the second moments of what is in doubt (Loewner's order; Scarf 1958).
+/// Any part of the cells in doubt may belong to the solid, and the intervals contain the results of each
+/// choice. The bounds of the volume and of the tensors' diagonals are the best that the cells allow. Products
+/// of inertia and the centroid are bounded by the second moments of the part in doubt (Loewner's order; Scarf
+/// 1958).
 ///
 /// # Errors
-/// [`Error::Argument`] if `tolerance` is negative or not a number; what the solid refuses, as
+/// [`Error::Argument`] if `tolerance` is negative or not a number; the solid's own errors, as
 /// [`build`](crate::build); [`Error::Cancelled`]; [`Error::OutOfMemory`].
 ///
 /// ```
