@@ -2,9 +2,9 @@
 //!
 //! The solid S contains F: the FULL cells and the parts of PARTIAL cells that are known to be inside. S lies
 //! in A, which is F and the open part: PARTIAL cells, or their undecided parts. All volume integrals of one
-//! sign over S are therefore bounded by those over F and A. More follows: (Where F and A are not sets but
-//! moments, their matrices behave like those of such sets in the order of Loewner, and the proofs use nothing
-//! else.)
+//! sign over S are therefore bounded by those over F and A. (Where F and A are not sets but moments, their
+//! matrices behave like those of such sets in the order of Loewner, and the proofs use nothing else.) Other
+//! measures are bounded, too:
 //!
 //! - The matrix ∫ x xᵀ of second moments about a point grows with the set in the order of Loewner: for two
 //!   nested sets, the difference is the matrix of the set between them, which is positive semidefinite. The
