@@ -9,7 +9,9 @@
 //! |---|---|
 //! | the container, obstacles and items | `bay`, `item` |
 //! | the allowed orientations | `orientation` |
-//! | proof that two placed solids are apart, and that one lies within the container | `proof`; the space around the container: `wall`; relative placements: `relative` |
+//! | proofs that two solids are apart, or that one lies within the container | `proof` |
+//! | the space around the container | `wall` |
+//! | relative placements | `relative` |
 //! | conflicts and the nearest neighbour | `check` |
 //! | the search for places | `search/` |
 //! | weight, and the filled part of the container | `measures` |

@@ -3,7 +3,7 @@
 //! | query | for stored octrees | for any solid |
 //! |---|---|---|
 //! | does the solid contain a point? | `point` | `contains` |
-//! | does a box or a region lie inside, outside or across the boundary? | `classify_box` | `classify_box`, `classify_in` |
+//! | is a box or a region inside, outside or across the boundary? | `classify_box` | `classify_box`, `classify_in` |
 //! | where does a ray meet the solid? | `ray` | `ray` |
 //! | which cells of a column are solid, and how high is the column? | `columns` | `columns` |
 //! | how much of the solid lies in a region? | `content` | `content` |
