@@ -10,7 +10,7 @@ use crate::octree::view::OctreeRef;
 use crate::octree::{Octree, Planes, Tag};
 use crate::parallel::each;
 
-/// Layers of cells along z that are read at a time.
+/// The number of layers along z that are read together.
 const DEEP: u32 = 64;
 
 impl OctreeRef<'_> {
@@ -115,7 +115,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// Writes the cells of a box as bits: calls [`OctreeRef::bitmap`], which has the full contract.
+    /// Writes the cells of a box as bits. See [`OctreeRef::bitmap`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::bitmap`].

@@ -297,8 +297,8 @@ impl Search<'_, '_> {
 }
 
 impl Octree {
-    /// Returns the position of a box relative to the solid: calls [`OctreeRef::classify_box`], which has the
-    /// full contract.
+    /// Returns the position of a box relative to the solid. See [`OctreeRef::classify_box`] for the full
+    /// contract.
     ///
     /// # Errors
     /// As [`OctreeRef::classify_box`].

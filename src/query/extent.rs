@@ -47,8 +47,8 @@ pub const BOUNDING_BOX_SPLITS: u64 = 1 << 20;
 /// - `Exhausted`: the outermost undecided cells cannot be split, and either the interval is no wider than one
 ///   of the frame's finest cells, or nothing else is left to split.
 /// - `Budget`: `control.max_splits` cells were split, or [`BOUNDING_BOX_SPLITS`] if that is `None`. Each side
-///   gets its share of the splits that the sides before it have left. The search also ends so when the stored
-///   parts of a side come near to `control.max_bytes`.
+///   gets its share of the splits that the sides before it have left. The search ends for the same reason
+///   when the stored parts of a side come near to `control.max_bytes`.
 ///
 /// Where the solid provides slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), a linear program bounds
 /// the solid's reach there. A corner of three plane faces is exact to rounding as soon as a cell holds no

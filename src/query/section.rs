@@ -82,7 +82,7 @@ pub const SECTION_SPLITS: u64 = 1 << 20;
 ///   finest cells, or the solid provides nothing more about them, or only rounding is in doubt, about 2^-40
 ///   of the area.
 /// - `Budget`: `control.max_splits` cells were split, or [`SECTION_SPLITS`] if that is `None`. The search
-///   also ends so when the stored parts of the solid come near to `control.max_bytes`.
+///   ends for the same reason when the stored parts of the solid come near to `control.max_bytes`.
 ///
 /// Where the solid provides slabs of a cell ([`Enclosure`](crate::solid::Enclosure)), only the region between
 /// the slabs is in doubt. With N splits the width then decreases with 1/N² on curved surfaces. Plane faces

@@ -1,4 +1,4 @@
-//! Places for boxes, among boxes.
+//! Places for boxes in the free space between boxes.
 //!
 //! The free space of a box with boxes in it is the union of the largest free boxes. A new box goes to the
 //! lower corner of a free box, and divides the free boxes that it meets (Lai & Chan 1997).

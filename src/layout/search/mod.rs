@@ -44,7 +44,7 @@ pub enum Objective {
     Height,
     /// As much volume as possible.
     Density,
-    /// As many items as possible, with the centre of gravity of all that are placed near to a point (model
+    /// As many items as possible, with the centre of gravity of all placed copies near to a point (model
     /// units).
     Balance([f64; 3]),
 }

@@ -95,7 +95,8 @@ pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 ///   left; or a solid may continue outside of the universe, which keeps the lower bound at 0.
 /// - `Budget`: `control.max_splits` steps were taken, or [`CLEARANCE_SPLITS`] if that is `None`. A step
 ///   visits the children of one cell. A cell whose children are visited again, next to another cell, counts
-///   once more. The search also ends so when the stored parts of a solid come near to `control.max_bytes`.
+///   once more. The search ends for the same reason when the stored parts of a solid come near to
+///   `control.max_bytes`.
 ///
 /// If the boundaries of both solids are known to consist of triangles
 /// ([`WholeQuestion::Walls`](crate::solid::WholeQuestion::Walls)), the search compares triangles instead of

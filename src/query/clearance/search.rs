@@ -43,12 +43,12 @@ type Companion = (u64, u64, usize);
 struct Group {
     node: usize,
     companions: Vec<usize>,
-    /// The companion whose least distance is the least.
+    /// The companion with the smallest least distance.
     nearest: Companion,
-    /// The companion whose greatest distance is the least.
+    /// The companion with the smallest greatest distance.
     closest: Companion,
-    /// Among the companions whose least distance is about the least: the one whose greatest distance is the
-    /// least.
+    /// Among the companions whose least distance is about the smallest: the one with the smallest greatest
+    /// distance.
     likeliest: Companion,
 }
 

@@ -77,8 +77,8 @@ impl Heights {
         })
     }
 
-    /// Returns the lattice plane, 0 to 2^depth, of the side-facing face of a column's first FULL cell; `None`
-    /// if the column has no FULL cell.
+    /// Returns the lattice plane, 0 to 2^depth, in which a column's first FULL cell ends towards the side;
+    /// `None` if the column has no FULL cell.
     pub fn full_plane(&self, index: usize) -> Option<u32> {
         self.full.get(index).copied().filter(|&plane| plane != NONE)
     }

@@ -123,7 +123,7 @@ impl<V: Visitor> Walk<'_, '_, '_, V> {
 }
 
 impl Octree {
-    /// Returns the solid cells in columns: calls [`OctreeRef::columns`], which has the full contract.
+    /// Returns the solid cells in columns. See [`OctreeRef::columns`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::columns`].
@@ -131,7 +131,7 @@ impl Octree {
         self.view().columns(columns)
     }
 
-    /// Returns the heights of columns: calls [`OctreeRef::heights`], which has the full contract.
+    /// Returns the heights of columns. See [`OctreeRef::heights`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::columns`].

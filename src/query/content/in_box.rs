@@ -69,7 +69,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// Counts cells in a box: calls [`OctreeRef::cells_in_box`], which has the full contract.
+    /// Counts cells in a box. See [`OctreeRef::cells_in_box`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::cells_in_box`].
@@ -77,7 +77,7 @@ impl Octree {
         self.view().cells_in_box(min, max)
     }
 
-    /// Returns the volume in a box: calls [`OctreeRef::volume_in_box`], which has the full contract.
+    /// Returns the volume in a box. See [`OctreeRef::volume_in_box`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::volume_in_box`].

@@ -167,7 +167,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// Returns the number of cells in a region: calls [`OctreeRef::cells_in`], which has the full contract.
+    /// Returns the number of cells in a region. See [`OctreeRef::cells_in`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::cells_in`].
@@ -175,10 +175,10 @@ impl Octree {
         self.view().cells_in(region, control)
     }
 
-    /// Returns the volume in a region: calls [`OctreeRef::volume_in`], which has the full contract.
+    /// Returns the volume in a region. See [`OctreeRef::volume_in`] for the full contract.
     ///
     /// # Errors
-    /// As [`OctreeRef::volume_in`].
+    /// As [`OctreeRef::cells_in`].
     pub fn volume_in<R: Solid>(&self, region: &R, control: &Control<'_>) -> Result<Interval, Error> {
         self.view().volume_in(region, control)
     }

@@ -128,7 +128,7 @@ pub(super) struct Facet {
 impl Facet {
     pub(super) const NONE: Facet = Facet { layer: u32::MAX, triangle: u32::MAX };
 
-    /// The index in its layer; `None` for [`NONE`](Self::NONE).
+    /// The index in its layer; `None` for `Facet::NONE`.
     #[cfg(feature = "std")]
     pub(super) fn triangle(self) -> Option<u32> {
         (self != Facet::NONE).then_some(self.triangle)

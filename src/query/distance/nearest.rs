@@ -68,7 +68,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// Returns the cells nearest to a point: calls [`OctreeRef::nearest_cells`], which has the full contract.
+    /// Returns the cells nearest to a point. See [`OctreeRef::nearest_cells`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::nearest_cells`].

@@ -93,10 +93,10 @@ pub const DISTANCE_SPLITS: u64 = 1 << 16;
 /// the rounding of doubles (about 10^-12 of the distance and of the triangle). It also returns the nearest
 /// point and its triangle. The first query builds the tree, and determines the triangles that bound the solid
 /// ([`MeshSolid`](crate::MeshSolid)). If the nearest triangle intersects another one, the interval is up to
-/// 2^-31 of the mesh's extent wide. If that intersection then lies strictly inside or outside of the solid,
-/// cells are used. A mesh with holes answers in the same way where its winding number is surely not one half
-/// in the ball around the point that is free of triangles. For other points, usually those next to a hole,
-/// cells are used.
+/// 2^-31 of the mesh's extent wide. If the nearest point of that triangle then lies within the solid or
+/// outside of it, and is therefore not on the boundary, cells are used. A mesh with holes answers in the same
+/// way where its winding number is surely not one half in the ball around the point that is free of
+/// triangles. For other points, usually those next to a hole, cells are used.
 ///
 /// A point usually takes some dozen splits a level. It takes more splits if more of the surface is about as
 /// near: for a ball's centre the bounds are only as good as cells as large as the budget allows. The answers

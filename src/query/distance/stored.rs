@@ -145,7 +145,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// Returns the distance of a point: calls [`OctreeRef::distance`], which has the full contract.
+    /// Returns the distance of a point. See [`OctreeRef::distance`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::distance`].
@@ -153,7 +153,7 @@ impl Octree {
         self.view().distance(point, to)
     }
 
-    /// Computes the distances of many points: calls [`OctreeRef::distances`], which has the full contract.
+    /// Computes the distances of many points. See [`OctreeRef::distances`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::distances`].

@@ -84,7 +84,7 @@ impl Known {
     pub(super) fn volume(&self) -> Interval {
         let (full, all) = (Bounded::new(&self.found.full).volume, Bounded::new(&self.all()).volume);
         let universe = Interval::between(0.0, self.to_model(Interval::of_integer(UNIVERSE)).upper);
-        // (A consistent solid gives no contradiction. Of a self-contradictory solid nothing is known.)
+        // (A consistent solid gives no contradiction. The volume of a self-contradictory solid is unknown.)
         let between = Interval::new(full.lower, all.upper).map(|volume| self.to_model(volume));
         between.and_then(|volume| volume.common(universe)).unwrap_or(universe)
     }

@@ -1,4 +1,4 @@
-//! Points that lie near each other.
+//! Point queries for points that lie near each other.
 
 use super::Membership;
 use super::cuts::DescendCuts;

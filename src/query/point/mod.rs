@@ -159,14 +159,13 @@ impl<S: Solid> LazyOctree<S> {
 }
 
 impl Octree {
-    /// Returns whether the solid contains a point: calls [`OctreeRef::contains`], which has the full
-    /// contract.
+    /// Returns whether the solid contains a point. See [`OctreeRef::contains`] for the full contract.
     #[inline]
     pub fn contains(&self, point: [f64; 3]) -> Membership {
         self.view().contains(point)
     }
 
-    /// Answers many points at once: calls [`OctreeRef::contains_many`], which has the full contract.
+    /// Answers many points at once. See [`OctreeRef::contains_many`] for the full contract.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.

@@ -323,12 +323,12 @@ impl Cells for Stored<'_, '_> {
 }
 
 impl Octree {
-    /// Returns the first intersection of a ray: calls [`OctreeRef::cast_ray`], which has the full contract.
+    /// Returns the first intersection of a ray. See [`OctreeRef::cast_ray`] for the full contract.
     pub fn cast_ray(&self, ray: &Ray, on: Obstacle) -> Option<RayHit> {
         self.view().cast_ray(ray, on)
     }
 
-    /// Casts many rays: calls [`OctreeRef::cast_rays`], which has the full contract.
+    /// Casts many rays. See [`OctreeRef::cast_rays`] for the full contract.
     ///
     /// # Errors
     /// [`Error::Argument`] if the slices differ in length.
@@ -336,7 +336,7 @@ impl Octree {
         self.view().cast_rays(rays, on, hits)
     }
 
-    /// Returns the spans of a ray: calls [`OctreeRef::ray_spans`], which has the full contract.
+    /// Returns the spans of a ray. See [`OctreeRef::ray_spans`] for the full contract.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].

@@ -187,8 +187,7 @@ impl OctreeRef<'_> {
 }
 
 impl Octree {
-    /// Computes the distances of the cells in a box: calls [`OctreeRef::distance_field`], which has the full
-    /// contract.
+    /// Computes the distances of the cells in a box. See [`OctreeRef::distance_field`] for the full contract.
     ///
     /// # Errors
     /// As [`OctreeRef::distance_field`].
