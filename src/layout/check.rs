@@ -38,8 +38,8 @@ pub struct Standing {
     /// `Yes`: the copy is proven to lie in the container, to overlap with nothing, and to keep the required
     /// distance from everything. `No`: one of these conditions is proven to be violated.
     pub verdict: GapVerdict,
-    /// The proven and possible conflicts: all neighbours for which `Yes` is not proven, limited to the first
-    /// 256. The order is: the wall, obstacles, placed copies, each in the order of their numbers.
+    /// The proven and possible conflicts: the wall, obstacles and placed copies for which `Yes` is not
+    /// proven, each kind in the order of its numbers. Only the first 256 are listed.
     pub conflicts: Vec<Neighbour>,
     /// The number of all neighbours for which `Yes` is not proven.
     pub conflict_count: usize,

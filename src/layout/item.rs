@@ -97,7 +97,7 @@ pub(super) fn bounds_of(solid: &AnySolid, name: &'static str) -> Result<Bounds, 
     let Some(bounds) = solid.bounds().or_else(of_home) else {
         return Err(Error::Argument {
             name,
-            problem: "must have bounds: a solid that goes on without end cannot be laid out",
+            problem: "must have bounds: an unbounded solid cannot be laid out",
         });
     };
     if (0..3).any(|k| bounds.max[k] <= bounds.min[k]) {

@@ -41,7 +41,7 @@ impl Voxels {
         if depth > u32::from(MAX_DEPTH) {
             return Err(Error::Argument {
                 name: "cells",
-                problem: "so many that an item takes more than 2^20 of them",
+                problem: "must be fewer: an item takes more than 2^20 of them along an axis",
             });
         }
         let frame = Frame::new(origin, cell * f64::from(1u32 << depth), depth as u8)?;

@@ -100,12 +100,12 @@ pub const CLEARANCE_SPLITS: u64 = 1 << 20;
 ///
 /// If the boundaries of both solids are known to consist of triangles
 /// ([`WholeQuestion::Walls`](crate::solid::WholeQuestion::Walls)), the search compares triangles instead of
-/// cells. This applies to closed meshes in the universe. The distance is then known to rounding, about 10^-13
-/// of the meshes' sizes and of their distance. Bodies of a mesh may overlap, unless the rule is
-/// [`FillRule::Positive`](crate::FillRule::Positive), triangles lie on each other, or vertices were moved. A
-/// step is then 64 pairs of boxes around triangles. The preparation takes O(t). Finding the nearest place of
-/// two parts takes some ten to a hundred microseconds, or O(t) where surfaces run alongside each other. Only
-/// the depth of an overlap is found by cells.
+/// cells. This applies to closed meshes in the universe. The bodies of such a mesh may overlap, unless the
+/// rule is [`FillRule::Positive`](crate::FillRule::Positive), or triangles lie on each other, or vertices
+/// were moved. The distance is then known to rounding, about 10^-13 of the meshes' sizes and of their
+/// distance. A step is 64 pairs of boxes around triangles. The preparation takes O(t). Finding the nearest
+/// place of two parts takes about ten to a hundred microseconds, or O(t) where surfaces run alongside each
+/// other. Only the depth of an overlap is found by cells.
 ///
 /// If both solids provide slabs of cells ([`Enclosure`](crate::solid::Enclosure)), each level makes the
 /// interval about four times as narrow, and plane faces are known at once. If they provide the surfaces too

@@ -159,9 +159,10 @@ impl MassSum {
         };
         match sum.is_sound() {
             true => Ok(sum),
-            false => {
-                Err(Error::Argument { name: "other", problem: "has cells that the sum has, or has not" })
-            }
+            false => Err(Error::Argument {
+                name: "other",
+                problem: "must not share a cell with this sum, or must be a part of it if subtracted",
+            }),
         }
     }
 
@@ -202,8 +203,10 @@ impl MassSum {
     /// # Errors
     /// [`Error::Argument`] if the bytes are not those of a sum.
     pub fn from_bytes(bytes: &[u8]) -> Result<MassSum, Error> {
-        MassSum::read(bytes)
-            .ok_or(Error::Argument { name: "bytes", problem: "are none of a sum of measures" })
+        MassSum::read(bytes).ok_or(Error::Argument {
+            name: "bytes",
+            problem: "must be the bytes of a sum of measures, written by the same version",
+        })
     }
 
     fn read(bytes: &[u8]) -> Option<MassSum> {
