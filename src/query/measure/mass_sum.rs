@@ -159,10 +159,9 @@ impl MassSum {
         };
         match sum.is_sound() {
             true => Ok(sum),
-            false => Err(Error::Argument {
-                name: "other",
-                problem: "must not share a cell with this sum, or must be a part of it if subtracted",
-            }),
+            false => {
+                Err(Error::Argument { name: "other", problem: "overlaps the sum, or is not a part of it" })
+            }
         }
     }
 
@@ -203,10 +202,8 @@ impl MassSum {
     /// # Errors
     /// [`Error::Argument`] if the bytes are not those of a sum.
     pub fn from_bytes(bytes: &[u8]) -> Result<MassSum, Error> {
-        MassSum::read(bytes).ok_or(Error::Argument {
-            name: "bytes",
-            problem: "must be the bytes of a sum of measures, written by the same version",
-        })
+        MassSum::read(bytes)
+            .ok_or(Error::Argument { name: "bytes", problem: "must be those of a sum of measures" })
     }
 
     fn read(bytes: &[u8]) -> Option<MassSum> {
