@@ -191,7 +191,7 @@ fn determinant(placement: &Affine) -> Interval {
 }
 
 impl Body {
-    /// `None` if the solid may be empty.
+    /// Returns the placed body; `None` if the solid may be empty.
     fn of(known: &MassProperties, placement: &Affine, density: f64) -> Option<Body> {
         let own = known.centroid?;
         let rows = placement.rows().map(|row| row.map(Interval::exactly));

@@ -12,7 +12,8 @@ use crate::solid::{AnySolid, Csg, MeshSolid, Solid};
 /// The maximal number of splits for one pair.
 pub(super) const PAIR_SPLITS: u64 = 1 << 12;
 
-/// The same for meshes that triangles do not separate: they touch, or nearly so, and cells seldom help.
+/// The maximal number of splits for meshes that triangles do not separate: they touch, or nearly so, and
+/// cells seldom help.
 const TOUCH_SPLITS: u64 = 1 << 9;
 
 /// The range and the resolution of comparisons.

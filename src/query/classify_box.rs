@@ -98,7 +98,8 @@ struct Survey {
 }
 
 impl Survey {
-    /// `None` if all of the box lies outside of the universe. A part of the box outside is undecided.
+    /// Starts a survey; `None` if all of the box lies outside of the universe. A part of the box outside is
+    /// undecided.
     fn new(frame: &Frame, min: [f64; 3], max: [f64; 3]) -> Result<Option<Survey>, Error> {
         let found = Window::new(frame, min, max)?;
         Ok(found.map(|(window, partial)| Survey { window, empty: false, full: false, partial }))

@@ -97,7 +97,7 @@ impl Default for SearchOptions {
     }
 }
 
-/// Why a search ended.
+/// The reason why a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SearchEnd {
     /// Everything is placed, and the objective requires nothing else.

@@ -254,7 +254,7 @@ impl Round {
         }
     }
 
-    /// The same, up to rounding.
+    /// The distance of a point from the core, up to rounding.
     fn about(&self, point: [f64; 3]) -> f64 {
         let from = minus(point, self.nearest(point));
         sqrt(dot(from, from))

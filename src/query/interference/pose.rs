@@ -24,7 +24,7 @@ use wide::f32x8;
 /// edges.
 const AXES: usize = 15;
 
-/// The same with one more axis that separates nothing, for vectors of two, four and eight.
+/// The number of axes including one that separates nothing, for vectors of two, four and eight.
 const LANES: usize = 16;
 
 /// The number of face normals, which come first.

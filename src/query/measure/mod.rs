@@ -21,7 +21,7 @@ use crate::walk::Proven;
 use bounds::Known;
 use volume::Volume;
 
-/// Why a search or a measurement ended.
+/// The reason why a search or a measurement ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum StopReason {
     /// The result is as exact as the tolerance requires.

@@ -30,7 +30,7 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// The same set's moments about `point` (half grains, 0 to 2^21) instead of the lattice's origin.
+    /// Returns the same set's moments about `point` (half grains, 0 to 2^21) instead of the lattice's origin.
     pub(super) fn about(&self, point: [i128; 3]) -> Moments {
         let mut second = self.second;
         for (moment, (i, j)) in second.iter_mut().zip(PAIRS) {
